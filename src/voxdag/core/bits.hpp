@@ -1,0 +1,38 @@
+#pragma once
+/// Bit counts that compile on host and device.
+#include <cstdint>
+
+#include "voxdag/core/host_device.hpp"
+
+#if !defined(__CUDA_ARCH__)
+#include <bit>
+#endif
+
+namespace voxdag {
+
+VOXDAG_HD inline int popcount(std::uint32_t v) {
+#if defined(__CUDA_ARCH__)
+  return __popc(v);
+#else
+  return std::popcount(v);
+#endif
+}
+
+VOXDAG_HD inline int popcount64(std::uint64_t v) {
+#if defined(__CUDA_ARCH__)
+  return __popcll(v);
+#else
+  return std::popcount(v);
+#endif
+}
+
+/// Index of the highest set bit; v must not be zero.
+VOXDAG_HD inline int highest_bit(std::uint32_t v) {
+#if defined(__CUDA_ARCH__)
+  return 31 - __clz(static_cast<int>(v));
+#else
+  return 31 - std::countl_zero(v);
+#endif
+}
+
+}  // namespace voxdag

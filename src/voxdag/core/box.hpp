@@ -1,0 +1,30 @@
+#pragma once
+/// An axis-aligned box. Whether `hi` belongs to it is said where it is used.
+#include <limits>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+template <class T>
+struct Box {
+  Vec3<T> lo, hi;
+
+  /// The box that contains nothing; `extend` makes it the bounds of what follows.
+  static constexpr Box empty() {
+    constexpr T big = std::numeric_limits<T>::max(), small = std::numeric_limits<T>::lowest();
+    return {{big, big, big}, {small, small, small}};
+  }
+  VOXDAG_HD constexpr void extend(Vec3<T> p) {
+    lo = min(lo, p);
+    hi = max(hi, p);
+  }
+  VOXDAG_HD constexpr bool is_empty() const { return hi.x < lo.x || hi.y < lo.y || hi.z < lo.z; }
+  friend bool operator==(const Box&, const Box&) = default;
+};
+
+using Box3f = Box<float>;
+using Box3d = Box<double>;
+using Box3i = Box<std::int32_t>;
+
+}  // namespace voxdag

@@ -1,0 +1,31 @@
+#pragma once
+/// Placement of the voxel grid in the world.
+#include "voxdag/core/box.hpp"
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+inline constexpr int kMinLevels = 2;   ///< 4³ voxels: one leaf block.
+inline constexpr int kMaxLevels = 20;  ///< 1,048,576³ voxels.
+
+/// N³ voxels, N = 2^levels. Voxel (i,j,k) is the half-open cube that starts at
+/// origin + (i,j,k) * voxel_size in world units and is voxel_size wide.
+struct Grid {
+  int levels = kMinLevels;
+  Vec3d origin{};
+  double voxel_size = 1;
+
+  VOXDAG_HD constexpr std::int64_t resolution() const { return std::int64_t{1} << levels; }
+  /// World position to grid coordinates (voxel units, voxel (0,0,0) starts at 0).
+  VOXDAG_HD constexpr Vec3d to_grid(Vec3d world) const {
+    return (world - origin) * (1.0 / voxel_size);
+  }
+  VOXDAG_HD constexpr Vec3d to_world(Vec3d grid) const { return origin + grid * voxel_size; }
+  constexpr Box3d bounds() const {
+    const double n = static_cast<double>(resolution());
+    return {origin, to_world({n, n, n})};
+  }
+  friend bool operator==(const Grid&, const Grid&) = default;
+};
+
+}  // namespace voxdag

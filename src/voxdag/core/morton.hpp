@@ -1,0 +1,45 @@
+#pragma once
+/// Morton (Z-order) codes of up to 21 bits per axis: bit 3i is x's bit i, 3i+1 is y's, 3i+2 is z's,
+/// so that three bits from the top are one child index (x=1, y=2, z=4) per octree level.
+#include <cstdint>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+/// Spreads the low 21 bits of v so that two zero bits follow each.
+VOXDAG_HD constexpr std::uint64_t spread_bits3(std::uint64_t v) {
+  v &= 0x1FFFFF;
+  v = (v | v << 32) & 0x001F00000000FFFFull;
+  v = (v | v << 16) & 0x001F0000FF0000FFull;
+  v = (v | v << 8) & 0x100F00F00F00F00Full;
+  v = (v | v << 4) & 0x10C30C30C30C30C3ull;
+  v = (v | v << 2) & 0x1249249249249249ull;
+  return v;
+}
+
+/// Inverse of spread_bits3: gathers every third bit.
+VOXDAG_HD constexpr std::uint32_t gather_bits3(std::uint64_t v) {
+  v &= 0x1249249249249249ull;
+  v = (v | v >> 2) & 0x10C30C30C30C30C3ull;
+  v = (v | v >> 4) & 0x100F00F00F00F00Full;
+  v = (v | v >> 8) & 0x001F0000FF0000FFull;
+  v = (v | v >> 16) & 0x001F00000000FFFFull;
+  v = (v | v >> 32) & 0x1FFFFF;
+  return static_cast<std::uint32_t>(v);
+}
+
+/// Coordinates in [0, 2^21) to their code.
+VOXDAG_HD constexpr std::uint64_t morton_encode(Vec3i p) {
+  return spread_bits3(static_cast<std::uint32_t>(p.x)) |
+         spread_bits3(static_cast<std::uint32_t>(p.y)) << 1 |
+         spread_bits3(static_cast<std::uint32_t>(p.z)) << 2;
+}
+
+VOXDAG_HD constexpr Vec3i morton_decode(std::uint64_t code) {
+  return {static_cast<std::int32_t>(gather_bits3(code)),
+          static_cast<std::int32_t>(gather_bits3(code >> 1)),
+          static_cast<std::int32_t>(gather_bits3(code >> 2))};
+}
+
+}  // namespace voxdag

@@ -1,0 +1,67 @@
+#pragma once
+/// A vector of three components: points, directions and voxel coordinates.
+#include <cstdint>
+
+#include "voxdag/core/host_device.hpp"
+
+namespace voxdag {
+
+template <class T>
+struct Vec3 {
+  T x{}, y{}, z{};
+
+  VOXDAG_HD constexpr T& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  VOXDAG_HD constexpr const T& operator[](int axis) const {
+    return axis == 0 ? x : axis == 1 ? y : z;
+  }
+  template <class U>
+  VOXDAG_HD constexpr explicit operator Vec3<U>() const {
+    return {static_cast<U>(x), static_cast<U>(y), static_cast<U>(z)};
+  }
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+using Vec3i = Vec3<std::int32_t>;
+using Vec3l = Vec3<std::int64_t>;
+
+template <class T>
+VOXDAG_HD constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+VOXDAG_HD constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class T>
+VOXDAG_HD constexpr Vec3<T> operator-(Vec3<T> a) {
+  return {-a.x, -a.y, -a.z};
+}
+/// Component-wise product.
+template <class T>
+VOXDAG_HD constexpr Vec3<T> operator*(Vec3<T> a, Vec3<T> b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class T>
+VOXDAG_HD constexpr Vec3<T> operator*(Vec3<T> a, T s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+template <class T>
+VOXDAG_HD constexpr T dot(Vec3<T> a, Vec3<T> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+VOXDAG_HD constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class T>
+VOXDAG_HD constexpr Vec3<T> min(Vec3<T> a, Vec3<T> b) {
+  return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
+}
+template <class T>
+VOXDAG_HD constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
+  return {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, a.z < b.z ? b.z : a.z};
+}
+
+}  // namespace voxdag

@@ -1,0 +1,26 @@
+#pragma once
+/// Parallel loops. The body is per item, so `return` ends one item.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+
+namespace voxdag {
+
+/// Calls body(i) for every i in [0, count), in any order, on the threads of the current TBB arena.
+/// `grain` is the least number of items that one task takes.
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                    });
+}
+
+/// As above with one item per task: for few, heavy items.
+template <class Body>
+void parallel_for(std::size_t count, const Body& body) {
+  tbb::parallel_for(std::size_t{0}, count, body);
+}
+
+}  // namespace voxdag
