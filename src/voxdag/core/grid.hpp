@@ -5,6 +5,7 @@
 
 namespace voxdag {
 
+inline constexpr int kSubvoxels = 256;  ///< Mesh vertices are rounded to 1/256 voxel.
 inline constexpr int kMinLevels = 2;   ///< 4³ voxels: one leaf block.
 inline constexpr int kMaxLevels = 20;  ///< 1,048,576³ voxels.
 
@@ -14,6 +15,9 @@ struct Grid {
   int levels = kMinLevels;
   Vec3d origin{};
   double voxel_size = 1;
+  /// 1/256-voxels per world unit, the factor that quantises vertices (design: exact cover). Stored
+  /// beside voxel_size because neither's rounded quotient gives the other back bit for bit.
+  double quantization_scale = kSubvoxels / voxel_size;
 
   VOXDAG_HD constexpr std::int64_t resolution() const { return std::int64_t{1} << levels; }
   /// World position to grid coordinates (voxel units, voxel (0,0,0) starts at 0).
