@@ -3,10 +3,11 @@
 ///
 /// Source: Kämpe, Sintorn, Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, Figure 3.
 ///
-/// A grid of N³ voxels, N = 2^L, has nodes of level 0 (the root) to L-1. Levels 0..L-3 are stored as
-/// 32-bit words: a word with the 8-bit child mask, then one pointer for each child present, in
-/// the order of the child index (x=1, y=2, z=4). A node of level L-2 is a leaf block, the 64-bit mask
-/// of its 4³ voxels in Morton order, so its byte i is the child mask of its child i at level L-1.
+/// A grid of N³ voxels, N = 2^L, has nodes of level 0 (the root) to L-1. Levels 0..L-3 are stored
+/// as 32-bit words: a word with the 8-bit child mask, then one pointer for each child present, in
+/// the order of the child index (x=1, y=2, z=4). A node of level L-2 is a leaf block, the 64-bit
+/// mask of its 4³ voxels in Morton order, so its byte i is the child mask of its child i, of level
+/// L-1.
 ///
 ///   nodes        | level 0 | level 1 | ... | level L-3 |       32-bit words
 ///   leaf_blocks  | level L-2 |                                  64-bit masks
@@ -71,7 +72,7 @@ VOXDAG_HD inline std::uint32_t child_pointer(const std::uint32_t* node, int inde
   return node[1 + popcount(node[0] & ((1u << index) - 1u))];
 }
 
-/// The child mask of a leaf block as a node of level L-2: bit i tells if its 2³ octant i has voxels.
+/// The child mask of a leaf block as a node of level L-2: bit i tells if octant i has voxels.
 VOXDAG_HD inline std::uint32_t leaf_block_child_mask(std::uint64_t block) {
   std::uint32_t mask = 0;
   for (int i = 0; i < 8; ++i) mask |= ((block >> (8 * i)) & 0xFFu) != 0 ? 1u << i : 0u;

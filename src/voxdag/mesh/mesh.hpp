@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;  ///< Three indices into Mesh::ve
 struct Mesh {
   std::vector<Vec3f> vertices;  ///< World units, float32 as in the file (correctly rounded).
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> triangle_materials;  ///< Index into `materials`, or empty: no materials.
+  std::vector<std::uint32_t> triangle_materials;  ///< Index into `materials`, or empty: no names.
   std::vector<std::string> materials;             ///< Names as in the file.
 };
 

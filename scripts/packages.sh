@@ -1,0 +1,39 @@
+# shellcheck shell=bash disable=SC2034
+# The Debian 12 packages that voxdag is built and tested with: the one list of them.
+# Sourced by the other scripts; install_packages installs what is missing and nothing else, so
+# that a second run works offline.
+
+voxdag_packages=(
+  # tools
+  ca-certificates g++ cmake ninja-build
+  # the library
+  libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev libtinygltf-dev
+  nlohmann-json3-dev libxxhash-dev libzstd-dev libassimp-dev
+  # the command line
+  libcli11-dev libfmt-dev
+)
+voxdag_test_packages=(
+  libgtest-dev libbenchmark-dev
+  clang clang-format clang-tidy
+)
+
+# install_packages PACKAGE...
+install_packages() {
+  local package missing=() as_root=()
+  for package in "$@"; do
+    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "These packages are needed, and there is no sudo to install them: ${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  echo "Installing: ${missing[*]}"
+  "${as_root[@]}" apt-get update -q
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -q -y --no-install-recommends "${missing[@]}"
+}

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Builds voxdag with warnings as errors and runs every test, on a Debian 12 that may have only git.
+#
+#   scripts/test.sh           formatting, the library under clang, everything under g++, the tests
+#   scripts/test.sh --tidy    clang-tidy over the sources as well (minutes more)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. scripts/packages.sh
+
+usage() { sed -n '2,5s/^# \{0,1\}//p' "$0"; }
+tidy=no
+case "${1-}" in
+  "") ;;
+  --tidy) tidy=yes ;;
+  -h | --help) usage; exit 0 ;;
+  *) usage >&2; exit 2 ;;
+esac
+
+install_packages "${voxdag_packages[@]}" "${voxdag_test_packages[@]}"
+jobs=$(nproc)
+
+echo "== clang-format"
+find . -name '*.[ch]pp' -not -path './build*' -print0 |
+  xargs -0 -r clang-format --dry-run -Werror
+
+echo "== clang"
+cmake --preset clang -DVOXDAG_WERROR=ON >/dev/null
+cmake --build --preset clang -- -j "$jobs"
+
+echo "== g++"
+cmake --preset release -DVOXDAG_WERROR=ON >/dev/null
+cmake --build --preset release -- -j "$jobs"
+
+if [ "$tidy" = yes ]; then
+  echo "== clang-tidy"
+  find src apps bench -name '*.cpp' -print0 |
+    xargs -0 -r -n 1 -P "$jobs" clang-tidy -p build/clang --quiet --warnings-as-errors='*'
+fi
+
+echo "== tests"
+ctest --preset release -j "$jobs" --no-tests=error
