@@ -1,0 +1,139 @@
+#include "voxdag/core/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+/// Room for the suffix within the 255 bytes that file systems allow a name.
+constexpr std::size_t kLongestStem = 200;
+
+fs::path temporary_name(const fs::path& target) {
+  static std::atomic<unsigned> serial{0};
+  const std::string stem = target.filename().string().substr(0, kLongestStem);
+  return target.parent_path() /
+         (stem + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(serial++));
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
+  struct stat existing {};
+  const bool exists = stat(path.c_str(), &existing) == 0;
+  if (exists && S_ISDIR(existing.st_mode)) fail(0, EISDIR);
+  if (exists && !S_ISREG(existing.st_mode)) {
+    descriptor_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail(0, errno);
+    return;
+  }
+  std::error_code ignored;
+  if (exists && fs::is_symlink(path, ignored)) target_ = fs::canonical(path, ignored);
+  if (target_.empty()) target_ = path;
+  if (path.filename().empty()) fail(0, ENOENT);
+  if (exists && access(target_.c_str(), W_OK) != 0) fail(0, errno);
+
+  do {
+    temporary_ = temporary_name(target_);
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EEXIST);
+  if (descriptor_ < 0) fail(0, errno);
+  if (exists) fchmod(descriptor_, existing.st_mode & 07777);
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      flushed_(other.flushed_),
+      buffer_(std::move(other.buffer_)) {}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  assert(descriptor_ >= 0);
+  const auto* from = static_cast<const std::byte*>(data);
+  if (buffer_.size() + bytes > kBufferBytes) flush();
+  if (bytes >= kBufferBytes) return write_through(from, bytes);
+  if (buffer_.capacity() == 0) buffer_.reserve(kBufferBytes);
+  buffer_.insert(buffer_.end(), from, from + bytes);
+}
+
+void AtomicFile::write_zeros(std::size_t bytes) {
+  static constexpr std::byte kZeros[4096] = {};
+  while (bytes > 0) {
+    const std::size_t now = std::min(bytes, sizeof kZeros);
+    write(kZeros, now);
+    bytes -= now;
+  }
+}
+
+void AtomicFile::overwrite(std::uint64_t offset, const void* data, std::size_t bytes) {
+  assert(offset + bytes <= position());
+  flush();
+  const auto* from = static_cast<const std::byte*>(data);
+  while (bytes > 0) {
+    const ssize_t written = pwrite(descriptor_, from, bytes, static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(offset, errno);
+    from += written;
+    offset += static_cast<std::uint64_t>(written);
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void AtomicFile::commit() {
+  assert(descriptor_ >= 0);
+  flush();
+  // Some file systems (NFS, quotas) report a failed write only here.
+  if (close(std::exchange(descriptor_, -1)) != 0) fail(position(), errno);
+  if (temporary_.empty()) return;
+  if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(position(), errno);
+  temporary_.clear();
+}
+
+void AtomicFile::flush() {
+  write_through(buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void AtomicFile::write_through(const std::byte* data, std::size_t bytes) {
+  // Linux writes at most 2 GiB at once, and less where a signal or a full disk cuts it short.
+  const std::size_t all = bytes;
+  while (bytes > 0) {
+    const ssize_t written = ::write(descriptor_, data, bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(flushed_ + (all - bytes), errno);
+    data += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+  flushed_ += all;
+}
+
+void AtomicFile::discard() noexcept {
+  if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+  temporary_.clear();
+}
+
+void AtomicFile::fail(std::uint64_t at, int error) const {
+  throw Error(path_.string(), "byte " + std::to_string(at),
+              "cannot write: " + std::system_category().message(error));
+}
+
+}  // namespace voxdag

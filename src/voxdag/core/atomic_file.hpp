@@ -1,0 +1,64 @@
+#pragma once
+/// An output file that appears under its name only when it is complete.
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace voxdag {
+
+/// Written beside its name (NAME.tmp-PID-n) and renamed by commit(). Destroyed before that, also by
+/// an exception that passes, it removes what it wrote and leaves an older file of the name alone.
+///
+/// A name that exists and is neither a regular file nor a directory (a pipe, /dev/stdout,
+/// /dev/null) is written directly. A symbolic link stays; the file that it points to is replaced.
+/// Data is not forced to the disk (no fsync): after a power cut the file may be damaged, which
+/// formats with checksums detect; a crash of the program alone cannot leave a partial file.
+///
+/// Every failure throws Error(path, "byte N", the system's reason). A process that may run
+/// under a file size limit has to ignore SIGXFSZ, and one that writes to pipes SIGPIPE, to see the
+/// error instead of the signal. Not thread-safe.
+class AtomicFile {
+ public:
+  /// Creates the temporary file, so that an unwritable place is known before the work begins.
+  explicit AtomicFile(const std::filesystem::path& path);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();
+
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  template <class T>
+  void write(std::span<const T> values) {
+    write(values.data(), values.size_bytes());
+  }
+  void write_zeros(std::size_t bytes);
+
+  /// Overwrites bytes already written, e.g. a count in a header. [offset, offset + bytes) must lie
+  /// below position(). Fails where the file cannot seek (a pipe).
+  void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
+
+  /// Bytes written so far.
+  std::uint64_t position() const { return flushed_ + buffer_.size(); }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Flushes and gives the file its name. Nothing may be written afterwards.
+  void commit();
+
+ private:
+  void flush();
+  void write_through(const std::byte* data, std::size_t bytes);
+  void discard() noexcept;
+  [[noreturn]] void fail(std::uint64_t at, int error) const;
+
+  std::filesystem::path path_;       ///< As given: what errors name.
+  std::filesystem::path target_;     ///< With symbolic links resolved.
+  std::filesystem::path temporary_;  ///< Empty where the target is written directly.
+  int descriptor_ = -1;
+  std::uint64_t flushed_ = 0;
+  std::vector<std::byte> buffer_;
+};
+
+}  // namespace voxdag
