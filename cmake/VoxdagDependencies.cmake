@@ -1,16 +1,25 @@
 # Every package comes from Debian 12. What is optional is found or skipped with one line.
-find_package(Threads REQUIRED)
-find_package(TBB REQUIRED)
-find_package(hwy REQUIRED)
-find_package(PNG REQUIRED)
-find_package(JPEG REQUIRED)
-find_package(OpenEXR REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(FastFloat REQUIRED)
-find_package(TinyGLTF REQUIRED)
-find_package(fmt REQUIRED)
-find_package(CLI11 REQUIRED)
+
+# What the library links: an installed voxdag looks for the same packages (voxdagConfig.cmake.in).
+set(VOXDAG_LIBRARY_PACKAGES
+  Threads TBB hwy PNG JPEG OpenEXR nlohmann_json FastFloat TinyGLTF)
+foreach(package ${VOXDAG_LIBRARY_PACKAGES})
+  if(package STREQUAL "OpenEXR")
+    # Debian's Imath names a Python library of a package that nobody needs, at length.
+    set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+  endif()
+  find_package(${package} REQUIRED)
+  unset(CMAKE_MESSAGE_LOG_LEVEL)
+endforeach()
+
 find_package(assimp QUIET)
-if(NOT assimp_FOUND)
+if(assimp_FOUND)
+  list(APPEND VOXDAG_LIBRARY_PACKAGES assimp)
+else()
   message(STATUS "voxdag: assimp not found: meshes other than OBJ, PLY, STL and glTF will be refused")
+endif()
+
+if(VOXDAG_BUILD_APPS)
+  find_package(fmt REQUIRED)
+  find_package(CLI11 REQUIRED)
 endif()

@@ -6,8 +6,8 @@
 namespace voxdag {
 
 inline constexpr int kSubvoxels = 256;  ///< Mesh vertices are rounded to 1/256 voxel.
-inline constexpr int kMinLevels = 2;   ///< 4³ voxels: one leaf block.
-inline constexpr int kMaxLevels = 20;  ///< 1,048,576³ voxels.
+inline constexpr int kMinLevels = 2;    ///< 4³ voxels: one leaf block.
+inline constexpr int kMaxLevels = 20;   ///< 1,048,576³ voxels.
 
 /// N³ voxels, N = 2^levels. Voxel (i,j,k) is the half-open cube that starts at
 /// origin + (i,j,k) * voxel_size in world units and is voxel_size wide.

@@ -1,0 +1,9 @@
+#pragma once
+/// The subcommands, one file each. A function declares its command on the parser.
+#include "session.hpp"
+
+namespace voxdag {
+
+void add_completion_command(CLI::App& app, Session& session);
+
+}  // namespace voxdag

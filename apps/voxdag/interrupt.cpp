@@ -1,0 +1,34 @@
+#include "interrupt.hpp"
+
+#include <csignal>
+
+namespace voxdag {
+namespace {
+
+Progress* progress_to_cancel = nullptr;
+volatile std::sig_atomic_t caught_signal = 0;
+
+extern "C" void on_signal(int number) {
+  caught_signal = number;
+  progress_to_cancel->cancel();
+}
+
+}  // namespace
+
+void cancel_on_signals(Progress& progress) {
+  progress_to_cancel = &progress;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    // What the caller had ignored (nohup) stays ignored.
+    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(number, &action, nullptr);
+  }
+  for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);
+}
+
+int cancelling_signal() { return caught_signal; }
+
+}  // namespace voxdag

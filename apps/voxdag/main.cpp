@@ -1,0 +1,92 @@
+/// The voxdag command line: exit status 0 for success, 1 for a failure, 2 for bad usage, and
+/// 128 + N where signal N cancelled the work. What goes wrong is one line on stderr.
+#include <fmt/core.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <new>
+#include <optional>
+#include <system_error>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr int kFailure = 1, kBadUsage = 2, kSignalBase = 128;
+
+/// One line whatever stands in the text: file names may hold line breaks.
+int report(std::string text, int status) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  text = "voxdag: " + text + "\n";
+  std::fputs(text.c_str(), stderr);
+  return status;
+}
+
+std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> commands = app.get_subcommands();
+  const std::string usage = commands.empty() ? "voxdag" : "voxdag " + commands[0]->get_name();
+  const std::vector<std::string> unknown = app.remaining();
+  const std::string reason = commands.empty() && !unknown.empty()
+                                 ? fmt::format("there is no command \"{}\"", unknown[0])
+                                 : error.what();
+  return fmt::format("{} (usage: {} --help)", reason, usage);
+}
+
+void work(Session& session) {
+  std::optional<tbb::global_control> threads;
+  if (session.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, session.threads);
+  session.bar.enable(!session.quiet);
+  session.work();
+  session.bar.clear();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw Error("standard output", "", std::system_category().message(errno));
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Sparse voxel DAGs from triangle meshes: build, inspect, trace and render them.",
+               "voxdag");
+  app.set_version_flag("--version", "voxdag " VOXDAG_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  Session session;
+  for (const auto add : {add_completion_command}) add(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    return report(usage_line(app, error), kBadUsage);
+  }
+  cancel_on_signals(session.progress);
+  const auto fail = [&](const std::string& text, int status) {
+    session.bar.clear();
+    return report(text, status);
+  };
+  const std::string subject = session.subject.empty() ? "" : session.subject + ": ";
+  try {
+    work(session);
+    return 0;
+  } catch (const Cancelled& cancelled) {
+    return fail(subject + cancelled.what(), kSignalBase + cancelling_signal());
+  } catch (const Error& error) {
+    return fail(error.file().empty() ? subject + error.what() : error.what(), kFailure);
+  } catch (const std::bad_alloc&) {
+    return fail(subject + "out of memory", kFailure);
+  } catch (const std::exception& error) {
+    return fail(subject + error.what(), kFailure);
+  }
+}
+
+}  // namespace
+}  // namespace voxdag
+
+int main(int argc, char** argv) try {
+  return voxdag::run(argc, argv);
+} catch (const std::exception& error) {
+  return voxdag::report(error.what(), voxdag::kFailure);
+}

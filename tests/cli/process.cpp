@@ -1,0 +1,91 @@
+#include "process.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <stdexcept>
+#include <utility>
+
+namespace voxdag {
+namespace {
+
+int nameless_file() {
+  const int descriptor = open("/tmp", O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+  if (descriptor < 0) throw std::runtime_error("cannot make a temporary file");
+  return descriptor;
+}
+
+std::string read_and_close(int& descriptor) {
+  std::string text(static_cast<std::size_t>(lseek(descriptor, 0, SEEK_END)), '\0');
+  if (pread(descriptor, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
+    throw std::runtime_error("cannot read a temporary file");
+  close(std::exchange(descriptor, -1));
+  return text;
+}
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& command, const std::string& stdout_path) {
+  out_ = stdout_path.empty() ? nameless_file() : open(stdout_path.c_str(), O_RDWR | O_CLOEXEC);
+  err_ = nameless_file();
+  std::vector<char*> arguments;
+  for (const std::string& argument : command)
+    arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  pid_ = fork();
+  if (pid_ < 0) throw std::runtime_error("cannot fork");
+  if (pid_ > 0) return;
+  const int in = open("/dev/null", O_RDONLY);
+  if (dup2(in, 0) < 0 || dup2(out_, 1) < 0 || dup2(err_, 2) < 0) _exit(126);
+  execvp(arguments[0], arguments.data());
+  _exit(127);
+}
+
+Process::~Process() {
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  if (out_ >= 0) close(out_);
+  if (err_ >= 0) close(err_);
+}
+
+void Process::send_signal(int number) const { kill(pid_, number); }
+
+ProcessResult Process::wait() {
+  int status = 0;
+  waitpid(std::exchange(pid_, -1), &status, 0);
+  ProcessResult result;
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  struct Stream {
+    int& descriptor;
+    std::string& text;
+  };
+  for (const Stream& stream : {Stream{out_, result.out}, Stream{err_, result.err}})
+    stream.text = read_and_close(stream.descriptor);
+  return result;
+}
+
+std::vector<std::string> voxdag_command(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), VOXDAG_PROGRAM);
+  return arguments;
+}
+
+ProcessResult run_voxdag(std::vector<std::string> arguments, const std::string& stdout_path) {
+  return Process(voxdag_command(std::move(arguments)), stdout_path).wait();
+}
+
+void expect_failure(const ProcessResult& result, int status, const std::string& text) {
+  EXPECT_EQ(result.status, status);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err.rfind("voxdag: ", 0), 0u) << result.err;
+  EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_TRUE(result.err.ends_with('\n'));
+}
+
+}  // namespace voxdag

@@ -1,0 +1,42 @@
+#pragma once
+/// Runs a program as a user would: arguments in, status and output out.
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace voxdag {
+
+struct ProcessResult {
+  int status = 0;  ///< Exit status, or 128 + the signal that ended it.
+  std::string out, err;
+};
+
+/// A program that runs; the destructor kills and reaps what was not waited for.
+class Process {
+ public:
+  /// Starts `command` (command[0] is searched in PATH). stdin is empty. stdout goes to the file
+  /// `stdout_path` where one is given, and is collected otherwise.
+  explicit Process(const std::vector<std::string>& command, const std::string& stdout_path = {});
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process();
+
+  void send_signal(int number) const;
+  ProcessResult wait();
+
+ private:
+  pid_t pid_ = -1;
+  int out_ = -1, err_ = -1;  ///< Temporary files without a name.
+};
+
+/// The voxdag command line of this build with these arguments.
+ProcessResult run_voxdag(std::vector<std::string> arguments, const std::string& stdout_path = {});
+/// The command to give to Process.
+std::vector<std::string> voxdag_command(std::vector<std::string> arguments);
+
+/// Passes where a failure was reported as it must be: nothing on stdout, one line on stderr that
+/// begins with "voxdag: " and holds `text`, and the exit status.
+void expect_failure(const ProcessResult& result, int status, const std::string& text);
+
+}  // namespace voxdag

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "process.hpp"
+
+namespace voxdag {
+namespace {
+
+const std::vector<std::string> kCommands = {"completion"};
+
+TEST(Usage, VersionIsOneLine) {
+  const ProcessResult result = run_voxdag({"--version"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out, "voxdag " VOXDAG_VERSION "\n");
+}
+
+TEST(Usage, HelpNamesEveryCommand) {
+  const ProcessResult result = run_voxdag({"--help"});
+  EXPECT_EQ(result.status, 0);
+  for (const std::string& command : kCommands)
+    EXPECT_NE(result.out.find("\n  " + command + " "), std::string::npos) << command;
+}
+
+TEST(Usage, HelpOfEveryCommandHasAnExample) {
+  for (const std::string& command : kCommands) {
+    const ProcessResult result = run_voxdag({command, "--help"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.out.find("Example:\n  voxdag " + command), std::string::npos) << result.out;
+  }
+}
+
+TEST(Usage, NoCommandIsBadUsage) { expect_failure(run_voxdag({}), 2, "command"); }
+
+TEST(Usage, AnUnknownCommandIsNamed) { expect_failure(run_voxdag({"biuld"}), 2, "biuld"); }
+
+TEST(Usage, AnUnknownOptionIsNamed) {
+  for (const std::string& command : kCommands)
+    expect_failure(run_voxdag({command, "--frobnicate"}), 2, "voxdag " + command + " --help");
+}
+
+TEST(Usage, AFullDiskUnderStandardOutputIsAFailure) {
+  expect_failure(run_voxdag({"completion", "bash"}, "/dev/full"), 1, "standard output");
+}
+
+TEST(Usage, BashCompletionNamesEveryCommandAndParses) {
+  const ProcessResult script = run_voxdag({"completion", "bash"});
+  ASSERT_EQ(script.status, 0);
+  for (const std::string& command : kCommands)
+    EXPECT_NE(script.out.find(command + ") words="), std::string::npos);
+  const std::string check = script.out +
+                            "COMP_WORDS=(voxdag comp); COMP_CWORD=1; _voxdag\n"
+                            "echo \"${COMPREPLY[*]}\"\n";
+  const ProcessResult completed = Process({"bash", "-c", check}).wait();
+  EXPECT_EQ(completed.out, "completion\n") << completed.err;
+}
+
+}  // namespace
+}  // namespace voxdag
