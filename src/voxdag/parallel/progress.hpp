@@ -1,6 +1,7 @@
 #pragma once
 /// How long work tells its caller how far it is, and how the caller stops it.
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <string_view>
 

@@ -1,0 +1,51 @@
+#pragma once
+/// From a triangle mesh to the minimal sparse voxel DAG of its exact cover.
+#include <cstdint>
+
+#include "voxdag/core/grid.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+enum class BuildMethod {
+  /// Depth-first with hash-consing and the plane memo: memory and, for planar regions, time follow
+  /// the size of the DAG instead of that of the octree.
+  kHashConsed,
+  /// The paper's: octrees of sub-volumes of at most 1024³, each reduced level by level by sorting,
+  /// then
+  /// merged by one more reduction. Kept as baseline and cross-check; the result is the same.
+  kSort,
+};
+
+struct BuildOptions {
+  BuildMethod method = BuildMethod::kHashConsed;
+  /// Bytes that the process may use in all, the mesh included; 0 means no limit.
+  std::uint64_t memory_limit = 0;
+};
+
+/// What a build took. Seconds are wall-clock.
+struct BuildReport {
+  double quantize_seconds = 0;   ///< Vertices to integers, triangles into sub-volumes.
+  double voxelize_seconds = 0;   ///< Cells to nodes; with kHashConsed the reduction as well.
+  double reduce_seconds = 0;     ///< kSort: all of the reduction but the voxelization.
+  double sort_seconds = 0;       ///< kSort: the part of reduce_seconds spent in sorting.
+  double canonical_seconds = 0;  ///< Numbering in canonical order.
+  std::uint64_t subvolumes = 0;
+  std::uint64_t peak_bytes = 0;  ///< Most bytes held by the build at once, without the mesh.
+};
+
+struct BuildResult {
+  Svdag dag;
+  BuildReport report;
+};
+
+/// The DAG of all voxels of `grid` that the mesh's triangles meet (design: exact cover). Runs on
+/// the current TBB arena. The result depends on mesh and grid alone: not on threads, method or
+/// machine. Throws Error if the DAG outgrows 32-bit pointers or the memory limit, Cancelled if
+/// `progress` was cancelled.
+BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options = {},
+                        Progress* progress = nullptr);
+
+}  // namespace voxdag

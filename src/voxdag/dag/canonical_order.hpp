@@ -1,0 +1,76 @@
+#pragma once
+/// From unique nodes in any order to the canonical Svdag.
+///
+/// Source of the idea: C. J. Cheney, "A nonrecursive list compacting algorithm", CACM 1970. Copying
+/// breadth-first, level by level, and placing a node when it is first met, gives in each level the
+/// order of first visit of a depth-first walk: both are the order of the nodes' least Morton path.
+#include <cstdint>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// `source` has
+///   std::uint32_t* words(int level, std::uint32_t id)  the words of a node, which may be
+///   overwritten void release(int level)                            called when a level is not
+///   needed any more std::uint64_t node_words(), leaf_blocks()          upper bounds for what is
+///   reachable std::uint32_t& forward(std::uint32_t leaf_id)      a word per leaf block, 0 at first
+/// The children of level l-1 are ids of level l. `root` is of level 0.
+template <class Source>
+Svdag canonical_order(Source& source, int levels, std::uint32_t root) {
+  // A placed node's mask word becomes its new place, kPlaced higher than any mask.
+  constexpr std::uint64_t kPlaced = 256;
+  Svdag dag;
+  dag.levels = levels;
+  const int leaf_level = levels - 2;
+  if (source.node_words() + kPlaced > 0xFFFFFFFFull)
+    throw Error("the DAG is too large: its nodes outgrew 32-bit pointers");
+  dag.nodes.reserve(source.node_words());
+  dag.leaf_blocks.reserve(source.leaf_blocks());
+
+  const auto place_leaf = [&](std::uint32_t id) {
+    std::uint32_t& forward = source.forward(id);
+    if (forward == 0) {
+      const std::uint32_t* words = source.words(leaf_level, id);
+      dag.leaf_blocks.push_back(words[0] | static_cast<std::uint64_t>(words[1]) << 32);
+      forward = static_cast<std::uint32_t>(dag.leaf_blocks.size());
+    }
+    return forward - 1;
+  };
+  const auto place_node = [&](int level, std::uint32_t id) {
+    std::uint32_t* words = source.words(level, id);
+    if (words[0] < kPlaced) {
+      const auto place = dag.nodes.size();
+      dag.nodes.insert(dag.nodes.end(), words, words + 1 + popcount(words[0]));
+      words[0] = static_cast<std::uint32_t>(place + kPlaced);
+    }
+    return static_cast<std::uint32_t>(words[0] - kPlaced);
+  };
+
+  if (leaf_level == 0) {
+    place_leaf(root);
+  } else {
+    place_node(0, root);
+  }
+  for (int level = 0; level < leaf_level; ++level) {
+    const std::uint64_t begin = dag.level_begin[level], end = dag.nodes.size();
+    for (std::uint64_t at = begin; at < end;) {
+      const int children = popcount(dag.nodes[at]);
+      for (std::uint64_t i = at + 1; i <= at + children; ++i) {
+        const std::uint32_t id = dag.nodes[i];
+        const std::uint32_t placed =
+            level + 1 == leaf_level ? place_leaf(id) : place_node(level + 1, id);
+        dag.nodes[i] = placed;
+      }
+      at += 1 + children;
+    }
+    source.release(level + 1);
+    dag.level_begin[level + 1] = end;
+  }
+  for (int level = leaf_level; level <= kMaxLevels; ++level)
+    dag.level_begin[level] = dag.nodes.size();
+  return dag;
+}
+
+}  // namespace voxdag

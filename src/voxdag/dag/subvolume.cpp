@@ -1,0 +1,211 @@
+// The depth-first recursion of the builder. Compiled once for each instruction set; the best that
+// the machine has is chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "voxdag/dag/subvolume.cpp"
+#include "voxdag/dag/subvolume.hpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "voxdag/voxelize/block_bits.hpp"
+#include "voxdag/voxelize/block_raster-inl.hpp"
+#include "voxdag/voxelize/cell_classify.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr std::uint64_t kUnbounded = ~std::uint64_t{0} >> 2;
+
+template <class Sink>
+class Recursion {
+ public:
+  using Context = SubvolumeContext<Sink>;
+  using Item = typename Context::Item;
+  using Classified = typename Context::Classified;
+
+  explicit Recursion(Context& context) : context_(context), sink_(context.sink) {}
+
+  /// The node of the cell of 2^log2_size voxels at `cell`, from `count` items on the stack at
+  /// `first`.
+  NodeId cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
+    if (count == 1) return single(at, log2_size, context_.items[first]);
+    if (log2_size == 2) {
+      std::uint64_t mask = 0;
+      for (std::size_t i = first; i < first + count; ++i) {
+        const Item& item = context_.items[i];
+        mask |= triangle_block(context_.setups[item.triangle], item.conditions, at);
+      }
+      return leaf(mask);
+    }
+    const std::int32_t half = std::int32_t{1} << (log2_size - 1);
+    const std::size_t classified = context_.classified.size();
+    std::uint32_t any_alive = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Item item = context_.items[i];
+      const ChildConditions children =
+          classify_children(context_.setups[item.triangle], item.conditions, at, half);
+      any_alive |= children.alive;
+      if (children.alive != 0)
+        context_.classified.push_back(
+            {item.triangle, children.alive, {children.lanes[0], children.lanes[1]}});
+    }
+    const std::size_t classified_end = context_.classified.size();
+    NodeWords words;
+    for (int child = 0; child < 8; ++child) {
+      if (((any_alive >> child) & 1) == 0) continue;
+      const std::size_t list = context_.items.size();
+      for (std::size_t i = classified; i < classified_end; ++i) {
+        const Classified& c = context_.classified[i];
+        if ((c.alive >> child) & 1)
+          context_.items.push_back(
+              child_item(c.triangle, c.lanes[child >> 2] >> (16 * (child & 3))));
+      }
+      words.add(child, cell(child_cell(at, half, child), log2_size - 1, list,
+                            context_.items.size() - list));
+      context_.items.resize(list);
+    }
+    context_.classified.resize(classified);
+    return node(log2_size, words);
+  }
+
+ private:
+  struct NodeWords {
+    std::uint32_t words[9] = {};
+    int count = 1;
+
+    void add(int child, NodeId id) {
+      if (id == kNoNode) return;
+      words[0] |= 1u << child;
+      words[count++] = id;
+    }
+  };
+
+  static Vec3i child_cell(Vec3i at, std::int32_t half, int child) {
+    return {at.x + (child & 1) * half, at.y + ((child >> 1) & 1) * half,
+            at.z + ((child >> 2) & 1) * half};
+  }
+
+  /// Where the column of a cell is inside the triangle its plane alone matters.
+  Item child_item(std::uint32_t triangle, std::uint64_t conditions) const {
+    std::uint32_t left = static_cast<std::uint32_t>(conditions & 0xFFFF);
+    const TriangleSetup& t = context_.setups[triangle];
+    if ((left & kPlane) && (left & t.dominant_edges) == 0) left = kPlane;
+    return {triangle, left};
+  }
+
+  NodeId leaf(std::uint64_t linear_mask) {
+    return linear_mask == 0 ? kNoNode : sink_.leaf(linear_to_morton(linear_mask));
+  }
+
+  NodeId node(int log2_size, const NodeWords& words) {
+    return words.count == 1 ? kNoNode
+                            : sink_.node(context_.levels - log2_size, words.words, words.count);
+  }
+
+  NodeId single(Vec3i at, int log2_size, const Item item) {
+    const TriangleSetup& t = context_.setups[item.triangle];
+    if (log2_size == 2) return leaf(triangle_block(t, item.conditions, at));
+    if constexpr (Sink::kMemo) {
+      if (item.conditions == kPlane) {
+        const int range = slab_range(t, at, std::int32_t{1} << log2_size);
+        if (range == 0) return kNoNode;
+        if (range == 1) return slab(t.plane, slab_lo_at(t, at), log2_size).id;
+      }
+    }
+    const std::int32_t half = std::int32_t{1} << (log2_size - 1);
+    const ChildConditions children = classify_children(t, item.conditions, at, half);
+    NodeWords words;
+    for (std::uint32_t left = children.alive; left != 0; left &= left - 1) {
+      const int child = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+      words.add(child, single(child_cell(at, half, child), log2_size - 1,
+                              child_item(item.triangle, children.conditions(child))));
+    }
+    return node(log2_size, words);
+  }
+
+  /// The node of a cell that holds a slab and nothing else, by way of the memo.
+  SlabNode slab(const PlaneSlab& plane, std::int64_t lo, int log2_size) {
+    if (log2_size == 2) {
+      const SlabBlock block = slab_block(plane, lo);
+      return {leaf(block.mask), block.down, block.up};
+    }
+    SlabNode result;
+    if (sink_.memo.find(plane, lo, log2_size, result)) return result;
+    result = {kNoNode, kUnbounded, kUnbounded};
+    const std::int64_t half = std::int64_t{1} << (log2_size - 1), last = half - 1;
+    const Vec3l& n = plane.normal;
+    const std::int64_t most =
+        last * (detail::positive(n.x) + detail::positive(n.y) + detail::positive(n.z));
+    const std::int64_t least =
+        last * (detail::negative(n.x) + detail::negative(n.y) + detail::negative(n.z));
+    NodeWords words;
+    for (int child = 0; child < 8; ++child) {
+      const std::int64_t child_lo = lo - (child & 1 ? n.x * half : 0) -
+                                    (child & 2 ? n.y * half : 0) - (child & 4 ? n.z * half : 0);
+      SlabNode part{kNoNode, kUnbounded, kUnbounded};
+      if (child_lo > most) {
+        part.down = static_cast<std::uint64_t>(child_lo - most - 1);
+      } else if (child_lo + plane.width < least) {
+        part.up = static_cast<std::uint64_t>(least - child_lo - plane.width - 1);
+      } else {
+        part = slab(plane, child_lo, log2_size - 1);
+        words.add(child, part.id);
+      }
+      result.down = std::min(result.down, part.down);
+      result.up = std::min(result.up, part.up);
+    }
+    result.id = node(log2_size, words);
+    sink_.memo.insert(plane, lo, log2_size, result);
+    return result;
+  }
+
+  Context& context_;
+  Sink& sink_;
+};
+
+template <class Sink>
+NodeId build(SubvolumeContext<Sink>& context, const SubvolumeJob& job) {
+  context.setups.clear();
+  context.items.clear();
+  for (std::uint32_t index : job.triangles) {
+    const TriangleSetup& t =
+        context.setups.emplace_back(make_triangle_setup(context.mesh->triangle(index), job.origin));
+    context.items.push_back({static_cast<std::uint32_t>(context.setups.size() - 1), t.conditions});
+  }
+  if (context.items.empty()) return kNoNode;
+  return Recursion<Sink>(context).cell({0, 0, 0}, job.log2_size, 0, context.items.size());
+}
+
+}  // namespace
+
+NodeId build_dag(SubvolumeContext<DagSink>& context, const SubvolumeJob& job) {
+  return build(context, job);
+}
+NodeId build_tree(SubvolumeContext<TreeSink>& context, const SubvolumeJob& job) {
+  return build(context, job);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace voxdag {
+
+HWY_EXPORT(build_dag);
+HWY_EXPORT(build_tree);
+
+NodeId build_subvolume(SubvolumeContext<DagSink>& context, const SubvolumeJob& job) {
+  return HWY_DYNAMIC_DISPATCH(build_dag)(context, job);
+}
+NodeId build_subvolume(SubvolumeContext<TreeSink>& context, const SubvolumeJob& job) {
+  return HWY_DYNAMIC_DISPATCH(build_tree)(context, job);
+}
+
+}  // namespace voxdag
+#endif

@@ -1,0 +1,142 @@
+// Leaf blocks of 4³ voxels from triangles, vectorised; compiled once for each instruction set.
+//
+// Every lane holds an integer that decides one voxel or column exactly, so the masks are the same
+// for any vector width.
+#if defined(VOXDAG_BLOCK_RASTER_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_BLOCK_RASTER_INL
+#undef VOXDAG_BLOCK_RASTER_INL
+#else
+#define VOXDAG_BLOCK_RASTER_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "voxdag/voxelize/block_bits.hpp"
+#include "voxdag/voxelize/triangle_setup.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The voxels of a slab in a block and how far its offset can move without changing them.
+struct SlabBlock {
+  std::uint64_t mask;  ///< Linear order.
+  std::uint64_t down, up;
+};
+
+/// Lane i of `D` gets the low bits of a mask into `bits` at `shift`.
+template <class D, class M>
+HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, bytes, 8);
+  return bits;
+}
+
+/// Sixteen bits u + 4v: is value + a*u + b*v >= 0? The sums fit in 32 bits.
+HWY_INLINE std::uint64_t edge_square(std::int32_t value, std::int32_t a, std::int32_t b) {
+  const hn::CappedTag<std::int32_t, 16> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  alignas(64) static constexpr std::int32_t kU[16] = {0, 1, 2, 3, 0, 1, 2, 3,
+                                                      0, 1, 2, 3, 0, 1, 2, 3};
+  alignas(64) static constexpr std::int32_t kV[16] = {0, 0, 0, 0, 1, 1, 1, 1,
+                                                      2, 2, 2, 2, 3, 3, 3, 3};
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < 16; i += kLanes) {
+    const auto lane =
+        hn::Add(hn::Set(d, value), hn::Add(hn::Mul(hn::Set(d, a), hn::Load(d, kU + i)),
+                                           hn::Mul(hn::Set(d, b), hn::Load(d, kV + i))));
+    bits |= mask_bits(d, hn::Gt(lane, hn::Set(d, -1))) << i;
+  }
+  return bits;
+}
+
+inline std::uint64_t edge_square_wide(std::int64_t value, std::int64_t a, std::int64_t b) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 16; ++i)
+    bits |= static_cast<std::uint64_t>(value + a * (i & 3) + b * (i >> 2) >= 0) << i;
+  return bits;
+}
+
+/// T is wide enough for 16 |n|1. As unsigned numbers negative distances are huge, so that least and
+/// greatest distance to the slab's two ends say how far it can move either way.
+template <class T>
+HWY_INLINE SlabBlock slab_block_in(const PlaneSlab& slab, std::int64_t lo) {
+  using U = hwy::MakeUnsigned<T>;
+  const hn::CappedTag<T, 16> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const T x = static_cast<T>(slab.normal.x), y = static_cast<T>(slab.normal.y),
+          z = static_cast<T>(slab.normal.z);
+  const auto value_at = [&](std::size_t i) {
+    return static_cast<T>(x * static_cast<T>(i & 3) + y * static_cast<T>((i >> 2) & 3) +
+                          z * static_cast<T>(i >> 4));
+  };
+  alignas(64) T pattern[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) pattern[i] = value_at(i);
+  const auto lanes = hn::Load(d, pattern);
+  const auto thickness = hn::Set(d, static_cast<T>(slab.width + 1));
+  auto least = hn::Set(du, static_cast<U>(~U{0}));
+  auto most = hn::Zero(du);
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    const auto above = hn::Add(lanes, hn::Set(d, static_cast<T>(value_at(i) - static_cast<T>(lo))));
+    const auto beyond = hn::Sub(above, thickness);
+    mask |= mask_bits(d, hn::Lt(hn::AndNot(above, beyond), hn::Zero(d))) << i;
+    const auto a = hn::BitCast(du, above), b = hn::BitCast(du, beyond);
+    least = hn::Min(least, hn::Min(a, b));
+    most = hn::Max(most, hn::Max(a, b));
+  }
+  alignas(64) U low[kLanes], high[kLanes];
+  hn::Store(least, du, low);
+  hn::Store(most, du, high);
+  U up = low[0], top = high[0];
+  for (std::size_t i = 1; i < kLanes; ++i) {
+    up = low[i] < up ? low[i] : up;
+    top = high[i] > top ? high[i] : top;
+  }
+  return {mask, static_cast<U>(~top), up};
+}
+
+/// The slab whose least value seen from the block is lo. |lo| <= 12 |n|1: it comes near the block.
+HWY_INLINE SlabBlock slab_block(const PlaneSlab& slab, std::int64_t lo) {
+  return slab.width < (std::int64_t{1} << 26) ? slab_block_in<std::int32_t>(slab, lo)
+                                              : slab_block_in<std::int64_t>(slab, lo);
+}
+
+/// The voxels that a triangle sets in the block at `block`, of those conditions; linear order.
+HWY_INLINE std::uint64_t triangle_block(const TriangleSetup& t, std::uint32_t conditions,
+                                        Vec3i block) {
+  std::uint64_t mask = conditions & kBox ? box_mask(block, t.box_lo, t.box_hi) : ~std::uint64_t{0};
+  for (std::uint32_t left = conditions & kAllEdges; left != 0 && mask != 0; left &= left - 1) {
+    const int edge = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+    const int projection = edge / 3;
+    const std::int64_t a = t.a[edge], b = t.b[edge];
+    const std::int64_t value =
+        t.c[edge] + a * block[kProjectionU[projection]] + b * block[kProjectionV[projection]];
+    // Where the value is out of reach of the block's own range the whole block passes or fails.
+    const std::int64_t reach = 3 * ((a < 0 ? -a : a) + (b < 0 ? -b : b));
+    if (value >= reach) continue;
+    if (value < -reach) return 0;
+    const std::uint64_t square =
+        reach < (std::int64_t{1} << 29)
+            ? edge_square(static_cast<std::int32_t>(value), static_cast<std::int32_t>(a),
+                          static_cast<std::int32_t>(b))
+            : edge_square_wide(value, a, b);
+    mask &= expand_square(projection, square);
+  }
+  if ((conditions & kPlane) && mask != 0) {
+    if (slab_range(t, block, 4) == 0) return 0;
+    mask &= slab_block(t.plane, slab_lo_at(t, block)).mask;
+  }
+  return mask;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#endif

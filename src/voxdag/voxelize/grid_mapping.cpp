@@ -1,0 +1,166 @@
+#include "voxdag/voxelize/grid_mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::int32_t kOutOfRange = std::numeric_limits<std::int32_t>::max();
+
+void require_levels(int levels) {
+  if (levels < kMinLevels || levels > kMaxLevels)
+    throw Error("a grid has 2^" + std::to_string(kMinLevels) + " to 2^" +
+                std::to_string(kMaxLevels) + " voxels a side, not 2^" + std::to_string(levels));
+}
+
+void require_voxel_size(double voxel_size) {
+  if (!(voxel_size > 0) || !std::isfinite(kSubvoxels / voxel_size))
+    throw Error("the voxel size must be a positive number");
+}
+
+double longest_side(const Box3d& box) {
+  const Vec3d side = box.hi - box.lo;
+  return std::max({side.x, side.y, side.z});
+}
+
+/// The least number of levels whose grid has at least `voxels` voxels a side.
+int levels_for(double voxels) {
+  int levels = kMinLevels;
+  while (levels <= kMaxLevels && static_cast<double>(std::int64_t{1} << levels) < voxels) ++levels;
+  if (levels > kMaxLevels)
+    throw Error("a voxel that small needs more than the largest grid, 2^" +
+                std::to_string(kMaxLevels) + " voxels a side");
+  return levels;
+}
+
+Vec3i quantize(const Grid& grid, Vec3f vertex) {
+  Vec3i q;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double units =
+        (static_cast<double>(vertex[axis]) - grid.origin[axis]) * grid.quantization_scale;
+    if (!(std::fabs(units) <= kMaxUnits)) return {kOutOfRange, kOutOfRange, kOutOfRange};
+    q[axis] = static_cast<std::int32_t>(std::llround(units));
+  }
+  return q;
+}
+
+}  // namespace
+
+Box3d referenced_bounds(const Mesh& mesh) {
+  Box3f bounds = Box3f::empty();
+  for (const Triangle& triangle : mesh.triangles)
+    for (std::uint32_t index : triangle) bounds.extend(mesh.vertices[index]);
+  return {static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)};
+}
+
+Grid fit_grid(const Mesh& mesh, int levels) {
+  require_levels(levels);
+  if (mesh.triangles.empty()) throw Error("the mesh has no triangles");
+  const Box3d bounds = referenced_bounds(mesh);
+  const double ext = longest_side(bounds);
+  const double units = static_cast<double>((std::int64_t{1} << levels) * kSubvoxels - 1);
+  Grid grid;
+  grid.levels = levels;
+  grid.origin = bounds.lo;
+  grid.quantization_scale = ext > 0 ? units / ext : kSubvoxels;
+  if (!std::isfinite(grid.quantization_scale)) throw Error("the mesh is too small to measure");
+  grid.voxel_size = kSubvoxels / grid.quantization_scale;
+  return grid;
+}
+
+Grid grid_from_voxel_size(const Mesh& mesh, double voxel_size) {
+  if (mesh.triangles.empty()) throw Error("the mesh has no triangles");
+  const Box3d bounds = referenced_bounds(mesh);
+  require_voxel_size(voxel_size);
+  // The farthest vertex must round to a unit inside the grid.
+  const double scale = kSubvoxels / voxel_size;
+  const double last_voxel = std::floor(std::round(longest_side(bounds) * scale) / kSubvoxels);
+  return {levels_for(last_voxel + 1), bounds.lo, voxel_size, scale};
+}
+
+Grid grid_from_bounds(const Box3d& bounds, int levels) {
+  require_levels(levels);
+  const double side = bounds.is_empty() ? 0 : longest_side(bounds);
+  if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
+  const double n = static_cast<double>(std::int64_t{1} << levels);
+  return {levels, bounds.lo, side / n, n * kSubvoxels / side};
+}
+
+Grid grid_from_bounds(const Box3d& bounds, double voxel_size) {
+  require_voxel_size(voxel_size);
+  const double side = bounds.is_empty() ? 0 : longest_side(bounds);
+  if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
+  return {levels_for(std::ceil(side / voxel_size)), bounds.lo, voxel_size, kSubvoxels / voxel_size};
+}
+
+QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid)
+    : mesh_(&mesh), vertices_(mesh.vertices.size()) {
+  std::atomic<bool> any_out_of_range{false};
+  parallel_for(vertices_.size(), 4096, [&](std::size_t i) {
+    vertices_[i] = quantize(grid, mesh.vertices[i]);
+    if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
+  });
+  if (!any_out_of_range.load()) return;
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (!in_range(i)) clip(mesh, grid, mesh.triangles[i]);
+}
+
+bool QuantizedMesh::in_range(std::size_t index) const {
+  if (index >= mesh_->triangles.size()) return true;
+  const Triangle& t = mesh_->triangles[index];
+  return vertices_[t[0]].x != kOutOfRange && vertices_[t[1]].x != kOutOfRange &&
+         vertices_[t[2]].x != kOutOfRange;
+}
+
+QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
+  const std::size_t count = mesh_->triangles.size();
+  if (index >= count) return clipped_[index - count];
+  const Triangle& t = mesh_->triangles[index];
+  return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+}
+
+std::uint64_t QuantizedMesh::bytes() const {
+  return vertices_.size() * sizeof(Vec3i) + clipped_.size() * sizeof(QuantizedTriangle);
+}
+
+// Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
+void QuantizedMesh::clip(const Mesh& mesh, const Grid& grid, const Triangle& triangle) {
+  std::vector<Vec3d> polygon, kept;
+  for (std::uint32_t index : triangle)
+    polygon.push_back((static_cast<Vec3d>(mesh.vertices[index]) - grid.origin) *
+                      grid.quantization_scale);
+  constexpr double kLimit = kMaxUnits;
+  for (int plane = 0; plane < 6 && !polygon.empty(); ++plane) {
+    const int axis = plane / 2;
+    const double sign = plane % 2 == 0 ? 1 : -1;
+    kept.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+      const double inside_a = kLimit - sign * a[axis], inside_b = kLimit - sign * b[axis];
+      if (inside_a >= 0) kept.push_back(a);
+      if ((inside_a >= 0) == (inside_b >= 0)) continue;
+      Vec3d cut = a + (b - a) * (inside_a / (inside_a - inside_b));
+      cut[axis] = sign * kLimit;
+      kept.push_back(cut);
+    }
+    polygon.swap(kept);
+  }
+  std::vector<Vec3i> rounded;
+  for (const Vec3d& p : polygon) {
+    Vec3i q;
+    for (int axis = 0; axis < 3; ++axis)
+      q[axis] = static_cast<std::int32_t>(std::llround(std::clamp(p[axis], -kLimit, kLimit)));
+    rounded.push_back(q);
+  }
+  for (std::size_t i = 2; i < rounded.size(); ++i)
+    clipped_.push_back({rounded[0], rounded[i - 1], rounded[i]});
+}
+
+}  // namespace voxdag

@@ -1,0 +1,59 @@
+#pragma once
+/// From mesh coordinates to the voxel grid: which Grid, and which 1/256-voxel integers.
+///
+/// design: "Exact cover". A vertex v becomes q = llround((double(v) - origin) *
+/// quantization_scale), component by component; everything after that is integer.
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/core/grid.hpp"
+#include "voxdag/mesh/mesh.hpp"
+
+namespace voxdag {
+
+/// The bounds of the vertices that triangles reference; empty for a mesh without triangles.
+Box3d referenced_bounds(const Mesh& mesh);
+
+/// The grid of 2^levels voxels a side that fits the mesh: origin at the least corner of its bounds,
+/// the longest side spanning all voxels. Throws Error if levels is outside [kMinLevels, kMaxLevels]
+/// or the mesh has no triangles. A mesh that is one point gets a grid of voxels of size 1.
+Grid fit_grid(const Mesh& mesh, int levels);
+
+/// The smallest grid of voxels of `voxel_size` world units whose origin is that of fit_grid and
+/// which holds the mesh. Throws Error if that takes more than kMaxLevels.
+Grid grid_from_voxel_size(const Mesh& mesh, double voxel_size);
+
+/// A grid of 2^levels voxels a side with its origin at bounds.lo whose longest side is that of
+/// `bounds`; what lies outside of the grid is clipped away.
+Grid grid_from_bounds(const Box3d& bounds, int levels);
+
+/// A grid with its origin at bounds.lo, voxels of `voxel_size`, as large as `bounds` needs.
+Grid grid_from_bounds(const Box3d& bounds, double voxel_size);
+
+/// Coordinates of vertices in units of 1/256 voxel lie within ±kMaxUnits.
+inline constexpr std::int32_t kMaxUnits = (1 << 29) - 1;
+
+using QuantizedTriangle = Vec3<Vec3i>;  ///< Three vertices in units of 1/256 voxel.
+
+/// A mesh's triangles on the grid's integers. Refers to the mesh, which must outlive it.
+class QuantizedMesh {
+ public:
+  /// Triangles with a vertex beyond ±kMaxUnits (possible only where the grid does not fit the mesh)
+  /// are clipped in double precision to that box first, each giving up to 7 triangles at the end.
+  QuantizedMesh(const Mesh& mesh, const Grid& grid);
+
+  std::size_t triangle_count() const { return mesh_->triangles.size() + clipped_.size(); }
+  /// False for a triangle that was clipped: its pieces stand at the end.
+  bool in_range(std::size_t index) const;
+  QuantizedTriangle triangle(std::size_t index) const;
+  std::uint64_t bytes() const;
+
+ private:
+  void clip(const Mesh& mesh, const Grid& grid, const Triangle& triangle);
+
+  const Mesh* mesh_;
+  std::vector<Vec3i> vertices_;
+  std::vector<QuantizedTriangle> clipped_;
+};
+
+}  // namespace voxdag

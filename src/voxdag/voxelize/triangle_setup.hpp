@@ -1,0 +1,184 @@
+#pragma once
+/// A triangle as a set of voxels: the voxels v in a box for which some linear functions are >= 0.
+///
+/// Source: the overlap test of Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on
+/// GPUs", SIGGRAPH Asia 2010, made exact for half-open cubes.
+///
+/// A triangle meets a voxel if its box does, its plane does, and in each of the three axis-aligned
+/// projections the voxel's square is not wholly outside of one of the triangle's edges. All twelve
+/// conditions are linear in the voxel's integer coordinates, with the ties of the half-open cube
+/// and the division by 256 units per voxel folded into the constants:
+///
+///   edge    a*u + b*v + c >= 0         (u, v): the two coordinates of the projection
+///   plane   lo <= n*v <= lo + width    a digital plane; n reduced by the common divisor
+///
+/// The same functions decide for a cell of s³ voxels: its least and greatest value over the cell's
+/// voxels say whether none, some or all of them pass.
+#include <cstdint>
+#include <numeric>
+
+#include "voxdag/core/host_device.hpp"
+#include "voxdag/core/int128.hpp"
+#include "voxdag/core/vec.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+
+/// The projection along axis p has the coordinates kProjectionU[p], kProjectionV[p].
+inline constexpr int kProjectionU[3] = {1, 0, 0};
+inline constexpr int kProjectionV[3] = {2, 2, 1};
+
+/// Bits of a set of conditions: edge e of projection p is bit 3p + e, then the plane, then the box.
+enum Condition : std::uint32_t {
+  kAllEdges = 0x1FF,
+  kPlane = 1u << 9,
+  kBox = 1u << 10,
+};
+
+/// The voxels v with lo <= dot(n, v) <= lo + width: all that a plane meets.
+struct PlaneSlab {
+  Vec3l normal;        ///< Components without common divisor; the first that is not 0 is positive.
+  std::int64_t width;  ///< |n|1 - 1, or one less where the plane runs through voxel corners only.
+};
+
+/// Coordinates are voxels relative to an origin given to make_triangle_setup.
+struct alignas(64) TriangleSetup {
+  std::int32_t a[9], b[9];
+  std::int64_t c[9];
+  PlaneSlab plane;
+  /// The slab's least value of dot(n, v), modulo 2^64; exact where `approximate_lo` says that the
+  /// true value is small, which holds for every cell that the plane comes near.
+  std::uint64_t lo;
+  double approximate_lo;
+  double normal_length1;         ///< |n|1
+  Vec3i box_lo, box_hi;          ///< First and last voxel of the bounding box.
+  std::uint32_t conditions;      ///< The conditions that can fail.
+  std::uint32_t dominant_edges;  ///< Edge bits of the projection along the normal's longest axis.
+};
+
+namespace detail {
+
+VOXDAG_HD constexpr std::int64_t floor_div(std::int64_t value, int shift) { return value >> shift; }
+
+VOXDAG_HD constexpr std::int64_t positive(std::int64_t v) { return v > 0 ? v : 0; }
+VOXDAG_HD constexpr std::int64_t negative(std::int64_t v) { return v < 0 ? v : 0; }
+VOXDAG_HD constexpr std::int64_t absolute(std::int64_t v) { return v < 0 ? -v : v; }
+
+/// Stores the condition that a voxel's square meets the half-plane left of the directed line p->q
+/// (right of it where flip is set). u, v are relative to the origin.
+VOXDAG_HD inline void set_edge(TriangleSetup& s, int slot, std::int64_t pu, std::int64_t pv,
+                               std::int64_t qu, std::int64_t qv, bool flip) {
+  std::int64_t a = pv - qv, b = qu - pu;
+  if (flip) a = -a, b = -b;
+  const std::int64_t c = -(a * pu + b * pv);
+  // The greatest value over the half-open square is at its far corner, which does not belong to it:
+  // there a value of 0 is not enough.
+  const std::int64_t strict = a > 0 || b > 0 ? 1 : 0;
+  s.a[slot] = static_cast<std::int32_t>(a);
+  s.b[slot] = static_cast<std::int32_t>(b);
+  s.c[slot] = floor_div(c - strict, 8) + positive(a) + positive(b);
+  if (a != 0 || b != 0) s.conditions |= 1u << slot;
+}
+
+VOXDAG_HD inline std::int64_t common_divisor(std::int64_t a, std::int64_t b) {
+  while (b != 0) {
+    const std::int64_t r = a % b;
+    a = b;
+    b = r;
+  }
+  return a;
+}
+
+}  // namespace detail
+
+/// `origin` is in voxels. Exact for coordinates within ±kMaxUnits and 0 <= origin < 2^kMaxLevels.
+VOXDAG_HD inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle,
+                                                   Vec3i origin) {
+  static_assert(kSubvoxels == 1 << 8);
+  using namespace detail;
+  TriangleSetup s{};
+  Vec3l p[3];
+  for (int i = 0; i < 3; ++i)
+    p[i] = static_cast<Vec3l>(triangle[i]) - static_cast<Vec3l>(origin) * std::int64_t{kSubvoxels};
+  const Vec3l lo = min(p[0], min(p[1], p[2])), hi = max(p[0], max(p[1], p[2]));
+  int long_axes = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    s.box_lo[axis] = static_cast<std::int32_t>(floor_div(lo[axis], 8));
+    s.box_hi[axis] = static_cast<std::int32_t>(floor_div(hi[axis], 8));
+    long_axes += s.box_lo[axis] != s.box_hi[axis] ? 1 : 0;
+  }
+  s.conditions = kBox;
+  // Connected: a triangle that spans one row of voxels meets each of them.
+  if (long_axes <= 1) return s;
+
+  Vec3l normal = cross(p[1] - p[0], p[2] - p[0]);
+  for (int projection = 0; projection < 3; ++projection) {
+    const int u = kProjectionU[projection], v = kProjectionV[projection];
+    // Twice the signed area of the projection; (x,z) is the mirrored one of the three.
+    const std::int64_t area = projection == 1 ? -normal.y : normal[projection];
+    if (area != 0) {
+      for (int e = 0; e < 3; ++e) {
+        const Vec3l &from = p[e], &to = p[(e + 1) % 3];
+        set_edge(s, 3 * projection + e, from[u], from[v], to[u], to[v], area < 0);
+      }
+    } else {
+      // Seen edge-on it is a segment: both sides of its line.
+      for (int e = 0; e < 3; ++e) {
+        const Vec3l &from = p[e], &to = p[(e + 1) % 3];
+        if (from[u] == to[u] && from[v] == to[v]) continue;
+        set_edge(s, 3 * projection, from[u], from[v], to[u], to[v], false);
+        set_edge(s, 3 * projection + 1, from[u], from[v], to[u], to[v], true);
+        break;
+      }
+    }
+  }
+
+  const std::int64_t divisor =
+      common_divisor(common_divisor(absolute(normal.x), absolute(normal.y)), absolute(normal.z));
+  if (divisor == 0) return s;
+  Vec3l n{normal.x / divisor, normal.y / divisor, normal.z / divisor};
+  if (n.x < 0 || (n.x == 0 && (n.y < 0 || (n.y == 0 && n.z < 0)))) n = -n;
+  // A voxel meets the plane dot(n, x) = d if the plane passes between its corners of least and
+  // greatest value; the corners at the far sides do not belong to it, so a tie with them does not
+  // count.
+  const Int128 d = static_cast<Int128>(n.x) * p[0].x + static_cast<Int128>(n.y) * p[0].y +
+                   static_cast<Int128>(n.z) * p[0].z;
+  const int far_max = n.x > 0 || n.y > 0 || n.z > 0, far_min = n.x < 0 || n.y < 0 || n.z < 0;
+  const std::int64_t above = positive(n.x) + positive(n.y) + positive(n.z);
+  const std::int64_t below = negative(n.x) + negative(n.y) + negative(n.z);
+  const Int128 slab_lo = ((d + far_max + 255) >> 8) - above;
+  const Int128 slab_hi = ((d - far_min) >> 8) - below;
+  s.plane = {n, static_cast<std::int64_t>(slab_hi - slab_lo)};
+  s.lo = static_cast<std::uint64_t>(slab_lo);
+  s.approximate_lo = static_cast<double>(slab_lo);
+  s.normal_length1 = static_cast<double>(above - below);
+  s.conditions |= kPlane;
+  const Vec3l size{absolute(n.x), absolute(n.y), absolute(n.z)};
+  const int dominant = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  s.dominant_edges = 7u << (3 * dominant);
+  return s;
+}
+
+/// dot(n, v) of the slab's least value, seen from the cell at v; meaningful where the plane is
+/// near.
+VOXDAG_HD inline std::int64_t slab_lo_at(const TriangleSetup& s, Vec3i v) {
+  const Vec3l& n = s.plane.normal;
+  return static_cast<std::int64_t>(
+      s.lo - static_cast<std::uint64_t>(n.x) * static_cast<std::uint64_t>(std::int64_t{v.x}) -
+      static_cast<std::uint64_t>(n.y) * static_cast<std::uint64_t>(std::int64_t{v.y}) -
+      static_cast<std::uint64_t>(n.z) * static_cast<std::uint64_t>(std::int64_t{v.z}));
+}
+
+/// Whether 64-bit arithmetic holds in the cell of `size` voxels at v: 0 the plane is far from it,
+/// 1 slab_lo_at is exact and sums over the cell do not overflow, 2 the cell is too large to tell.
+VOXDAG_HD inline int slab_range(const TriangleSetup& s, Vec3i v, std::int32_t size) {
+  const double reach = s.normal_length1 * size;
+  if (reach > 0x1p60) return 2;
+  const Vec3l& n = s.plane.normal;
+  const double lo = s.approximate_lo - static_cast<double>(n.x) * v.x -
+                    static_cast<double>(n.y) * v.y - static_cast<double>(n.z) * v.z;
+  // The sums err by less than 2^-49 of their largest term, |n|1 * 2^21: far less than |n|1.
+  return lo > 2 * reach + 1 || lo < -3 * reach - 1 ? 0 : 1;
+}
+
+}  // namespace voxdag
