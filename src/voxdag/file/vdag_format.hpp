@@ -1,0 +1,77 @@
+#pragma once
+/// The bytes of a .vdag file; docs/format.md is the specification.
+///
+///   0    VdagHeader             64 bytes
+///   64   VdagChunkEntry[count]  32 bytes each
+///        zeros up to the next multiple of 64
+///   ...  chunk 0, zeros up to the next multiple of 64
+///   ...  chunk 1, ...
+///
+/// Everything is little-endian. Chunks stand in the table's order with nothing between them but the
+/// padding, and the file ends with the last one's padding.
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace voxdag {
+
+static_assert(std::endian::native == std::endian::little,
+              "files are mapped as they are: a big-endian host needs a converting reader");
+
+inline constexpr unsigned char kVdagMagic[8] = {0x89, 'V', 'D', 'A', 'G', '\r', '\n', 0x1A};
+inline constexpr std::uint32_t kVdagVersion = 1;
+inline constexpr std::uint64_t kVdagAlignment = 64;
+inline constexpr std::uint32_t kVdagMostChunks = 1024;
+inline constexpr std::uint64_t kVdagMostMetadataBytes = std::uint64_t{1} << 20;
+
+struct VdagHeader {
+  unsigned char magic[8];
+  std::uint32_t version;
+  std::uint32_t chunk_count;
+  std::uint64_t file_bytes;   ///< Of the whole file, padding included.
+  std::uint64_t checksum;     ///< XXH3-64 of header and table, with this field as zero.
+  std::uint64_t reserved[4];  ///< Zero.
+};
+static_assert(sizeof(VdagHeader) == 64 && offsetof(VdagHeader, checksum) == 24);
+
+struct VdagChunkEntry {
+  std::uint32_t id;        ///< Four ASCII characters, the first in the lowest byte.
+  std::uint32_t flags;     ///< kVdagChunkRequired or 0.
+  std::uint64_t offset;    ///< From the start of the file; a multiple of 64.
+  std::uint64_t length;    ///< Without the padding.
+  std::uint64_t checksum;  ///< XXH3-64 of the `length` bytes.
+};
+static_assert(sizeof(VdagChunkEntry) == 32 && offsetof(VdagChunkEntry, checksum) == 24);
+
+/// A reader that does not know a chunk with this flag must refuse the file; it passes over others.
+inline constexpr std::uint32_t kVdagChunkRequired = 1;
+
+constexpr std::uint32_t vdag_chunk_id(const char (&name)[5]) {
+  std::uint32_t id = 0;
+  for (int i = 0; i < 4; ++i) id |= std::uint32_t{static_cast<unsigned char>(name[i])} << 8 * i;
+  return id;
+}
+inline constexpr std::uint32_t kChunkMeta =
+    vdag_chunk_id("META");  ///< JSON, see vdag_metadata.hpp.
+inline constexpr std::uint32_t kChunkLevels = vdag_chunk_id("LEVL");  ///< u64 level_begin[0..L-2].
+inline constexpr std::uint32_t kChunkNodes = vdag_chunk_id("NODE");   ///< u32 SvdagView::nodes.
+inline constexpr std::uint32_t kChunkLeafBlocks = vdag_chunk_id("LEAF");  ///< u64 leaf_blocks.
+
+/// "NODE"; other bytes than letters, digits and space as "?".
+inline std::string vdag_chunk_name(std::uint32_t id) {
+  std::string name;
+  for (int i = 0; i < 4; ++i) {
+    const char c = static_cast<char>(id >> 8 * i & 0xFF);
+    const bool plain =
+        (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == ' ';
+    name += plain ? c : '?';
+  }
+  return name;
+}
+
+constexpr std::uint64_t vdag_align(std::uint64_t bytes) {
+  return (bytes + kVdagAlignment - 1) / kVdagAlignment * kVdagAlignment;
+}
+
+}  // namespace voxdag

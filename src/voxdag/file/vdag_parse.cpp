@@ -1,0 +1,182 @@
+#include "voxdag/file/vdag_parse.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <iterator>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/checksum.hpp"
+#include "voxdag/file/vdag_format.hpp"
+#include "voxdag/layout/validate_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+[[noreturn]] void fail(const std::string& place, const std::string& reason) {
+  throw Error("", place, reason);
+}
+
+std::string chunk_place(std::uint32_t id) { return "chunk " + vdag_chunk_name(id); }
+
+VdagHeader read_header(std::span<const std::byte> file) {
+  VdagHeader header;
+  const std::size_t magic_bytes = std::min(file.size(), sizeof header.magic);
+  if (file.empty()) fail("", "empty file");
+  if (std::memcmp(file.data(), kVdagMagic, magic_bytes) != 0) fail("header", "not a .vdag file");
+  if (file.size() < sizeof header)
+    fail("byte " + std::to_string(file.size()), "the file ends inside its header");
+  std::memcpy(&header, file.data(), sizeof header);
+  // The version comes first: it decides what all the rest means.
+  if (header.version > kVdagVersion)
+    fail("header", "version " + std::to_string(header.version) + " is newer than this program's " +
+                       std::to_string(kVdagVersion));
+  if (header.version != kVdagVersion)
+    fail("header", "version " + std::to_string(header.version) + " does not exist");
+  if (header.file_bytes > file.size())
+    fail("byte " + std::to_string(file.size()),
+         "truncated: the header says " + std::to_string(header.file_bytes) + " bytes");
+  if (header.file_bytes < file.size())
+    fail("byte " + std::to_string(header.file_bytes),
+         "the file goes on after its end by " + std::to_string(file.size() - header.file_bytes) +
+             " bytes");
+  if (header.chunk_count > kVdagMostChunks ||
+      header.chunk_count > (file.size() - sizeof header) / sizeof(VdagChunkEntry))
+    fail("header", std::to_string(header.chunk_count) + " chunks are more than fit");
+  return header;
+}
+
+void check_header_checksum(std::span<const std::byte> file, std::size_t table_end,
+                           std::uint64_t expected) {
+  std::vector<std::byte> copy(file.begin(),
+                              std::next(file.begin(), static_cast<std::ptrdiff_t>(table_end)));
+  std::memset(copy.data() + offsetof(VdagHeader, checksum), 0, sizeof expected);
+  if (xxh3_64(copy) != expected) fail("header", "checksum of header and chunk table is wrong");
+  for (std::size_t i = offsetof(VdagHeader, reserved); i < sizeof(VdagHeader); ++i)
+    if (file[i] != std::byte{0}) fail("byte " + std::to_string(i), "reserved byte is not zero");
+}
+
+void check_padding(std::span<const std::byte> file, std::uint64_t begin, std::uint64_t end) {
+  for (std::uint64_t i = begin; i < end; ++i)
+    if (file[i] != std::byte{0}) fail("byte " + std::to_string(i), "padding is not zero");
+}
+
+/// A chunk that has to stand at `expected_offset`.
+VdagChunk read_entry(std::span<const std::byte> file, const VdagChunkEntry& entry,
+                     std::uint64_t expected_offset) {
+  const std::string place = "chunk table, " + chunk_place(entry.id);
+  if ((entry.flags & ~kVdagChunkRequired) != 0) fail(place, "unknown flags");
+  if (entry.offset != expected_offset)
+    fail(place, "at byte " + std::to_string(entry.offset) + " where byte " +
+                    std::to_string(expected_offset) + " is expected");
+  // Both are multiples of 64 and file.size() is below 2^63, so aligning cannot overflow.
+  if (entry.length > file.size() - expected_offset ||
+      vdag_align(entry.length) > file.size() - expected_offset)
+    fail(place, "reaches past the end of the file");
+  const bool required = (entry.flags & kVdagChunkRequired) != 0;
+  constexpr std::uint32_t kKnown[] = {kChunkMeta, kChunkLevels, kChunkNodes, kChunkLeafBlocks};
+  if (required && std::find(std::begin(kKnown), std::end(kKnown), entry.id) == std::end(kKnown))
+    fail(place, "needs a newer program");
+  return {entry.id, required, entry.offset, entry.checksum,
+          file.subspan(entry.offset, entry.length)};
+}
+
+const VdagChunk& find_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
+  for (const VdagChunk& chunk : chunks)
+    if (chunk.id == id) return chunk;
+  fail("chunk table", "chunk " + vdag_chunk_name(id) + " is missing");
+}
+
+template <class T>
+std::span<const T> values_of(const VdagChunk& chunk) {
+  if (chunk.bytes.size() % sizeof(T) != 0)
+    fail(chunk_place(chunk.id), "length is not a multiple of " + std::to_string(sizeof(T)));
+  return {reinterpret_cast<const T*>(chunk.bytes.data()), chunk.bytes.size() / sizeof(T)};
+}
+
+}  // namespace
+
+std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file) {
+  assert(reinterpret_cast<std::uintptr_t>(file.data()) % alignof(std::uint64_t) == 0);
+  const VdagHeader header = read_header(file);
+  const std::size_t table_end =
+      sizeof header + std::size_t{header.chunk_count} * sizeof(VdagChunkEntry);
+  check_header_checksum(file, table_end, header.checksum);
+
+  std::uint64_t end = vdag_align(table_end);
+  if (end > file.size()) fail("chunk table", "the file ends inside the padding");
+  check_padding(file, table_end, end);
+  std::vector<VdagChunk> chunks;
+  for (std::size_t i = 0; i < header.chunk_count; ++i) {
+    VdagChunkEntry entry;
+    std::memcpy(&entry, file.data() + sizeof header + i * sizeof entry, sizeof entry);
+    for (const VdagChunk& other : chunks)
+      if (other.id == entry.id) fail("chunk table, " + chunk_place(entry.id), "stands there twice");
+    chunks.push_back(read_entry(file, entry, end));
+    const std::uint64_t data_end = end + entry.length;
+    end = vdag_align(data_end);
+    check_padding(file, data_end, end);
+  }
+  if (end != file.size()) fail("byte " + std::to_string(end), "bytes after the last chunk");
+  return chunks;
+}
+
+void check_vdag_checksums(const std::vector<VdagChunk>& chunks) {
+  for (const VdagChunk& chunk : chunks)
+    if (xxh3_64(chunk.bytes) != chunk.checksum) fail(chunk_place(chunk.id), "checksum is wrong");
+}
+
+VdagMetadata read_vdag_metadata(const std::vector<VdagChunk>& chunks) {
+  const VdagChunk& chunk = find_chunk(chunks, kChunkMeta);
+  if (chunk.bytes.size() > kVdagMostMetadataBytes) fail(chunk_place(kChunkMeta), "too long");
+  try {
+    return parse_vdag_metadata(
+        {reinterpret_cast<const char*>(chunk.bytes.data()), chunk.bytes.size()});
+  } catch (const Error& error) {
+    fail(chunk_place(kChunkMeta) + (error.place().empty() ? "" : ", ") + error.place(),
+         error.reason());
+  }
+}
+
+SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
+  const auto table = values_of<std::uint64_t>(find_chunk(chunks, kChunkLevels));
+  const auto nodes = values_of<std::uint32_t>(find_chunk(chunks, kChunkNodes));
+  const auto leaf_blocks = values_of<std::uint64_t>(find_chunk(chunks, kChunkLeafBlocks));
+  if (table.size() != static_cast<std::size_t>(levels - 1))
+    fail(chunk_place(kChunkLevels), std::to_string(table.size()) + " values for a grid of " +
+                                        std::to_string(levels) + " levels");
+  if (table.back() != nodes.size())
+    fail(chunk_place(kChunkNodes), std::to_string(nodes.size()) +
+                                       " words where the level table says " +
+                                       std::to_string(table.back()));
+  SvdagView view;
+  view.levels = levels;
+  view.nodes = nodes.data();
+  view.leaf_blocks = leaf_blocks.data();
+  view.leaf_block_count = leaf_blocks.size();
+  std::copy(table.begin(), table.end(), view.level_begin);
+  std::fill(view.level_begin + table.size(), std::end(view.level_begin), table.back());
+  return view;
+}
+
+void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&)) {
+  try {
+    check(view);
+  } catch (const Error& error) {
+    const bool leaf = error.place().starts_with("leaf"), table = error.place() == "level table";
+    const std::uint32_t id = leaf ? kChunkLeafBlocks : table ? kChunkLevels : kChunkNodes;
+    fail(chunk_place(id) + ", " + error.place(), error.reason());
+  }
+}
+
+VdagContents parse_vdag(std::span<const std::byte> file) {
+  VdagContents contents;
+  contents.chunks = read_vdag_chunks(file);
+  check_vdag_checksums(contents.chunks);
+  contents.metadata = read_vdag_metadata(contents.chunks);
+  contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);
+  check_vdag_svdag(contents.view, validate_svdag);
+  return contents;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,75 @@
+#include "voxdag/file/vdag_writer.hpp"
+
+#include <cassert>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "voxdag/core/atomic_file.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/checksum.hpp"
+#include "voxdag/file/vdag_format.hpp"
+
+namespace voxdag {
+namespace {
+
+struct OutputChunk {
+  std::uint32_t id;
+  std::span<const std::byte> bytes;
+};
+
+template <class T>
+std::span<const std::byte> bytes_of(const T* values, std::size_t count) {
+  return std::as_bytes(std::span<const T>(values, count));
+}
+
+/// Header and table with checksums, padded: all that stands before the first chunk.
+std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
+  const std::size_t table_end = sizeof(VdagHeader) + chunks.size() * sizeof(VdagChunkEntry);
+  std::vector<std::byte> head(vdag_align(table_end));
+  std::uint64_t offset = head.size();
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const VdagChunkEntry entry{chunks[i].id, kVdagChunkRequired, offset, chunks[i].bytes.size(),
+                               xxh3_64(chunks[i].bytes)};
+    std::memcpy(head.data() + sizeof(VdagHeader) + i * sizeof entry, &entry, sizeof entry);
+    offset += vdag_align(entry.length);
+  }
+  VdagHeader header{};
+  std::memcpy(header.magic, kVdagMagic, sizeof kVdagMagic);
+  header.version = kVdagVersion;
+  header.chunk_count = static_cast<std::uint32_t>(chunks.size());
+  header.file_bytes = offset;
+  std::memcpy(head.data(), &header, sizeof header);
+  header.checksum = xxh3_64({head.data(), table_end});
+  std::memcpy(head.data(), &header, sizeof header);
+  return head;
+}
+
+}  // namespace
+
+void write_vdag(const std::filesystem::path& path, const SvdagView& view,
+                const VdagMetadata& metadata) {
+  assert(metadata.grid.levels == view.levels);
+  const std::string json = vdag_metadata_json(metadata);
+  try {
+    parse_vdag_metadata(json);
+  } catch (const Error& error) {
+    throw Error(path.string(), error.place(), error.reason());
+  }
+  const std::vector<OutputChunk> chunks = {
+      {kChunkMeta, bytes_of(json.data(), json.size())},
+      {kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))},
+      {kChunkNodes, bytes_of(view.nodes, view.node_words())},
+      {kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count)}};
+
+  AtomicFile file(path);
+  file.write(std::span<const std::byte>(make_head(chunks)));
+  for (const OutputChunk& chunk : chunks) {
+    file.write(chunk.bytes);
+    file.write_zeros(vdag_align(chunk.bytes.size()) - chunk.bytes.size());
+  }
+  file.commit();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,85 @@
+#include "voxdag/file/verify_vdag.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/mapped_file.hpp"
+#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/layout/validate_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+using Result = VerifyCheck::Result;
+
+/// Runs `work` unless one of the checks in `needed` (by index) did not pass.
+template <class Work>
+void run_check(VerifyReport& report, std::string name, std::initializer_list<std::size_t> needed,
+               const Work& work) {
+  VerifyCheck check;
+  check.name = std::move(name);
+  for (const std::size_t index : needed)
+    if (check.detail.empty() && report.checks[index].result != Result::kPassed)
+      check.detail = "needs " + report.checks[index].name;
+  if (check.detail.empty()) {
+    try {
+      work();
+      check.result = Result::kPassed;
+    } catch (const Error& error) {
+      check.result = Result::kFailed;
+      check.detail = error.what();
+    }
+  }
+  report.checks.push_back(std::move(check));
+}
+
+void compare(const std::string& name, std::uint64_t stated, std::uint64_t counted) {
+  if (stated != counted)
+    throw Error("", "chunk META, counts." + name,
+                std::to_string(stated) + " where the DAG has " + std::to_string(counted));
+}
+
+void compare_levels(const std::string& name, const std::vector<std::uint64_t>& stated,
+                    const std::vector<std::uint64_t>& counted) {
+  for (std::size_t level = 0; level < counted.size(); ++level)
+    compare(name + '[' + std::to_string(level) + ']', stated[level], counted[level]);
+}
+
+void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted) {
+  compare("voxels", stated.voxels, counted.voxels);
+  compare_levels("svo_nodes_per_level", stated.svo_nodes_per_level, counted.svo_nodes_per_level);
+  compare_levels("dag_nodes_per_level", stated.dag_nodes_per_level, counted.dag_nodes_per_level);
+}
+
+}  // namespace
+
+bool VerifyReport::passed() const {
+  return std::all_of(checks.begin(), checks.end(),
+                     [](const VerifyCheck& check) { return check.result == Result::kPassed; });
+}
+
+VerifyReport verify_vdag(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  VerifyReport report;
+  VdagContents contents;
+  enum : std::size_t { kContainer, kChecksums, kMetadata, kStructure };
+  run_check(report, "container", {}, [&] { contents.chunks = read_vdag_chunks(file.bytes()); });
+  run_check(report, "checksums", {kContainer}, [&] { check_vdag_checksums(contents.chunks); });
+  run_check(report, "metadata", {kContainer},
+            [&] { contents.metadata = read_vdag_metadata(contents.chunks); });
+  run_check(report, "structure", {kContainer, kMetadata}, [&] {
+    contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);
+    check_vdag_svdag(contents.view, validate_svdag);
+  });
+  run_check(report, "canonical order", {kStructure},
+            [&] { check_vdag_svdag(contents.view, check_canonical); });
+  run_check(report, "minimality", {kStructure},
+            [&] { check_vdag_svdag(contents.view, check_minimal); });
+  run_check(report, "counts", {kStructure, kMetadata},
+            [&] { compare_counts(contents.metadata.counts, count_svdag(contents.view)); });
+  return report;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,34 @@
+#pragma once
+/// Every check of a .vdag file, one by one.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace voxdag {
+
+struct VerifyCheck {
+  enum class Result { kPassed, kFailed, kSkipped };
+
+  std::string name;  ///< "container", "checksums", "metadata", "structure", ...
+  Result result = Result::kSkipped;
+  std::string
+      detail;  ///< Where it failed: "PLACE: REASON"; why it was skipped; empty if it passed.
+};
+
+struct VerifyReport {
+  std::vector<VerifyCheck> checks;  ///< Always the same checks in the same order.
+  bool passed() const;
+};
+
+/// Runs all checks that still make sense after a failed one and skips the others:
+///   container        magic, version, sizes, chunk table, padding
+///   checksums        of every chunk
+///   metadata         the JSON and its values
+///   structure        validate_svdag: acyclic by level, pointers in range, no empty nodes
+///   canonical order  check_canonical: also that every node is reachable
+///   minimality       check_minimal: no two equal nodes in a level
+///   counts           those of the metadata equal those of the DAG
+/// Throws Error only if the file cannot be read.
+VerifyReport verify_vdag(const std::filesystem::path& path);
+
+}  // namespace voxdag

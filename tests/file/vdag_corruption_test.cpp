@@ -1,0 +1,178 @@
+// A reader that no file can hurt: every truncation, every bit flip, and faults behind right
+// checksums.
+#include <gtest/gtest.h>
+
+#include "support/vdag_bytes.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_parse.hpp"
+
+namespace voxdag {
+namespace {
+
+std::string error_of(const std::string& bytes) {
+  try {
+    parse_vdag(AlignedBytes(bytes).span());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string small_file() { return vdag_file_bytes(brute_svdag(4, {{0, 0, 0}, {15, 15, 15}})); }
+
+/// The bytes with one value changed and the checksums made right again.
+template <class T>
+std::string repaired_with(std::size_t offset, T value) {
+  std::string bytes = small_file();
+  poke(bytes, offset, value);
+  repair_checksums(bytes);
+  return bytes;
+}
+
+std::size_t chunk_offset(const std::string& bytes, std::size_t index) {
+  return peek<VdagChunkEntry>(bytes, entry_offset(index)).offset;
+}
+
+TEST(VdagCorruption, TheSmallFileIsSound) { EXPECT_EQ(error_of(small_file()), "no error"); }
+
+TEST(VdagCorruption, EveryTruncationIsRefused) {
+  const std::string bytes = small_file();
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_NE(error_of(bytes.substr(0, size)), "no error") << size << " bytes";
+}
+
+TEST(VdagCorruption, EveryTruncationIsRefusedEvenIfTheHeaderAgrees) {
+  const std::string whole = small_file();
+  for (std::size_t size = sizeof(VdagHeader); size < whole.size(); ++size) {
+    std::string bytes = whole.substr(0, size);
+    poke(bytes, offsetof(VdagHeader, file_bytes), std::uint64_t{size});
+    repair_checksums(bytes);
+    EXPECT_NE(error_of(bytes), "no error") << size << " bytes";
+  }
+}
+
+TEST(VdagCorruption, EveryBitFlipIsRefused) {
+  const std::string bytes = small_file();
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    std::string changed = bytes;
+    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
+    const std::string error = error_of(changed);
+    EXPECT_NE(error, "no error") << "byte " << bit / 8;
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  }
+}
+
+/// Behind right checksums a flip may make another sound file; what counts is that nothing breaks.
+TEST(VdagCorruption, EveryBitFlipBehindRightChecksumsIsSurvived) {
+  const std::string bytes = small_file();
+  int refused = 0;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    std::string changed = bytes;
+    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
+    repair_checksums(changed);
+    const AlignedBytes aligned(changed);
+    try {
+      const VdagContents contents = parse_vdag(aligned.span());
+      count_svdag(contents.view);
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 4 * static_cast<int>(bytes.size()));
+}
+
+TEST(VdagCorruption, BytesBehindTheEndAreRefused) {
+  EXPECT_EQ(error_of(small_file() + "x"), "byte " + std::to_string(small_file().size()) +
+                                              ": the file goes on after its end by 1 bytes");
+  std::string bytes = small_file() + std::string(64, '\0');
+  poke(bytes, offsetof(VdagHeader, file_bytes), std::uint64_t{bytes.size()});
+  repair_checksums(bytes);
+  EXPECT_EQ(error_of(bytes),
+            "byte " + std::to_string(bytes.size() - 64) + ": bytes after the last chunk");
+}
+
+TEST(VdagCorruption, OtherVersionsAreRefusedByName) {
+  EXPECT_EQ(error_of(repaired_with(8, std::uint32_t{7})),
+            "header: version 7 is newer than this program's 1");
+  EXPECT_EQ(error_of(repaired_with(8, std::uint32_t{0})), "header: version 0 does not exist");
+}
+
+TEST(VdagCorruption, DamageIsNamedByItsPlace) {
+  std::string bytes = small_file();
+  bytes[chunk_offset(bytes, 2)] ^= 1;
+  EXPECT_EQ(error_of(bytes), "chunk NODE: checksum is wrong");
+  bytes = small_file();
+  bytes[entry_offset(1) + 9] ^= 1;
+  EXPECT_EQ(error_of(bytes), "header: checksum of header and chunk table is wrong");
+  bytes = small_file();
+  bytes.back() ^= 1;
+  EXPECT_EQ(error_of(bytes), "byte " + std::to_string(bytes.size() - 1) + ": padding is not zero");
+  bytes = small_file();
+  EXPECT_EQ(error_of(bytes.substr(0, bytes.size() - 1)),
+            "byte " + std::to_string(bytes.size() - 1) + ": truncated: the header says " +
+                std::to_string(bytes.size()) + " bytes");
+  EXPECT_EQ(error_of(bytes.substr(0, 20)), "byte 20: the file ends inside its header");
+}
+
+TEST(VdagCorruption, AbsurdSizesAreRefusedBehindRightChecksums) {
+  EXPECT_EQ(error_of(repaired_with(12, std::uint32_t{0xFFFFFFFF})),
+            "header: 4294967295 chunks are more than fit");
+  const std::size_t length = entry_offset(2) + offsetof(VdagChunkEntry, length);
+  for (const std::uint64_t value :
+       {~std::uint64_t{0}, ~std::uint64_t{63}, std::uint64_t{1} << 63, std::uint64_t{100000}})
+    EXPECT_EQ(error_of(repaired_with(length, value)),
+              "chunk table, chunk NODE: reaches past the end of the file");
+}
+
+TEST(VdagCorruption, ChunksMustStandInOrderWithoutGapsOrOverlap) {
+  const std::size_t offset = entry_offset(2) + offsetof(VdagChunkEntry, offset);
+  const auto right = peek<std::uint64_t>(small_file(), offset);
+  for (const std::uint64_t wrong : {right + 64, right - 64, right + 8, std::uint64_t{0}})
+    EXPECT_EQ(error_of(repaired_with(offset, wrong)), "chunk table, chunk NODE: at byte " +
+                                                          std::to_string(wrong) + " where byte " +
+                                                          std::to_string(right) + " is expected");
+}
+
+TEST(VdagCorruption, AChunkTwiceOrMissingIsRefused) {
+  EXPECT_EQ(error_of(repaired_with(entry_offset(3), kChunkNodes)),
+            "chunk table, chunk NODE: stands there twice");
+  std::string bytes = repaired_with(entry_offset(3), vdag_chunk_id("ATTR"));
+  EXPECT_EQ(error_of(bytes), "chunk table, chunk ATTR: needs a newer program");
+  poke(bytes, entry_offset(3) + 4, std::uint32_t{0});
+  repair_checksums(bytes);
+  EXPECT_EQ(error_of(bytes), "chunk table: chunk LEAF is missing");
+}
+
+TEST(VdagCorruption, AnUnknownChunkThatIsNotRequiredIsPassedOver) {
+  // Header and four entries end on a multiple of 64: the fifth needs another 64 bytes of table.
+  std::string bytes = small_file();
+  ASSERT_EQ(chunk_offset(bytes, 0), entry_offset(4));
+  bytes.insert(entry_offset(4), std::string(64, '\0'));
+  for (std::size_t i = 0; i < 4; ++i)
+    poke(bytes, entry_offset(i) + 8, peek<std::uint64_t>(bytes, entry_offset(i) + 8) + 64);
+  poke(bytes, entry_offset(4), VdagChunkEntry{vdag_chunk_id("xyzw"), 0, bytes.size(), 3, 0});
+  bytes += "abc" + std::string(61, '\0');
+  poke(bytes, offsetof(VdagHeader, chunk_count), std::uint32_t{5});
+  poke(bytes, offsetof(VdagHeader, file_bytes), std::uint64_t{bytes.size()});
+  repair_checksums(bytes);
+  EXPECT_EQ(error_of(bytes), "no error");
+  bytes[bytes.size() - 64] = 'x';
+  EXPECT_EQ(error_of(bytes), "chunk xyzw: checksum is wrong");
+}
+
+TEST(VdagCorruption, FaultsInTheDagAreNamed) {
+  const std::string bytes = small_file();
+  EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 2) + 4, std::uint32_t{100})),
+            "chunk NODE, level 0, word 1: pointer leaves the next level");
+  EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 3), std::uint64_t{0})),
+            "chunk LEAF, leaf block 0: leaf block without voxels");
+  EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1), std::uint64_t{1})),
+            "chunk LEVL, level table: level 0 does not begin at word 0");
+  EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1) + 16, std::uint64_t{6})),
+            "chunk NODE: 7 words where the level table says 6");
+  EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 0), '[')),
+            "chunk META, byte 8: not valid JSON");
+}
+
+}  // namespace
+}  // namespace voxdag

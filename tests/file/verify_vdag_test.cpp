@@ -1,0 +1,79 @@
+#include "voxdag/file/verify_vdag.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/vdag_bytes.hpp"
+
+namespace voxdag {
+namespace {
+
+/// "container checksums! metadata -structure ...": failed with "!", skipped with "-".
+std::string summary(const VerifyReport& report) {
+  std::string text;
+  for (const VerifyCheck& check : report.checks) {
+    if (!text.empty()) text += ", ";
+    if (check.result == VerifyCheck::Result::kSkipped) text += "-";
+    text += check.name;
+    if (check.result == VerifyCheck::Result::kFailed) text += "! " + check.detail;
+  }
+  return text;
+}
+
+std::string verify(const std::string& bytes) {
+  const TempDir dir;
+  write_text(dir / "a.vdag", bytes);
+  const VerifyReport report = verify_vdag(dir / "a.vdag");
+  EXPECT_EQ(report.passed(), summary(report).find_first_of("!-") == std::string::npos);
+  return summary(report);
+}
+
+TEST(VerifyVdag, ASoundFilePassesEveryCheck) {
+  for (int levels = 2; levels <= 7; ++levels)
+    for (const int count : {0, 1, 100})
+      EXPECT_EQ(verify(vdag_file_bytes(brute_svdag(levels, random_voxels(levels, count, 3)))),
+                "container, checksums, metadata, structure, canonical order, minimality, counts");
+}
+
+TEST(VerifyVdag, ADamagedContainerSkipsTheRest) {
+  EXPECT_EQ(verify("nothing"),
+            "container! header: not a .vdag file, -checksums, -metadata, -structure, "
+            "-canonical order, -minimality, -counts");
+}
+
+TEST(VerifyVdag, AWrongChecksumIsTheOnlyFaultOfAFileOtherwiseSound) {
+  std::string bytes = vdag_file_bytes(brute_svdag(4, {{0, 0, 0}, {15, 15, 15}}));
+  bytes[bytes.find("bunny")] = 'f';
+  EXPECT_EQ(verify(bytes),
+            "container, checksums! chunk META: checksum is wrong, metadata, structure, "
+            "canonical order, minimality, counts");
+}
+
+TEST(VerifyVdag, FindsADagThatIsNotMinimal) {
+  Svdag dag = brute_svdag(4, {{0, 0, 0}, {15, 15, 15}});
+  dag.leaf_blocks[1] = dag.leaf_blocks[0];
+  EXPECT_EQ(verify(vdag_file_bytes(dag)),
+            "container, checksums, metadata, structure, canonical order, minimality! "
+            "chunk LEAF, leaf block 1: leaf block equals an earlier one, counts");
+}
+
+TEST(VerifyVdag, FindsAnotherOrder) {
+  Svdag dag = brute_svdag(4, {{0, 0, 0}, {15, 15, 15}});
+  std::swap(dag.nodes[1], dag.nodes[2]);
+  EXPECT_EQ(verify(vdag_file_bytes(dag)),
+            "container, checksums, metadata, structure, canonical order! chunk NODE, level 0, "
+            "word 1: child is not the next in depth-first order, minimality, counts");
+}
+
+TEST(VerifyVdag, FindsWrongCounts) {
+  const TempDir dir;
+  const Svdag dag = brute_svdag(4, {{0, 0, 0}, {15, 15, 15}});
+  VdagMetadata metadata = example_metadata(dag.view());
+  metadata.counts.svo_nodes_per_level[1] = 3;
+  write_vdag(dir / "a.vdag", dag.view(), metadata);
+  EXPECT_EQ(summary(verify_vdag(dir / "a.vdag")),
+            "container, checksums, metadata, structure, canonical order, minimality, "
+            "counts! chunk META, counts.svo_nodes_per_level[1]: 3 where the DAG has 2");
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,89 @@
+#pragma once
+/// .vdag files in memory for tests: made, changed, and given right checksums again.
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/brute_svdag.hpp"
+#include "support/temp_dir.hpp"
+#include "voxdag/file/checksum.hpp"
+#include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+
+namespace voxdag {
+
+inline VdagMetadata example_metadata(const SvdagView& view) {
+  VdagMetadata metadata;
+  metadata.grid.levels = view.levels;
+  metadata.grid.origin = {-1.5, 0.1, 1e6};
+  metadata.grid.voxel_size = 0.01;
+  metadata.grid.quantization_scale = 25599.7;
+  metadata.counts = count_svdag(view);
+  metadata.source = {"bunny.ply", 34834, 69451};
+  metadata.program = "voxdag test";
+  metadata.build = {{"cover", "exact"}};
+  return metadata;
+}
+
+/// The bytes of the file that write_vdag makes.
+inline std::string vdag_file_bytes(const Svdag& dag) {
+  const TempDir dir;
+  write_vdag(dir / "file.vdag", dag.view(), example_metadata(dag.view()));
+  return read_text(dir / "file.vdag");
+}
+
+/// The bytes with the alignment that parse_vdag asks for.
+class AlignedBytes {
+ public:
+  explicit AlignedBytes(const std::string& bytes) : size_(bytes.size()), words_(size_ / 8 + 1) {
+    std::memcpy(words_.data(), bytes.data(), size_);
+  }
+  std::span<const std::byte> span() const {
+    return {reinterpret_cast<const std::byte*>(words_.data()), size_};
+  }
+
+ private:
+  std::size_t size_;
+  std::vector<std::uint64_t> words_;
+};
+
+template <class T>
+T peek(const std::string& bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+template <class T>
+void poke(std::string& bytes, std::size_t offset, T value) {
+  std::memcpy(bytes.data() + offset, &value, sizeof value);
+}
+
+inline std::size_t entry_offset(std::size_t index) {
+  return sizeof(VdagHeader) + index * sizeof(VdagChunkEntry);
+}
+
+/// Makes every checksum right that can be made right, so that what is behind them gets tested.
+inline void repair_checksums(std::string& bytes) {
+  if (bytes.size() < sizeof(VdagHeader)) return;
+  const auto header = peek<VdagHeader>(bytes, 0);
+  const std::size_t table_end = entry_offset(header.chunk_count);
+  if (table_end > bytes.size()) return;
+  const auto checksum = [&](std::size_t offset, std::size_t length) {
+    return xxh3_64(std::as_bytes(std::span(bytes.data() + offset, length)));
+  };
+  for (std::size_t i = 0; i < header.chunk_count; ++i) {
+    const auto entry = peek<VdagChunkEntry>(bytes, entry_offset(i));
+    if (entry.offset > bytes.size() || entry.length > bytes.size() - entry.offset) continue;
+    poke(bytes, entry_offset(i) + offsetof(VdagChunkEntry, checksum),
+         checksum(entry.offset, entry.length));
+  }
+  poke(bytes, offsetof(VdagHeader, checksum), std::uint64_t{0});
+  poke(bytes, offsetof(VdagHeader, checksum), checksum(0, table_end));
+}
+
+}  // namespace voxdag
