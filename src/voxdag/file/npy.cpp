@@ -1,0 +1,177 @@
+#include "voxdag/file/npy.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <system_error>
+
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::string_view kMagic("\x93NUMPY", 6);
+constexpr std::size_t kPrefixBytes = 10;  ///< Magic, version and length of version 1.0.
+constexpr std::uint32_t kMostHeaderBytes = 1 << 20;
+/// Room that the writer leaves for N: the digits of 2^64.
+constexpr std::size_t kMostDigits = 20;
+
+std::string dtype_literal(const std::string& dtype) {
+  return dtype.starts_with('[') ? dtype : "'" + dtype + "'";
+}
+
+/// Python's spelling: "(5,)", "(5, 8)"; `first` stands for the first number.
+std::string shape_literal(const std::string& first, std::span<const std::uint64_t> rest) {
+  std::string text = "(" + first + ",";
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    text += (i == 0 ? " " : ", ") + std::to_string(rest[i]);
+  return text + ")";
+}
+
+std::size_t items_per_row(const std::vector<std::uint64_t>& row_shape) {
+  std::size_t items = 1;
+  for (const std::uint64_t size : row_shape) items *= size;
+  return items;
+}
+
+}  // namespace
+
+NpyReader::NpyReader(const std::filesystem::path& path, const std::string& dtype,
+                     const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes)
+    : path_(path), row_bytes_(items_per_row(row_shape) * item_bytes) {
+  descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0)
+    throw Error(path.string(), "", "cannot read: " + std::system_category().message(errno));
+  try {
+    const NpyHeader header = read_header();
+    if (header.dtype != dtype)
+      fail("items are " + dtype_literal(header.dtype) + ", expected " + dtype_literal(dtype));
+    if (header.shape.empty() || !std::equal(header.shape.begin() + 1, header.shape.end(),
+                                            row_shape.begin(), row_shape.end())) {
+      const std::string found =
+          header.shape.empty()
+              ? "()"
+              : shape_literal(std::to_string(header.shape[0]), std::span(header.shape).subspan(1));
+      fail("shape is " + found + ", expected " + shape_literal("N", row_shape));
+    }
+    if (header.fortran_order) fail("array is in Fortran order, expected C order");
+    rows_ = header.shape[0];
+    if (rows_ > std::numeric_limits<std::int64_t>::max() / row_bytes_ / 2)
+      fail("array of " + std::to_string(rows_) + " rows is too large");
+    check_size();
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+}
+
+NpyReader::~NpyReader() { close(descriptor_); }
+
+std::size_t NpyReader::read_rows(void* out, std::size_t most_rows) {
+  const auto count =
+      static_cast<std::size_t>(std::min<std::uint64_t>(most_rows, rows_ - rows_read_));
+  read_exactly(out, count * row_bytes_);
+  rows_read_ += count;
+  return count;
+}
+
+void NpyReader::read_exactly(void* out, std::size_t bytes) {
+  auto* to = static_cast<char*>(out);
+  while (bytes > 0) {
+    const ssize_t got = read(descriptor_, to, bytes);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("cannot read: " + std::system_category().message(errno));
+    if (got == 0) fail("truncated: " + std::to_string(bytes) + " more bytes expected");
+    to += got;
+    bytes -= static_cast<std::size_t>(got);
+    position_ += static_cast<std::uint64_t>(got);
+  }
+}
+
+NpyHeader NpyReader::read_header() {
+  char magic[8];
+  read_exactly(magic, sizeof magic);
+  if (std::string_view(magic, kMagic.size()) != kMagic) {
+    position_ = 0;
+    fail("not a .npy file");
+  }
+  const int major = magic[6];
+  if (major < 1 || major > 3) fail("version " + std::to_string(major) + " of .npy is unknown");
+  std::uint32_t length = 0;
+  read_exactly(&length, major == 1 ? 2 : 4);
+  if (length > kMostHeaderBytes) fail("header of " + std::to_string(length) + " bytes is too long");
+  const std::uint64_t first_byte = position_;
+  std::string text(length, '\0');
+  read_exactly(text.data(), length);
+  try {
+    return parse_npy_header(text, first_byte);
+  } catch (const Error& error) {
+    throw Error(path_.string(), error.place(), error.reason());
+  }
+}
+
+void NpyReader::check_size() const {
+  struct stat info {};
+  if (fstat(descriptor_, &info) != 0 || !S_ISREG(info.st_mode)) return;
+  const auto size = static_cast<std::uint64_t>(info.st_size);
+  const std::uint64_t expected = position_ + rows_ * row_bytes_;
+  if (size != expected)
+    throw Error(path_.string(), "byte " + std::to_string(std::min(size, expected)),
+                (size < expected ? "truncated: " : "bytes behind the array: ") +
+                    std::to_string(rows_) + " rows need " + std::to_string(expected) + " bytes");
+}
+
+void NpyReader::fail(const std::string& reason) const {
+  throw Error(path_.string(), "byte " + std::to_string(position_), reason);
+}
+
+NpyWriter::NpyWriter(const std::filesystem::path& path, std::string dtype,
+                     std::vector<std::uint64_t> row_shape, std::size_t item_bytes,
+                     std::optional<std::uint64_t> rows)
+    : file_(path),
+      dtype_(std::move(dtype)),
+      row_shape_(std::move(row_shape)),
+      row_bytes_(items_per_row(row_shape_) * item_bytes),
+      rows_(rows) {
+  file_.write(header(rows_.value_or(0)));
+}
+
+void NpyWriter::write_rows(const void* data, std::size_t count) {
+  file_.write(data, count * row_bytes_);
+  rows_written_ += count;
+}
+
+void NpyWriter::commit() {
+  assert(!rows_ || *rows_ == rows_written_);
+  if (!rows_) {
+    const std::string complete = header(rows_written_);
+    file_.overwrite(0, complete.data(), complete.size());
+  }
+  file_.commit();
+}
+
+std::string NpyWriter::header(std::uint64_t rows) const {
+  const std::string number = std::to_string(rows);
+  std::string dictionary =
+      "{'descr': " + dtype_literal(dtype_) +
+      ", 'fortran_order': False, 'shape': " + shape_literal(number, row_shape_) + ", }";
+  // Always as long as for the largest N, so that it can be overwritten; data aligned to 64 bytes.
+  const std::size_t longest = kPrefixBytes + dictionary.size() - number.size() + kMostDigits + 1;
+  const std::size_t padded = (longest + 63) / 64 * 64;
+  dictionary.resize(padded - kPrefixBytes - 1, ' ');
+  dictionary += '\n';
+  assert(dictionary.size() <= 0xFFFF);
+  std::string text(kMagic);
+  text += {'\x01', '\x00', static_cast<char>(dictionary.size() & 0xFF),
+           static_cast<char>(dictionary.size() >> 8)};
+  return text + dictionary;
+}
+
+}  // namespace voxdag

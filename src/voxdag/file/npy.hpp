@@ -1,0 +1,88 @@
+#pragma once
+/// NumPy's .npy arrays, read and written a run of rows at a time.
+///
+/// Format: numpy.lib.format, versions 1.0 to 3.0 read, 1.0 written; C order, little-endian. A row
+/// is one step along the first axis: of shape (N, 8) it is 8 items, of a structured array (N,) one.
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "voxdag/core/atomic_file.hpp"
+
+namespace voxdag {
+
+struct NpyHeader {
+  std::string dtype;  ///< "<f4"; of a structured array the list as it stands, "[('t', '<f4')]".
+  bool fortran_order = false;
+  std::vector<std::uint64_t> shape;
+  friend bool operator==(const NpyHeader&, const NpyHeader&) = default;
+};
+
+/// Parses the dictionary of a header. Throws Error("", "byte N", reason), N from `first_byte`.
+NpyHeader parse_npy_header(std::string_view text, std::uint64_t first_byte);
+
+/// Reads arrays of one expected type. Works on files and pipes; memory does not grow with N.
+class NpyReader {
+ public:
+  /// Opens `path` and checks that it has this dtype, C order and the shape (N, row_shape...).
+  /// `item_bytes` is the size of the dtype. A file must have exactly the bytes that its shape asks
+  /// for. Throws Error(path, "byte N", reason).
+  NpyReader(const std::filesystem::path& path, const std::string& dtype,
+            const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes);
+  NpyReader(const NpyReader&) = delete;
+  NpyReader& operator=(const NpyReader&) = delete;
+  ~NpyReader();
+
+  std::uint64_t rows() const { return rows_; }  ///< N
+  std::size_t row_bytes() const { return row_bytes_; }
+
+  /// Reads the next rows, at most `most_rows`, into `out` (row_bytes() each) and returns how
+  /// many they were: fewer than asked for only at the end, 0 behind it.
+  std::size_t read_rows(void* out, std::size_t most_rows);
+
+ private:
+  void read_exactly(void* out, std::size_t bytes);
+  NpyHeader read_header();
+  void check_size() const;
+  [[noreturn]] void fail(const std::string& reason) const;
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t position_ = 0;
+  std::uint64_t rows_ = 0, rows_read_ = 0;
+  std::size_t row_bytes_ = 0;
+};
+
+/// Writes an array row by row into a file that appears when it is complete (see AtomicFile).
+class NpyWriter {
+ public:
+  /// `dtype` as in NpyHeader, with `item_bytes` per item and an item count of the product of
+  /// `row_shape` per row ({} for a structured array of shape (N,)). If `rows` is not given, N is
+  /// what has been written at commit(); the output must then be able to seek.
+  NpyWriter(const std::filesystem::path& path, std::string dtype,
+            std::vector<std::uint64_t> row_shape, std::size_t item_bytes,
+            std::optional<std::uint64_t> rows = {});
+
+  void write_rows(const void* data, std::size_t count);
+  std::uint64_t rows_written() const { return rows_written_; }
+
+  /// Completes the header and gives the file its name. If `rows` was given, that many must have
+  /// been written.
+  void commit();
+
+ private:
+  std::string header(std::uint64_t rows) const;
+
+  AtomicFile file_;
+  std::string dtype_;
+  std::vector<std::uint64_t> row_shape_;
+  std::size_t row_bytes_;
+  std::optional<std::uint64_t> rows_;
+  std::uint64_t rows_written_ = 0;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,107 @@
+#pragma once
+/// Walks over the voxels of a DAG in Morton order, without holding them, and point look-ups.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "voxdag/core/box.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// All voxels of the grid, as a half-open box of voxel coordinates.
+inline Box3i whole_grid(int levels) {
+  const std::int32_t n = std::int32_t{1} << levels;
+  return {{0, 0, 0}, {n, n, n}};
+}
+
+/// kLeafSlabs[axis][k]: the voxels of a leaf block whose coordinate on the axis is k.
+inline constexpr std::array<std::array<std::uint64_t, 4>, 3> kLeafSlabs = [] {
+  std::array<std::array<std::uint64_t, 4>, 3> slabs{};
+  for (unsigned i = 0; i < 64; ++i) {
+    const Vec3i voxel = morton_decode(i);
+    for (int axis = 0; axis < 3; ++axis) slabs[axis][voxel[axis]] |= std::uint64_t{1} << i;
+  }
+  return slabs;
+}();
+
+/// The voxels of the leaf block at `origin` that lie in the half-open `window`.
+inline std::uint64_t leaf_window_mask(Vec3i origin, const Box3i& window) {
+  std::uint64_t mask = ~std::uint64_t{0};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint64_t inside = 0;
+    for (int k = 0; k < 4; ++k)
+      if (origin[axis] + k >= window.lo[axis] && origin[axis] + k < window.hi[axis])
+        inside |= kLeafSlabs[axis][k];
+    mask &= inside;
+  }
+  return mask;
+}
+
+namespace detail {
+
+template <class Fn>
+void walk_leaf_blocks(const SvdagView& dag, const Box3i& window, int level, std::uint32_t at,
+                      Vec3i origin, const Fn& fn) {
+  const std::int32_t size = std::int32_t{1} << (dag.levels - level);
+  for (int axis = 0; axis < 3; ++axis)
+    if (origin[axis] >= window.hi[axis] || origin[axis] + size <= window.lo[axis]) return;
+  if (level == dag.levels - 2) {
+    const std::uint64_t mask = dag.leaf_blocks[at] & leaf_window_mask(origin, window);
+    if (mask != 0) fn(origin, mask);
+    return;
+  }
+  const std::uint32_t* node = dag.nodes + at;
+  const std::int32_t half = size / 2;
+  const std::uint32_t* pointer = node + 1;
+  for (std::uint32_t left = child_mask(node); left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left);
+    const Vec3i child = origin + Vec3i{i & 1, i >> 1 & 1, i >> 2} * half;
+    walk_leaf_blocks(dag, window, level + 1, *pointer++, child, fn);
+  }
+}
+
+}  // namespace detail
+
+/// Calls fn(Vec3i origin, std::uint64_t mask) for every leaf block that has voxels in the half-open
+/// `window`, in Morton order; the mask holds those voxels only. The window may reach out of the
+/// grid. The view must be valid. O(blocks met) time, stack of L frames.
+template <class Fn>
+void for_each_leaf_block(const SvdagView& dag, const Box3i& window, const Fn& fn) {
+  if (!dag.is_empty()) detail::walk_leaf_blocks(dag, window, 0, 0, {0, 0, 0}, fn);
+}
+
+/// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in Morton order.
+template <class Fn>
+void for_each_voxel(const SvdagView& dag, const Box3i& window, const Fn& fn) {
+  for_each_leaf_block(dag, window, [&](Vec3i origin, std::uint64_t mask) {
+    for (; mask != 0; mask &= mask - 1)
+      fn(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
+  });
+}
+
+/// The mask of the leaf block that holds `voxel`; 0 if it has no voxels or lies outside the grid.
+inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) {
+  const auto outside = [&](std::int32_t c) { return c < 0 || c >> dag.levels != 0; };
+  if (dag.is_empty() || outside(voxel.x) || outside(voxel.y) || outside(voxel.z)) return 0;
+  std::uint32_t at = 0;
+  for (int level = 0; level < dag.levels - 2; ++level) {
+    const int shift = dag.levels - level - 1;
+    const int child =
+        (voxel.x >> shift & 1) | (voxel.y >> shift & 1) << 1 | (voxel.z >> shift & 1) << 2;
+    const std::uint32_t* node = dag.nodes + at;
+    if ((child_mask(node) >> child & 1) == 0) return 0;
+    at = child_pointer(node, child);
+  }
+  return dag.leaf_blocks[at];
+}
+
+/// Whether the voxel is set; false outside the grid.
+inline bool has_voxel(const SvdagView& dag, Vec3i voxel) {
+  return (leaf_block_at(dag, voxel) >> morton_encode({voxel.x & 3, voxel.y & 3, voxel.z & 3}) &
+          1) != 0;
+}
+
+}  // namespace voxdag
