@@ -22,8 +22,9 @@ struct SubvolumeBins {
   }
 };
 
-/// Exact: a triangle is in a list if and only if it meets the cell. level <= levels - 2 and <= 10.
-/// Time is linear in the lists; memory is 12 bytes per entry while it sorts, 4 after.
+/// A triangle is in the list of every cell that it meets, and, but for the largest grids, of no
+/// other. level <= levels - 2 and <= 10. Time is linear in the lists; memory is 12 bytes per entry
+/// while it sorts, 4 after.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level, MemoryBudget& budget,
                             const Progress* progress);
 

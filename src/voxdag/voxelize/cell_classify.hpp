@@ -2,8 +2,9 @@
 /// Which children of an octree cell a triangle meets, and which of its conditions still matter
 /// there.
 ///
-/// Exact at every level: the functions of triangle_setup.hpp take their least and greatest values
-/// over a cell's voxels at two of its corner voxels.
+/// The functions of triangle_setup.hpp take their least and greatest values over a cell's voxels at
+/// two of its corner voxels, so the answer is exact for a cell of any size; only where a cell is so
+/// large that the plane's sums need more than 64 bits is the plane left to the cells below.
 #include <bit>
 #include <cstdint>
 

@@ -26,7 +26,8 @@ VOXDAG_HD inline bool separates(Wide ax, Wide ay, Wide az, Vec3i a, Vec3i b, Vec
   const Wide triangle_max = pa > pb ? (pa > pc ? pa : pc) : (pb > pc ? pb : pc);
   Wide cube_min = ax * lo.x + ay * lo.y + az * lo.z, cube_max = cube_min;
   bool min_attained = true, max_attained = true;
-  for (const Wide component : {ax, ay, az}) {
+  const Wide components[3] = {ax, ay, az};
+  for (const Wide component : components) {
     if (component > 0) {
       cube_max += component * size;
       max_attained = false;

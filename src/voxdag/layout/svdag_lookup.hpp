@@ -1,0 +1,31 @@
+#pragma once
+/// Point queries on a DAG.
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// Whether the cell `cell` of `level` (cells of 2^(L-level) voxels, coordinates in [0, 2^level))
+/// contains a voxel that is set. level in [0, L]; level L asks for one voxel.
+VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level) {
+  if (dag.is_empty()) return false;
+  std::uint32_t at = 0;
+  for (int l = 0; l < level; ++l) {
+    const int shift = level - 1 - l;
+    const int child =
+        ((cell.x >> shift) & 1) | ((cell.y >> shift) & 1) << 1 | ((cell.z >> shift) & 1) << 2;
+    if (l < dag.levels - 2) {
+      const std::uint32_t* node = dag.nodes + at;
+      if (((child_mask(node) >> child) & 1) == 0) return false;
+      at = child_pointer(node, child);
+      continue;
+    }
+    // Inside a leaf block: one octant of 2³ voxels, then one voxel of it.
+    const std::uint64_t octant = (dag.leaf_blocks[at] >> (8 * child)) & 0xFF;
+    if (level == dag.levels - 1) return octant != 0;
+    const int voxel = (cell.x & 1) | (cell.y & 1) << 1 | (cell.z & 1) << 2;
+    return ((octant >> voxel) & 1) != 0;
+  }
+  return true;
+}
+
+}  // namespace voxdag
