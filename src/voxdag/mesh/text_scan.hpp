@@ -1,0 +1,79 @@
+#pragma once
+/// Pieces of text parsing that OBJ, ascii PLY and ascii STL share.
+#include <fast_float/fast_float.h>
+
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+namespace voxdag {
+
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+/// Takes the next token off `line`: a run of characters that are not blank; empty at the end.
+inline std::string_view next_token(std::string_view& line) {
+  const char* p = line.data();
+  const char* const end = p + line.size();
+  while (p != end && is_blank(*p)) ++p;
+  const char* const first = p;
+  while (p != end && !is_blank(*p)) ++p;
+  line = {p, static_cast<std::size_t>(end - p)};
+  return {first, static_cast<std::size_t>(p - first)};
+}
+
+inline std::string_view trim(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// The whole token as the nearest float32 (ties to even). Infinities and NaN are numbers here, and
+/// what is too large is infinite. Returns false if the token is not a number.
+inline bool parse_float(std::string_view token, float& value) {
+  const char* first = token.data();
+  const char* const last = first + token.size();
+  if (first != last && *first == '+' && last - first > 1 && first[1] != '-') ++first;
+  const auto result = fast_float::from_chars(first, last, value);
+  return result.ptr == last && result.ec != std::errc::invalid_argument;
+}
+
+/// The whole token as a decimal integer, with or without a sign.
+inline bool parse_int(std::string_view token, std::int64_t& value) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
+  const char* const last = token.data() + token.size();
+  const auto result = std::from_chars(token.data(), last, value);
+  return result.ec == std::errc() && result.ptr == last;
+}
+
+/// A token for an error message: in quotes, shortened, without control characters.
+inline std::string in_quotes(std::string_view token) {
+  std::string out = "'";
+  for (const char c : token.substr(0, 40)) out += c >= 32 && c < 127 ? c : '?';
+  return out + (token.size() > 40 ? "...'" : "'");
+}
+
+/// The character that ends lines: '\n', or '\r' in a text that has no '\n' near its start.
+inline char line_end_of(std::string_view text) {
+  const std::string_view head = text.substr(0, 65536);
+  return head.find('\n') == head.npos && head.find('\r') != head.npos ? '\r' : '\n';
+}
+
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+/// Takes the next line, without its end, off `text`.
+inline std::string_view next_line(std::string_view& text, char line_end) {
+  const void* found = std::memchr(text.data(), line_end, text.size());
+  const std::size_t size =
+      found ? static_cast<std::size_t>(static_cast<const char*>(found) - text.data()) : text.size();
+  const std::string_view line = text.substr(0, size);
+  text.remove_prefix(found ? size + 1 : size);
+  return line;
+}
+
+}  // namespace voxdag
