@@ -133,7 +133,8 @@ TEST(ObjReader, ALargeFileReadsLikeItsParts) {
     EXPECT_EQ(mesh.vertices[3 * i + 1], (Vec3f{static_cast<float>(i), 1, 0.5f}));
   EXPECT_EQ(mesh.materials[mesh.triangle_materials[0]], "");
   for (std::size_t i = 1; i < 60'000; ++i)
-    EXPECT_EQ(mesh.materials[mesh.triangle_materials[i]], "m" + std::to_string((i - 1) / 1000 % 7));
+    EXPECT_EQ(mesh.materials[mesh.triangle_materials[i]],
+              std::string("m").append(std::to_string((i - 1) / 1000 % 7)));
   EXPECT_EQ(refusal(read_obj, text + "f 1 2 bad\n"),
             "mesh: line 240061: face corner 'bad' is not an index");
 }
