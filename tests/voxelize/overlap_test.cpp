@@ -73,7 +73,7 @@ TEST(TriangleOverlapsCube, AgreesWithRationalClipping) {
   // Small grids, so that the rationals of repeated clipping fit in 128 bits.
   std::mt19937_64 random(7);
   int covered = 0;
-  for (int round = 0; round < 6000; ++round) {
+  for (int round = 0; round < 20000; ++round) {
     const int levels = 2 + static_cast<int>(random() % 2);
     const QuantizedTriangle t = random_triangle(random, levels);
     for (int i = 0; i < 40; ++i) {
