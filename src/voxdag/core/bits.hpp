@@ -6,6 +6,7 @@
 
 #if !defined(__CUDA_ARCH__)
 #include <bit>
+#include <cstring>
 #endif
 
 namespace voxdag {
@@ -32,6 +33,28 @@ VOXDAG_HD inline int highest_bit(std::uint32_t v) {
   return 31 - __clz(static_cast<int>(v));
 #else
   return 31 - std::countl_zero(v);
+#endif
+}
+
+/// The float whose IEEE 754 bits are v.
+VOXDAG_HD inline float float_from_bits(std::uint32_t v) {
+#if defined(__CUDA_ARCH__)
+  return __uint_as_float(v);
+#else
+  float f;
+  std::memcpy(&f, &v, sizeof f);
+  return f;
+#endif
+}
+
+/// The IEEE 754 bits of f.
+VOXDAG_HD inline std::uint32_t bits_of_float(float f) {
+#if defined(__CUDA_ARCH__)
+  return __float_as_uint(f);
+#else
+  std::uint32_t v;
+  std::memcpy(&v, &f, sizeof v);
+  return v;
 #endif
 }
 

@@ -1,0 +1,167 @@
+#pragma once
+/// The ray cast: one traversal for closest hit, any hit and level of detail, on every node layout.
+///
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4 and Figure 8,
+/// with what Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
+/// section 4, leave out: voxels are visited in ray order and have no contours, so no interval is
+/// kept.
+///
+/// The walk visits, in order of T, the cells that the ray is in as grid_ray.hpp defines it: from a
+/// present cell it descends to the child that the ray is in (PUSH), from an absent one it steps
+/// over all planes that the cell's exit T reaches, within the parent (ADVANCE) or, where a step
+/// leaves the parent, from the highest level at which the positions differ (POP). Rays run down
+/// along every axis, so a cell is left through its lower corner, and a position bit may only fall.
+/// Invariant: the current cell is the cell of its level that the ray is in at `t`.
+#include "voxdag/trace/grid_ray.hpp"
+#include "voxdag/trace/hit.hpp"
+
+namespace voxdag {
+
+/// Where a cast ended, in the ray's mirrored coordinates.
+struct CellHit {
+  float t = 0;  ///< T at which the ray is first in the cell, within its range.
+  std::uint32_t x = 0, y = 0, z = 0;  ///< The float bits of the cell's lower corner.
+  int level = 0;
+};
+
+/// The termination hook that never ends a cast above the voxels.
+struct StopAtVoxels {
+  VOXDAG_HD constexpr bool operator()(int /*level*/, float /*t_enter*/, float /*t_exit*/) const {
+    return false;
+  }
+};
+
+/// Finds the first present cell along the ray that is a voxel or for which `stop(level, t_enter,
+/// t_exit)` is true, asked of non-empty cells of levels 1 to L-1 with the range of T in them. True
+/// if there is one within the ray's range. O(cells on the way) time, one stack entry per level.
+template <class Nodes, class Stop>
+VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
+  constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
+  constexpr int kTopBit = 22;  // the position bit that the root's children differ in
+  if (ray.misses() || nodes.is_empty()) return false;
+
+  const float ox = ray.origin.x, oy = ray.origin.y, oz = ray.origin.z;
+  const float ix = ray.inverse.x, iy = ray.inverse.y, iz = ray.inverse.z;
+  const int levels = nodes.levels();
+  const std::uint32_t mirrored = ray.mirrored;
+
+  float t = ray.t_min;
+  if ((ox - 1.0f) * ix <= t || (oy - 1.0f) * iy <= t || (oz - 1.0f) * iz <= t) return false;
+
+  typename Nodes::Node stack[kMaxLevels];
+  typename Nodes::Node node = nodes.root();
+  std::uint32_t mask = nodes.child_mask(node, 0);
+  std::uint32_t x = kOne, y = kOne,
+                z = kOne;   // lower corner of the current cell, a child of `node`
+  std::uint32_t child = 0;  // which child, mirrored
+  int bit = kTopBit;        // kTopBit - level of `node`
+
+  // The child of the cell at (x,y,z) that the ray is in at t.
+  const auto select_child = [&] {
+    const std::uint32_t half = 1u << bit;
+    const std::uint32_t up_x = (ox - float_from_bits(x | half)) * ix > t ? 1u : 0u;
+    const std::uint32_t up_y = (oy - float_from_bits(y | half)) * iy > t ? 1u : 0u;
+    const std::uint32_t up_z = (oz - float_from_bits(z | half)) * iz > t ? 1u : 0u;
+    x |= up_x << bit;
+    y |= up_y << bit;
+    z |= up_z << bit;
+    child = up_x | up_y << 1 | up_z << 2;
+  };
+  select_child();
+
+  for (;;) {
+    const float tx = (ox - float_from_bits(x)) * ix;
+    const float ty = (oy - float_from_bits(y)) * iy;
+    const float tz = (oz - float_from_bits(z)) * iz;
+    const float txy = tx < ty ? tx : ty;
+    const float t_exit = txy < tz ? txy : tz;
+
+    const std::uint32_t index = child ^ mirrored;
+    if ((mask >> index & 1u) != 0) {
+      const int level = kTopBit - bit;
+      if (level + 1 == levels || stop(level + 1, t, t_exit)) {
+        hit = {t, x, y, z, level + 1};
+        return true;
+      }
+      // PUSH
+      stack[level] = node;
+      node = nodes.child(node, level, static_cast<int>(index));
+      mask = nodes.child_mask(node, level + 1);
+      --bit;
+      select_child();
+      continue;
+    }
+
+    // ADVANCE
+    if (t_exit > ray.t_max) return false;
+    t = t_exit;
+    const std::uint32_t step_x = tx == t_exit ? 1u : 0u;
+    const std::uint32_t step_y = ty == t_exit ? 1u : 0u;
+    const std::uint32_t step_z = tz == t_exit ? 1u : 0u;
+    const std::uint32_t next_x = x - (step_x << bit);
+    const std::uint32_t next_y = y - (step_y << bit);
+    const std::uint32_t next_z = z - (step_z << bit);
+    const std::uint32_t changed = (x ^ next_x) | (y ^ next_y) | (z ^ next_z);
+    x = next_x;
+    y = next_y;
+    z = next_z;
+    child ^= step_x | step_y << 1 | step_z << 2;
+    if (changed >> bit == 1) continue;
+
+    // POP
+    bit = highest_bit(changed);
+    if (bit > kTopBit) return false;
+    const std::uint32_t above = ~0u << bit;
+    x &= above;
+    y &= above;
+    z &= above;
+    child = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
+    node = stack[kTopBit - bit];
+    mask = nodes.child_mask(node, kTopBit - bit);
+  }
+}
+
+/// The cell of a cast as the caller of the library sees it. The face is that of the first axis
+/// whose plane the ray meets at just the hit's T; none where no plane does. t is within
+/// [t_min, t_max] as the caller gave them.
+VOXDAG_HD inline Hit to_hit(const GridRay& ray, const CellHit& cell, int levels, float t_min,
+                            float t_max) {
+  Hit hit;
+  hit.hit = true;
+  hit.level = static_cast<std::int8_t>(cell.level);
+  const float t = static_cast<float>(ray.to_world_t(static_cast<double>(cell.t)));
+  hit.t = t < t_min ? t_min : t > t_max ? t_max : t;
+
+  const std::uint32_t corner[3] = {cell.x, cell.y, cell.z};
+  const std::int32_t cell_size = 1 << (levels - cell.level);
+  for (int axis = 2; axis >= 0; --axis) {
+    const std::uint32_t bits = corner[axis];
+    const bool is_mirrored = (ray.mirrored >> axis & 1u) != 0;
+    const float entry = float_from_bits(bits + (1u << (23 - cell.level)));
+    if ((ray.parallel >> axis & 1u) == 0 && ray.plane_t(axis, entry) == cell.t)
+      hit.face = static_cast<Face>(2 * axis + (is_mirrored ? 0 : 1));
+    const std::int32_t low = static_cast<std::int32_t>((bits & 0x7FFFFFu) >> (23 - levels));
+    hit.voxel[axis] = is_mirrored ? (1 << levels) - cell_size - low : low;
+  }
+  return hit;
+}
+
+/// The first voxel, or cell at which `stop` ends the cast, within the ray's range.
+template <class Nodes, class Stop = StopAtVoxels>
+VOXDAG_HD inline Hit closest_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
+                                 const Stop& stop = {}) {
+  const GridRay grid_ray = make_grid_ray(grid, ray);
+  CellHit cell;
+  if (!cast(nodes, grid_ray, stop, cell)) return {};
+  return to_hit(grid_ray, cell, nodes.levels(), ray.t_min, ray.t_max);
+}
+
+/// Whether there is such a voxel or cell.
+template <class Nodes, class Stop = StopAtVoxels>
+VOXDAG_HD inline bool any_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
+                              const Stop& stop = {}) {
+  CellHit cell;
+  return cast(nodes, make_grid_ray(grid, ray), stop, cell);
+}
+
+}  // namespace voxdag

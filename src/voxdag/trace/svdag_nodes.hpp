@@ -1,0 +1,59 @@
+#pragma once
+/// How the traversal reads the paper's SVDAG layout (layout/svdag.hpp).
+///
+/// A node layout for cast() is a type with
+///   using Node          what the stack stores for a node; small and trivially copyable
+///   is_empty()          no voxels at all
+///   levels()            L
+///   root()              the node of level 0; not called on an empty DAG
+///   child_mask(n, l)    the 8-bit child mask of node n of level l
+///   child(n, l, i)      child i, which is present, of node n of level l < L-1
+/// Children of level L-1 are voxels: their presence in the mask is all there is.
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// Nodes of level < L-2 are word indices, those of level L-2 indices of leaf blocks, and those of
+/// level L-1 are their own child mask, one byte of a leaf block.
+class SvdagNodes {
+ public:
+  using Node = std::uint32_t;
+
+  VOXDAG_HD explicit SvdagNodes(const SvdagView& dag)
+      : nodes_(dag.nodes),
+        leaf_blocks_(dag.leaf_blocks),
+        levels_(dag.levels),
+        is_empty_(dag.is_empty()) {}
+
+  VOXDAG_HD bool is_empty() const { return is_empty_; }
+  VOXDAG_HD int levels() const { return levels_; }
+  VOXDAG_HD Node root() const { return 0; }
+
+  VOXDAG_HD std::uint32_t child_mask(Node node, int level) const {
+    if (level < levels_ - 2) return voxdag::child_mask(nodes_ + node);
+    if (level == levels_ - 1) return node;
+    return nonzero_bytes(leaf_blocks_[node]);
+  }
+
+  VOXDAG_HD Node child(Node node, int level, int index) const {
+    if (level < levels_ - 2) return child_pointer(nodes_ + node, index);
+    return static_cast<Node>(leaf_blocks_[node] >> (8 * index) & 0xFFu);
+  }
+
+ private:
+  /// Bit i tells if byte i is not zero: leaf_block_child_mask without its loop.
+  VOXDAG_HD static std::uint32_t nonzero_bytes(std::uint64_t v) {
+    v |= v >> 4;
+    v |= v >> 2;
+    v |= v >> 1;
+    v &= 0x0101010101010101ull;
+    return static_cast<std::uint32_t>(v * 0x0102040810204080ull >> 56);
+  }
+
+  const std::uint32_t* nodes_;
+  const std::uint64_t* leaf_blocks_;
+  int levels_;
+  bool is_empty_;
+};
+
+}  // namespace voxdag
