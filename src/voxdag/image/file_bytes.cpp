@@ -6,6 +6,7 @@
 #include <string>
 #include <system_error>
 
+#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
@@ -25,22 +26,9 @@ std::vector<std::uint8_t> read_image_bytes(const std::filesystem::path& path) {
 }
 
 void write_image_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  std::filesystem::path partial = path;
-  partial += ".partial";
-  const auto fail = [&](int error) {
-    std::error_code ec;
-    std::filesystem::remove(partial, ec);
-    throw Error(path.string(), "", std::string("cannot write: ") + std::strerror(error));
-  };
-  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-  if (!out) fail(errno);
-  out.write(reinterpret_cast<const char*>(bytes.data()),
-            static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) fail(errno);
-  std::error_code ec;
-  std::filesystem::rename(partial, path, ec);
-  if (ec) fail(ec.value());
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
 }
 
 }  // namespace voxdag

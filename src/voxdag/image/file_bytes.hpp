@@ -10,7 +10,7 @@ namespace voxdag {
 /// Throws Error if the file cannot be opened or read to its end.
 std::vector<std::uint8_t> read_image_bytes(const std::filesystem::path& path);
 
-/// Writes beside `path` and renames when complete; leaves nothing behind if it fails. Throws Error.
+/// Through AtomicFile: complete or not at all. Throws Error.
 void write_image_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace voxdag

@@ -1,0 +1,25 @@
+#pragma once
+/// The makers behind make_scene, one file each. `size` is in the range of the scene's entry.
+#include <cstdint>
+
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/mesh/scenes.hpp"
+
+namespace voxdag::scenes {
+
+Mesh make_city(double size, std::uint32_t seed);
+ScenePreset city_preset(double size);
+
+Mesh make_courtyard(double size, std::uint32_t seed);
+ScenePreset courtyard_preset(double size);
+
+Mesh make_hairball(double size, std::uint32_t seed);
+ScenePreset hairball_preset(double size);
+
+Mesh make_sponge(double size, std::uint32_t seed);
+ScenePreset sponge_preset(double size);
+
+Mesh make_terrain(double size, std::uint32_t seed);
+ScenePreset terrain_preset(double size);
+
+}  // namespace voxdag::scenes
