@@ -143,15 +143,15 @@ NpyWriter::NpyWriter(const std::filesystem::path& path, std::string dtype,
   file_.write(header(rows_.value_or(0)));
 }
 
-void NpyWriter::write_rows(const void* data, std::size_t count) {
-  file_.write(data, count * row_bytes_);
-  rows_written_ += count;
+void NpyWriter::write_bytes(const void* data, std::size_t bytes) {
+  file_.write(data, bytes);
+  bytes_written_ += bytes;
 }
 
 void NpyWriter::commit() {
-  assert(!rows_ || *rows_ == rows_written_);
+  assert(bytes_written_ % row_bytes_ == 0 && (!rows_ || *rows_ == rows_written()));
   if (!rows_) {
-    const std::string complete = header(rows_written_);
+    const std::string complete = header(rows_written());
     file_.overwrite(0, complete.data(), complete.size());
   }
   file_.commit();

@@ -67,8 +67,10 @@ class NpyWriter {
             std::vector<std::uint64_t> row_shape, std::size_t item_bytes,
             std::optional<std::uint64_t> rows = {});
 
-  void write_rows(const void* data, std::size_t count);
-  std::uint64_t rows_written() const { return rows_written_; }
+  void write_rows(const void* data, std::size_t count) { write_bytes(data, count * row_bytes_); }
+  /// For rows that come in pieces: any number of bytes, going on where the last call ended.
+  void write_bytes(const void* data, std::size_t bytes);
+  std::uint64_t rows_written() const { return bytes_written_ / row_bytes_; }
 
   /// Completes the header and gives the file its name. If `rows` was given, that many must have
   /// been written.
@@ -82,7 +84,7 @@ class NpyWriter {
   std::vector<std::uint64_t> row_shape_;
   std::size_t row_bytes_;
   std::optional<std::uint64_t> rows_;
-  std::uint64_t rows_written_ = 0;
+  std::uint64_t bytes_written_ = 0;
 };
 
 }  // namespace voxdag

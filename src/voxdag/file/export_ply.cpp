@@ -1,0 +1,205 @@
+// The exporters to PLY: voxel centres, and the outer faces of the voxels' cubes.
+#include <array>
+#include <bitset>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "voxdag/core/atomic_file.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/export_common.hpp"
+
+namespace voxdag {
+namespace {
+
+std::string shortest(double value) {
+  char text[32];
+  const auto result = std::to_chars(text, text + sizeof text, value);
+  return {text, result.ptr};
+}
+
+/// Whether float coordinates are exact to 1/16 voxel in the whole grid.
+bool float_suffices(const Grid& grid) {
+  const Box3d bounds = grid.bounds();
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(bounds.lo[axis]), std::abs(bounds.hi[axis])});
+  return largest * 0x1p-24 <= grid.voxel_size / 16 && largest < std::numeric_limits<float>::max() &&
+         grid.voxel_size > 16 * std::numeric_limits<float>::min();
+}
+
+/// A PLY file whose counts are known at the end only: the header is then written again, padded
+/// to the same length by a comment.
+class PlyFile {
+ public:
+  PlyFile(const std::filesystem::path& path, const Grid& grid, bool has_faces)
+      : file_(path), grid_(grid), has_faces_(has_faces), use_float_(float_suffices(grid)) {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+    header_bytes_ = header(most, most, "").size();
+    file_.write_zeros(header_bytes_);
+  }
+
+  void write_vertex(Vec3d grid_position) {
+    const Vec3d world = grid_.to_world(grid_position);
+    if (use_float_) {
+      const Vec3f rounded(world);
+      file_.write(&rounded, sizeof rounded);
+    } else {
+      file_.write(&world, sizeof world);
+    }
+    ++vertices_;
+  }
+
+  void write_quad(const std::array<std::uint32_t, 4>& corners) {
+    const unsigned char count = 4;
+    file_.write(&count, 1);
+    file_.write(corners.data(), sizeof corners);
+    ++faces_;
+  }
+
+  std::uint64_t vertices() const { return vertices_; }
+
+  void commit() {
+    const std::string unpadded = header(vertices_, faces_, "");
+    const std::string text =
+        header(vertices_, faces_, std::string(header_bytes_ - unpadded.size(), '.'));
+    file_.overwrite(0, text.data(), text.size());
+    file_.commit();
+  }
+
+ private:
+  std::string header(std::uint64_t vertices, std::uint64_t faces,
+                     const std::string& padding) const {
+    const std::string type = use_float_ ? "float" : "double";
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment made by voxdag\n";
+    text += "comment grid_origin " + shortest(grid_.origin.x) + " " + shortest(grid_.origin.y) +
+            " " + shortest(grid_.origin.z) + "\n";
+    text += "comment voxel_size " + shortest(grid_.voxel_size) + "\n";
+    text += "comment resolution " + std::to_string(grid_.resolution()) + "\n";
+    text += "comment " + padding + "\nelement vertex " + std::to_string(vertices) + "\n";
+    for (const char axis : {'x', 'y', 'z'}) text += "property " + type + " " + axis + "\n";
+    if (has_faces_)
+      text +=
+          "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
+    return text + "end_header\n";
+  }
+
+  AtomicFile file_;
+  Grid grid_;
+  bool has_faces_, use_float_;
+  std::size_t header_bytes_ = 0;
+  std::uint64_t vertices_ = 0, faces_ = 0;
+};
+
+constexpr int kCorners = 5 * 5 * 5;  ///< Of the voxels of a leaf block.
+
+int corner_index(Vec3i corner) { return corner.x + 5 * (corner.y + 5 * corner.z); }
+
+/// The faces of a leaf block's voxels whose neighbour is not set.
+struct BlockSurface {
+  /// [2 * axis + side]: the voxels whose face on the low (0) or high (1) side is outside.
+  std::array<std::uint64_t, 6> faces{};
+  std::bitset<kCorners> corners;  ///< Those that the faces use.
+};
+
+/// The corners of a face in order, counter-clockwise from outside.
+std::array<Vec3i, 4> face_corners(Vec3i voxel, int axis, int side) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  std::array<Vec3i, 4> corners;
+  corners.fill(voxel);
+  for (Vec3i& corner : corners) corner[axis] += side;
+  ++corners[side == 1 ? 1 : 3][u];
+  ++corners[2][u];
+  ++corners[2][v];
+  ++corners[side == 1 ? 3 : 1][v];
+  return corners;
+}
+
+/// Moves every voxel's bit to its neighbour at a higher (lower) coordinate on an axis; bits of
+/// `next` come in from the block that lies beyond. In Morton order a step inside a 2³ octant is one
+/// bit position of the axis, a step from one octant to the next is seven.
+std::uint64_t shift_up(std::uint64_t block, std::uint64_t below, int axis) {
+  const auto& slab = kLeafSlabs[axis];
+  return (block << (1 << axis) & (slab[1] | slab[3])) | (block << (7 << axis) & slab[2]) |
+         (below >> (9 << axis) & slab[0]);
+}
+std::uint64_t shift_down(std::uint64_t block, std::uint64_t above, int axis) {
+  const auto& slab = kLeafSlabs[axis];
+  return (block >> (1 << axis) & (slab[0] | slab[2])) | (block >> (7 << axis) & slab[1]) |
+         (above << (9 << axis) & slab[3]);
+}
+
+template <class Fn>
+void for_each_face(const BlockSurface& surface, const Fn& fn) {
+  for (int face = 0; face < 6; ++face)
+    for (std::uint64_t left = surface.faces[face]; left != 0; left &= left - 1)
+      fn(face_corners(morton_decode(static_cast<std::uint64_t>(std::countr_zero(left))), face / 2,
+                      face % 2));
+}
+
+BlockSurface block_surface(const SvdagView& view, const Box3i& window, Vec3i origin,
+                           std::uint64_t block) {
+  const auto neighbour = [&](int axis, int step) {
+    Vec3i at = origin;
+    at[axis] += step;
+    return leaf_block_at(view, at) & leaf_window_mask(at, window);
+  };
+  BlockSurface surface;
+  for (int axis = 0; axis < 3; ++axis) {
+    surface.faces[2 * axis] = block & ~shift_up(block, neighbour(axis, -4), axis);
+    surface.faces[2 * axis + 1] = block & ~shift_down(block, neighbour(axis, 4), axis);
+  }
+  for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
+    for (const Vec3i corner : corners) surface.corners.set(corner_index(corner));
+  });
+  return surface;
+}
+
+}  // namespace
+
+void export_ply_points(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+                       const ExportOptions& options) {
+  const Box3i window = export_window(path, view, options);
+  PlyFile file(path, grid, false);
+  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t mask) {
+    for (; mask != 0; mask &= mask - 1) {
+      const Vec3i voxel =
+          origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
+      file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
+    }
+  });
+  file.commit();
+}
+
+void export_ply_faces(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+                      const ExportOptions& options) {
+  const Box3i window = export_window(path, view, options);
+  PlyFile file(path, grid, true);
+  // PLY has all vertices before all faces: two walks that make the same surfaces.
+  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t block) {
+    const BlockSurface surface = block_surface(view, window, origin, block);
+    for (int i = 0; i < kCorners; ++i)
+      if (surface.corners[i]) file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}));
+    if (file.vertices() > std::numeric_limits<std::int32_t>::max())
+      throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
+  });
+  std::uint32_t first_vertex = 0;
+  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t block) {
+    const BlockSurface surface = block_surface(view, window, origin, block);
+    std::array<std::uint32_t, kCorners> vertex_of_corner;
+    std::uint32_t next = first_vertex;
+    for (int i = 0; i < kCorners; ++i) {
+      vertex_of_corner[i] = next;
+      next += surface.corners[i] ? 1 : 0;
+    }
+    for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
+      std::array<std::uint32_t, 4> vertices;
+      for (int i = 0; i < 4; ++i) vertices[i] = vertex_of_corner[corner_index(corners[i])];
+      file.write_quad(vertices);
+    });
+    first_vertex = next;
+  });
+  file.commit();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,335 @@
+#include "voxdag/file/export.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+#include "support/brute_svdag.hpp"
+#include "support/temp_dir.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/npy.hpp"
+
+namespace voxdag {
+namespace {
+
+using Key = std::tuple<int, int, int>;
+
+struct Scene {
+  explicit Scene(int levels, int count = 300)
+      : voxels(random_voxels(levels, count, 5)), dag(brute_svdag(levels, voxels)) {
+    grid.levels = levels;
+    grid.origin = {10, -20, 0.5};
+    grid.voxel_size = 0.25;
+    for (const Vec3i v : voxels) set.insert({v.x, v.y, v.z});
+  }
+  SvdagView view() const { return dag.view(); }
+  bool has(int x, int y, int z) const { return set.contains({x, y, z}); }
+
+  std::vector<Vec3i> voxels;
+  Svdag dag;
+  Grid grid;
+  std::set<Key> set;
+};
+
+ExportOptions windowed(Vec3i lo, Vec3i hi) {
+  ExportOptions options;
+  options.window = Box3i{lo, hi};
+  return options;
+}
+
+std::string error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+nlohmann::json placement_of(const std::filesystem::path& path) {
+  return nlohmann::json::parse(read_text(path.string() + ".json"));
+}
+
+TEST(ExportNpy, CoordinatesAreTheVoxelsInMortonOrder) {
+  const TempDir dir;
+  const Scene scene(7, 30000);
+  export_npy_coordinates(dir / "v.npy", scene.view(), scene.grid);
+  NpyReader reader(dir / "v.npy", "<i4", {3}, 4);
+  ASSERT_EQ(reader.rows(), scene.set.size());
+  std::vector<Vec3i> rows(reader.rows());
+  reader.read_rows(rows.data(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_TRUE(scene.has(rows[i].x, rows[i].y, rows[i].z));
+    if (i == 0) continue;
+    EXPECT_LT(morton_encode(rows[i - 1]), morton_encode(rows[i]));
+  }
+}
+
+TEST(ExportNpy, CoordinatesKeepToTheWindow) {
+  const TempDir dir;
+  const Scene scene(5, 2000);
+  export_npy_coordinates(dir / "v.npy", scene.view(), scene.grid, windowed({1, 2, 3}, {9, 21, 30}));
+  NpyReader reader(dir / "v.npy", "<i4", {3}, 4);
+  std::size_t expected = 0;
+  for (const auto& [x, y, z] : scene.set)
+    expected += x >= 1 && y >= 2 && z >= 3 && x < 9 && y < 21 && z < 30;
+  EXPECT_EQ(reader.rows(), expected);
+}
+
+TEST(ExportNpy, ThePlacementStandsBesideIt) {
+  const TempDir dir;
+  const Scene scene(5);
+  export_npy_dense(dir / "v.npy", scene.view(), scene.grid, windowed({1, 2, 3}, {9, 21, 30}));
+  const nlohmann::json json = placement_of(dir / "v.npy");
+  EXPECT_EQ(json["grid"]["origin"], nlohmann::json({10.0, -20.0, 0.5}));
+  EXPECT_EQ(json["grid"]["voxel_size"], 0.25);
+  EXPECT_EQ(json["grid"]["resolution"], 32);
+  EXPECT_EQ(json["window"]["lo"], nlohmann::json({1, 2, 3}));
+  EXPECT_EQ(json["window"]["hi"], nlohmann::json({9, 21, 30}));
+  EXPECT_EQ(json["array"]["axes_slowest_to_fastest"], "xyz");
+  EXPECT_EQ(json["array"]["shape"], nlohmann::json({8, 19, 27}));
+  EXPECT_EQ(dir.count(), 2);
+}
+
+TEST(ExportNpy, ADenseWindowHasZFastest) {
+  const TempDir dir;
+  const Scene scene(5, 2000);
+  const Vec3i lo{1, 2, 3}, hi{9, 21, 30};
+  export_npy_dense(dir / "v.npy", scene.view(), scene.grid, windowed(lo, hi));
+  NpyReader reader(dir / "v.npy", "|u1", {19, 27}, 1);
+  ASSERT_EQ(reader.rows(), 8u);
+  std::vector<unsigned char> bytes(8 * 19 * 27);
+  reader.read_rows(bytes.data(), 8);
+  std::size_t at = 0;
+  for (int x = lo.x; x < hi.x; ++x)
+    for (int y = lo.y; y < hi.y; ++y)
+      for (int z = lo.z; z < hi.z; ++z) ASSERT_EQ(bytes[at++] != 0, scene.has(x, y, z));
+}
+
+TEST(ExportRaw, TheWholeGridHasXFastest) {
+  const TempDir dir;
+  const Scene scene(5, 2000);
+  export_raw(dir / "v.raw", scene.view(), scene.grid);
+  const std::string bytes = read_text(dir / "v.raw");
+  ASSERT_EQ(bytes.size(), 32u * 32 * 32);
+  std::size_t at = 0;
+  for (int z = 0; z < 32; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) ASSERT_EQ(bytes[at++] != 0, scene.has(x, y, z));
+  EXPECT_EQ(placement_of(dir / "v.raw")["array"]["axes_slowest_to_fastest"], "zyx");
+}
+
+/// Arrays of more than one strip, cut between layers and within one.
+TEST(ExportRaw, LargeArraysAreWrittenInStrips) {
+  const TempDir dir;
+  for (const auto& [levels, size] : {std::pair{11, Vec3i{2048, 2048, 11}}, {13, {8192, 6000, 1}}}) {
+    std::vector<Vec3i> voxels;
+    std::mt19937 rng(1);
+    for (int i = 0; i < 2000; ++i)
+      voxels.push_back({static_cast<int>(rng() % size.x), static_cast<int>(rng() % size.y),
+                        static_cast<int>(rng() % size.z)});
+    const Svdag dag = brute_svdag(levels, voxels);
+    Grid grid;
+    grid.levels = levels;
+    export_raw(dir / "v.raw", dag.view(), grid, windowed({0, 0, 0}, size));
+    std::string bytes = read_text(dir / "v.raw");
+    ASSERT_EQ(bytes.size(), std::size_t(size.x) * size.y * size.z);
+    for (const Vec3i v : voxels) {
+      char& byte = bytes[v.x + std::size_t(size.x) * (v.y + std::size_t(size.y) * v.z)];
+      byte = byte == 0 ? 2 : 3;  // 2: should have been set and was not
+      ASSERT_EQ(byte, 3);
+    }
+    EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 1), 0);
+  }
+}
+
+TEST(ExportRaw, TooLargeAnArrayIsRefusedWithItsSize) {
+  const TempDir dir;
+  const Scene scene(15, 10);
+  EXPECT_EQ(error_of([&] { export_raw(dir / "v.raw", scene.view(), scene.grid); }),
+            (dir / "v.raw").string() +
+                ": a dense array of 32768 x 32768 x 32768 voxels has 35184372088832 bytes, more "
+                "than the limit of 17179869184: choose a smaller window");
+  EXPECT_EQ(dir.count(), 0);
+}
+
+TEST(Export, AWindowMustLieInTheGrid) {
+  const TempDir dir;
+  const Scene scene(4);
+  const auto with = [&](Vec3i lo, Vec3i hi) {
+    return error_of([&] { export_npy_dense("v.npy", scene.view(), scene.grid, windowed(lo, hi)); });
+  };
+  EXPECT_EQ(with({0, 0, 0}, {17, 1, 1}),
+            "v.npy: window: reaches out of the grid of 16 voxels a side");
+  EXPECT_EQ(with({-1, 0, 0}, {1, 1, 1}),
+            "v.npy: window: reaches out of the grid of 16 voxels a side");
+  EXPECT_EQ(with({0, 5, 0}, {1, 5, 1}),
+            "v.npy: window: has no voxels: each end must lie behind its start");
+}
+
+/// A binary PLY as the exporters make it.
+struct Ply {
+  explicit Ply(const std::string& bytes) {
+    const std::size_t end = bytes.find("end_header\n") + 11;
+    std::istringstream header(bytes.substr(0, end));
+    std::size_t vertex_count = 0, face_count = 0;
+    bool is_double = false;
+    for (std::string line; std::getline(header, line);) {
+      if (line.starts_with("element vertex ")) vertex_count = std::stoull(line.substr(15));
+      if (line.starts_with("element face ")) face_count = std::stoull(line.substr(13));
+      if (line == "property double x") is_double = true;
+    }
+    std::size_t at = end;
+    const auto take = [&]<class T>(T& value) {
+      std::memcpy(&value, bytes.data() + at, sizeof value);
+      at += sizeof value;
+    };
+    for (std::size_t i = 0; i < vertex_count; ++i) {
+      Vec3f small;
+      Vec3d large;
+      if (is_double)
+        take(large);
+      else
+        take(small), large = Vec3d(small);
+      vertices.push_back(large);
+    }
+    for (std::size_t i = 0; i < face_count; ++i) {
+      unsigned char corners;
+      take(corners);
+      EXPECT_EQ(corners, 4);
+      take(faces.emplace_back());
+    }
+    EXPECT_EQ(at, bytes.size());
+    has_doubles = is_double;
+  }
+  std::vector<Vec3d> vertices;
+  std::vector<std::array<std::uint32_t, 4>> faces;
+  bool has_doubles = false;
+};
+
+TEST(ExportPly, PointsAreVoxelCentresInTheWorld) {
+  const TempDir dir;
+  const Scene scene(6, 500);
+  export_ply_points(dir / "v.ply", scene.view(), scene.grid);
+  const Ply ply(read_text(dir / "v.ply"));
+  EXPECT_FALSE(ply.has_doubles);
+  std::set<Key> found;
+  for (const Vec3d p : ply.vertices) {
+    const Vec3d voxel = (p - scene.grid.origin) * 4.0 - Vec3d{0.5, 0.5, 0.5};
+    EXPECT_EQ(Vec3d(Vec3i(voxel)), voxel);
+    found.insert({int(voxel.x), int(voxel.y), int(voxel.z)});
+  }
+  EXPECT_EQ(found, scene.set);
+  EXPECT_EQ(ply.vertices.size(), scene.set.size());
+  EXPECT_EQ(dir.count(), 1);
+}
+
+TEST(ExportPly, FarFromTheOriginCoordinatesAreDoubles) {
+  const TempDir dir;
+  Scene scene(6, 100);
+  scene.grid.origin.x = 4e6;
+  export_ply_points(dir / "v.ply", scene.view(), scene.grid);
+  const Ply ply(read_text(dir / "v.ply"));
+  EXPECT_TRUE(ply.has_doubles);
+  EXPECT_EQ(ply.vertices.size(), scene.set.size());
+  EXPECT_EQ(std::fmod(ply.vertices[0].x, 0.25), 0.125);
+}
+
+/// Faces by voxel and outward direction, from the PLY: centre and normal of each quad.
+std::map<std::pair<Key, Key>, int> faces_of(const Ply& ply, const Grid& grid) {
+  std::map<std::pair<Key, Key>, int> faces;
+  for (const auto& face : ply.faces) {
+    std::array<Vec3d, 4> p;
+    for (int i = 0; i < 4; ++i)
+      p[i] = (ply.vertices.at(face[i]) - grid.origin) * (1 / grid.voxel_size);
+    const Vec3d normal = cross(p[1] - p[0], p[2] - p[1]);
+    EXPECT_EQ(p[0] + p[2], p[1] + p[3]);
+    EXPECT_EQ(dot(normal, normal), 1);
+    const Vec3d inside = (p[0] + p[2]) * 0.5 - normal * 0.5 - Vec3d{0.5, 0.5, 0.5};
+    ++faces[{{int(inside.x), int(inside.y), int(inside.z)},
+             {int(normal.x), int(normal.y), int(normal.z)}}];
+  }
+  return faces;
+}
+
+TEST(ExportPly, FacesAreThoseWithoutANeighbourAndLookOutwards) {
+  const TempDir dir;
+  for (const bool cropped : {false, true}) {
+    const Scene scene(4, 1500);
+    const Vec3i lo = cropped ? Vec3i{1, 2, 3} : Vec3i{0, 0, 0};
+    const Vec3i hi = cropped ? Vec3i{15, 10, 11} : Vec3i{16, 16, 16};
+    export_ply_faces(dir / "v.ply", scene.view(), scene.grid, windowed(lo, hi));
+    const Ply ply(read_text(dir / "v.ply"));
+    const auto has = [&](Vec3i v) {
+      return max(v, lo) == v && max(v + Vec3i{1, 1, 1}, hi) == hi && scene.has(v.x, v.y, v.z);
+    };
+    std::map<std::pair<Key, Key>, int> expected;
+    for (const auto& [x, y, z] : scene.set)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {-1, 1}) {
+          Vec3i step{};
+          step[axis] = side;
+          if (has({x, y, z}) && !has(Vec3i{x, y, z} + step))
+            expected[{{x, y, z}, {step.x, step.y, step.z}}] = 1;
+        }
+    EXPECT_EQ(faces_of(ply, scene.grid), expected);
+  }
+}
+
+TEST(ExportPly, ALoneVoxelHasEightSharedCorners) {
+  const TempDir dir;
+  const Svdag dag = brute_svdag(3, {{3, 4, 7}});
+  Grid grid;
+  grid.levels = 3;
+  export_ply_faces(dir / "v.ply", dag.view(), grid);
+  const Ply ply(read_text(dir / "v.ply"));
+  EXPECT_EQ(ply.vertices.size(), 8u);
+  EXPECT_EQ(ply.faces.size(), 6u);
+}
+
+TEST(Export, TheExtensionChooses) {
+  const TempDir dir;
+  const Scene scene(3, 20);
+  const auto run = [&](const std::string& name, PlyContent content) {
+    export_voxels(dir / name, scene.view(), scene.grid, content);
+    return read_text(dir / name);
+  };
+  EXPECT_EQ(run("a.npy", PlyContent::kPoints).substr(1, 5), "NUMPY");
+  EXPECT_EQ(run("a.raw", PlyContent::kPoints).size(), 512u);
+  EXPECT_TRUE(Ply(run("a.ply", PlyContent::kPoints)).faces.empty());
+  EXPECT_FALSE(Ply(run("b.ply", PlyContent::kFaces)).faces.empty());
+  EXPECT_EQ(error_of([&] { run("a.xyz", PlyContent::kPoints); }),
+            (dir / "a.xyz").string() + ": cannot export to '.xyz': known are .npy, .ply and .raw");
+}
+
+TEST(Export, AnEmptyDagMakesEmptyFiles) {
+  const TempDir dir;
+  const Scene scene(4, 0);
+  export_npy_coordinates(dir / "v.npy", scene.view(), scene.grid);
+  EXPECT_EQ(NpyReader(dir / "v.npy", "<i4", {3}, 4).rows(), 0u);
+  export_ply_faces(dir / "v.ply", scene.view(), scene.grid);
+  EXPECT_TRUE(Ply(read_text(dir / "v.ply")).vertices.empty());
+}
+
+TEST(Export, CancellingLeavesNothing) {
+  const TempDir dir;
+  const Scene scene(5, 100);
+  ExportOptions options;
+  options.progress = [](std::uint64_t) { throw Cancelled(); };
+  EXPECT_THROW(export_raw(dir / "v.raw", scene.view(), scene.grid, options), Cancelled);
+  EXPECT_EQ(dir.count(), 0);
+}
+
+TEST(Export, AFullDiskIsAnError) {
+  const Scene scene(5, 100);
+  EXPECT_EQ(error_of([&] { export_raw("/dev/full", scene.view(), scene.grid); }),
+            "/dev/full: byte 0: cannot write: No space left on device");
+}
+
+}  // namespace
+}  // namespace voxdag
