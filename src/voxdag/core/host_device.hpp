@@ -5,3 +5,10 @@
 #else
 #define VOXDAG_HD
 #endif
+
+/// Inlined even across target attributes, so that the code is compiled for its caller's instruction set.
+#if defined(__CUDACC__)
+#define VOXDAG_FORCE_INLINE __forceinline__
+#else
+#define VOXDAG_FORCE_INLINE inline __attribute__((always_inline))
+#endif

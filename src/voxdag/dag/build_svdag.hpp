@@ -28,10 +28,13 @@ struct BuildOptions {
 /// What a build took. Seconds are wall-clock.
 struct BuildReport {
   double quantize_seconds = 0;   ///< Vertices to integers, triangles into sub-volumes.
-  double voxelize_seconds = 0;   ///< Cells to nodes; with kHashConsed the reduction as well.
-  double reduce_seconds = 0;     ///< kSort: all of the reduction but the voxelization.
-  double sort_seconds = 0;       ///< kSort: the part of reduce_seconds spent in sorting.
+  double voxelize_seconds = 0;   ///< Sub-volumes to nodes; both methods reduce them as they go.
+  double merge_seconds = 0;      ///< kSort: the final reduction of all sub-volumes together.
   double canonical_seconds = 0;  ///< Numbering in canonical order.
+  /// kSort, in seconds summed over threads (the paper's Table 1): the reductions of the sub-volumes
+  /// and the final one, and the part of them spent in sorting.
+  double reduce_seconds = 0;
+  double sort_seconds = 0;
   std::uint64_t subvolumes = 0;
   std::uint64_t peak_bytes = 0;  ///< Most bytes held by the build at once, without the mesh.
 };

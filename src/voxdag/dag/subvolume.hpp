@@ -1,5 +1,6 @@
 #pragma once
 /// Builds one cell of the octree, depth first, from the triangles that meet it.
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "voxdag/dag/node_store.hpp"
 #include "voxdag/dag/plane_memo.hpp"
+#include "voxdag/dag/sort_reduce.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
@@ -61,9 +63,6 @@ class DagSink {
 class TreeSink {
  public:
   static constexpr bool kMemo = false;
-  struct Node {
-    std::uint32_t words[9];
-  };
 
   explicit TreeSink(int levels) : nodes(levels - 2) {}
 
@@ -71,15 +70,17 @@ class TreeSink {
     leaves.push_back(mask);
     return static_cast<NodeId>(leaves.size() - 1);
   }
-  NodeId node(int level, const std::uint32_t* words, int count) {
-    Node& node = nodes[level].emplace_back();
-    for (int i = 0; i < count; ++i) node.words[i] = words[i];
-    for (int i = count; i < 9; ++i) node.words[i] = kNoNode;
+  NodeId node(int level, const std::uint32_t* words, int) {
+    SortNode& node = nodes[level].emplace_back();
+    node.fill(kNoNode);
+    const std::uint32_t* child = words + 1;
+    for (std::uint32_t left = words[0]; left != 0; left &= left - 1)
+      node[std::countr_zero(left)] = *child++;
     return static_cast<NodeId>(nodes[level].size() - 1);
   }
 
-  std::vector<std::uint64_t> leaves;     ///< Leaf blocks, in Morton order of the cells.
-  std::vector<std::vector<Node>> nodes;  ///< By level.
+  std::vector<std::uint64_t> leaves;         ///< Leaf blocks, in Morton order of the cells.
+  std::vector<std::vector<SortNode>> nodes;  ///< By level.
 };
 
 /// What one thread needs to build cells; reused from job to job.

@@ -9,7 +9,7 @@
 namespace voxdag {
 
 /// Sixteen bits u + 4v over the projection's square to all voxels above and below them.
-VOXDAG_HD constexpr std::uint64_t expand_square(int projection, std::uint64_t m) {
+VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t expand_square(int projection, std::uint64_t m) {
   if (projection == 2) return m * 0x0001000100010001ull;
   m = (m | m << 24) & 0x000000FF000000FFull;
   m = (m | m << 12) & 0x000F000F000F000Full;
@@ -20,7 +20,7 @@ VOXDAG_HD constexpr std::uint64_t expand_square(int projection, std::uint64_t m)
 }
 
 /// The voxels of the block at `block` that lie in the box lo..hi (both inclusive), linear order.
-VOXDAG_HD constexpr std::uint64_t box_mask(Vec3i block, Vec3i lo, Vec3i hi) {
+VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t box_mask(Vec3i block, Vec3i lo, Vec3i hi) {
   std::uint64_t bits[3] = {};
   for (int axis = 0; axis < 3; ++axis) {
     const int first = lo[axis] > block[axis] ? lo[axis] - block[axis] : 0;
@@ -53,7 +53,7 @@ VOXDAG_HD constexpr std::uint64_t swap_index_bits(std::uint64_t m) {
 }  // namespace detail
 
 /// Linear to Morton order: index bits z1 z0 y1 y0 x1 x0 to z1 y1 x1 z0 y0 x0.
-VOXDAG_HD constexpr std::uint64_t linear_to_morton(std::uint64_t m) {
+VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t linear_to_morton(std::uint64_t m) {
   m = detail::swap_index_bits<4, 3>(m);
   m = detail::swap_index_bits<3, 1>(m);
   return detail::swap_index_bits<2, 1>(m);

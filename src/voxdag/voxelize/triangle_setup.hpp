@@ -161,7 +161,7 @@ VOXDAG_HD inline TriangleSetup make_triangle_setup(const QuantizedTriangle& tria
 
 /// dot(n, v) of the slab's least value, seen from the cell at v; meaningful where the plane is
 /// near.
-VOXDAG_HD inline std::int64_t slab_lo_at(const TriangleSetup& s, Vec3i v) {
+VOXDAG_HD VOXDAG_FORCE_INLINE std::int64_t slab_lo_at(const TriangleSetup& s, Vec3i v) {
   const Vec3l& n = s.plane.normal;
   return static_cast<std::int64_t>(
       s.lo - static_cast<std::uint64_t>(n.x) * static_cast<std::uint64_t>(std::int64_t{v.x}) -
@@ -171,7 +171,7 @@ VOXDAG_HD inline std::int64_t slab_lo_at(const TriangleSetup& s, Vec3i v) {
 
 /// Whether 64-bit arithmetic holds in the cell of `size` voxels at v: 0 the plane is far from it,
 /// 1 slab_lo_at is exact and sums over the cell do not overflow, 2 the cell is too large to tell.
-VOXDAG_HD inline int slab_range(const TriangleSetup& s, Vec3i v, std::int32_t size) {
+VOXDAG_HD VOXDAG_FORCE_INLINE int slab_range(const TriangleSetup& s, Vec3i v, std::int32_t size) {
   const double reach = s.normal_length1 * size;
   if (reach > 0x1p60) return 2;
   const Vec3l& n = s.plane.normal;
