@@ -27,8 +27,17 @@ struct Chunk {
   std::string last_material;
 };
 
-bool is_keyword(std::string_view line, std::string_view word) {
-  return line.starts_with(word) && (line.size() == word.size() || is_blank(line[word.size()]));
+enum class Statement { kVertex, kFace, kMaterial, kOther };
+
+/// What a line, which is not empty and starts with no blank, states; leaves its arguments in
+/// `line`.
+Statement take_keyword(std::string_view& line) {
+  const std::size_t size = line.starts_with("usemtl") ? 6 : 1;
+  if (line.size() > size && !is_blank(line[size])) return Statement::kOther;
+  const char first = line.front();
+  line.remove_prefix(size);
+  if (size == 6) return Statement::kMaterial;
+  return first == 'v' ? Statement::kVertex : first == 'f' ? Statement::kFace : Statement::kOther;
 }
 
 /// The next corner of a face line; empty at its end or at a comment.
@@ -116,13 +125,14 @@ class ObjReader {
   void count(std::size_t i) {
     Chunk& chunk = chunks_[i];
     for_each_line(texts_[i], line_end_, [&](std::string_view line, const char*) {
-      if (is_keyword(line, "v")) {
+      const Statement statement = take_keyword(line);
+      if (statement == Statement::kVertex) {
         ++chunk.vertices;
-      } else if (is_keyword(line, "f")) {
-        chunk.triangles += count_fan_triangles(line.substr(1));
+      } else if (statement == Statement::kFace) {
+        chunk.triangles += count_fan_triangles(line);
         chunk.faces_before_material |= chunk.materials.empty();
-      } else if (is_keyword(line, "usemtl")) {
-        const std::string_view name = trim(line.substr(6));
+      } else if (statement == Statement::kMaterial) {
+        const std::string_view name = trim(line);
         if (chunk.known_materials.contains(name)) {
           chunk.last_material = name;
         } else {
@@ -172,18 +182,19 @@ class ObjReader {
     std::size_t vertex = chunk.first_vertex, triangle = chunk.first_triangle;
     std::uint32_t material = chunk.material;
     for_each_line(texts_[i], line_end_, [&](std::string_view line, const char* position) {
-      if (is_keyword(line, "v")) {
-        const Vec3f p = parse_vertex(line.substr(1), position);
+      const Statement statement = take_keyword(line);
+      if (statement == Statement::kVertex) {
+        const Vec3f p = parse_vertex(line, position);
         chunk.not_finite |= !is_finite(p);
         mesh_.vertices[vertex++] = p;
-      } else if (is_keyword(line, "f")) {
-        const std::size_t end = parse_face(line.substr(1), position, vertex, triangle);
+      } else if (statement == Statement::kFace) {
+        const std::size_t end = parse_face(line, position, vertex, triangle);
         if (!mesh_.triangle_materials.empty())
           std::fill(mesh_.triangle_materials.begin() + static_cast<std::ptrdiff_t>(triangle),
                     mesh_.triangle_materials.begin() + static_cast<std::ptrdiff_t>(end), material);
         triangle = end;
-      } else if (is_keyword(line, "usemtl")) {
-        material = material_ids_.find(trim(line.substr(6)))->second;
+      } else if (statement == Statement::kMaterial) {
+        material = material_ids_.find(trim(line))->second;
       }
     });
   }
@@ -221,7 +232,7 @@ class ObjReader {
     const char* found = nullptr;
     std::size_t vertex = chunks_[i].first_vertex;
     for_each_line(texts_[i], line_end_, [&](std::string_view line, const char* position) {
-      if (is_keyword(line, "v") && vertex++ == index) found = position;
+      if (take_keyword(line) == Statement::kVertex && vertex++ == index) found = position;
     });
     return found;
   }

@@ -46,7 +46,8 @@ class HeaderParser {
         parse_element(text);
       else if (keyword == "property")
         parse_property(text);
-      else if (keyword != "obj_info" && !keyword.empty())
+      else if (keyword != "obj_info" && !keyword.empty() && !header_.elements.empty())
+        // Before the first element such a line is harmless: old Blender writes "Created by ...".
         fail("unknown PLY header keyword " + in_quotes(keyword));
     }
     if (!has_format) fail("PLY header without a 'format' line");

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <new>
 
+#include "voxdag/mesh/assimp_reader.hpp"
+#include "voxdag/mesh/gltf_reader.hpp"
 #include "voxdag/mesh/obj_reader.hpp"
+#include "voxdag/mesh/off_reader.hpp"
 #include "voxdag/mesh/ply_reader.hpp"
 #include "voxdag/mesh/stl_reader.hpp"
+#include "voxdag/mesh/text_scan.hpp"
 
 namespace voxdag {
 
@@ -15,10 +19,15 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::kPly;
   if (bytes.starts_with("glTF")) return MeshFormat::kGltf;
+  const std::string_view head = without_byte_order_mark(bytes).substr(0, 65536);
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  if (first != head.npos && head[first] == '{' && head.find("\"asset\"") != head.npos)
+    return MeshFormat::kGltf;
   if (ext == ".obj") return MeshFormat::kObj;
   if (ext == ".ply") return MeshFormat::kPly;
   if (ext == ".gltf" || ext == ".glb") return MeshFormat::kGltf;
   if (ext == ".stl" || is_exact_binary_stl(bytes) || is_ascii_stl(bytes)) return MeshFormat::kStl;
+  if (ext == ".off" || is_off(bytes)) return MeshFormat::kOff;
   return MeshFormat::kOther;
 }
 
@@ -34,9 +43,14 @@ Mesh read_mesh(const std::filesystem::path& path, Progress* progress) {
         return read_ply(source);
       case MeshFormat::kStl:
         return read_stl(source);
-      default:
-        throw source.error("unknown mesh format");
+      case MeshFormat::kGltf:
+        return read_gltf(source);
+      case MeshFormat::kOff:
+        return read_off(source);
+      case MeshFormat::kOther:
+        break;
     }
+    return read_with_assimp(source, path.extension().string());
   } catch (const std::bad_alloc&) {
     throw source.error("not enough memory for this mesh");
   }
