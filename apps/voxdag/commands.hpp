@@ -4,6 +4,10 @@
 
 namespace voxdag {
 
+void add_build_command(CLI::App& app, Session& session);
+void add_info_command(CLI::App& app, Session& session);
+void add_verify_command(CLI::App& app, Session& session);
+void add_trace_command(CLI::App& app, Session& session);
 void add_completion_command(CLI::App& app, Session& session);
 
 }  // namespace voxdag

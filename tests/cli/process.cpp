@@ -6,9 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <stdexcept>
+#include <thread>
 #include <utility>
+
+#include "support/temp_dir.hpp"
 
 namespace voxdag {
 namespace {
@@ -55,6 +59,18 @@ Process::~Process() {
 }
 
 void Process::send_signal(int number) const { kill(pid_, number); }
+
+void Process::wait_until_it_catches(int number) const {
+  const std::string status = "/proc/" + std::to_string(pid_) + "/status";
+  const std::string key = "SigCgt:\t";
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    const std::string text = read_text(status);
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos || text.find("(zombie)") != std::string::npos) return;
+    const unsigned long long mask = std::stoull(text.substr(at + key.size(), 16), nullptr, 16);
+    if ((mask >> (number - 1) & 1) != 0) return;
+  }
+}
 
 ProcessResult Process::wait() {
   int status = 0;

@@ -23,6 +23,8 @@ class Process {
   ~Process();
 
   void send_signal(int number) const;
+  /// Waits until the program has a handler for the signal, or has ended.
+  void wait_until_it_catches(int number) const;
   ProcessResult wait();
 
  private:

@@ -5,7 +5,7 @@
 namespace voxdag {
 namespace {
 
-const std::vector<std::string> kCommands = {"completion"};
+const std::vector<std::string> kCommands = {"build", "info", "verify", "trace", "completion"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});

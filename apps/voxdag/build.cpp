@@ -1,0 +1,180 @@
+/// `voxdag build`: from a mesh file to a .vdag file.
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "dag_report.hpp"
+#include "human.hpp"
+#include "parse.hpp"
+#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/mesh/read_mesh.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+namespace {
+
+struct BuildArguments {
+  std::string output;
+  std::optional<int> levels;
+  std::optional<double> voxel_size;
+  std::optional<Box3d> bounds;
+  BuildOptions options;
+  bool stats = false;
+};
+
+/// Wall-clock seconds of what a build does, one after the other.
+struct StageSeconds {
+  double read = 0, build = 0, write = 0;
+  double total() const { return read + build + write; }
+};
+
+class Stopwatch {
+ public:
+  /// Seconds since the last lap, or since the beginning.
+  double lap() {
+    const Clock::time_point before = std::exchange(start_, Clock::now());
+    return std::chrono::duration<double>(start_ - before).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+std::uint64_t peak_memory_bytes() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Grid choose_grid(const Mesh& mesh, const BuildArguments& arguments) {
+  if (arguments.bounds)
+    return arguments.levels ? grid_from_bounds(*arguments.bounds, *arguments.levels)
+                            : grid_from_bounds(*arguments.bounds, *arguments.voxel_size);
+  return arguments.levels ? fit_grid(mesh, *arguments.levels)
+                          : grid_from_voxel_size(mesh, *arguments.voxel_size);
+}
+
+/// The settings that shape the voxels; the grid itself stands beside them.
+std::map<std::string, std::string> settings_of(const BuildArguments& arguments) {
+  return {{"cover", "exact"},
+          {"grid_from", arguments.bounds ? "bounds" : "mesh"},
+          {"scale_from", arguments.levels ? "resolution" : "voxel_size"}};
+}
+
+nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
+                               const StageSeconds& seconds) {
+  nlohmann::ordered_json json = dag_json(dag);
+  json["seconds"] = {{"read", seconds.read},
+                     {"quantize", build.quantize_seconds},
+                     {"voxelize", build.voxelize_seconds},
+                     {"reduce", build.reduce_seconds},
+                     {"sort", build.sort_seconds},
+                     {"canonical", build.canonical_seconds},
+                     {"build", seconds.build},
+                     {"write", seconds.write},
+                     {"total", seconds.total()}};
+  json["voxels_per_second"] = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  return json;
+}
+
+std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
+  const double rate = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
+  return fmt::format(
+      "{}\n"
+      "  time          {}: read {}, build {}, write {}\n"
+      "  rate          {} voxels/s\n"
+      "  peak memory   {}\n",
+      dag_table(dag), human_seconds(seconds.total()), human_seconds(seconds.read),
+      human_seconds(seconds.build), human_seconds(seconds.write), human_count(rate),
+      human_bytes(peak_memory_bytes()));
+}
+
+void build(const BuildArguments& arguments, Session& session) {
+  check_writable(arguments.output);
+  Progress& progress = session.progress;
+  Stopwatch watch;
+  StageSeconds seconds;
+
+  Mesh mesh = read_mesh(session.subject, &progress);
+  seconds.read = watch.lap();
+
+  DagReport report;
+  report.metadata.grid = choose_grid(mesh, arguments);
+  report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
+                            mesh.vertices.size(), mesh.triangles.size()};
+  report.metadata.program = "voxdag " VOXDAG_VERSION;
+  report.metadata.build = settings_of(arguments);
+  const BuildResult result = build_svdag(mesh, report.metadata.grid, arguments.options, &progress);
+  mesh = {};
+  seconds.build = watch.lap();
+
+  progress.throw_if_cancelled();
+  const SvdagView view = result.dag.view();
+  report.metadata.counts = count_svdag(view);
+  report.svdag_bytes = view.bytes();
+  progress.throw_if_cancelled();
+  write_vdag(arguments.output, view, report.metadata);
+  seconds.write = watch.lap();
+  std::error_code unknown;
+  report.file_bytes = std::filesystem::file_size(arguments.output, unknown);
+  if (unknown) report.file_bytes = 0;  // written to a pipe or a device
+
+  session.bar.clear();
+  if (session.json) {
+    fmt::print("{}\n", json_of(report, result.report, seconds).dump(2));
+  } else if (!session.quiet) {
+    fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
+               table_of(report, seconds));
+    if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
+  }
+}
+
+}  // namespace
+
+void add_build_command(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<BuildArguments>();
+  CLI::App& command = add_command(app, "build", "Make the sparse voxel DAG of a triangle mesh",
+                                  "voxdag build sponza.obj -r 8192 -o sponza.vdag");
+  command
+      .add_option("mesh", session.subject,
+                  "The mesh: OBJ, PLY, STL, glTF/GLB, or what assimp reads where it is there")
+      ->type_name("MESH")
+      ->required();
+  command.add_option("-o,--output", arguments->output, "The file to write")
+      ->type_name("FILE.vdag")
+      ->required();
+  add_parsed_option(command, "-r,--resolution", arguments->levels, parse_levels, "N",
+                    "Voxels a side: a power of two from 4 to 1048576; 8K is 8192");
+  add_parsed_option(command, "--voxel-size", arguments->voxel_size, parse_positive, "SIZE",
+                    "Instead of -r: the side of a voxel in the mesh's units");
+  add_parsed_option(command, "--bounds", arguments->bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+                    "The part of the world to voxelize (default: the mesh's bounds)");
+  command
+      .add_option("--method", arguments->options.method,
+                  "hash: depth-first with a hash of nodes; sort: the paper's. Same result")
+      ->transform(CLI::Transformer(std::map<std::string, BuildMethod>{
+          {"hash", BuildMethod::kHashConsed}, {"sort", BuildMethod::kSort}}))
+      ->type_name("hash|sort");
+  add_parsed_option(command, "--memory", arguments->options.memory_limit, parse_memory, "LIMIT",
+                    "Stop instead of using more memory: 512M, 16GiB");
+  command.add_flag("--stats", arguments->stats, "Show the nodes of each level too");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.callback([arguments, &session] {
+    if (arguments->levels.has_value() == arguments->voxel_size.has_value())
+      throw CLI::ValidationError("exactly one of -r/--resolution and --voxel-size is needed");
+    session.work = [arguments, &session] { build(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,35 @@
+/// `voxdag info`: what a .vdag file holds.
+#include <fmt/core.h>
+
+#include "commands.hpp"
+#include "dag_report.hpp"
+#include "human.hpp"
+#include "voxdag/file/vdag_file.hpp"
+
+namespace voxdag {
+namespace {
+
+void info(const std::string& path, bool json) {
+  const VdagFile file(path);
+  const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes()};
+  if (json) {
+    fmt::print("{}\n", dag_json(report).dump(2));
+    return;
+  }
+  fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
+             report.metadata.program, dag_table(report), level_table(report.metadata.counts));
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Session& session) {
+  CLI::App& command =
+      add_command(app, "info", "Show what a .vdag file holds: counts, sizes, placement, source",
+                  "voxdag info scene.vdag --json");
+  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  add_json_option(command, session);
+  command.callback(
+      [&session] { session.work = [&session] { info(session.subject, session.json); }; });
+}
+
+}  // namespace voxdag

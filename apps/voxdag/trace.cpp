@@ -1,0 +1,97 @@
+/// `voxdag trace`: batch visibility queries, rays in and hits out as NumPy arrays.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "commands.hpp"
+#include "human.hpp"
+#include "voxdag/cpu/trace_batch.hpp"
+#include "voxdag/file/npy.hpp"
+#include "voxdag/file/vdag_file.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Rays in memory at once: enough for every thread, little to hold.
+constexpr std::size_t kBatch = std::size_t{1} << 18;
+
+/// A row of hits.npy, 18 bytes without padding.
+constexpr const char* kHitType =
+    "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')]";
+constexpr std::size_t kHitBytes = 18;
+
+struct TraceArguments {
+  std::string rays, output;
+};
+
+void pack_hit(const Hit& hit, std::byte* row) {
+  const float t = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
+  const Vec3i voxel = hit.hit ? hit.voxel : Vec3i{-1, -1, -1};
+  std::memcpy(row, &t, sizeof t);
+  std::memcpy(row + 4, &voxel, sizeof voxel);
+  row[16] = static_cast<std::byte>(hit.hit ? hit.face : Face::kNone);
+  row[17] = static_cast<std::byte>(hit.hit);
+}
+
+void trace(const TraceArguments& arguments, Session& session) {
+  const VdagFile file(session.subject);
+  NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
+  NpyWriter writer(arguments.output, kHitType, {}, kHitBytes, reader.rows());
+
+  const std::size_t batch =
+      static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
+  std::vector<Ray> rays(batch);
+  std::vector<Hit> hits(batch);
+  std::vector<std::byte> rows(batch * kHitBytes);
+  std::uint64_t hit_count = 0;
+  while (const std::size_t count = reader.read_rows(rays.data(), batch)) {
+    session.progress.throw_if_cancelled();
+    trace_batch(file.view(), file.grid(), std::span(rays).first(count),
+                std::span(hits).first(count));
+    for (std::size_t i = 0; i < count; ++i) pack_hit(hits[i], &rows[i * kHitBytes]);
+    hit_count += static_cast<std::uint64_t>(
+        std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),
+                      [](const Hit& hit) { return hit.hit; }));
+    writer.write_rows(rows.data(), count);
+    session.progress.report(
+        "trace", static_cast<double>(writer.rows_written()) / static_cast<double>(reader.rows()),
+        writer.rows_written());
+  }
+  writer.commit();
+  session.bar.clear();
+  if (!session.quiet)
+    fmt::print("{}: {} rays, {} hits\n", arguments.output, with_commas(reader.rows()),
+               with_commas(hit_count));
+}
+
+}  // namespace
+
+void add_trace_command(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<TraceArguments>();
+  CLI::App& command =
+      add_command(app, "trace", "Cast rays from a NumPy file and write what they hit",
+                  "voxdag trace scene.vdag --rays rays.npy -o hits.npy");
+  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  command
+      .add_option("--rays", arguments->rays,
+                  "float32 array N x 8: origin, t_min, direction, t_max, in world units")
+      ->type_name("RAYS.npy")
+      ->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "Structured array of N: t, voxel, face (0..5 = -x,+x,-y,+y,-z,+z; -1 where the "
+                  "ray starts inside), hit")
+      ->type_name("HITS.npy")
+      ->required();
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.callback([arguments, &session] {
+    session.work = [arguments, &session] { trace(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

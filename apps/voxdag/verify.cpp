@@ -1,0 +1,108 @@
+/// `voxdag verify`: every check of a .vdag file, and of its voxels against the mesh.
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "human.hpp"
+#include "voxdag/dag/check_cover.hpp"
+#include "voxdag/file/vdag_file.hpp"
+#include "voxdag/file/verify_vdag.hpp"
+#include "voxdag/mesh/read_mesh.hpp"
+
+namespace voxdag {
+namespace {
+
+using Result = VerifyCheck::Result;
+
+struct VerifyArguments {
+  std::string mesh;
+  std::uint64_t samples = 20'000;
+  std::uint64_t seed = 1;
+};
+
+const char* result_name(Result result) {
+  return result == Result::kPassed ? "passed" : result == Result::kFailed ? "FAILED" : "skipped";
+}
+
+VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
+  const VdagFile file(session.subject);
+  const Mesh mesh = read_mesh(arguments.mesh, &session.progress);
+  const CoverCheck cover = check_cover(file.view(), file.grid(), mesh, arguments.samples,
+                                       arguments.seed, &session.progress);
+  VerifyCheck check{"cover", Result::kPassed, {}};
+  if (cover.mismatches > 0) {
+    check.result = Result::kFailed;
+    check.detail =
+        fmt::format("{} of {} cells differ from {}, the first is cell ({}, {}, {}) of level {}",
+                    with_commas(cover.mismatches), with_commas(cover.samples), arguments.mesh,
+                    cover.first_mismatch.x, cover.first_mismatch.y, cover.first_mismatch.z,
+                    cover.first_mismatch_level);
+  } else {
+    check.detail = fmt::format("{} cells, {} of them on the surface", with_commas(cover.samples),
+                               with_commas(cover.covered));
+  }
+  return check;
+}
+
+void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
+  if (!json) {
+    for (const VerifyCheck& check : checks)
+      fmt::print("  {:<16}{}{}{}\n", check.name, result_name(check.result),
+                 check.detail.empty() ? "" : "   ", check.detail);
+    return;
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  bool passed = true;
+  for (const VerifyCheck& check : checks) {
+    passed = passed && check.result != Result::kFailed;
+    list.push_back(
+        {{"name", check.name},
+         {"result", check.result == Result::kFailed ? "failed" : result_name(check.result)},
+         {"detail", check.detail}});
+  }
+  fmt::print("{}\n", nlohmann::ordered_json{{"passed", passed}, {"checks", list}}.dump(2));
+}
+
+void verify(const VerifyArguments& arguments, Session& session) {
+  VerifyReport report = verify_vdag(session.subject);
+  session.progress.throw_if_cancelled();
+  if (!arguments.mesh.empty()) {
+    if (report.passed())
+      report.checks.push_back(cover_check(arguments, session));
+    else
+      report.checks.push_back({"cover", Result::kSkipped, "the file itself is damaged"});
+  }
+  session.bar.clear();
+  if (session.json || !session.quiet) print_checks(report.checks, session.json);
+  for (const VerifyCheck& check : report.checks)
+    if (check.result == Result::kFailed) throw Error(session.subject, check.name, check.detail);
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App& command = add_command(
+      app, "verify",
+      "Check a .vdag file: checksums, structure, minimality; with --mesh its voxels too",
+      "voxdag verify sponza.vdag --mesh sponza.obj");
+  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  command.add_option("--mesh", arguments->mesh, "Compare with this mesh, in a sample of cells")
+      ->type_name("MESH");
+  command.add_option("--samples", arguments->samples, "Cells of the sample")
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--seed", arguments->seed, "Another seed takes another sample")
+      ->type_name("N")
+      ->capture_default_str();
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.callback([arguments, &session] {
+    session.work = [arguments, &session] { verify(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "json.hpp"
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A tetrahedron whose longest side is 4 units along x.
+constexpr const char* kMesh =
+    "v 1 2 3\nv 5 2 3\nv 1 4 3\nv 1 2 5\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+class Build : public testing::Test {
+ protected:
+  Build() { write_text(mesh_, kMesh); }
+
+  ProcessResult build(std::vector<std::string> options, const std::string& output) const {
+    options.insert(options.begin(), {"build", mesh_, "-o", output});
+    return run_voxdag(options);
+  }
+  ProcessResult build(std::vector<std::string> options) const { return build(options, output_); }
+
+  /// The only file is the mesh: no output, no half of one.
+  void expect_nothing_left() const { EXPECT_EQ(dir_.count(), 1); }
+
+  TempDir dir_;
+  std::string mesh_ = dir_ / "mesh.obj", output_ = dir_ / "out.vdag";
+};
+
+TEST_F(Build, SummaryIsATableOnStandardOutput) {
+  const ProcessResult result = build({"-r", "64"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "");
+  for (const char* text : {"64³ voxels", "4 triangles", "SVO", "DAG", "voxels/s", "peak memory"})
+    EXPECT_NE(result.out.find(text), std::string::npos) << text;
+  EXPECT_EQ(dir_.count(), 2);
+}
+
+TEST_F(Build, QuietPrintsNothing) {
+  const ProcessResult result = build({"-r", "64", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(Build, InfoAndBuildTellTheSame) {
+  const ProcessResult built = build({"-r", "32", "--json"});
+  ASSERT_EQ(built.status, 0) << built.err;
+  const Json summary = Json::parse(built.out);
+  const Json info = Json::parse(run_voxdag({"info", output_, "--json"}).out);
+  for (const auto& [key, value] : info.items()) EXPECT_EQ(summary.at(key), value) << key;
+  EXPECT_GT(summary.at("seconds").at("total"), 0);
+  EXPECT_GT(summary.at("peak_memory_bytes"), 0);
+}
+
+TEST_F(Build, InfoCountsAgreeWithEachOther) {
+  ASSERT_EQ(build({"-r", "32"}).status, 0);
+  const Json info = Json::parse(run_voxdag({"info", output_, "--json"}).out);
+  EXPECT_EQ(info.at("resolution"), 32);
+  EXPECT_EQ(info.at("levels"), 5);
+  ASSERT_EQ(info.at("svo_nodes_per_level").size(), 5u);
+  ASSERT_EQ(info.at("dag_nodes_per_level").size(), 5u);
+  std::uint64_t svo = 0, dag = 0;
+  for (const std::uint64_t count : info.at("svo_nodes_per_level")) svo += count;
+  for (const std::uint64_t count : info.at("dag_nodes_per_level")) dag += count;
+  EXPECT_EQ(info.at("svo_nodes"), svo);
+  EXPECT_EQ(info.at("dag_nodes"), dag);
+  EXPECT_EQ(info.at("bytes").at("svo_pointerless"), svo);
+  EXPECT_EQ(info.at("bytes").at("file"), std::filesystem::file_size(output_));
+  EXPECT_DOUBLE_EQ(info.at("bits_per_voxel").at("svo_pointerless"),
+                   8.0 * static_cast<double>(svo) / info.at("voxels").get<double>());
+  EXPECT_EQ(info.at("source").at("name"), "mesh.obj");
+  EXPECT_EQ(info.at("transform").at("origin"), Json::array({1, 2, 3}));
+}
+
+TEST_F(Build, InfoTableHasEveryLevel) {
+  ASSERT_EQ(build({"-r", "32"}).status, 0);
+  const ProcessResult info = run_voxdag({"info", output_});
+  EXPECT_EQ(info.status, 0);
+  for (const char* level : {"\n  0 ", "\n  4 "})
+    EXPECT_NE(info.out.find(level), std::string::npos) << info.out;
+}
+
+TEST_F(Build, VoxelSizeTakesTheSmallestGridThatHoldsTheMesh) {
+  ASSERT_EQ(build({"--voxel-size", "0.1"}).status, 0);
+  const Json info = Json::parse(run_voxdag({"info", output_, "--json"}).out);
+  EXPECT_EQ(info.at("resolution"), 64);
+  EXPECT_EQ(info.at("transform").at("voxel_size"), 0.1);
+}
+
+TEST_F(Build, BoundsPlaceTheGrid) {
+  ASSERT_EQ(build({"-r", "16", "--bounds", "-1,-2,-3,7,6,5"}).status, 0);
+  const Json info = Json::parse(run_voxdag({"info", output_, "--json"}).out);
+  EXPECT_EQ(info.at("transform").at("origin"), Json::array({-1, -2, -3}));
+  EXPECT_GT(info.at("voxels"), 0);
+}
+
+TEST_F(Build, BothMethodsWriteTheSameBytes) {
+  const std::string other = dir_ / "sorted.vdag";
+  ASSERT_EQ(build({"-r", "128"}).status, 0);
+  ASSERT_EQ(build({"-r", "128", "--method", "sort", "--threads", "1"}, other).status, 0);
+  EXPECT_EQ(read_text(output_), read_text(other));
+}
+
+TEST_F(Build, AnOutputOfAnEarlierBuildIsReplaced) {
+  write_text(output_, "old");
+  ASSERT_EQ(build({"-r", "16"}).status, 0);
+  EXPECT_EQ(run_voxdag({"verify", output_}).status, 0);
+}
+
+TEST_F(Build, BadUsageIsRefusedBeforeAnyWork) {
+  expect_failure(build({}), 2, "exactly one of");
+  expect_failure(build({"-r", "64", "--voxel-size", "1"}), 2, "exactly one of");
+  expect_failure(build({"-r", "1000"}), 2, "nearest are 512 and 1024");
+  expect_failure(build({"-r", "64", "--bounds", "0,0,0,1,1"}), 2, "6 numbers");
+  expect_failure(build({"--voxel-size", "-1"}), 2, "above zero");
+  expect_failure(build({"-r", "64", "--method", "magic"}), 2, "--method");
+  expect_failure(build({"-r", "64", "--memory", "much"}), 2, "--memory");
+  expect_failure(build({"-r", "64", "--threads", "0"}), 2, "--threads");
+  expect_failure(run_voxdag({"build", mesh_, "-r", "64"}), 2, "--output");
+  expect_nothing_left();
+}
+
+TEST_F(Build, AMeshThatIsNotThereIsNamed) {
+  const std::string absent = dir_ / "absent.obj";
+  expect_failure(run_voxdag({"build", absent, "-r", "64", "-o", output_}), 1, absent);
+  expect_nothing_left();
+}
+
+TEST_F(Build, ADamagedMeshIsNamedWithTheLine) {
+  write_text(mesh_, "v 1 2 3\nv 4 5 6\nf 1 2 3\n");
+  expect_failure(build({"-r", "64"}), 1, mesh_ + ": line 3");
+  expect_nothing_left();
+}
+
+TEST_F(Build, AnUnwritableOutputIsFoundBeforeTheMeshIsRead) {
+  const std::string nowhere = dir_ / "no/such/folder/out.vdag";
+  write_text(mesh_, "this is not a mesh");
+  expect_failure(build({"-r", "64"}, nowhere), 1, nowhere);
+  expect_nothing_left();
+}
+
+TEST_F(Build, AFullDiskIsAClearError) {
+  expect_failure(build({"-r", "64"}, "/dev/full"), 1, "/dev/full");
+  expect_nothing_left();
+}
+
+TEST_F(Build, AFileNameWithALineBreakStillMakesOneLine) {
+  expect_failure(run_voxdag({"build", dir_ / "a\nb.obj", "-r", "64", "-o", output_}), 1, "a b.obj");
+}
+
+/// Starts a build that takes long, waits until it listens to signals, and sends it one.
+ProcessResult interrupted_build(const std::string& mesh, const std::string& output, int number) {
+  Process build(voxdag_command({"build", mesh, "-r", "1048576", "-o", output, "--threads", "1"}));
+  build.wait_until_it_catches(SIGINT);
+  build.send_signal(number);
+  return build.wait();
+}
+
+/// Triangles in all directions, which take long at a high resolution.
+std::string long_work() {
+  constexpr unsigned kTriangles = 3000;
+  std::string text;
+  for (unsigned i = 0; i < 3 * kTriangles; ++i)
+    text += "v " + std::to_string(i * 7919 % 997) + " " + std::to_string(i * 104729 % 991) + " " +
+            std::to_string(i * 15485863 % 983) + "\n";
+  for (unsigned i = 1; i <= 3 * kTriangles; i += 3)
+    text +=
+        "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
+  return text;
+}
+
+TEST_F(Build, InterruptsStopItAndLeaveNothing) {
+  write_text(mesh_, long_work());
+  expect_failure(interrupted_build(mesh_, output_, SIGINT), 128 + SIGINT, "cancelled");
+  expect_nothing_left();
+  expect_failure(interrupted_build(mesh_, output_, SIGTERM), 128 + SIGTERM, "cancelled");
+  expect_nothing_left();
+}
+
+TEST_F(Build, AKilledBuildLeavesNothing) {
+  write_text(mesh_, long_work());
+  EXPECT_EQ(interrupted_build(mesh_, output_, SIGKILL).status, 128 + SIGKILL);
+  expect_nothing_left();
+}
+
+TEST_F(Build, TooLittleMemoryIsRefused) {
+  write_text(mesh_, long_work());
+  expect_failure(run_voxdag({"build", mesh_, "-r", "65536", "-o", output_, "--memory", "20M"}), 1,
+                 "memory");
+  expect_nothing_left();
+}
+
+TEST_F(Build, VerifyPassesWithTheMesh) {
+  ASSERT_EQ(build({"-r", "64"}).status, 0);
+  const ProcessResult result = run_voxdag({"verify", output_, "--mesh", mesh_});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("cover"), std::string::npos);
+}
+
+TEST_F(Build, VerifyNamesTheCheckThatFails) {
+  ASSERT_EQ(build({"-r", "64"}).status, 0);
+  std::string bytes = read_text(output_);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_text(output_, bytes);
+  ProcessResult result = run_voxdag({"verify", output_, "--json"});
+  EXPECT_FALSE(Json::parse(result.out).at("passed"));
+  result.out.clear();
+  expect_failure(result, 1, output_ + ": checksums");
+}
+
+TEST_F(Build, VerifyFindsTheWrongMesh) {
+  ASSERT_EQ(build({"-r", "64"}).status, 0);
+  write_text(mesh_, "v 1 2 3\nv 5 2 3\nv 1 4 3.5\nf 1 2 3\n");
+  EXPECT_EQ(run_voxdag({"verify", output_, "--mesh", mesh_}).status, 1);
+}
+
+}  // namespace
+}  // namespace voxdag
