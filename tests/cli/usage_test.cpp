@@ -5,7 +5,8 @@
 namespace voxdag {
 namespace {
 
-const std::vector<std::string> kCommands = {"build", "info", "verify", "trace", "completion"};
+const std::vector<std::string> kCommands = {"build",  "info",  "verify",    "trace",
+                                            "export", "scene", "completion"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});

@@ -1,0 +1,81 @@
+/// `voxdag scene`: procedural scenes as mesh files.
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "human.hpp"
+#include "parse.hpp"
+#include "voxdag/mesh/ply_writer.hpp"
+#include "voxdag/mesh/scenes.hpp"
+
+namespace voxdag {
+namespace {
+
+struct SceneArguments {
+  std::string name, output;
+  SceneOptions options;
+  bool list = false;
+};
+
+void print_list(bool json) {
+  if (json) {
+    auto scenes = nlohmann::ordered_json::array();
+    for (const SceneInfo& scene : scene_list())
+      scenes.push_back({{"name", scene.name},
+                        {"description", scene.description},
+                        {"size", scene.size_meaning},
+                        {"default_size", scene.default_size},
+                        {"min_size", scene.min_size},
+                        {"max_size", scene.max_size}});
+    fmt::print("{}\n", scenes.dump(2));
+    return;
+  }
+  for (const SceneInfo& scene : scene_list())
+    fmt::print("{:<11}{}\n{:<11}--size: {}, {} to {} (default {})\n", scene.name, scene.description,
+               "", scene.size_meaning, scene.min_size, scene.max_size, scene.default_size);
+}
+
+void make(const SceneArguments& arguments, bool json) {
+  check_writable(arguments.output);
+  const Mesh mesh = make_scene(arguments.name, arguments.options);
+  write_ply(arguments.output, mesh);
+  if (json) {
+    const nlohmann::ordered_json summary = {{"file", arguments.output},
+                                            {"vertices", mesh.vertices.size()},
+                                            {"triangles", mesh.triangles.size()}};
+    fmt::print("{}\n", summary.dump(2));
+  } else {
+    fmt::print("{}: {} triangles, {} vertices\n", arguments.output,
+               with_commas(mesh.triangles.size()), with_commas(mesh.vertices.size()));
+  }
+}
+
+}  // namespace
+
+void add_scene_command(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<SceneArguments>();
+  CLI::App& command = add_command(app, "scene", "Make a procedural scene as a PLY mesh",
+                                  "voxdag scene courtyard -o courtyard.ply");
+  command.add_option("name", arguments->name, "The scene; --list shows them")->type_name("NAME");
+  command.add_option("-o,--output", arguments->output, "The mesh to write")->type_name("FILE.ply");
+  command.add_flag("--list", arguments->list, "List the scenes and what their size counts");
+  add_parsed_option(command, "--size", arguments->options.size, parse_positive, "SIZE",
+                    "How large or fine the scene is; see --list");
+  command.add_option("--seed", arguments->options.seed, "Another seed gives another scene")
+      ->type_name("N")
+      ->capture_default_str();
+  add_json_option(command, session);
+  command.callback([arguments, &session] {
+    if (arguments->list) {
+      session.work = [&session] { print_list(session.json); };
+      return;
+    }
+    if (arguments->name.empty()) throw CLI::RequiredError("a scene's name (or --list)");
+    if (arguments->output.empty()) throw CLI::RequiredError("--output");
+    session.work = [arguments, &session] { make(*arguments, session.json); };
+  });
+}
+
+}  // namespace voxdag

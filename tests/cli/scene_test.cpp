@@ -1,0 +1,153 @@
+/// Procedural scenes through every command that follows.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+
+namespace voxdag {
+namespace {
+
+/// The smallest scene there is, as a mesh and as a DAG, made once for all tests.
+class Sponge : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TempDir;
+    ASSERT_EQ(run_voxdag({"scene", "sponge", "--size", "2", "-o", path("sponge.ply")}).status, 0);
+    ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "-o", path("in.vdag")}).status,
+              0);
+  }
+  static void TearDownTestSuite() { delete dir_; }
+
+  static std::string path(const std::string& name) { return *dir_ / name; }
+  static bool exists(const std::string& name) { return std::filesystem::exists(path(name)); }
+
+  static inline TempDir* dir_ = nullptr;
+};
+
+/// Rays as the file that NumPy writes for a float32 array of shape (N, 8).
+std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+                       std::to_string(rays.size()) + ", 8), }";
+  header.resize(117, ' ');
+  header += '\n';
+  std::string text("\x93NUMPY\x01\x00", 8);
+  text += static_cast<char>(header.size());
+  text += '\0';
+  text += header;
+  text.append(reinterpret_cast<const char*>(rays.data()), rays.size() * sizeof rays[0]);
+  return text;
+}
+
+TEST_F(Sponge, ListNamesTheScenesWithTheirSizes) {
+  const ProcessResult list = run_voxdag({"scene", "--list"});
+  EXPECT_EQ(list.status, 0);
+  for (const char* name : {"courtyard", "hairball", "sponge"})
+    EXPECT_NE(list.out.find(name), std::string::npos) << name;
+  EXPECT_GE(nlohmann::json::parse(run_voxdag({"scene", "--list", "--json"}).out).size(), 3u);
+}
+
+TEST_F(Sponge, UnknownScenesAndSizesAreRefused) {
+  expect_failure(run_voxdag({"scene", "nowhere", "-o", path("x.ply")}), 1, "nowhere");
+  expect_failure(run_voxdag({"scene", "sponge", "--size", "99", "-o", path("x.ply")}), 1, "99");
+  expect_failure(run_voxdag({"scene", "sponge"}), 2, "--output");
+  expect_failure(run_voxdag({"scene", "-o", path("x.ply")}), 2, "name");
+  EXPECT_FALSE(exists("x.ply"));
+}
+
+TEST_F(Sponge, RenderWritesPngAndExr) {
+  const ProcessResult result =
+      run_voxdag({"render", path("in.vdag"), "-o", path("a.png"), "--size", "64x36", "--depth",
+                  path("z.exr"), "--normal", path("n.exr")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("--eye"), std::string::npos);
+  EXPECT_EQ(read_text(path("a.png")).substr(1, 3), "PNG");
+  for (const char* name : {"z.exr", "n.exr"})
+    EXPECT_EQ(read_text(path(name)).substr(0, 4), "\x76\x2f\x31\x01") << name;
+}
+
+TEST_F(Sponge, RenderTakesTheViewThatItPrints) {
+  const auto render = [](std::vector<std::string> options, const std::string& name) {
+    options.insert(options.begin(),
+                   {"render", path("in.vdag"), "-o", path(name), "--size", "64x36"});
+    return run_voxdag(options);
+  };
+  const std::vector<std::string> view = {"--eye", "3,2.5,-4", "--target", "0.5,0.5,0.5",
+                                         "--up",  "0,1,0",    "--fov",    "40"};
+  const ProcessResult first = render(view, "first.png");
+  ASSERT_EQ(first.status, 0) << first.err;
+  for (const std::string& word : view) EXPECT_NE(first.out.find(word), std::string::npos) << word;
+  ASSERT_EQ(render(view, "second.png").status, 0);
+  EXPECT_EQ(read_text(path("first.png")), read_text(path("second.png")));
+}
+
+TEST_F(Sponge, RenderRefusesWhatMakesNoPicture) {
+  const std::string in = path("in.vdag"), out = path("bad.png");
+  expect_failure(run_voxdag({"render", in, "-o", path("bad.jpg")}), 2, ".png or .exr");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--size", "0x10"}), 2, "--size");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--eye", "1,2"}), 2, "--eye");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--eye", "1,1,1", "--target", "1,1,1"}), 1,
+                 "in.vdag");
+  expect_failure(run_voxdag({"render", path("sponge.ply"), "-o", out}), 1, "sponge.ply");
+  EXPECT_FALSE(exists("bad.png"));
+}
+
+TEST_F(Sponge, TraceWritesOneHitForEachRay) {
+  // Down the middle of the sponge there is a hole; beside it there is a wall.
+  const float up = std::numeric_limits<float>::infinity();
+  const std::vector<std::array<float, 8>> rays = {{0.01F, 9, 0.01F, 0, 0, -1, 0, up},
+                                                  {0.01F, 9, 0.01F, 0, 0, 1, 0, up},
+                                                  {0.01F, 9, 0.01F, 0, 0, -1, 0, 1}};
+  write_text(path("rays.npy"), rays_npy(rays));
+  const ProcessResult result =
+      run_voxdag({"trace", path("in.vdag"), "--rays", path("rays.npy"), "-o", path("hits.npy")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("3 rays, 1 hits"), std::string::npos) << result.out;
+  const std::string hits = read_text(path("hits.npy"));
+  const std::size_t data = hits.size() - 3 * 18;
+  EXPECT_EQ(data % 64, 0u);
+  EXPECT_NE(hits.find("('voxel', '<i4', (3,))"), std::string::npos);
+  EXPECT_EQ(hits[data + 16], 3);  // entered through +y
+  EXPECT_EQ(hits[data + 17], 1);
+  EXPECT_EQ(hits[data + 18 + 17], 0);
+  EXPECT_EQ(hits[data + 36 + 17], 0);
+}
+
+TEST_F(Sponge, TraceTakesNoRaysAtAll) {
+  write_text(path("none.npy"), rays_npy({}));
+  EXPECT_EQ(run_voxdag({"trace", path("in.vdag"), "--rays", path("none.npy"), "-o", path("n.npy")})
+                .status,
+            0);
+}
+
+TEST_F(Sponge, TraceRefusesOtherArrays) {
+  write_text(path("short.npy"), rays_npy({{}}).substr(0, 140));
+  expect_failure(
+      run_voxdag({"trace", path("in.vdag"), "--rays", path("short.npy"), "-o", path("h.npy")}), 1,
+      "short.npy");
+  EXPECT_FALSE(exists("h.npy"));
+}
+
+TEST_F(Sponge, ExportByExtension) {
+  const auto run = [](std::vector<std::string> options) {
+    options.insert(options.begin(), {"export", path("in.vdag"), "-o"});
+    return run_voxdag(options);
+  };
+  EXPECT_EQ(run({path("all.npy")}).status, 0);
+  EXPECT_EQ(run({path("points.ply")}).status, 0);
+  EXPECT_EQ(run({path("faces.ply"), "--faces"}).status, 0);
+  EXPECT_EQ(run({path("window.raw"), "--window", "0,0,0,8,4,2"}).status, 0);
+  EXPECT_EQ(std::filesystem::file_size(path("window.raw")), 64u);
+  expect_failure(run({path("voxels.xyz")}), 1, "voxels.xyz");
+  expect_failure(run({path("w.npy"), "--window", "0,0,0,99,1,1"}), 1, "window");
+  expect_failure(run({"/dev/full"}), 1, "/dev/full");
+}
+
+TEST_F(Sponge, InfoRefusesAFileThatIsNoDag) {
+  expect_failure(run_voxdag({"info", path("sponge.ply")}), 1, "sponge.ply");
+  expect_failure(run_voxdag({"info", path("absent.vdag")}), 1, "absent.vdag");
+}
+
+}  // namespace
+}  // namespace voxdag
