@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "mesh_text.hpp"
+#include "mesh/mesh_text.hpp"
 
 namespace voxdag {
 namespace {

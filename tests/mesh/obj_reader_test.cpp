@@ -1,6 +1,6 @@
 #include "voxdag/mesh/obj_reader.hpp"
 
-#include "mesh_text.hpp"
+#include "mesh/mesh_text.hpp"
 
 namespace voxdag {
 namespace {

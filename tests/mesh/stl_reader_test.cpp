@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "mesh_text.hpp"
+#include "mesh/mesh_text.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,0 +1,31 @@
+/// Feeds bytes to each of the library's own mesh readers. The first byte chooses the reader; the
+/// result must be a sound mesh or an Error.
+#include <cmath>
+#include <cstdlib>
+
+#include "voxdag/mesh/gltf_reader.hpp"
+#include "voxdag/mesh/obj_reader.hpp"
+#include "voxdag/mesh/off_reader.hpp"
+#include "voxdag/mesh/ply_reader.hpp"
+#include "voxdag/mesh/stl_reader.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace voxdag;
+  if (size == 0) return 0;
+  using Reader = Mesh (*)(const MeshBytes&);
+  constexpr Reader readers[] = {read_obj, read_ply, read_stl, read_gltf, read_off};
+  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  try {
+    const Mesh mesh = readers[data[0] % 5]({bytes, "fuzz", {}, nullptr, nullptr});
+    if (mesh.triangles.empty()) std::abort();
+    for (const Triangle& triangle : mesh.triangles)
+      for (const std::uint32_t index : triangle) {
+        const Vec3f p = mesh.vertices.at(index);
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) std::abort();
+      }
+    for (const std::uint32_t material : mesh.triangle_materials)
+      if (material >= mesh.materials.size()) std::abort();
+  } catch (const Error&) {
+  }
+  return 0;
+}
