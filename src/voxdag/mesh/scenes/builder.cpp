@@ -82,14 +82,19 @@ void Builder::square(const Profile& profile) {
       profile, 4, [&](double, int) { return diagonal; }, 0.125);
 }
 
-void Builder::inner_moulding(const Profile& moulding, double half_x, double half_z) {
+void Builder::moulding(const Profile& profile, double half_x, double half_z, bool outside) {
+  // The way round that keeps the rectangle's chosen side on the moulding's right.
+  static constexpr int kSigns[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
+  const double out = outside ? 1 : -1;
   std::vector<Frame> corners;
-  for (const auto& [sx, sz] : {std::pair{-1, -1}, {-1, 1}, {1, 1}, {1, -1}})
-    corners.push_back({{sx * half_x, 0, sz * half_z},
-                       {static_cast<double>(-sx), 0, static_cast<double>(-sz)},
+  for (int i = 0; i < 4; ++i) {
+    const int* sign = kSigns[outside ? 3 - i : i];
+    corners.push_back({{sign[0] * half_x, 0, sign[1] * half_z},
+                       {out * sign[0], 0, out * sign[1]},
                        {0, 1, 0},
                        {}});
-  sweep(moulding, corners, true, false);
+  }
+  sweep(profile, corners, true, false);
 }
 
 void Builder::tube(const std::vector<Vec3d>& path, const std::vector<double>& radii, int sides) {

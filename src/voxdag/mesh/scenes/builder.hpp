@@ -82,8 +82,8 @@ class Builder {
   void sweep(const Profile& outline, const std::vector<Frame>& path, bool closed_path,
              bool closed_outline);
   /// Sweeps a moulding (x: how far it stands out, y: height), listed from bottom to top, along the
-  /// inside of the rectangle |x| = half_x, |z| = half_z with mitred corners.
-  void inner_moulding(const Profile& moulding, double half_x, double half_z);
+  /// rectangle |x| = half_x, |z| = half_z with mitred corners, on its inner or outer side.
+  void moulding(const Profile& profile, double half_x, double half_z, bool outside = false);
   /// Fills a planar convex or star-shaped polygon from its first corner.
   void fan(const std::vector<Vec3d>& corners);
   void torus(double radius, double thickness, int sides, int ring_sides);

@@ -1,4 +1,4 @@
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "voxdag/mesh/scenes/courtyard_parts.hpp"
@@ -22,6 +22,7 @@ constexpr double kThickness = 0.6;  // of the arcade walls
 constexpr double kSpring = 3.1, kGroundTop = 5.0, kUpperFloor = 5.45;
 constexpr double kPedestal = 0.95, kUpperSpring = 8.05, kUpperTop = 9.1, kRoofFoot = 9.62;
 constexpr double kRoofRun = 4.3, kRoofRise = 1.9;
+constexpr double kWallTop = 11.4;
 constexpr double kCourtFloor = -0.36;
 
 class Courtyard {
@@ -39,7 +40,9 @@ class Courtyard {
         b_.at({{-half_width, 0, -half_depth}}, [&] { range(side, bays); });
       });
     }
+    outside();
     furniture();
+    b_.at({{0, kWallTop - 0.4, -kHalfZ - kGallery - 0.1}}, [&] { bell_gable(b_, detail_); });
     return b_.take();
   }
 
@@ -51,6 +54,7 @@ class Courtyard {
   void upper_bay();
   void outer_wall(int bay);
   void corner();
+  void outside();
   void furniture();
 
   Builder b_;
@@ -66,18 +70,18 @@ void Courtyard::ground() {
   // Two steps lead up to the galleries on all four sides.
   const double edge_x = kHalfX - 0.45, edge_z = kHalfZ - 0.45;
   b_.material("marble");
-  b_.inner_moulding({{0.36, kCourtFloor - 0.1},
-                     {0.36, kCourtFloor + 0.15},
-                     {0.39, kCourtFloor + 0.155},
-                     {0.39, kCourtFloor + 0.175},
-                     {0.375, kCourtFloor + 0.18},
-                     {0, kCourtFloor + 0.18},
-                     {0, -0.03},
-                     {0.03, -0.025},
-                     {0.03, -0.005},
-                     {0.015, 0},
-                     {-0.9, 0}},
-                    edge_x, edge_z);
+  b_.moulding({{0.36, kCourtFloor - 0.1},
+               {0.36, kCourtFloor + 0.15},
+               {0.39, kCourtFloor + 0.155},
+               {0.39, kCourtFloor + 0.175},
+               {0.375, kCourtFloor + 0.18},
+               {0, kCourtFloor + 0.18},
+               {0, -0.03},
+               {0.03, -0.025},
+               {0.03, -0.005},
+               {0.015, 0},
+               {-0.9, 0}},
+              edge_x, edge_z);
 
   // The court is paved at 45 degrees; the steps hide the ends of the slabs.
   b_.material("paving");
@@ -98,61 +102,68 @@ void Courtyard::ground() {
   paving(b_, random_, inner, gx, -gz, gz, 0.6);
   paving(b_, random_, -inner, inner, -gz, -kHalfZ, 0.6);
   paving(b_, random_, -inner, inner, kHalfZ, gz, 0.6);
+  b_.at({{0, kUpperFloor + 0.015, 0}}, [&] {
+    const double edge = inner + 0.1;
+    paving(b_, random_, -gx, -edge, -gz, gz, 0.45);
+    paving(b_, random_, edge, gx, -gz, gz, 0.45);
+    paving(b_, random_, -edge, edge, -gz, -kHalfZ - 0.1, 0.45);
+    paving(b_, random_, -edge, edge, kHalfZ + 0.1, gz, 0.45);
+  });
 }
 
 void Courtyard::mouldings() {
   b_.material("marble");
   const double x = kHalfX - kThickness / 2, z = kHalfZ - kThickness / 2;
   const double y = kGroundTop;
-  b_.inner_moulding({{-0.02, y - 0.12},
-                     {0.03, y - 0.12},
-                     {0.04, y - 0.08},
-                     {0.04, y - 0.02},
-                     {0.03, y},
-                     {0.03, y + 0.1},
-                     {0.12, y + 0.16},
-                     {0.15, y + 0.22},
-                     {0.24, y + 0.24},
-                     {0.25, y + 0.3},
-                     {0.29, y + 0.36},
-                     {0.3, y + 0.4},
-                     {0.3, y + 0.45},
-                     {-0.6, y + 0.45}},
-                    x, z);
+  b_.moulding({{-0.02, y - 0.12},
+               {0.03, y - 0.12},
+               {0.04, y - 0.08},
+               {0.04, y - 0.02},
+               {0.03, y},
+               {0.03, y + 0.1},
+               {0.12, y + 0.16},
+               {0.15, y + 0.22},
+               {0.24, y + 0.24},
+               {0.25, y + 0.3},
+               {0.29, y + 0.36},
+               {0.3, y + 0.4},
+               {0.3, y + 0.45},
+               {-0.6, y + 0.45}},
+              x, z);
   const double t = kUpperTop;
-  b_.inner_moulding({{-0.02, t - 0.2},
-                     {0.03, t - 0.2},
-                     {0.05, t - 0.15},
-                     {0.03, t - 0.1},
-                     {0.03, t + 0.1},
-                     {0.09, t + 0.14},
-                     {0.1, t + 0.28},
-                     {0.36, t + 0.3},
-                     {0.37, t + 0.36},
-                     {0.43, t + 0.44},
-                     {0.44, t + 0.5},
-                     {-0.6, t + 0.52}},
-                    x, z);
+  b_.moulding({{-0.02, t - 0.2},
+               {0.03, t - 0.2},
+               {0.05, t - 0.15},
+               {0.03, t - 0.1},
+               {0.03, t + 0.1},
+               {0.09, t + 0.14},
+               {0.1, t + 0.28},
+               {0.36, t + 0.3},
+               {0.37, t + 0.36},
+               {0.43, t + 0.44},
+               {0.44, t + 0.5},
+               {-0.6, t + 0.52}},
+              x, z);
   // The handrail of the gallery and the plinth below it.
   const double rail = kUpperFloor + kPedestal;
   const double rx = kHalfX - 0.1, rz = kHalfZ - 0.1;
-  b_.inner_moulding({{-0.3, rail - 0.14},
-                     {0.05, rail - 0.14},
-                     {0.06, rail - 0.1},
-                     {0.1, rail - 0.08},
-                     {0.11, rail - 0.02},
-                     {0.09, rail},
-                     {-0.3, rail},
-                     {-0.31, rail - 0.02},
-                     {-0.3, rail - 0.08},
-                     {-0.3, rail - 0.14}},
-                    rx, rz);
-  b_.inner_moulding({{0.08, kUpperFloor},
-                     {0.08, kUpperFloor + 0.1},
-                     {0.05, kUpperFloor + 0.13},
-                     {-0.28, kUpperFloor + 0.13},
-                     {-0.28, kUpperFloor}},
-                    rx, rz);
+  b_.moulding({{-0.3, rail - 0.14},
+               {0.05, rail - 0.14},
+               {0.06, rail - 0.1},
+               {0.1, rail - 0.08},
+               {0.11, rail - 0.02},
+               {0.09, rail},
+               {-0.3, rail},
+               {-0.31, rail - 0.02},
+               {-0.3, rail - 0.08},
+               {-0.3, rail - 0.14}},
+              rx, rz);
+  b_.moulding({{0.08, kUpperFloor},
+               {0.08, kUpperFloor + 0.1},
+               {0.05, kUpperFloor + 0.13},
+               {-0.28, kUpperFloor + 0.13},
+               {-0.28, kUpperFloor}},
+              rx, rz);
 }
 
 /// One side of the court: x runs along the arcade, whose axis is z = 0; +z is the court.
@@ -247,7 +258,7 @@ void Courtyard::upper_bay() {
 void Courtyard::outer_wall(int bay) {
   b_.at({{0, 0, -kGallery}}, [&] {
     b_.material("stone");
-    b_.box({0, kCourtFloor, -0.5}, {kBay, kRoofFoot + 1.5, 0});
+    b_.box({0, kCourtFloor, -0.5}, {kBay, kWallTop, 0});
     const bool has_door = bay % 2 == 1;
     ashlar(b_, random_, kBay, kSpring, has_door ? Point2{0.53, 1.94} : Point2{0, 0},
            has_door ? 2.2 : 0.0);
@@ -280,17 +291,51 @@ void Courtyard::corner() {
   b_.material("marble");
   b_.at({{0, kUpperFloor, 0}}, [&] { square_pier(b_, kUpperTop - kUpperFloor + 0.1, 0.24); });
   b_.material("stone");
-  b_.box({-kGallery - 0.5, kCourtFloor, -kGallery - 0.5}, {0, kRoofFoot + 1.5, -kGallery});
-  b_.box({-kGallery - 0.5, kCourtFloor, -kGallery}, {-kGallery, kRoofFoot + 1.5, 0});
+  b_.box({-kGallery - 0.5, kCourtFloor, -kGallery - 0.5}, {0, kWallTop, -kGallery});
+  b_.box({-kGallery - 0.5, kCourtFloor, -kGallery}, {-kGallery, kWallTop, 0});
+}
+
+/// Mouldings around the outer walls and stones at their corners.
+void Courtyard::outside() {
+  const double x = kHalfX + kGallery + 0.5, z = kHalfZ + kGallery + 0.5;
+  b_.material("marble");
+  const double base = kCourtFloor - 0.04;
+  b_.moulding({{0.1, base}, {0.1, base + 0.9}, {0.06, base + 1.0}, {0, base + 1.04}}, x, z, true);
+  const double y = kGroundTop;
+  b_.moulding(
+      {{0, y}, {0.05, y + 0.03}, {0.05, y + 0.2}, {0.12, y + 0.28}, {0.14, y + 0.4}, {0, y + 0.44}},
+      x, z, true);
+  const double t = kWallTop - 0.75;
+  b_.moulding({{0, t},
+               {0.05, t + 0.03},
+               {0.06, t + 0.3},
+               {0.2, t + 0.4},
+               {0.22, t + 0.52},
+               {0.34, t + 0.62},
+               {0.36, t + 0.75},
+               {-0.5, t + 0.8}},
+              x, z, true);
+  b_.material("stone");
+  for (int course = 0; course < 20; ++course) {
+    const double y0 = base + 1.06 + course * 0.46, y1 = y0 + 0.44;
+    if (y1 > t || (y1 > y && y0 < y + 0.44)) continue;
+    const double wide = course % 2 == 0 ? 0.9 : 0.5, deep = course % 2 == 0 ? 0.5 : 0.9;
+    for (const double sx : {-1.0, 1.0})
+      for (const double sz : {-1.0, 1.0})
+        b_.box({std::min(sx * (x + 0.05), sx * (x - wide)), y0,
+                std::min(sz * (z + 0.05), sz * (z - deep))},
+               {std::max(sx * (x + 0.05), sx * (x - wide)), y1,
+                std::max(sz * (z + 0.05), sz * (z - deep))});
+  }
 }
 
 void Courtyard::furniture() {
   b_.at({{0, kCourtFloor, 0}}, [&] { fountain(b_, detail_, random_); });
   for (const double sx : {-1.0, 1.0})
     for (const double sz : {-1.0, 1.0}) {
-      b_.at(placed({sx * 2.7, kCourtFloor, sz * 9.6}, 0.125),
-            [&] { potted_tree(b_, detail_, random_, 3.4); });
-      b_.at(placed({sx * 2.9, kCourtFloor, sz * 4.6}, 0.125 * sx * sz),
+      b_.at(placed({sx * 3.05, kCourtFloor, sz * 6.3}, 0.125),
+            [&] { potted_tree(b_, detail_, random_, 2.5); });
+      b_.at(placed({sx * 2.9, kCourtFloor, sz * 9.2}, 0.125 * sx * sz),
             [&] { bench(b_, detail_); });
     }
   // Vases at the feet of the columns, turned this way and that.
@@ -317,7 +362,7 @@ ScenePreset courtyard_preset(double) {
   preset.eye = {0.6, 2.4, 11.3};
   preset.target = {-0.3, 2.9, -6};
   preset.fov_degrees = 58;
-  preset.sun_direction = normalize({-0.3, 0.8, -0.45});
+  preset.sun_direction = normalize({-0.28, 0.8, 0.5});
   return preset;
 }
 

@@ -3,7 +3,7 @@
 
 #include "voxdag/mesh/scenes/courtyard_parts.hpp"
 
-/// What the walls, floors and roofs of the courtyard are covered with.
+/// What the walls and floors of the courtyard are covered with.
 namespace voxdag::scenes::courtyard {
 
 void door(Builder& b, const Detail& d, double width) {
@@ -72,60 +72,6 @@ void shuttered_window(Builder& b, double width, double height) {
                b.box({x0 + 0.06, -0.005, -0.03}, {x1 - 0.06, 0.005, 0.03});
              });
     }
-  }
-}
-
-void tiled_roof(Builder& b, const Detail& d, Random& random, double width, double run,
-                double rise) {
-  b.material("tile");
-  const double slope = std::sqrt(run * run + rise * rise), pitch = 0.24, course = 0.4;
-  const Vec3d up = Vec3d{0, rise, -run} * (1 / slope), out = Vec3d{0, run, rise} * (1 / slope);
-  const int columns = static_cast<int>((width + 2 * run) / pitch + 0.5);
-  const int sides = d(8, 4);
-  for (int c = 0; c < columns; ++c) {
-    const double x = -run + (c + 0.5) * (width + 2 * run) / columns;
-    const double valley = std::max({0.0, -x, x - width}) / run * slope;
-    const int first = static_cast<int>(std::ceil(valley / course - 0.6)),
-              last = static_cast<int>(slope / course);
-    for (int k = first; k <= last; ++k) {
-      const double lo = k * course - 0.03, hi = std::min((k + 1) * course + 0.03, slope);
-      const double jitter = random.uniform(-0.008, 0.008), lift = random.uniform(0, 0.006);
-      // The cover tile tapers uphill and overlaps the next one's foot; a pan tile lies beside it.
-      for (int pan = 0; pan < 2; ++pan) {
-        const double shift = pan == 1 ? pitch / 2 : 0;
-        const double r0 = pan == 1 ? 0.09 : 0.085, r1 = r0 - 0.012, thick = 0.014;
-        const auto point = [&](double s, double radius, double t, double raise) {
-          const double across = radius * cos_turns(t), above = radius * sin_turns(t);
-          return Vec3d{x + shift + jitter + across, 0, 0} + up * s +
-                 out * (pan == 1 ? raise - above + 0.06 : raise + above);
-        };
-        const double raise = 0.03 + lift;
-        // Outer skin, lower edge, inner skin.
-        b.surface(sides, 3, false, false, [&](int i, int j) {
-          const double t = 0.5 - 0.5 * i / sides;
-          if (j == 0) return point(lo + 0.12, r0 - thick, t, raise + 0.01);
-          if (j == 1) return point(lo, r0 - thick, t, raise + 0.02);
-          if (j == 2) return point(lo, r0, t, raise + 0.02);
-          return point(hi, r1, t, raise);
-        });
-      }
-    }
-  }
-  // The boards underneath.
-  b.material("wood");
-  const double drop = -0.05;
-  const auto board = [&](double x, double s) { return Vec3d{x, drop, 0} + up * s; };
-  b.quad(board(0, 0), board(width, 0), board(width + run, slope), board(-run, slope));
-  b.quad(board(width, -0.02) - out * 0.05, board(0, -0.02) - out * 0.05,
-         board(-run, slope) - out * 0.05, board(width + run, slope) - out * 0.05);
-  b.quad(board(0, -0.02) - out * 0.05, board(width, -0.02) - out * 0.05, board(width, 0),
-         board(0, 0));
-  const int rafters = static_cast<int>(width / 0.5);
-  for (int i = 0; i <= rafters; ++i) {
-    const double x = width * i / rafters;
-    b.at({board(x, 0) - out * 0.05, {1, 0, 0}, out, up * -1.0}, [&] {
-      b.box({-0.05, -0.12, -1.2}, {0.05, 0, -0.04});
-    });
   }
 }
 

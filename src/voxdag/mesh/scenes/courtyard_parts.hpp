@@ -63,4 +63,7 @@ void paving(Builder& b, Random& random, double x0, double x1, double z0, double 
 /// `gap` (x, width) up to `gap_height` are left free.
 void ashlar(Builder& b, Random& random, double width, double height, Point2 gap, double gap_height);
 
+/// A wall with three hanging bells under a pediment, facing +z.
+void bell_gable(Builder& b, const Detail& d);
+
 }  // namespace voxdag::scenes::courtyard

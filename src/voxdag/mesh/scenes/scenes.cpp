@@ -17,6 +17,10 @@ struct Entry {
 };
 
 constexpr std::array kEntries = {
+    Entry{{"city", "blocks of shops, houses and towers, with streets and parks",
+           "blocks along a side", 6, 1, 24},
+          scenes::make_city,
+          scenes::city_preset},
     Entry{{"courtyard", "a cloister court with arcades, vaults, curtains and a fountain",
            "how finely curves are divided; triangles go with its square", 1, 0.1, 8},
           scenes::make_courtyard,
@@ -28,6 +32,10 @@ constexpr std::array kEntries = {
     Entry{{"sponge", "a Menger sponge", "depth: the cube is 3^depth cells wide", 4, 1, 6},
           scenes::make_sponge,
           scenes::sponge_preset},
+    Entry{{"terrain", "eroded mountains above a lake, with rocks and firs",
+           "grid cells along a side", 1024, 32, 8192},
+          scenes::make_terrain,
+          scenes::terrain_preset},
 };
 
 constexpr auto kInfos = [] {
