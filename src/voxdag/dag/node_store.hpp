@@ -3,17 +3,20 @@
 ///
 /// A node is a run of 32-bit words (child mask and the ids of its children, or the two words of a
 /// leaf block). `intern` returns the same id for equal words, whichever thread asks. The table is
-/// split into shards by hash, each with its own lock, words and slots, so that threads seldom meet.
-/// The ids depend on timing; canonical_order() makes the result independent of it.
+/// split into shards by hash. A node that is there already, the common case, is found without a
+/// lock; only adding one takes its shard's. The ids depend on timing; canonical_order() makes the
+/// result independent of it.
 ///
-///   id    | shard (5 bits) | word offset in the shard (27 bits) |
-///   slot  | 32 bits of hash | id |                      0 = free; open addressing, linear probing
+///   id      | shard (5 bits) | word offset in the shard (27 bits) |
+///   slot    | 32 bits of hash | 1 | word offset (27 of 31 bits) |    0 = free; linear probing
+///   table   | index of the last slot | 7 words unused | slots ... |
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "voxdag/core/int128.hpp"
 #include "voxdag/dag/memory_budget.hpp"
@@ -45,7 +48,18 @@ class NodeStore {
 
   /// The id of the node with these words; copies them if they are new. 1 <= count <= 9. Throws
   /// Error if the level outgrows 32-bit ids.
-  NodeId intern(const std::uint32_t* words, int count);
+  NodeId intern(const std::uint32_t* words, int count) {
+    return intern(words, count, hash_words(words, count));
+  }
+  /// The same for words whose hash the caller has.
+  NodeId intern(const std::uint32_t* words, int count, std::uint64_t hash);
+
+  /// Starts loading what intern() of a node with this hash will look at first.
+  void prefetch(std::uint64_t hash) const {
+    const Shard& shard = shards_[shard_of(hash)];
+    const std::uint64_t* table = shard.table.load(std::memory_order_acquire);
+    if (table != nullptr) __builtin_prefetch(table + kTableHeader + (tag_of(hash) & table[0]));
+  }
 
   /// The words of a node; they stay where they are until release().
   std::uint32_t* words(NodeId id) { return shards_[id >> kOffsetBits].at(id & kOffsetMask); }
@@ -69,12 +83,16 @@ class NodeStore {
   static constexpr int kFirstChunkBits = 9;
   static constexpr int kChunks = kOffsetBits - kFirstChunkBits + 1;
 
+  static constexpr std::size_t kTableHeader = 8;
+
   struct alignas(64) Shard {
+    std::atomic<std::uint64_t*> table{nullptr};  // the last of `tables`
     std::atomic_flag lock = ATOMIC_FLAG_INIT;
     std::uint32_t used_words = 0;    // offset of the next word
     std::uint32_t stored_words = 0;  // words of nodes, without what chunk ends waste
     std::uint32_t node_count = 0;
-    PageArray<std::uint64_t> slots;
+    // Outgrown tables stay until release_slots(): another thread may be reading them.
+    std::vector<PageArray<std::uint64_t>> tables;
     std::array<PageArray<std::uint32_t>, kChunks> chunks;
 
     static int chunk_of(std::uint32_t offset) {
@@ -87,8 +105,16 @@ class NodeStore {
     }
   };
 
-  NodeId append(Shard& shard, std::uint32_t shard_index, const std::uint32_t* words, int count);
-  void grow(Shard& shard);
+  static std::uint32_t shard_of(std::uint64_t hash) {
+    return static_cast<std::uint32_t>(hash >> (64 - (32 - kOffsetBits)));
+  }
+  static std::uint32_t tag_of(std::uint64_t hash) { return static_cast<std::uint32_t>(hash); }
+
+  /// The slot where the words are or would be.
+  std::uint64_t* find(Shard& shard, std::uint64_t* table, std::uint32_t tag,
+                      const std::uint32_t* words, int count, std::uint64_t& slot);
+  std::uint32_t append(Shard& shard, const std::uint32_t* words, int count);
+  std::uint64_t* grow(Shard& shard);
 
   MemoryBudget* budget_;
   std::unique_ptr<Shard[]> shards_{new Shard[kShards]};

@@ -48,7 +48,7 @@ class PageArray {
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
-  static constexpr std::size_t kHugePageWorth = std::size_t{8} << 20;
+  static constexpr std::size_t kHugePageWorth = std::size_t{4} << 20;
 
   T* data_ = nullptr;
   std::size_t count_ = 0;

@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::uint64_t kUnbounded = ~std::uint64_t{0} >> 2;
 
+// A cell's node is interned by its parent, after all its siblings are known: by then the table's
+// memory, asked for as soon as the words were, has arrived.
 template <class Sink>
 class Recursion {
  public:
@@ -30,59 +32,56 @@ class Recursion {
 
   explicit Recursion(Context& context) : context_(context), sink_(context.sink) {}
 
-  /// The node of the cell of 2^log2_size voxels at `cell`, from `count` items on the stack at
-  /// `first`.
-  NodeId cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    if (count == 1) return single(at, log2_size, context_.items[first]);
-    if (log2_size == 2) {
-      std::uint64_t mask = 0;
-      for (std::size_t i = first; i < first + count; ++i) {
-        const Item& item = context_.items[i];
-        mask |= triangle_block(context_.setups[item.triangle], item.conditions, at);
-      }
-      return leaf(mask);
-    }
-    const std::int32_t half = std::int32_t{1} << (log2_size - 1);
-    const std::size_t classified = context_.classified.size();
-    std::uint32_t any_alive = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-      const Item item = context_.items[i];
-      const ChildConditions children =
-          classify_children(context_.setups[item.triangle], item.conditions, at, half);
-      any_alive |= children.alive;
-      if (children.alive != 0)
-        context_.classified.push_back(
-            {item.triangle, children.alive, {children.lanes[0], children.lanes[1]}});
-    }
-    const std::size_t classified_end = context_.classified.size();
-    NodeWords words;
-    for (int child = 0; child < 8; ++child) {
-      if (((any_alive >> child) & 1) == 0) continue;
-      const std::size_t list = context_.items.size();
-      for (std::size_t i = classified; i < classified_end; ++i) {
-        const Classified& c = context_.classified[i];
-        if ((c.alive >> child) & 1)
-          context_.items.push_back(
-              child_item(c.triangle, c.lanes[child >> 2] >> (16 * (child & 3))));
-      }
-      words.add(child, cell(child_cell(at, half, child), log2_size - 1, list,
-                            context_.items.size() - list));
-      context_.items.resize(list);
-    }
-    context_.classified.resize(classified);
-    return node(log2_size, words);
+  NodeId root(int log2_size, std::size_t count) {
+    Children children(*this, log2_size);
+    children.add(0, cell({0, 0, 0}, log2_size, 0, count));
+    const PendingNode root = children.node();
+    return root.count == 0 ? kNoNode : root.words[1];
   }
 
  private:
-  struct NodeWords {
-    std::uint32_t words[9] = {};
-    int count = 1;
+  /// What a cell turned out to be: a node still to be interned, or the id of one.
+  struct Cell {
+    PendingNode pending;
+    NodeId id = kNoNode;
+  };
 
-    void add(int child, NodeId id) {
-      if (id == kNoNode) return;
-      words[0] |= 1u << child;
-      words[count++] = id;
+  /// The children of one cell, of 2^log2_size voxels a side each.
+  class Children {
+   public:
+    Children(Recursion& recursion, int log2_size)
+        : sink_(recursion.sink_),
+          log2_size_(log2_size),
+          level_(recursion.context_.levels - log2_size) {}
+
+    void add(int child, const Cell& cell) {
+      if (cell.pending.count == 0 && cell.id == kNoNode) return;
+      mask_ |= 1u << child;
+      Cell& added = cells_[count_++];
+      added = cell;
+      if (cell.pending.count != 0) sink_.prefetch(level_, added.pending);
     }
+    /// The parent.
+    PendingNode node() {
+      PendingNode parent;
+      if (count_ == 0) return parent;
+      parent.words[0] = mask_;
+      for (int i = 0; i < count_; ++i) {
+        const Cell& cell = cells_[i];
+        parent.words[1 + i] = cell.pending.count == 0 ? cell.id
+                              : log2_size_ == 2       ? sink_.leaf(cell.pending)
+                                                      : sink_.node(level_, cell.pending);
+      }
+      parent.count = 1 + count_;
+      return parent;
+    }
+
+   private:
+    Sink& sink_;
+    int log2_size_, level_;
+    std::uint32_t mask_ = 0;
+    int count_ = 0;
+    Cell cells_[8];
   };
 
   static Vec3i child_cell(Vec3i at, std::int32_t half, int child) {
@@ -98,42 +97,82 @@ class Recursion {
     return {triangle, left};
   }
 
-  NodeId leaf(std::uint64_t linear_mask) {
-    return linear_mask == 0 ? kNoNode : sink_.leaf(linear_to_morton(linear_mask));
+  static Cell block(std::uint64_t linear_mask) {
+    Cell cell;
+    if (linear_mask == 0) return cell;
+    const std::uint64_t mask = linear_to_morton(linear_mask);
+    cell.pending.words[0] = static_cast<std::uint32_t>(mask);
+    cell.pending.words[1] = static_cast<std::uint32_t>(mask >> 32);
+    cell.pending.count = 2;
+    return cell;
   }
 
-  NodeId node(int log2_size, const NodeWords& words) {
-    return words.count == 1 ? kNoNode
-                            : sink_.node(context_.levels - log2_size, words.words, words.count);
+  /// The cell of 2^log2_size voxels at `at`, from `count` items on the stack at `first`.
+  Cell cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
+    if (count == 1) return single(at, log2_size, context_.items[first]);
+    if (log2_size == 2) {
+      std::uint64_t mask = 0;
+      for (std::size_t i = first; i < first + count; ++i) {
+        const Item& item = context_.items[i];
+        mask |= triangle_block(context_.setups[item.triangle], item.conditions, at);
+      }
+      return block(mask);
+    }
+    const std::int32_t half = std::int32_t{1} << (log2_size - 1);
+    const std::size_t classified = context_.classified.size();
+    std::uint32_t any_alive = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Item item = context_.items[i];
+      const ChildConditions conditions =
+          classify_children(context_.setups[item.triangle], item.conditions, at, half);
+      any_alive |= conditions.alive;
+      if (conditions.alive != 0)
+        context_.classified.push_back(
+            {item.triangle, conditions.alive, {conditions.lanes[0], conditions.lanes[1]}});
+    }
+    const std::size_t classified_end = context_.classified.size();
+    Children children(*this, log2_size - 1);
+    for (std::uint32_t left = any_alive; left != 0; left &= left - 1) {
+      const int child = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+      const std::size_t list = context_.items.size();
+      for (std::size_t i = classified; i < classified_end; ++i) {
+        const Classified& c = context_.classified[i];
+        if ((c.alive >> child) & 1)
+          context_.items.push_back(
+              child_item(c.triangle, c.lanes[child >> 2] >> (16 * (child & 3))));
+      }
+      children.add(child, cell(child_cell(at, half, child), log2_size - 1, list,
+                               context_.items.size() - list));
+      context_.items.resize(list);
+    }
+    context_.classified.resize(classified);
+    return {children.node(), kNoNode};
   }
 
-  NodeId single(Vec3i at, int log2_size, const Item item) {
+  Cell single(Vec3i at, int log2_size, const Item item) {
     const TriangleSetup& t = context_.setups[item.triangle];
-    if (log2_size == 2) return leaf(triangle_block(t, item.conditions, at));
+    if (log2_size == 2) return block(triangle_block(t, item.conditions, at));
     if constexpr (Sink::kMemo) {
       if (item.conditions == kPlane) {
         const int range = slab_range(t, at, std::int32_t{1} << log2_size);
-        if (range == 0) return kNoNode;
-        if (range == 1) return slab(t.plane, slab_lo_at(t, at), log2_size).id;
+        if (range == 0) return {};
+        if (range == 1) return {{}, slab(t.plane, slab_lo_at(t, at), log2_size).id};
       }
     }
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
-    const ChildConditions children = classify_children(t, item.conditions, at, half);
-    NodeWords words;
-    for (std::uint32_t left = children.alive; left != 0; left &= left - 1) {
+    const ChildConditions conditions = classify_children(t, item.conditions, at, half);
+    Children children(*this, log2_size - 1);
+    for (std::uint32_t left = conditions.alive; left != 0; left &= left - 1) {
       const int child = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-      words.add(child, single(child_cell(at, half, child), log2_size - 1,
-                              child_item(item.triangle, children.conditions(child))));
+      children.add(child, single(child_cell(at, half, child), log2_size - 1,
+                                 child_item(item.triangle, conditions.conditions(child))));
     }
-    return node(log2_size, words);
+    return {children.node(), kNoNode};
   }
 
-  /// The node of a cell that holds a slab and nothing else, by way of the memo.
+  /// The node of a cell that holds a slab and nothing else, by way of the memo. Not for leaf
+  /// blocks.
   SlabNode slab(const PlaneSlab& plane, std::int64_t lo, int log2_size) {
-    if (log2_size == 2) {
-      const SlabBlock block = slab_block(plane, lo);
-      return {leaf(block.mask), block.down, block.up};
-    }
     SlabNode result;
     if (sink_.memo.find(plane, lo, log2_size, result)) return result;
     result = {kNoNode, kUnbounded, kUnbounded};
@@ -143,23 +182,31 @@ class Recursion {
         last * (detail::positive(n.x) + detail::positive(n.y) + detail::positive(n.z));
     const std::int64_t least =
         last * (detail::negative(n.x) + detail::negative(n.y) + detail::negative(n.z));
-    NodeWords words;
+    Children children(*this, log2_size - 1);
     for (int child = 0; child < 8; ++child) {
       const std::int64_t child_lo = lo - (child & 1 ? n.x * half : 0) -
                                     (child & 2 ? n.y * half : 0) - (child & 4 ? n.z * half : 0);
-      SlabNode part{kNoNode, kUnbounded, kUnbounded};
+      std::uint64_t down = kUnbounded, up = kUnbounded;
       if (child_lo > most) {
-        part.down = static_cast<std::uint64_t>(child_lo - most - 1);
+        down = static_cast<std::uint64_t>(child_lo - most - 1);
       } else if (child_lo + plane.width < least) {
-        part.up = static_cast<std::uint64_t>(least - child_lo - plane.width - 1);
+        up = static_cast<std::uint64_t>(least - child_lo - plane.width - 1);
+      } else if (log2_size == 3) {
+        const SlabBlock part = slab_block(plane, child_lo);
+        children.add(child, block(part.mask));
+        down = part.down, up = part.up;
       } else {
-        part = slab(plane, child_lo, log2_size - 1);
-        words.add(child, part.id);
+        const SlabNode part = slab(plane, child_lo, log2_size - 1);
+        children.add(child, {{}, part.id});
+        down = part.down, up = part.up;
       }
-      result.down = std::min(result.down, part.down);
-      result.up = std::min(result.up, part.up);
+      result.down = std::min(result.down, down);
+      result.up = std::min(result.up, up);
     }
-    result.id = node(log2_size, words);
+    Children self(*this, log2_size);
+    self.add(0, {children.node(), kNoNode});
+    const PendingNode interned = self.node();
+    if (interned.count != 0) result.id = interned.words[1];
     sink_.memo.insert(plane, lo, log2_size, result);
     return result;
   }
@@ -178,7 +225,7 @@ NodeId build(SubvolumeContext<Sink>& context, const SubvolumeJob& job) {
     context.items.push_back({static_cast<std::uint32_t>(context.setups.size() - 1), t.conditions});
   }
   if (context.items.empty()) return kNoNode;
-  return Recursion<Sink>(context).cell({0, 0, 0}, job.log2_size, 0, context.items.size());
+  return Recursion<Sink>(context).root(job.log2_size, context.items.size());
 }
 
 }  // namespace

@@ -22,6 +22,13 @@ struct SubvolumeJob {
   std::span<const std::uint32_t> triangles;
 };
 
+/// The words of a node that has no id yet; count 0 is an empty cell.
+struct PendingNode {
+  std::uint32_t words[9];
+  int count = 0;
+  std::uint64_t hash;
+};
+
 /// Where a hash-consed build puts its nodes: one store for each level 0..L-2, shared by all
 /// threads, behind a small cache of leaf blocks of this thread's own.
 class DagSink {
@@ -31,19 +38,24 @@ class DagSink {
   DagSink(std::span<const std::unique_ptr<NodeStore>> stores, int log2_memo_sets)
       : memo(log2_memo_sets), stores_(stores), leaf_cache_(std::size_t{1} << kCacheBits) {}
 
-  /// `mask` in Morton order, not 0.
-  NodeId leaf(std::uint64_t mask) {
-    const std::uint64_t h = mask * 0x9E3779B97F4A7C15ull;
-    CachedLeaf& cached = leaf_cache_[h >> (64 - kCacheBits)];
+  /// A node on its way to its store: `prefetch` early, `leaf` or `node` some time later.
+  void prefetch(int level, PendingNode& pending) const {
+    pending.hash = hash_words(pending.words, pending.count);
+    stores_[level]->prefetch(pending.hash);
+  }
+
+  /// The two words of a leaf block in Morton order, not 0.
+  NodeId leaf(const PendingNode& pending) {
+    const std::uint64_t mask = pending.words[0] | static_cast<std::uint64_t>(pending.words[1])
+                                                      << 32;
+    CachedLeaf& cached = leaf_cache_[pending.hash >> (64 - kCacheBits)];
     if (cached.mask == mask) return cached.id;
-    const std::uint32_t words[2] = {static_cast<std::uint32_t>(mask),
-                                    static_cast<std::uint32_t>(mask >> 32)};
-    cached = {mask, stores_.back()->intern(words, 2)};
+    cached = {mask, stores_.back()->intern(pending.words, 2, pending.hash)};
     return cached.id;
   }
-  /// `words`: child mask and the ids of the children, which are of level + 1.
-  NodeId node(int level, const std::uint32_t* words, int count) {
-    return stores_[level]->intern(words, count);
+  /// Child mask and the ids of the children, which are of level + 1.
+  NodeId node(int level, const PendingNode& pending) {
+    return stores_[level]->intern(pending.words, pending.count, pending.hash);
   }
 
   PlaneMemo memo;
@@ -66,15 +78,17 @@ class TreeSink {
 
   explicit TreeSink(int levels) : nodes(levels - 2) {}
 
-  NodeId leaf(std::uint64_t mask) {
-    leaves.push_back(mask);
+  void prefetch(int, const PendingNode&) const {}
+
+  NodeId leaf(const PendingNode& pending) {
+    leaves.push_back(pending.words[0] | static_cast<std::uint64_t>(pending.words[1]) << 32);
     return static_cast<NodeId>(leaves.size() - 1);
   }
-  NodeId node(int level, const std::uint32_t* words, int) {
+  NodeId node(int level, const PendingNode& pending) {
     SortNode& node = nodes[level].emplace_back();
     node.fill(kNoNode);
-    const std::uint32_t* child = words + 1;
-    for (std::uint32_t left = words[0]; left != 0; left &= left - 1)
+    const std::uint32_t* child = pending.words + 1;
+    for (std::uint32_t left = pending.words[0]; left != 0; left &= left - 1)
       node[std::countr_zero(left)] = *child++;
     return static_cast<NodeId>(nodes[level].size() - 1);
   }
