@@ -2,7 +2,7 @@
 
 # What the library links: an installed voxdag looks for the same packages (voxdagConfig.cmake.in).
 set(VOXDAG_LIBRARY_PACKAGES
-  Threads TBB hwy PNG JPEG OpenEXR nlohmann_json FastFloat TinyGLTF)
+  Threads TBB hwy PNG JPEG OpenEXR nlohmann_json FastFloat)
 foreach(package ${VOXDAG_LIBRARY_PACKAGES})
   if(package STREQUAL "OpenEXR")
     # Debian's Imath names a Python library of a package that nobody needs, at length.

@@ -7,7 +7,7 @@ voxdag_packages=(
   # tools
   ca-certificates g++ cmake ninja-build
   # the library
-  libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev libtinygltf-dev
+  libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev
   nlohmann-json3-dev libxxhash-dev libzstd-dev libassimp-dev
   # the command line
   libcli11-dev libfmt-dev
