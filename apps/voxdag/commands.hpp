@@ -10,6 +10,7 @@ void add_verify_command(CLI::App& app, Session& session);
 void add_trace_command(CLI::App& app, Session& session);
 void add_export_command(CLI::App& app, Session& session);
 void add_scene_command(CLI::App& app, Session& session);
+void add_bench_command(CLI::App& app, Session& session);
 void add_completion_command(CLI::App& app, Session& session);
 
 }  // namespace voxdag

@@ -1,0 +1,239 @@
+#include "bench_build.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "bench_machine.hpp"
+#include "voxdag/mesh/scenes.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A folder that goes with its owner.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = fs::temp_directory_path() / "voxdag-bench-XXXXXX";
+    if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "", "cannot make the folder");
+    path_ = pattern;
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// "hairball:100" into name and size; the size is empty where none is given.
+std::array<std::string, 2> split_scene(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return {text, ""};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+bool is_procedural(const std::string& mesh) {
+  const std::string name = split_scene(mesh)[0];
+  const auto scenes = scene_list();
+  return !fs::exists(mesh) && std::any_of(scenes.begin(), scenes.end(),
+                                          [&](const SceneInfo& s) { return s.name == name; });
+}
+
+std::string this_program() { return fs::read_symlink("/proc/self/exe"); }
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// "voxdag: a.obj: line 3: ..." or how it ended.
+std::string failure_of(const ChildResult& result, double seconds_limit) {
+  if (result.timed_out) return fmt::format("ended after {} s", seconds_limit);
+  if (result.status == 0) return "";
+  const std::string line = first_line(result.err);
+  if (!line.empty()) return line.starts_with("voxdag: ") ? line.substr(8) : line;
+  return result.status > 128 ? fmt::format("ended by signal {}", result.status - 128)
+                             : fmt::format("exit status {}", result.status);
+}
+
+/// Reads all of a file, so that the next reader finds it in memory.
+void warm_up(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> part(1 << 20);
+  while (file.read(part.data(), static_cast<std::streamsize>(part.size()))) {
+  }
+  if (!file.eof()) throw Error(path, "", "cannot be read");
+}
+
+std::uint64_t bytes_in(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  return bytes;
+}
+
+std::string quoted(const std::string& text) {
+  std::string shell = "'";
+  for (const char c : text) shell += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return shell + "'";
+}
+
+std::string filled_in(std::string command,
+                      const std::array<std::array<std::string, 2>, 4>& values) {
+  for (const auto& [name, value] : values)
+    for (std::size_t at = 0; (at = command.find(name, at)) != std::string::npos; at += value.size())
+      command.replace(at, name.size(), value);
+  return command;
+}
+
+Json last_line_json(const std::string& text) {
+  std::string line = text.substr(0, text.find_last_not_of('\n') + 1);
+  line.erase(0, line.find_last_of('\n') + 1);
+  const Json json = Json::parse(line, nullptr, false);
+  return json.is_object() ? json : Json();
+}
+
+class Bench {
+ public:
+  Bench(const BenchPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
+
+  BenchResults run() {
+    for (const std::string& mesh : plan_.meshes) {
+      const fs::path path = prepare(mesh);
+      const std::string scene = is_procedural(mesh) ? mesh : fs::path(mesh).filename().string();
+      for (const std::string& method : plan_.methods) run_builds(scene, path, method);
+      for (const Rival& rival : plan_.rivals) run_rival(scene, path, rival);
+    }
+    return std::move(results_);
+  }
+
+ private:
+  /// The file of the mesh, made where it is procedural, and in memory.
+  fs::path prepare(const std::string& mesh) {
+    fs::path path = fs::absolute(mesh);
+    if (is_procedural(mesh)) {
+      progress_.report("making " + mesh, 0);
+      path = folder_.path() / (mesh + ".ply");
+      const auto [name, size] = split_scene(mesh);
+      std::vector<std::string> command{this_program(), "scene", name, "-o", path};
+      if (!size.empty()) command.insert(command.end(), {"--size", size});
+      const ChildResult made = run_child(command, folder_.path(), 0, progress_);
+      if (made.status != 0) throw Error(mesh, "", failure_of(made, 0));
+    }
+    warm_up(path);
+    return path;
+  }
+
+  void run_builds(const std::string& scene, const fs::path& path, const std::string& method) {
+    for (const int levels : plan_.levels) {
+      step(fmt::format("{} {}", scene, 1 << levels));
+      results_.builds.push_back(fastest_build(scene, path, method, levels));
+      if (!results_.builds.back().failure.empty()) return;
+    }
+  }
+
+  BuildRun fastest_build(const std::string& scene, const fs::path& path, const std::string& method,
+                         int levels) {
+    BuildRun fastest;
+    for (int i = 0; i < plan_.repeat; ++i) {
+      BuildRun run = build(scene, path, method, levels);
+      if (!run.failure.empty()) return run;
+      if (i == 0 || run.cost.wall_seconds < fastest.cost.wall_seconds) fastest = std::move(run);
+    }
+    return fastest;
+  }
+
+  BuildRun build(const std::string& scene, const fs::path& path, const std::string& method,
+                 int levels) {
+    BuildRun run;
+    run.scene = scene;
+    run.method = method;
+    run.levels = levels;
+    run.threads =
+        plan_.threads > 0 ? plan_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    run.load_before = load_average();
+    const ScratchFolder folder;
+    const std::vector<std::string> command{this_program(),
+                                           "build",
+                                           path,
+                                           "-r",
+                                           std::to_string(1 << levels),
+                                           "-o",
+                                           "out.vdag",
+                                           "--json",
+                                           "--method",
+                                           method,
+                                           "--threads",
+                                           std::to_string(run.threads)};
+    const ChildResult child = run_child(command, folder.path(), 0, progress_);
+    run.cost = child.cost;
+    run.failure = failure_of(child, 0);
+    if (!run.failure.empty()) return run;
+    const Json json = Json::parse(child.out);
+    run.stage_seconds = json.at("seconds");
+    run.triangles = json.at("source").at("triangles");
+    run.vertices = json.at("source").at("vertices");
+    run.voxels = json.at("voxels");
+    run.svo_nodes = json.at("svo_nodes");
+    run.dag_nodes = json.at("dag_nodes");
+    run.dag_bytes = json.at("bytes").at("svdag_paper");
+    run.file_bytes = json.at("bytes").at("file");
+    return run;
+  }
+
+  void run_rival(const std::string& scene, const fs::path& path, const Rival& rival) {
+    for (const int levels : plan_.levels) {
+      step(fmt::format("{}: {} {}", rival.name, scene, 1 << levels));
+      const ScratchFolder folder;
+      RivalRun run;
+      run.name = rival.name;
+      run.command = rival.command;
+      run.scene = scene;
+      run.levels = levels;
+      run.load_before = load_average();
+      const std::string command =
+          filled_in(rival.command, {{{"{mesh}", quoted(path)},
+                                     {"{out}", quoted(folder.path() / "out")},
+                                     {"{resolution}", std::to_string(1 << levels)},
+                                     {"{levels}", std::to_string(levels)}}});
+      const ChildResult child =
+          run_child({"/bin/sh", "-c", command}, folder.path(), plan_.rival_seconds, progress_);
+      run.cost = child.cost;
+      run.failure = failure_of(child, plan_.rival_seconds);
+      run.output_bytes = bytes_in(folder.path());
+      run.reported = last_line_json(child.out);
+      results_.rivals.push_back(run);
+      if (!run.failure.empty()) return;
+    }
+  }
+
+  void step(const std::string& stage) {
+    const std::size_t of =
+        plan_.meshes.size() * plan_.levels.size() * (plan_.methods.size() + plan_.rivals.size());
+    progress_.report(stage, static_cast<double>(steps_++) / static_cast<double>(of));
+  }
+
+  const BenchPlan& plan_;
+  Progress& progress_;
+  ScratchFolder folder_;
+  BenchResults results_;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace
+
+BenchResults bench_build(const BenchPlan& plan, Progress& progress) {
+  return Bench(plan, progress).run();
+}
+
+}  // namespace voxdag
