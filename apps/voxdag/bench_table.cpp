@@ -54,45 +54,45 @@ std::string build_rows(const Builds& builds, std::size_t begin, std::size_t end)
 }
 
 std::string stage_rows(const Builds& builds, std::size_t begin, std::size_t end) {
-  const std::vector<int> widths{9, 9, 9, 9, 9, 9, 9, 9, 9};
-  std::string text = row({"seconds", "read", "quantize", "voxelize", "reduce", "of it", "number",
-                          "count and", "start and"},
-                         widths);
-  text += row({"", "mesh", "and sort", "and merge", "(sort)", "sorting", "nodes", "write", "end"},
-              widths);
+  const std::vector<int> widths{9, 9, 9, 9, 9, 9, 9, 9};
+  std::string text =
+      row({"wall s", "read", "quantize", "voxelize", "merge", "number", "count and", "start and"},
+          widths) +
+      row({"", "mesh", "and bin", "", "", "nodes", "write", "end"}, widths);
   for (std::size_t i = begin; i < end; ++i) {
     const BuildRun& run = builds[i];
     if (!run.failure.empty()) continue;
     std::vector<std::string> cells{resolution(run.levels)};
-    for (const char* stage :
-         {"read", "quantize", "voxelize", "reduce", "sort", "canonical", "write"})
+    for (const char* stage : {"read", "quantize", "voxelize", "merge", "canonical", "write"})
       cells.push_back(fmt::format("{:.2f}", run.stage(stage)));
     cells.push_back(fmt::format("{:.2f}", run.cost.wall_seconds - run.stage("total")));
     text += row(cells, widths);
   }
-  return text;
+  return text + "\n";
 }
 
-/// The paper's Table 1 beside ours; empty where no scene of the paper is there.
-std::string paper_rows(const Builds& builds, std::size_t begin, std::size_t end) {
-  const std::vector<int> widths{9, 11, 11, 11, 11, 17, 17};
-  std::string text;
+/// Reduction by sorting, beside the paper's Table 1; empty for other methods.
+std::string sorting_rows(const Builds& builds, std::size_t begin, std::size_t end) {
+  if (builds[begin].method != "sort") return "";
+  const std::vector<int> widths{9, 11, 11, 11, 11, 14};
+  std::string text =
+      fmt::format("  Reduction: ours in seconds of all threads together, and {}\n",
+                  published::kSource) +
+      row({"grid", "reduction", "sorting", "published", "sorting", "x 6 cores"}, widths);
   for (std::size_t i = begin; i < end; ++i) {
     const BuildRun& run = builds[i];
-    const auto paper = published::reduction_of(run.scene, run.levels);
-    if (run.method != "sort" || !run.failure.empty() || !paper) continue;
-    const double ours = run.stage("reduce");
-    text += row({resolution(run.levels), fmt::format("{:.3f}", ours),
-                 fmt::format("{:.3f}", run.stage("sort")), fmt::format("{:.4g}", paper->total),
-                 fmt::format("{:.4g}", paper->sorting), fmt::format("{:.2f}", ours * run.threads),
-                 fmt::format("{:.2f}", paper->total * published::kCores)},
-                widths);
+    if (!run.failure.empty()) continue;
+    std::vector<std::string> cells{resolution(run.levels),
+                                   fmt::format("{:.3f}", run.stage("reduce")),
+                                   fmt::format("{:.3f}", run.stage("sort"))};
+    if (const auto paper = published::reduction_of(run.scene, run.levels)) {
+      cells.push_back(fmt::format("{:.4g}", paper->total));
+      cells.push_back(fmt::format("{:.4g}", paper->sorting));
+      cells.push_back(fmt::format("{:.3g}", paper->total * published::kCores));
+    }
+    text += row(cells, widths);
   }
-  if (text.empty()) return "";
-  return fmt::format("  Reduction beside {}\n", published::kSource) +
-         row({"grid", "reduce s", "sorting s", "paper's", "paper's", "core-seconds", "paper's"},
-             widths) +
-         text + "\n";
+  return text + "\n";
 }
 
 std::string rival_rows(const BenchResults& results, const std::string& scene) {
@@ -146,8 +146,8 @@ std::string bench_table(const BenchResults& results) {
       ++end;
     text += fmt::format("{}: {} triangles, --method {}, {} threads\n", first.scene,
                         with_commas(first.triangles), first.method, first.threads);
-    text += build_rows(builds, begin, end) + "\n" + stage_rows(builds, begin, end) + "\n";
-    text += paper_rows(builds, begin, end);
+    text += build_rows(builds, begin, end) + "\n" + stage_rows(builds, begin, end);
+    text += sorting_rows(builds, begin, end);
     if (end == builds.size() || builds[end].scene != first.scene)
       text += rival_rows(results, first.scene);
   }

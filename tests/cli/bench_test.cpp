@@ -41,7 +41,7 @@ TEST_F(BenchBuild, JsonHasWhatEachBuildTook) {
                             "voxels_per_second", "dag_nodes", "dag_bytes", "memory_ratio"})
       EXPECT_GT(build.at(key), 0) << key;
     for (const char* stage :
-         {"read", "quantize", "voxelize", "reduce", "sort", "canonical", "write"})
+         {"read", "quantize", "voxelize", "merge", "reduce", "sort", "canonical", "write"})
       EXPECT_GE(build.at("stage_seconds").at(stage), 0) << stage;
     EXPECT_EQ(build.at("scene"), "lucy.obj");
     EXPECT_EQ(build.at("triangles"), 4);
