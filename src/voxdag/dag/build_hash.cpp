@@ -41,6 +41,7 @@ struct StoreSource {
       forwards[shard].resize(leaves.used_words(shard) / 2);
   }
   std::uint32_t* words(int level, NodeId id) { return stores[level]->words(id); }
+  void prefetch(int level, NodeId id) const { stores[level]->prefetch_words(id); }
   void release(int level) { stores[level]->release(); }
   std::uint64_t node_words() const {
     std::uint64_t words = 0;

@@ -94,6 +94,7 @@ class WordSource {
   }
 
   std::uint32_t* words(int level, std::uint32_t id) { return words_[level].data() + id; }
+  void prefetch(int, std::uint32_t) const {}
   void release(int level) { std::vector<std::uint32_t>().swap(words_[level]); }
   std::uint64_t node_words() const { return node_words_; }
   std::uint64_t leaf_blocks() const { return forwards_.size(); }

@@ -53,11 +53,14 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root) {
   } else {
     place_node(0, root);
   }
+  // A level's nodes stand in any order in memory: their words are asked for this far ahead.
+  constexpr std::uint64_t kAhead = 24;
   for (int level = 0; level < leaf_level; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.nodes.size();
     for (std::uint64_t at = begin; at < end;) {
       const int children = popcount(dag.nodes[at]);
       for (std::uint64_t i = at + 1; i <= at + children; ++i) {
+        if (i + kAhead < end) source.prefetch(level + 1, dag.nodes[i + kAhead]);
         const std::uint32_t id = dag.nodes[i];
         const std::uint32_t placed =
             level + 1 == leaf_level ? place_leaf(id) : place_node(level + 1, id);

@@ -7,8 +7,8 @@
 /// lock; only adding one takes its shard's. The ids depend on timing; canonical_order() makes the
 /// result independent of it.
 ///
-///   id      | shard (5 bits) | word offset in the shard (27 bits) |
-///   slot    | 32 bits of hash | 1 | word offset (27 of 31 bits) |    0 = free; linear probing
+///   id      | shard (4 bits) | word offset in the shard (28 bits) |
+///   slot    | 32 bits of hash | 1 | word offset (28 of 31 bits) |    0 = free; linear probing
 ///   table   | index of the last slot | 7 words unused | slots ... |
 #include <array>
 #include <atomic>
@@ -64,6 +64,15 @@ class NodeStore {
   /// The words of a node; they stay where they are until release().
   std::uint32_t* words(NodeId id) { return shards_[id >> kOffsetBits].at(id & kOffsetMask); }
 
+  /// Starts loading words(id); harmless for any number.
+  void prefetch_words(NodeId id) const {
+    const Shard& shard = shards_[id >> kOffsetBits];
+    const std::uint32_t offset = id & kOffsetMask;
+    const int chunk = Shard::chunk_of(offset);
+    const auto address = reinterpret_cast<std::uintptr_t>(shard.chunks[chunk].data()) +
+                         std::uintptr_t{4} * (offset - Shard::chunk_begin(chunk));
+    __builtin_prefetch(reinterpret_cast<const void*>(address));
+  }
   /// Offset after the last word of a shard.
   std::uint32_t used_words(int shard) const { return shards_[shard].used_words; }
   std::uint64_t node_count() const;
@@ -74,7 +83,7 @@ class NodeStore {
   /// Frees everything. Not thread-safe.
   void release();
 
-  static constexpr int kOffsetBits = 27;
+  static constexpr int kOffsetBits = 28;
   static constexpr std::uint32_t kOffsetMask = (1u << kOffsetBits) - 1;
   static constexpr int kShards = 1 << (32 - kOffsetBits);
 

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -19,13 +20,25 @@ class PageArray {
   PageArray() = default;
   explicit PageArray(std::size_t count) : count_(count) {
     if (count == 0) return;
-    void* memory = ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE,
+    // Huge pages need their alignment, which mmap does not promise: take more, give back the ends.
+    const std::size_t slack = bytes() >= kHugePage ? kHugePage : 0;
+    void* memory = ::mmap(nullptr, mapped_bytes() + slack, PROT_READ | PROT_WRITE,
                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
+    if (memory == MAP_FAILED) {
+      count_ = 0;
+      throw std::bad_alloc();
+    }
+    char* begin = static_cast<char*>(memory);
+    if (slack != 0) {
+      const std::size_t head = -reinterpret_cast<std::uintptr_t>(begin) & (kHugePage - 1);
+      if (head != 0) ::munmap(begin, head);
+      ::munmap(begin + head + mapped_bytes(), slack - head);
+      begin += head;
 #ifdef MADV_HUGEPAGE
-    if (bytes() >= kHugePageWorth) ::madvise(memory, bytes(), MADV_HUGEPAGE);
+      ::madvise(begin, mapped_bytes(), MADV_HUGEPAGE);
 #endif
-    data_ = static_cast<T*>(memory);
+    }
+    data_ = reinterpret_cast<T*>(begin);
   }
   PageArray(PageArray&& other) noexcept { swap(other); }
   PageArray& operator=(PageArray&& other) noexcept {
@@ -33,7 +46,7 @@ class PageArray {
     return *this;
   }
   ~PageArray() {
-    if (data_ != nullptr) ::munmap(data_, bytes());
+    if (data_ != nullptr) ::munmap(data_, mapped_bytes());
   }
 
   void swap(PageArray& other) noexcept {
@@ -48,7 +61,12 @@ class PageArray {
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
-  static constexpr std::size_t kHugePageWorth = std::size_t{4} << 20;
+  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+  std::size_t mapped_bytes() const {
+    constexpr std::size_t kPage = 4096;
+    return (bytes() + kPage - 1) & ~(kPage - 1);
+  }
 
   T* data_ = nullptr;
   std::size_t count_ = 0;

@@ -20,6 +20,7 @@ SvdagCounts count_svdag(const SvdagView& dag) {
   counts.dag_nodes_per_level.resize(levels);
   if (dag.is_empty()) return counts;
 
+  constexpr std::uint64_t kAhead = 24;
   // paths[p]: how many octree nodes the DAG node at p (of the level in hand) stands for.
   std::vector<std::uint64_t> paths{1}, below;
   for (int level = 0; level < levels - 2; ++level) {
@@ -32,6 +33,11 @@ SvdagCounts count_svdag(const SvdagView& dag) {
       const std::uint64_t paths_here = paths[at - begin];
       const int children = popcount(child_mask(node));
       for (int i = 1; i <= children; ++i) below[node[i] - below_begin] += paths_here;
+      // The sums are all over the level below: ask for them early. Masks among the words do no
+      // harm.
+      for (int i = 1; i <= children && at + i + kAhead < end; ++i)
+        if (const std::uint64_t sum = node[i + kAhead] - below_begin; sum < below.size())
+          __builtin_prefetch(&below[sum], 1);
       counts.svo_nodes_per_level[level] += paths_here;
       ++counts.dag_nodes_per_level[level];
       at += 1 + children;
