@@ -135,9 +135,12 @@ std::string bench_svg(const BenchResults& results) {
       seconds.points.push_back({x, run.cost.wall_seconds});
       dag.points.push_back({x, size});
       peak.points.push_back({x, static_cast<double>(run.cost.peak_bytes)});
-      growth.points.push_back({x, size * seconds.points[0][1] / dag.points[0][1]});
+      growth.points.push_back({x, size});
     }
     if (seconds.points.empty()) continue;
+    // The DAG's growth as a slope to compare with: through the greatest resolution's time.
+    const double seconds_per_byte = seconds.points.back()[1] / dag.points.back()[1];
+    for (auto& point : growth.points) point[1] *= seconds_per_byte;
     time.lines.insert(time.lines.end(), {seconds, growth});
     memory.lines.insert(memory.lines.end(), {dag, peak});
   }
