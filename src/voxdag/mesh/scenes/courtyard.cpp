@@ -333,7 +333,7 @@ void Courtyard::furniture() {
   b_.at({{0, kCourtFloor, 0}}, [&] { fountain(b_, detail_, random_); });
   for (const double sx : {-1.0, 1.0})
     for (const double sz : {-1.0, 1.0}) {
-      b_.at(placed({sx * 3.05, kCourtFloor, sz * 6.3}, 0.125),
+      b_.at(placed({sx * 3.05, kCourtFloor, sz * 5.7}, 0.125),
             [&] { potted_tree(b_, detail_, random_, 2.5); });
       b_.at(placed({sx * 2.9, kCourtFloor, sz * 9.2}, 0.125 * sx * sz),
             [&] { bench(b_, detail_); });
@@ -359,10 +359,10 @@ Mesh make_courtyard(double size, std::uint32_t seed) { return Courtyard(size, se
 
 ScenePreset courtyard_preset(double) {
   ScenePreset preset;
-  preset.eye = {0.6, 2.4, 11.3};
-  preset.target = {-0.3, 2.9, -6};
+  preset.eye = {-0.9, 2.5, 11.4};
+  preset.target = {2.0, 2.9, -3};
   preset.fov_degrees = 58;
-  preset.sun_direction = normalize({-0.28, 0.8, 0.5});
+  preset.sun_direction = normalize({-0.55, 0.9, 0.35});
   return preset;
 }
 

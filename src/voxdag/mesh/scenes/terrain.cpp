@@ -47,7 +47,7 @@ void lake(Builder& b, const HeightField& field, std::uint32_t seed) {
   b.surface(n, n, false, false, [&](int i, int j) {
     const double x = kSide * j / n, z = kSide * i / n;
     const double inside = std::min(std::min(x, kSide - x), std::min(z, kSide - z));
-    const double wave = 0.12 * noise({x / 14, 0.5, z / 9}, seed + 7);
+    const double wave = 0.4 * noise({x / 22, 0.5, z / 12}, seed + 7);
     return Vec3d{x, kLake + wave * clamp01(inside / 40), z};
   });
   const auto side = [&](double x0, double z0, double x1, double z1) {
