@@ -36,6 +36,15 @@ VOXDAG_HD inline int highest_bit(std::uint32_t v) {
 #endif
 }
 
+/// Index of the lowest set bit; v must not be zero.
+VOXDAG_HD inline int lowest_bit64(std::uint64_t v) {
+#if defined(__CUDA_ARCH__)
+  return __ffsll(static_cast<long long>(v)) - 1;
+#else
+  return std::countr_zero(v);
+#endif
+}
+
 /// The float whose IEEE 754 bits are v.
 VOXDAG_HD inline float float_from_bits(std::uint32_t v) {
 #if defined(__CUDA_ARCH__)

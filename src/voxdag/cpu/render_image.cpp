@@ -1,0 +1,106 @@
+#include "voxdag/cpu/render_image.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+
+#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/render/tone_map.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr int kTileSize = 32;
+
+/// Where sample i of a pixel lies in it: the centre, then the R2 sequence around it (M. Roberts,
+/// "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+void sample_offset(int i, double& x, double& y) {
+  x = 0.5 + i * 0.7548776662466927;
+  y = 0.5 + i * 0.5698402909980532;
+  x -= std::floor(x);
+  y -= std::floor(y);
+}
+
+void check(const RenderOptions& options) {
+  constexpr int kMaxSide = 1 << 16;
+  if (options.width < 1 || options.height < 1 || options.width > kMaxSide ||
+      options.height > kMaxSide)
+    throw Error("a picture has 1 to 65536 pixels a side");
+  if (options.samples_per_pixel < 1) throw Error("a picture has at least 1 sample per pixel");
+}
+
+/// The sun over the viewer's left shoulder, where it models what the camera looks at.
+Sky make_sky(const Camera& camera, const View& view) {
+  Sky sky;
+  const Vec3d up = normalized(view.up);
+  const Vec3d right = normalized(camera.right);
+  Vec3d back = cross(right, up);
+  sky.up = static_cast<Vec3f>(up);
+  sky.sun = static_cast<Vec3f>(normalized(up * 0.95 - right * 0.62 + back * 0.40));
+  return sky;
+}
+
+}  // namespace
+
+RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderOptions& options,
+                           Progress* progress) {
+  check(options);
+  assert(grid.levels == dag.levels);
+  const int width = options.width, height = options.height;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  RenderedImage image;
+  image.width = width;
+  image.height = height;
+  image.view = frame_scene(dag, grid, static_cast<double>(width) / height, options.view);
+  image.rgb.resize(pixels);
+  image.depth.resize(pixels);
+  image.normal.resize(pixels);
+
+  const Camera camera = make_camera(image.view, width, height);
+  const Sky sky = make_sky(camera, image.view);
+  const SvdagNodes nodes(dag);
+  const auto render_pixel = [&](int x, int y) {
+    const std::size_t at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    Vec3f sum{};
+    std::uint64_t rays = 0;
+    for (int i = 0; i < options.samples_per_pixel; ++i) {
+      double dx, dy;
+      sample_offset(i, dx, dy);
+      const Sample sample = shade_sample(nodes, grid, camera, sky, options.shade, x + dx, y + dy);
+      // Averaging what the display will show keeps the edges of bright things smooth.
+      sum = sum + tone_map(sample.radiance * options.shade.exposure);
+      rays += static_cast<std::uint64_t>(sample.rays);
+      if (i > 0) continue;
+      image.depth[at] = sample.depth;
+      image.normal[at] = sample.normal;
+    }
+    image.rgb[at] = sum * (1.0f / static_cast<float>(options.samples_per_pixel));
+    return rays;
+  };
+
+  const int tiles_x = (width + kTileSize - 1) / kTileSize;
+  const int tiles_y = (height + kTileSize - 1) / kTileSize;
+  const std::size_t tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
+  std::atomic<std::uint64_t> rays{0};
+  std::atomic<std::size_t> done{0};
+  parallel_for(tiles, [&](std::size_t tile) {
+    if (progress != nullptr && progress->cancelled()) return;
+    const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tiles_x)) * kTileSize;
+    const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tiles_x)) * kTileSize;
+    std::uint64_t tile_rays = 0;
+    for (int y = y0; y < std::min(y0 + kTileSize, height); ++y)
+      for (int x = x0; x < std::min(x0 + kTileSize, width); ++x) tile_rays += render_pixel(x, y);
+    const std::uint64_t rays_so_far = rays.fetch_add(tile_rays) + tile_rays;
+    const std::size_t tiles_so_far = done.fetch_add(1) + 1;
+    if (progress != nullptr)
+      progress->report("render", static_cast<double>(tiles_so_far) / static_cast<double>(tiles),
+                       rays_so_far);
+  });
+  if (progress != nullptr) progress->throw_if_cancelled();
+  image.rays = rays;
+  return image;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,44 @@
+#pragma once
+/// A pinhole camera.
+#include <cmath>
+
+#include "voxdag/core/vec.hpp"
+#include "voxdag/render/view.hpp"
+
+namespace voxdag {
+
+VOXDAG_HD inline Vec3d normalized(Vec3d v) { return v * (1.0 / std::sqrt(dot(v, v))); }
+VOXDAG_HD inline Vec3f normalized(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
+
+/// Maps pixels to rays. Kept in double: at 131,072³ a float eye would be off by voxels.
+struct Camera {
+  Vec3d eye;
+  Vec3d forward;  ///< Unit length.
+  Vec3d right;  ///< In world units per unit of distance along `forward`: half the picture's width.
+  Vec3d up;     ///< Likewise half its height.
+  int width = 1, height = 1;
+
+  /// Through the point (x,y) of the picture, in pixels from its top left corner. Its component
+  /// along `forward` is 1, so that a ray's t is its depth.
+  VOXDAG_HD Vec3d direction(double x, double y) const {
+    return forward + right * (2 * x / width - 1) + up * (1 - 2 * y / height);
+  }
+  /// The width of a pixel at depth 1, in world units.
+  VOXDAG_HD double pixel_size() const { return 2 * std::sqrt(dot(up, up)) / height; }
+};
+
+VOXDAG_HD inline Camera make_camera(const View& view, int width, int height) {
+  constexpr double kRadiansPerDegree = 0.017453292519943295;
+  Camera camera;
+  camera.eye = view.eye;
+  camera.width = width;
+  camera.height = height;
+  camera.forward = normalized(view.target - view.eye);
+  const Vec3d right = normalized(cross(camera.forward, view.up));
+  const double half_height = std::tan(view.vertical_fov_degrees * kRadiansPerDegree / 2);
+  camera.up = cross(right, camera.forward) * half_height;
+  camera.right = right * (half_height * width / height);
+  return camera;
+}
+
+}  // namespace voxdag

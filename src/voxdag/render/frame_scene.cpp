@@ -1,0 +1,248 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/render/camera.hpp"
+#include "voxdag/render/coarse_cells.hpp"
+#include "voxdag/render/view.hpp"
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/stop_below_size.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
+constexpr double kPi = 3.14159265358979323846;
+
+double length(Vec3d v) { return std::sqrt(dot(v, v)); }
+
+/// Meshes have y up, unless the scene lies flat on z or stands on much more of z than of y.
+Vec3d guess_up(const CoarseCells& scene) {
+  const Vec3d y{0, 1, 0}, z{0, 0, 1};
+  if (scene.cells().empty()) return y;
+  const Vec3i size = scene.bounds().hi - scene.bounds().lo;
+  if (size.z * 3 < std::min(size.x, size.y)) return z;
+  if (size.y * 3 < std::min(size.x, size.z)) return y;
+  const std::int32_t depth = std::max(1, scene.side() / 40);
+  return scene.side_cover(2, true, depth) > 2.5 * scene.side_cover(1, true, depth) ? z : y;
+}
+
+/// Two unit vectors that with `up` make a right-handed frame: east, north, up.
+struct Compass {
+  Vec3d east, north, up;
+
+  explicit Compass(Vec3d upwards) : up(normalized(upwards)) {
+    const Vec3d reference = std::fabs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
+    north = normalized(cross(up, reference));
+    east = cross(north, up);
+  }
+  Vec3d direction(double yaw, double pitch) const {
+    return (east * std::cos(yaw) + north * std::sin(yaw)) * std::cos(pitch) + up * std::sin(pitch);
+  }
+};
+
+/// Casts rays into a scene at the detail that matters for choosing a view.
+class Explorer {
+ public:
+  Explorer(const SvdagView& dag, const Grid& grid)
+      : nodes_(dag), grid_(grid), stop_{std::ldexp(1.0f, -9), 0, 2} {}
+
+  /// Distance in world units to what a unit direction meets; +infinity if nothing.
+  double distance(Vec3d from, Vec3d direction) const {
+    const GridRay ray = make_grid_ray(grid_, from, direction, 0, HUGE_VAL);
+    CellHit cell;
+    if (!cast(nodes_, ray, stop_, cell)) return HUGE_VAL;
+    return ray.to_world_t(static_cast<double>(cell.t));
+  }
+
+ private:
+  SvdagNodes nodes_;
+  Grid grid_;
+  StopBelowSize stop_;
+};
+
+/// The camera outside, looking along `forward`, whose picture the scene just fills.
+View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward, Vec3d up,
+                       double fov, double aspect) {
+  View view;
+  view.up = up;
+  view.vertical_fov_degrees = fov;
+  view.eye = {};
+  view.target = forward;
+  const Camera camera = make_camera(view, 1, 1);
+  const Vec3d right = normalized(camera.right), camera_up = normalized(camera.up);
+  constexpr double kMargin = 1.06;
+  const double tan_y = std::tan(fov * kPi / 360) / kMargin, tan_x = tan_y * aspect;
+
+  // A point (x,y,z) along right, up, forward is in the picture if |x - ex| <= tan_x * (z - ez), and
+  // likewise for y: four half-spaces. How far the scene reaches along their normals gives the eye
+  // that is farthest forward.
+  const Vec3d& ahead = camera.forward;
+  const Vec3d normals[] = {right - ahead * tan_x,
+                           -right - ahead * tan_x,
+                           camera_up - ahead * tan_y,
+                           -camera_up - ahead * tan_y,
+                           ahead,
+                           -ahead};
+  double reach[6];
+  std::fill(std::begin(reach), std::end(reach), -HUGE_VAL);
+  const double cell_size =
+      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const auto extend = [&](Vec3d middle, double side) {
+    for (int i = 0; i < 6; ++i) {
+      const Vec3d n = normals[i];
+      const double half = side / 2 * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
+      reach[i] = std::max(reach[i], dot(middle, n) + half);
+    }
+  };
+  for (const Vec3i cell : scene.cells())
+    extend(grid.origin + (static_cast<Vec3d>(cell) + Vec3d{0.5, 0.5, 0.5}) * cell_size, cell_size);
+  if (scene.cells().empty())
+    extend((grid.bounds().lo + grid.bounds().hi) * 0.5, cell_size * scene.side());
+  const double x = (reach[0] - reach[1]) / 2, y = (reach[2] - reach[3]) / 2;
+  const double far = reach[4], near = -reach[5];
+  const double z = std::min({-(reach[0] + reach[1]) / (2 * tan_x),
+                             -(reach[2] + reach[3]) / (2 * tan_y), near - cell_size});
+  view.eye = right * x + camera_up * y + camera.forward * z;
+  view.target = view.eye + camera.forward * ((near + far) / 2 - z);
+  return view;
+}
+
+/// A roomy place inside the scene and the best direction there; score 0 if there is none.
+struct InsideView {
+  double score = 0;
+  View view;
+};
+
+/// What makes a good view from inside: far to see, little right before the camera, little sky.
+double view_score(const Explorer& explorer, const Camera& camera, double size) {
+  constexpr int kColumns = 10, kRows = 6;
+  double sum = 0;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column) {
+      const Vec3d ray = normalized(camera.direction((column + 0.5) * camera.width / kColumns,
+                                                    (row + 0.5) * camera.height / kRows));
+      const double distance = explorer.distance(camera.eye, ray) / size;
+      if (distance < 0.04)
+        sum -= 1;
+      else if (distance < HUGE_VAL)
+        sum += 1 + std::log2(std::min(distance, 0.6) / 0.04);
+    }
+  return sum / (kColumns * kRows);
+}
+
+InsideView best_inside_view(const CoarseCells& scene, const Explorer& explorer, const Grid& grid,
+                            const Compass& compass, double fov, double aspect) {
+  constexpr int kPlaces = 160, kDirections = 48, kYaws = 24;
+  const double cell_size =
+      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const Vec3d lo = grid.origin + static_cast<Vec3d>(scene.bounds().lo) * cell_size;
+  const Vec3d extent = static_cast<Vec3d>(scene.bounds().hi - scene.bounds().lo) * cell_size;
+  const double size = length(extent);
+  InsideView best;
+  for (int place = 0; place < kPlaces; ++place) {
+    // The R3 sequence; low places, where people stand, rather than high ones.
+    double u[3] = {0.8191725134, 0.6710436067, 0.5497004779};
+    for (double& c : u) c = c * (place + 1) - std::floor(c * (place + 1));
+    const double height = 0.12 + 0.38 * u[2];
+    Vec3d eye = lo + extent * 0.5;
+    eye = eye + compass.east * (dot(extent, {std::fabs(compass.east.x), std::fabs(compass.east.y),
+                                             std::fabs(compass.east.z)}) *
+                                (0.8 * u[0] - 0.4));
+    eye =
+        eye + compass.north * (dot(extent, {std::fabs(compass.north.x), std::fabs(compass.north.y),
+                                            std::fabs(compass.north.z)}) *
+                               (0.8 * u[1] - 0.4));
+    eye = eye + compass.up * (dot(extent, {std::fabs(compass.up.x), std::fabs(compass.up.y),
+                                           std::fabs(compass.up.z)}) *
+                              (height - 0.5));
+
+    int met = 0, close = 0;
+    for (int i = 0; i < kDirections; ++i) {
+      const double rise = 1 - 2 * (i + 0.5) / kDirections;
+      const double distance =
+          explorer.distance(eye, compass.direction(i * 2.399963, std::asin(rise)));
+      met += distance < HUGE_VAL ? 1 : 0;
+      close += distance < 0.02 * size ? 1 : 0;
+    }
+    if (met < kDirections * 3 / 4 || close > 0) continue;
+    for (int i = 0; i < kYaws; ++i) {
+      View view;
+      view.eye = eye;
+      view.target = eye + compass.direction(2 * kPi * i / kYaws, -0.02) * (size / 4);
+      view.up = compass.up;
+      view.vertical_fov_degrees = fov;
+      const Camera camera = make_camera(view, 1000, static_cast<int>(1000 / aspect) + 1);
+      const double score = view_score(explorer, camera, size);
+      if (score > best.score) best = {score, view};
+    }
+  }
+  return best;
+}
+
+bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+void check(const View& view) {
+  if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
+    throw Error("the camera's coordinates must be finite");
+  if (!(view.vertical_fov_degrees > 0 && view.vertical_fov_degrees < 180))
+    throw Error("the camera's field of view must lie between 0 and 180 degrees");
+  const Vec3d forward = view.target - view.eye;
+  if (!(length(forward) > 0)) throw Error("the camera's eye and target are the same point");
+  if (!(length(view.up) > 0)) throw Error("the camera's up vector is zero");
+  if (!(length(cross(normalized(forward), normalized(view.up))) > 1e-6))
+    throw Error("the camera's up vector points along the view");
+}
+
+}  // namespace
+
+View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
+                 const ViewRequest& request) {
+  View view;
+  view.up = request.up.value_or(view.up);
+  view.vertical_fov_degrees = request.vertical_fov_degrees.value_or(kInsideFov);
+  if (request.eye && request.target) {
+    if (!request.up) view.up = guess_up(CoarseCells(dag, 6));
+    view.eye = *request.eye;
+    view.target = *request.target;
+    check(view);
+    return view;
+  }
+
+  constexpr int kCoarseLevel = 7;
+  const CoarseCells scene(dag, kCoarseLevel);
+  if (!request.up) view.up = guess_up(scene);
+  view.eye = request.eye.value_or(Vec3d{});
+  view.target = view.eye + Vec3d{0.6, 0.5, 0.4};
+  check(view);  // before up and angle are put to use
+  const Compass compass(view.up);
+  if (request.eye) {
+    const Vec3i twice_middle = scene.bounds().lo + scene.bounds().hi;
+    const Vec3d middle = scene.cells().empty()
+                             ? Vec3d{0.5, 0.5, 0.5} * static_cast<double>(scene.side())
+                             : static_cast<Vec3d>(twice_middle) * 0.5;
+    view.target = grid.to_world(middle * static_cast<double>(grid.resolution() / scene.side()));
+    check(view);
+    return view;
+  }
+
+  const bool may_be_inside = !request.target && scene.hidden_share() > 0.4;
+  if (may_be_inside) {
+    const InsideView inside = best_inside_view(scene, Explorer(dag, grid), grid, compass,
+                                               view.vertical_fov_degrees, aspect);
+    if (inside.score > 0) return inside.view;
+  }
+  const double fov = request.vertical_fov_degrees.value_or(kOutsideFov);
+  const Vec3d forward = compass.direction(2.2, -0.42);
+  View outside = view_from_outside(scene, grid, forward, view.up, fov, aspect);
+  if (request.target) {
+    outside.eye = outside.eye + (*request.target - outside.target);
+    outside.target = *request.target;
+  }
+  check(outside);
+  return outside;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,86 @@
+#pragma once
+/// A smooth normal for a cell, from the cells around it.
+///
+/// Voxels of a surface lie in a layer. Let C be the covariance of the occupied cells within 4.5
+/// cells of the one in question, with weights that fall to zero at that distance. Its eigenvalues
+/// are small across the layer and large along it, so that a power of its inverse turns any vector
+/// into the layer's normal: C^-4 v, with v the direction to the viewer. That needs no eigenvectors,
+/// always faces the viewer, rounds edges over a few cells, gives hair a normal across its axis, and
+/// falls back to v where there is no layer at all.
+#include "voxdag/core/bits.hpp"
+#include "voxdag/render/camera.hpp"
+#include "voxdag/trace/cell_block.hpp"
+
+namespace voxdag {
+
+/// A symmetric 3×3 matrix.
+struct SymmetricMatrix {
+  float xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+  VOXDAG_HD Vec3f operator*(Vec3f v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
+            xz * v.x + yz * v.y + zz * v.z};
+  }
+  VOXDAG_HD void add_outer_product(Vec3f v, float weight) {
+    xx += weight * v.x * v.x;
+    yy += weight * v.y * v.y;
+    zz += weight * v.z * v.z;
+    xy += weight * v.x * v.y;
+    xz += weight * v.x * v.z;
+    yz += weight * v.y * v.z;
+  }
+  /// The inverse times the determinant.
+  VOXDAG_HD SymmetricMatrix adjugate() const {
+    return {yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy,
+            xz * yz - xy * zz, xy * yz - xz * yy, xy * xz - xx * yz};
+  }
+};
+
+/// The normal, of unit length, of the surface at `cell` of `level` (2..L); `view` is the unit
+/// vector towards the viewer, with which it has a positive dot product.
+template <class Nodes>
+VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f view) {
+  constexpr float kRadius2 = 4.5f * 4.5f;
+  // Of the 4³ blocks around the cell the two on each axis that reach at least 4 cells to either
+  // side.
+  const auto first = [](std::int32_t i) { return (i >> 2) - ((i & 3) < 2 ? 1 : 0); };
+  const Vec3i block{first(cell.x), first(cell.y), first(cell.z)};
+  float weight = 0;
+  Vec3f mean{};
+  SymmetricMatrix moments;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3i at = block + Vec3i{corner & 1, corner >> 1 & 1, corner >> 2};
+    std::uint64_t cells = cell_block(nodes, level, at);
+    const Vec3f base = static_cast<Vec3f>(at * 4 - cell);
+    for (; cells != 0; cells &= cells - 1) {
+      const auto i = static_cast<std::uint32_t>(lowest_bit64(cells));
+      const Vec3f d = base + Vec3f{static_cast<float>((i & 1u) | (i >> 2 & 2u)),
+                                   static_cast<float>((i >> 1 & 1u) | (i >> 3 & 2u)),
+                                   static_cast<float>((i >> 2 & 1u) | (i >> 4 & 2u))};
+      const float fall = 1 - dot(d, d) * (1 / kRadius2);
+      if (fall <= 0) continue;
+      const float w = fall * fall;
+      weight += w;
+      mean = mean + d * w;
+      moments.add_outer_product(d, w);
+    }
+  }
+  if (!(weight > 0)) return view;
+  mean = mean * (1 / weight);
+  // A cell's own extent, 1/12, keeps the matrix regular.
+  SymmetricMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
+  const float scale = 1 / weight;
+  covariance.xx += moments.xx * scale;
+  covariance.yy += moments.yy * scale;
+  covariance.zz += moments.zz * scale;
+  covariance.xy += moments.xy * scale;
+  covariance.xz += moments.xz * scale;
+  covariance.yz += moments.yz * scale;
+  covariance.add_outer_product(mean, -1);
+  const SymmetricMatrix inverse = covariance.adjugate();
+  Vec3f normal = view;
+  for (int i = 0; i < 4; ++i) normal = normalized(inverse * normal);
+  return normal;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,32 @@
+#pragma once
+/// Where a picture is taken from, and the views that show a scene when nobody says.
+#include <optional>
+
+#include "voxdag/core/grid.hpp"
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// World units. The picture's vertical axis is `up` as far as the view direction allows.
+struct View {
+  Vec3d eye{0, 0, 1};
+  Vec3d target{};
+  Vec3d up{0, 1, 0};
+  double vertical_fov_degrees = 40;
+};
+
+/// The parts of a view that the caller wants; frame_scene finds the rest.
+struct ViewRequest {
+  std::optional<Vec3d> eye, target, up;
+  std::optional<double> vertical_fov_degrees;
+};
+
+/// The view that was asked for, completed so that it shows the scene well in a picture of
+/// `aspect` = width / height. Without an up vector: y, or z where the scene lies or stands on that
+/// axis. Without an eye: from above one corner with all voxels in the picture, or from inside where
+/// most voxels cannot be seen from outside and there is room to look around. A valid view even for
+/// an empty DAG. Deterministic; some ten milliseconds. Throws Error for a request that names no
+/// view: numbers that are not finite, eye = target, an angle not in (0,180), up along the view.
+View frame_scene(const SvdagView& dag, const Grid& grid, double aspect, const ViewRequest& request);
+
+}  // namespace voxdag

@@ -1,0 +1,37 @@
+#pragma once
+/// Level of detail: ends a cast at cells that are too small to matter where they are.
+///
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1: the size of
+/// the cell against a linear function of t.
+#include <cstdint>
+
+#include "voxdag/core/bits.hpp"
+#include "voxdag/trace/grid_ray.hpp"
+
+namespace voxdag {
+
+/// A termination hook for cast(): true for cells of level `coarsest_level` or finer whose side is
+/// at most at_start + per_t * T. Sides are in units of the grid's side, so that level l has 2^-l.
+struct StopBelowSize {
+  float at_start = 0;
+  float per_t = 0;
+  int coarsest_level = 2;
+
+  VOXDAG_HD bool operator()(int level, float t_enter, float /*t_exit*/) const {
+    const float side = float_from_bits(static_cast<std::uint32_t>(127 - level) << 23);
+    return level >= coarsest_level && side <= at_start + per_t * t_enter;
+  }
+};
+
+/// Ends the cast of `ray` at cells whose side is at most `size_per_t` * t, in world units; the
+/// ray's apex is at t = 0, as it is for a pixel's footprint.
+VOXDAG_HD inline StopBelowSize stop_below_size(const Grid& grid, const GridRay& ray,
+                                               double size_per_t) {
+  const double scale = size_per_t / (grid.voxel_size * static_cast<double>(grid.resolution()));
+  StopBelowSize stop;
+  stop.at_start = static_cast<float>(scale * ray.t_start);
+  stop.per_t = static_cast<float>(scale * ray.t_scale);
+  return stop;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,132 @@
+#include "voxdag/cpu/render_image.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
+#include "support/brute_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr int kLevels = 6;
+
+Grid test_grid() {
+  Grid grid;
+  grid.levels = kLevels;
+  grid.origin = {-1, -1, -1};
+  grid.voxel_size = 2.0 / 64;
+  return grid;
+}
+
+/// A floor at y < 8 voxels and a block on it.
+Svdag block_on_a_floor() {
+  std::vector<Vec3i> voxels;
+  for (std::int32_t z = 0; z < 64; ++z)
+    for (std::int32_t x = 0; x < 64; ++x)
+      for (std::int32_t y = 6; y < 40; ++y) {
+        const bool is_block = std::min(x, z) >= 24 && std::max(x, z) < 40;
+        if (y < 8 || is_block) voxels.push_back({x, y, z});
+      }
+  return brute_svdag(kLevels, voxels);
+}
+
+RenderOptions small_picture() {
+  RenderOptions options;
+  options.width = 97;
+  options.height = 61;
+  options.shade.lod_pixels = 0;
+  return options;
+}
+
+TEST(RenderImage, PixelsDoNotDependOnThreads) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.samples_per_pixel = 3;
+  RenderedImage first;
+  for (const int threads : {1, 2, 7}) {
+    RenderedImage image;
+    tbb::task_arena(threads).execute(
+        [&] { image = render_image(dag.view(), test_grid(), options); });
+    if (threads == 1) first = image;
+    EXPECT_EQ(image.rgb, first.rgb);
+    EXPECT_EQ(image.depth, first.depth);
+    EXPECT_EQ(image.normal, first.normal);
+    EXPECT_EQ(image.rays, first.rays);
+  }
+}
+
+TEST(RenderImage, DepthOfAFacingPlaneIsItsDistance) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.view.eye = {0.1, 3, 0.2};  // above the block, whose top is at y = -1 + 40 / 32
+  options.view.target = {0.1, 0, 0.2};
+  options.view.up = {0, 0, -1};
+  options.view.vertical_fov_degrees = 2;
+  const RenderedImage image = render_image(dag.view(), test_grid(), options);
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    EXPECT_NEAR(image.depth[i], 3 - 0.25, 1e-5);
+    EXPECT_NEAR(image.normal[i].y, 1, 0.02);
+  }
+}
+
+TEST(RenderImage, TheBlockShadowsTheFloorAndNothingElseIsDark) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.view.eye = {0, 6, 3};
+  options.view.target = {0, -0.8, 0};
+  RenderedImage with = render_image(dag.view(), test_grid(), options);
+  options.shade.shadows = false;
+  RenderedImage without = render_image(dag.view(), test_grid(), options);
+  int floor = 0, darker = 0;
+  for (std::size_t i = 0; i < with.rgb.size(); ++i) {
+    const bool is_darker = with.rgb[i].x < without.rgb[i].x;
+    EXPECT_LE(with.rgb[i].x, without.rgb[i].x);
+    const Vec3f n = with.normal[i];
+    if (n.y > 0.999f && with.depth[i] > 6) {
+      ++floor;
+      darker += is_darker ? 1 : 0;
+    }
+  }
+  EXPECT_GT(darker, floor / 50);
+  EXPECT_LT(darker, floor / 2);
+}
+
+TEST(RenderImage, ASlantedPlaneDoesNotShadowItself) {
+  std::vector<Vec3i> voxels;
+  for (std::int32_t z = 0; z < 64; ++z)
+    for (std::int32_t x = 0; x < 64; ++x) voxels.push_back({x, (2 * x + z) / 5 + 5, z});
+  const Svdag dag = brute_svdag(kLevels, voxels);
+  RenderOptions options = small_picture();
+  const RenderedImage with = render_image(dag.view(), test_grid(), options);
+  options.shade.shadows = false;
+  EXPECT_EQ(with.rgb, render_image(dag.view(), test_grid(), options).rgb);
+}
+
+TEST(RenderImage, AnEmptySceneIsSky) {
+  const RenderedImage image = render_image(Svdag{}.view(), Grid{}, small_picture());
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    EXPECT_TRUE(std::isinf(image.depth[i]));
+    EXPECT_EQ(image.normal[i], Vec3f{});
+    EXPECT_GT(image.rgb[i].z, 0);
+  }
+}
+
+TEST(RenderImage, RefusesImpossibleSizesAndStopsWhenCancelled) {
+  const Svdag dag = block_on_a_floor();
+  for (const auto [width, height, samples] : {std::array{0, 10, 1}, std::array{10, -1, 1},
+                                              std::array{10, 70000, 1}, std::array{9, 9, 0}}) {
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    options.samples_per_pixel = samples;
+    EXPECT_THROW(render_image(dag.view(), test_grid(), options), Error);
+  }
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(render_image(dag.view(), test_grid(), small_picture(), &progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace voxdag

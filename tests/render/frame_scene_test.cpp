@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/brute_svdag.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/render/camera.hpp"
+#include "voxdag/render/view.hpp"
+
+namespace voxdag {
+namespace {
+
+Grid grid_of(int levels) {
+  Grid grid;
+  grid.levels = levels;
+  grid.origin = {100, -20, 3};
+  grid.voxel_size = 0.25;
+  return grid;
+}
+
+bool is_in_picture(const View& view, double aspect, Vec3d point) {
+  const Camera camera = make_camera(view, 1000, static_cast<int>(1000 / aspect));
+  const Vec3d d = point - camera.eye;
+  const double depth = dot(d, camera.forward);
+  const double x = dot(d, camera.right) / dot(camera.right, camera.right) / depth;
+  const double y = dot(d, camera.up) / dot(camera.up, camera.up) / depth;
+  return depth > 0 && std::fabs(x) <= 1 && std::fabs(y) <= 1;
+}
+
+TEST(FrameScene, ShowsEveryVoxelOfAnObject) {
+  const int levels = 6;
+  const Grid grid = grid_of(levels);
+  for (const double aspect : {0.4, 1.0, 1.78, 4.0}) {
+    std::vector<Vec3i> voxels;  // two rods that cross: nothing is hidden
+    for (std::int32_t i = 0; i < 60; ++i) {
+      voxels.push_back({i, 20, 30});
+      voxels.push_back({11, i, 31});
+    }
+    const Svdag dag = brute_svdag(levels, voxels);
+    const View view = frame_scene(dag.view(), grid, aspect, {});
+    for (const Vec3i v : voxels)
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3i p = v + Vec3i{corner & 1, corner >> 1 & 1, corner >> 2};
+        EXPECT_TRUE(is_in_picture(view, aspect, grid.to_world(static_cast<Vec3d>(p))));
+      }
+  }
+}
+
+TEST(FrameScene, TakesZForUpWhereTheSceneLiesOnIt) {
+  std::vector<Vec3i> voxels;
+  for (std::int32_t y = 0; y < 64; ++y)
+    for (std::int32_t x = 0; x < 64; ++x) voxels.push_back({x, y, 5});
+  const Svdag dag = brute_svdag(6, voxels);
+  EXPECT_EQ(frame_scene(dag.view(), grid_of(6), 1.5, {}).up, (Vec3d{0, 0, 1}));
+  for (Vec3i& v : voxels) v = {v.x, v.z, v.y};
+  const Svdag flat = brute_svdag(6, voxels);
+  EXPECT_EQ(frame_scene(flat.view(), grid_of(6), 1.5, {}).up, (Vec3d{0, 1, 0}));
+}
+
+/// A closed box of 64³ voxels with pillars and shelves.
+Svdag room() {
+  std::vector<Vec3i> voxels;
+  for (std::int32_t z = 0; z < 64; ++z)
+    for (std::int32_t y = 0; y < 64; ++y)
+      for (std::int32_t x = 0; x < 64; ++x) {
+        const bool is_wall = std::min({x, y, z}) == 0 || std::max({x, y, z}) == 63;
+        const bool is_pillar = (x / 4 == 4 || x / 4 == 11) && (z / 4 == 4 || z / 4 == 11);
+        const bool is_shelf = y % 6 == 0 && (z < 9 || z > 54 || x < 9 || x > 54);
+        if (is_wall || is_pillar || is_shelf) voxels.push_back({x, y, z});
+      }
+  return brute_svdag(6, voxels);
+}
+
+TEST(FrameScene, LooksFromInsideWhereTheSceneIsARoom) {
+  const Svdag dag = room();
+  const Grid grid = grid_of(6);
+  const View view = frame_scene(dag.view(), grid, 1.5, {});
+  const Vec3d eye = grid.to_grid(view.eye);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_GT(eye[axis], 1);
+    EXPECT_LT(eye[axis], 63);
+  }
+}
+
+TEST(FrameScene, KeepsWhatIsAskedFor) {
+  const Svdag dag = room();
+  const Grid grid = grid_of(6);
+  ViewRequest request;
+  request.eye = {1, 2, 3};
+  request.target = {4, 5, 7};
+  request.up = {0, 0, 1};
+  request.vertical_fov_degrees = 12;
+  const View view = frame_scene(dag.view(), grid, 1.5, request);
+  EXPECT_EQ(view.eye, *request.eye);
+  EXPECT_EQ(view.target, *request.target);
+  EXPECT_EQ(view.up, *request.up);
+  EXPECT_EQ(view.vertical_fov_degrees, 12);
+
+  ViewRequest eye_only;
+  eye_only.eye = {1, 2, 3};
+  EXPECT_EQ(frame_scene(dag.view(), grid, 1.5, eye_only).target, grid.to_world({32, 32, 32}));
+  ViewRequest target_only;
+  target_only.target = {100, 0, 0};
+  EXPECT_EQ(frame_scene(dag.view(), grid, 1.5, target_only).target, *target_only.target);
+}
+
+TEST(FrameScene, AnEmptySceneHasAView) {
+  const View view = frame_scene(Svdag{}.view(), Grid{}, 1, {});
+  EXPECT_TRUE(std::isfinite(view.eye.x) && std::isfinite(view.target.x));
+}
+
+TEST(FrameScene, RefusesWhatIsNoView) {
+  const Svdag dag = brute_svdag(3, {{1, 2, 3}});
+  const auto frame = [&](auto&& change) {
+    ViewRequest request;
+    change(request);
+    return frame_scene(dag.view(), grid_of(3), 1, request);
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(frame([](auto& r) { r.eye = {kNan, 0, 0}; }), Error);
+  EXPECT_THROW(frame([](auto& r) { r.up = {0, 0, 0}; }), Error);
+  EXPECT_THROW(frame([](auto& r) { r.vertical_fov_degrees = 0; }), Error);
+  EXPECT_THROW(frame([](auto& r) { r.vertical_fov_degrees = 180; }), Error);
+  EXPECT_THROW(frame([](auto& r) { r.eye = r.target = {1, 1, 1}; }), Error);
+  EXPECT_THROW(frame([](auto& r) {
+                 r.eye = {0, 0, 0};
+                 r.target = {0, 2, 0};
+                 r.up = {0, -1, 0};
+               }),
+               Error);
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,89 @@
+#include "voxdag/render/surface_normal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "support/brute_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr int kLevels = 6;
+constexpr double kDegrees = 57.29577951308232;
+
+/// The voxels near the zero set of `distance`, a signed distance in voxels: a layer.
+std::vector<Vec3i> surface_voxels(const std::function<double(Vec3d)>& distance) {
+  std::vector<Vec3i> voxels;
+  const std::int32_t n = 1 << kLevels;
+  for (std::int32_t z = 0; z < n; ++z)
+    for (std::int32_t y = 0; y < n; ++y)
+      for (std::int32_t x = 0; x < n; ++x)
+        if (std::fabs(distance(Vec3d{x + 0.5, y + 0.5, z + 0.5})) < 0.7)
+          voxels.push_back({x, y, z});
+  return voxels;
+}
+
+double degrees_between(Vec3f a, Vec3d b) {
+  return std::acos(std::min(1.0, dot(static_cast<Vec3d>(a), normalized(b)))) * kDegrees;
+}
+
+TEST(SurfaceNormal, OfPlanesIsWithinAFewDegrees) {
+  for (const Vec3d normal :
+       {Vec3d{0, 0, 1}, Vec3d{0.3, -0.2, 1}, Vec3d{1, 1, 1}, Vec3d{-1, 0.05, 0.4}}) {
+    const Vec3d unit = normalized(normal);
+    const auto voxels = surface_voxels([&](Vec3d p) { return dot(p - Vec3d{32, 32, 32}, unit); });
+    const Svdag dag = brute_svdag(kLevels, voxels);
+    // Seen along the normal and from 60 degrees off it.
+    const Vec3d aside = normalized(cross(unit, Vec3d{0.3, 0.5, -0.8}));
+    for (const Vec3d view : {unit, unit * 0.5 + aside * 0.866})
+      for (const Vec3i v : voxels) {
+        const Vec3i m = v - Vec3i{32, 32, 32};
+        if (dot(m, m) > 200) continue;
+        const Vec3f estimate = surface_normal(SvdagNodes(dag.view()), kLevels, v,
+                                              static_cast<Vec3f>(normalized(view)));
+        ASSERT_LT(degrees_between(estimate, unit), 4) << normal.x << ' ' << normal.y;
+      }
+  }
+}
+
+TEST(SurfaceNormal, OfASphereFollowsItsRadius) {
+  const Vec3d centre{32.2, 31.7, 32.4};
+  const auto voxels =
+      surface_voxels([&](Vec3d p) { return std::sqrt(dot(p - centre, p - centre)) - 25; });
+  const Svdag dag = brute_svdag(kLevels, voxels);
+  for (const Vec3i v : voxels) {
+    const Vec3d radial = normalized(static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5} - centre);
+    const Vec3f estimate =
+        surface_normal(SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(radial));
+    // The cells within 4.5 of one on a sphere of radius 25 lean by up to 10 degrees to either side.
+    ASSERT_LT(degrees_between(estimate, radial), 7);
+  }
+}
+
+TEST(SurfaceNormal, FacesTheViewerFromBothSides) {
+  const auto voxels = surface_voxels([](Vec3d p) { return p.y - 32.5; });
+  const Svdag dag = brute_svdag(kLevels, voxels);
+  for (const float side : {1.0f, -1.0f}) {
+    const Vec3f n = surface_normal(SvdagNodes(dag.view()), kLevels, {20, 32, 20}, {0, side, 0});
+    EXPECT_NEAR(n.y, side, 1e-4f);
+  }
+}
+
+TEST(SurfaceNormal, OfALoneVoxelIsTheViewDirection) {
+  const Svdag dag = brute_svdag(kLevels, {{5, 6, 7}});
+  const Vec3f view = normalized(Vec3f{1, 2, -3});
+  const Vec3f n = surface_normal(SvdagNodes(dag.view()), kLevels, {5, 6, 7}, view);
+  EXPECT_GT(dot(n, view), 0.9999f);
+}
+
+TEST(SurfaceNormal, ReadsCoarserLevels) {
+  const Vec3d unit = normalized(Vec3d{1, 2, 2});
+  const auto voxels = surface_voxels([&](Vec3d p) { return dot(p - Vec3d{32, 32, 32}, unit); });
+  const Svdag dag = brute_svdag(kLevels, voxels);
+  const Vec3f n = surface_normal(SvdagNodes(dag.view()), 5, {16, 16, 16}, static_cast<Vec3f>(unit));
+  EXPECT_LT(degrees_between(n, unit), 6);
+}
+
+}  // namespace
+}  // namespace voxdag
