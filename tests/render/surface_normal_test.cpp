@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "support/brute_svdag.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -52,13 +53,17 @@ TEST(SurfaceNormal, OfASphereFollowsItsRadius) {
   const auto voxels =
       surface_voxels([&](Vec3d p) { return std::sqrt(dot(p - centre, p - centre)) - 25; });
   const Svdag dag = brute_svdag(kLevels, voxels);
+  double sum = 0;
   for (const Vec3i v : voxels) {
     const Vec3d radial = normalized(static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5} - centre);
     const Vec3f estimate =
         surface_normal(SvdagNodes(dag.view()), kLevels, v, static_cast<Vec3f>(radial));
+    const double error = degrees_between(estimate, radial);
     // The cells within 4.5 of one on a sphere of radius 25 lean by up to 10 degrees to either side.
-    ASSERT_LT(degrees_between(estimate, radial), 7);
+    ASSERT_LT(error, 10);
+    sum += error;
   }
+  EXPECT_LT(sum / static_cast<double>(voxels.size()), 2.5);
 }
 
 TEST(SurfaceNormal, FacesTheViewerFromBothSides) {

@@ -19,6 +19,15 @@ VOXDAG_HD inline int popcount(std::uint32_t v) {
 #endif
 }
 
+/// Of a value below 256. Without a call where the instruction set has no population count.
+VOXDAG_HD inline int popcount8(std::uint32_t v) {
+#if defined(__CUDA_ARCH__) || defined(__POPCNT__)
+  return popcount(v);
+#else
+  return static_cast<int>(((v * 0x08040201u >> 3) & 0x11111111u) * 0x11111111u >> 28);
+#endif
+}
+
 VOXDAG_HD inline int popcount64(std::uint64_t v) {
 #if defined(__CUDA_ARCH__)
   return __popcll(v);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cmath>
 
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/tone_map.hpp"
@@ -35,10 +36,33 @@ Sky make_sky(const Camera& camera, const View& view) {
   Sky sky;
   const Vec3d up = normalized(view.up);
   const Vec3d right = normalized(camera.right);
-  Vec3d back = cross(right, up);
+  const Vec3d back = cross(right, up);
   sky.up = static_cast<Vec3f>(up);
-  sky.sun = static_cast<Vec3f>(normalized(up * 0.95 - right * 0.62 + back * 0.40));
+  sky.sun = static_cast<Vec3f>(normalized(up * 0.9 - right * 0.6 + back * 0.25));
+  sky.fill = static_cast<Vec3f>(right);
   return sky;
+}
+
+/// The factor that gives the picture's surfaces a middling brightness, from a sparse grid of
+/// samples. Between what suits a sunlit object and what a closed room needs.
+float automatic_exposure(const SvdagNodes& nodes, const Grid& grid, const Camera& camera,
+                         const Sky& sky, const ShadeOptions& options) {
+  constexpr int kColumns = 48, kRows = 32;
+  constexpr float kMiddle = 0.33f, kLeast = 0.42f, kMost = 0.9f;
+  double sum = 0;
+  int count = 0;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column) {
+      const Sample sample =
+          shade_sample(nodes, grid, camera, sky, options, (column + 0.5) * camera.width / kColumns,
+                       (row + 0.5) * camera.height / kRows);
+      if (std::isinf(sample.depth)) continue;
+      sum +=
+          std::log(static_cast<double>(dot(sample.radiance, {0.2126f, 0.7152f, 0.0722f})) + 1e-3);
+      ++count;
+    }
+  if (count == 0) return kLeast;
+  return std::clamp(kMiddle / static_cast<float>(std::exp(sum / count)), kLeast, kMost);
 }
 
 }  // namespace
@@ -60,6 +84,9 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
   const Camera camera = make_camera(image.view, width, height);
   const Sky sky = make_sky(camera, image.view);
   const SvdagNodes nodes(dag);
+  const float exposure = options.shade.exposure > 0
+                             ? options.shade.exposure
+                             : automatic_exposure(nodes, grid, camera, sky, options.shade);
   const auto render_pixel = [&](int x, int y) {
     const std::size_t at =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -70,7 +97,7 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
       sample_offset(i, dx, dy);
       const Sample sample = shade_sample(nodes, grid, camera, sky, options.shade, x + dx, y + dy);
       // Averaging what the display will show keeps the edges of bright things smooth.
-      sum = sum + tone_map(sample.radiance * options.shade.exposure);
+      sum = sum + tone_map(sample.radiance * exposure);
       rays += static_cast<std::uint64_t>(sample.rays);
       if (i > 0) continue;
       image.depth[at] = sample.depth;

@@ -69,7 +69,7 @@ VOXDAG_HD inline std::uint32_t child_mask(const std::uint32_t* node) { return no
 
 /// The pointer to child `index`, which must be present.
 VOXDAG_HD inline std::uint32_t child_pointer(const std::uint32_t* node, int index) {
-  return node[1 + popcount(node[0] & ((1u << index) - 1u))];
+  return node[1 + popcount8(node[0] & ((1u << index) - 1u))];
 }
 
 /// The child mask of a leaf block as a node of level L-2: bit i tells if octant i has voxels.

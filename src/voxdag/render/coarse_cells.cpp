@@ -43,27 +43,6 @@ bool CoarseCells::contains(Vec3i cell) const {
   return is_set_[index(cell)];
 }
 
-double CoarseCells::hidden_share() const {
-  if (cells_.empty()) return 0;
-  std::vector<bool> is_seen(is_set_.size());
-  for (int axis = 0; axis < 3; ++axis)
-    for (const bool from_below : {true, false})
-      for (std::int32_t a = 0; a < side(); ++a)
-        for (std::int32_t b = 0; b < side(); ++b) {
-          Vec3i cell;
-          cell[(axis + 1) % 3] = a;
-          cell[(axis + 2) % 3] = b;
-          for (std::int32_t i = 0; i < side(); ++i) {
-            cell[axis] = from_below ? i : side() - 1 - i;
-            if (!is_set_[index(cell)]) continue;
-            is_seen[index(cell)] = true;
-            break;
-          }
-        }
-  const auto seen = static_cast<double>(std::count(is_seen.begin(), is_seen.end(), true));
-  return 1 - seen / static_cast<double>(cells_.size());
-}
-
 double CoarseCells::side_cover(int axis, bool from_below, std::int32_t depth) const {
   if (cells_.empty()) return 0;
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -22,8 +22,6 @@ class CoarseCells {
   /// False outside of the grid.
   bool contains(Vec3i cell) const;
 
-  /// The share of the cells that no line along an axis reaches from outside.
-  double hidden_share() const;
   /// How much of one side of the bounds, seen along `axis` (from below if `from_below`), the cells
   /// within `depth` cells of it cover: 0 to 1.
   double side_cover(int axis, bool from_below, std::int32_t depth) const;

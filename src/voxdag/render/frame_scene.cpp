@@ -14,6 +14,9 @@ namespace voxdag {
 namespace {
 
 constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
+/// Open rooms, seen from inside, have less; the most folded objects, such as a statue in drapery,
+/// more.
+constexpr double kInsideOpenness = 0.29;
 constexpr double kPi = 3.14159265358979323846;
 
 double length(Vec3d v) { return std::sqrt(dot(v, v)); }
@@ -62,6 +65,36 @@ class Explorer {
   Grid grid_;
   StopBelowSize stop_;
 };
+
+/// Directions spread evenly over the sphere: a Fibonacci spiral.
+Vec3d sphere_direction(const Compass& compass, int i, int count) {
+  constexpr double kGoldenAngle = 2.399963229728653;
+  return compass.direction(i * kGoldenAngle, std::asin(1 - 2 * (i + 0.5) / count));
+}
+
+/// The share of directions in which a line from the scene's cells leaves the scene, on average:
+/// about a half for the surface of an object, little for the insides of a building.
+double openness(const CoarseCells& scene, const Explorer& explorer, const Grid& grid,
+                const Compass& compass) {
+  constexpr std::size_t kCells = 500;
+  constexpr int kDirections = 40;
+  const double cell_size =
+      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const std::size_t stride = std::max<std::size_t>(1, scene.cells().size() / kCells);
+  int lines = 0, open = 0;
+  for (std::size_t at = 0; at < scene.cells().size(); at += stride) {
+    const Vec3d middle =
+        grid.origin + (static_cast<Vec3d>(scene.cells()[at]) + Vec3d{0.5, 0.5, 0.5}) * cell_size;
+    for (int i = 0; i < kDirections; ++i) {
+      const Vec3d direction = sphere_direction(compass, i, kDirections);
+      // Two cells away the line is clear of the surface that it starts on, or will meet it.
+      const double distance = explorer.distance(middle + direction * (2 * cell_size), direction);
+      open += distance < HUGE_VAL ? 0 : 1;
+      ++lines;
+    }
+  }
+  return lines == 0 ? 1 : static_cast<double>(open) / lines;
+}
 
 /// The camera outside, looking along `forward`, whose picture the scene just fills.
 View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward, Vec3d up,
@@ -161,9 +194,7 @@ InsideView best_inside_view(const CoarseCells& scene, const Explorer& explorer, 
 
     int met = 0, close = 0;
     for (int i = 0; i < kDirections; ++i) {
-      const double rise = 1 - 2 * (i + 0.5) / kDirections;
-      const double distance =
-          explorer.distance(eye, compass.direction(i * 2.399963, std::asin(rise)));
+      const double distance = explorer.distance(eye, sphere_direction(compass, i, kDirections));
       met += distance < HUGE_VAL ? 1 : 0;
       close += distance < 0.02 * size ? 1 : 0;
     }
@@ -228,10 +259,11 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
     return view;
   }
 
-  const bool may_be_inside = !request.target && scene.hidden_share() > 0.4;
-  if (may_be_inside) {
-    const InsideView inside = best_inside_view(scene, Explorer(dag, grid), grid, compass,
-                                               view.vertical_fov_degrees, aspect);
+  const Explorer explorer(dag, grid);
+
+  if (!request.target && openness(scene, explorer, grid, compass) < kInsideOpenness) {
+    const InsideView inside =
+        best_inside_view(scene, explorer, grid, compass, view.vertical_fov_degrees, aspect);
     if (inside.score > 0) return inside.view;
   }
   const double fov = request.vertical_fov_degrees.value_or(kOutsideFov);

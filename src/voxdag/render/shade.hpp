@@ -21,7 +21,7 @@ struct ShadeOptions {
   /// 0: always cubes.
   float cube_pixels = 24;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
-  float exposure = 0.55f;
+  float exposure = 0;  ///< Factor before tone mapping; 0: what suits the picture.
 };
 
 struct Sample {
@@ -52,6 +52,7 @@ template <class Nodes>
 VOXDAG_HD inline Sample shade_sample(const Nodes& nodes, const Grid& grid, const Camera& camera,
                                      const Sky& sky, const ShadeOptions& options, double x,
                                      double y) {
+  constexpr float kOutlineCosine = 0.25f;
   Sample sample;
   const Vec3d direction = camera.direction(x, y);
   const GridRay ray = make_grid_ray(grid, camera.eye, direction, 0, HUGE_VAL);
@@ -77,13 +78,18 @@ VOXDAG_HD inline Sample shade_sample(const Nodes& nodes, const Grid& grid, const
   const float cube = smooth_step(options.cube_pixels / 2, options.cube_pixels, cell_pixels);
   if (cube < 1 && hit.level >= 2) {
     const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
-    sample.normal = normalized(mix(surface_normal(nodes, hit.level, at, view), face, cube));
+    const Vec3f smooth = surface_normal(nodes, hit.level, at, normalized(view + face));
+    // At an outline the layer may be one that turns away: what is seen there is the face.
+    const float outline = smooth_step(kOutlineCosine, 0, dot(smooth, view));
+    sample.normal = normalized(mix(smooth, face, cube < outline ? outline : cube));
   }
 
-  Vec3f light = sky_ambient(sky, sample.normal);
-  // A little light from the viewer, so that what neither sun nor sky tells apart keeps its shape.
+  // No occlusion is computed, so that the sky's light alone would leave shadows flat: light from
+  // the viewer and, softly, from the viewer's right keeps apart what sun and sky do not.
   const float facing = dot(sample.normal, view);
-  light = light * (0.55f + 0.45f * facing);
+  const float aside = dot(sample.normal, sky.fill);
+  const Vec3f light_from_sky = sky_ambient(sky, sample.normal);
+  Vec3f light = light_from_sky * (0.40f + 0.35f * facing + 0.25f * aside);
   const float towards_sun = dot(sample.normal, sky.sun);
   if (towards_sun > 0) {
     bool is_lit = true;
