@@ -1,6 +1,7 @@
 // A picture's sample instantiated in a kernel: that it compiles as device code is the test.
 #include "voxdag/render/shade.hpp"
 #include "voxdag/render/tone_map.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 
