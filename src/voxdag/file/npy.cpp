@@ -102,7 +102,7 @@ NpyHeader NpyReader::read_header() {
     position_ = 0;
     fail("not a .npy file");
   }
-  const int major = magic[6];
+  const int major = static_cast<unsigned char>(magic[6]);
   if (major < 1 || major > 3) fail("version " + std::to_string(major) + " of .npy is unknown");
   std::uint32_t length = 0;
   read_exactly(&length, major == 1 ? 2 : 4);

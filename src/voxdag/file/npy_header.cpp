@@ -62,7 +62,7 @@ class Parser {
     if (quote != '\'' && quote != '"') fail("header is malformed: a string expected");
     const std::size_t end = text_.find(quote, at_ + 1);
     if (end == std::string_view::npos) fail("header is malformed: a string does not end");
-    const std::string value(text_.substr(at_ + 1, end - at_ - 1));
+    std::string value(text_.substr(at_ + 1, end - at_ - 1));
     if (value.find('\\') != std::string::npos) fail("escapes in strings are not supported");
     at_ = end + 1;
     return value;

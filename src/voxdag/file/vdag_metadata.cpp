@@ -71,9 +71,9 @@ Grid read_grid(const Field& field) {
 
 std::vector<std::uint64_t> read_counts(const Field& field, int levels) {
   field.expect_array(static_cast<std::size_t>(levels));
-  std::vector<std::uint64_t> counts;
-  for (int level = 0; level < levels; ++level)
-    counts.push_back(field.at(static_cast<std::size_t>(level)).count());
+  std::vector<std::uint64_t> counts(static_cast<std::size_t>(levels));
+  for (std::size_t level = 0; level < counts.size(); ++level)
+    counts[level] = field.at(level).count();
   return counts;
 }
 
