@@ -7,6 +7,7 @@ namespace voxdag {
 void add_build_command(CLI::App& app, Session& session);
 void add_info_command(CLI::App& app, Session& session);
 void add_verify_command(CLI::App& app, Session& session);
+void add_render_command(CLI::App& app, Session& session);
 void add_trace_command(CLI::App& app, Session& session);
 void add_export_command(CLI::App& app, Session& session);
 void add_scene_command(CLI::App& app, Session& session);

@@ -55,9 +55,9 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   Session session;
-  for (const auto add :
-       {add_build_command, add_info_command, add_verify_command, add_trace_command,
-        add_export_command, add_scene_command, add_bench_command, add_completion_command})
+  for (const auto add : {add_build_command, add_info_command, add_verify_command,
+                         add_render_command, add_trace_command, add_export_command,
+                         add_scene_command, add_bench_command, add_completion_command})
     add(app, session);
   try {
     app.parse(argc, argv);

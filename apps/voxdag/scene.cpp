@@ -16,8 +16,17 @@ namespace {
 struct SceneArguments {
   std::string name, output;
   SceneOptions options;
-  bool list = false;
+  bool list = false, view = false;
 };
+
+/// The options of `render` that show a scene well.
+std::string view_options(const ScenePreset& preset) {
+  const Vec3d eye = preset.eye, target = preset.target, up = preset.up;
+  return fmt::format(
+      "--eye {:.6g},{:.6g},{:.6g} --target {:.6g},{:.6g},{:.6g} "
+      "--up {:.6g},{:.6g},{:.6g} --fov {:.6g}",
+      eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z, preset.fov_degrees);
+}
 
 void print_list(bool json) {
   if (json) {
@@ -61,6 +70,8 @@ void add_scene_command(CLI::App& app, Session& session) {
   command.add_option("name", arguments->name, "The scene; --list shows them")->type_name("NAME");
   command.add_option("-o,--output", arguments->output, "The mesh to write")->type_name("FILE.ply");
   command.add_flag("--list", arguments->list, "List the scenes and what their size counts");
+  command.add_flag("--view", arguments->view,
+                   "Only print the options with which `voxdag render` shows the scene well");
   add_parsed_option(command, "--size", arguments->options.size, parse_positive, "SIZE",
                     "How large or fine the scene is; see --list");
   command.add_option("--seed", arguments->options.seed, "Another seed gives another scene")
@@ -73,6 +84,12 @@ void add_scene_command(CLI::App& app, Session& session) {
       return;
     }
     if (arguments->name.empty()) throw CLI::RequiredError("a scene's name (or --list)");
+    if (arguments->view) {
+      session.work = [arguments] {
+        fmt::print("{}\n", view_options(scene_preset(arguments->name, arguments->options)));
+      };
+      return;
+    }
     if (arguments->output.empty()) throw CLI::RequiredError("--output");
     session.work = [arguments, &session] { make(*arguments, session.json); };
   });

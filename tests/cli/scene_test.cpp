@@ -3,28 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "process.hpp"
-#include "support/temp_dir.hpp"
+#include "sponge.hpp"
 
 namespace voxdag {
 namespace {
-
-/// The smallest scene there is, as a mesh and as a DAG, made once for all tests.
-class Sponge : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    dir_ = new TempDir;
-    ASSERT_EQ(run_voxdag({"scene", "sponge", "--size", "2", "-o", path("sponge.ply")}).status, 0);
-    ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "-o", path("in.vdag")}).status,
-              0);
-  }
-  static void TearDownTestSuite() { delete dir_; }
-
-  static std::string path(const std::string& name) { return *dir_ / name; }
-  static bool exists(const std::string& name) { return std::filesystem::exists(path(name)); }
-
-  static inline TempDir* dir_ = nullptr;
-};
 
 /// Rays as the file that NumPy writes for a float32 array of shape (N, 8).
 std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {

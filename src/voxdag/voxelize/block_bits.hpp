@@ -9,7 +9,8 @@
 namespace voxdag {
 
 /// Sixteen bits u + 4v over the projection's square to all voxels above and below them.
-VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t expand_square(int projection, std::uint64_t m) {
+VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t expand_square(int projection,
+                                                                    std::uint64_t m) {
   if (projection == 2) return m * 0x0001000100010001ull;
   m = (m | m << 24) & 0x000000FF000000FFull;
   m = (m | m << 12) & 0x000F000F000F000Full;

@@ -56,8 +56,9 @@ inline constexpr QuadrantChildren kQuadrantChildren = make_quadrant_children();
 
 /// `cell` is the least voxel of a cell of (2*half)³ voxels, relative to the setup's origin;
 /// `conditions` what still matters in it.
-VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t, std::uint32_t conditions,
-                                         Vec3i cell, std::int32_t half) {
+VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
+                                                      std::uint32_t conditions, Vec3i cell,
+                                                      std::int32_t half) {
   using namespace detail;
   ChildConditions result;
   if (conditions & kBox) {

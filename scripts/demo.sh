@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Builds voxdag on a Debian 12 that may have only git, makes a procedural scene, voxelizes it at
+# 8192³, prints the summary, and leaves the picture demo.png.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. scripts/packages.sh
+
+install_packages "${voxdag_packages[@]}"
+cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DVOXDAG_BUILD_TESTS=OFF -DVOXDAG_BUILD_BENCH=OFF >/dev/null
+cmake --build build/demo -- -j "$(nproc)"
+
+voxdag() { build/demo/apps/voxdag/voxdag "$@"; }
+voxdag scene courtyard -o build/demo/courtyard.ply
+voxdag build build/demo/courtyard.ply -r 8192 -o build/demo/courtyard.vdag
+# shellcheck disable=SC2046  # the view is several options
+voxdag render build/demo/courtyard.vdag -o demo.png --size 1920x1080 --samples 4 \
+  $(voxdag scene courtyard --view)

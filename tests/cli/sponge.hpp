@@ -1,0 +1,27 @@
+#pragma once
+/// The smallest procedural scene as a mesh and as a DAG, for tests of what uses them.
+#include <gtest/gtest.h>
+
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+
+namespace voxdag {
+
+/// Made once for all tests of a program.
+class Sponge : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TempDir;
+    ASSERT_EQ(run_voxdag({"scene", "sponge", "--size", "2", "-o", path("sponge.ply")}).status, 0);
+    ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "-o", path("in.vdag")}).status,
+              0);
+  }
+  static void TearDownTestSuite() { delete dir_; }
+
+  static std::string path(const std::string& name) { return *dir_ / name; }
+  static bool exists(const std::string& name) { return std::filesystem::exists(path(name)); }
+
+  static inline TempDir* dir_ = nullptr;
+};
+
+}  // namespace voxdag
