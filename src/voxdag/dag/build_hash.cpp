@@ -27,6 +27,8 @@ int subvolume_level(int levels, std::size_t triangles) {
   int level = std::clamp(levels - 5, 0, 6);
   // About 1024 triangles for each of the ~4^level cells of a surface.
   while (level < levels - 2 && level < 10 && (triangles >> (2 * level)) > 1024) ++level;
+  // The recursion goes two levels at a time.
+  if ((levels - level) % 2 != 0) level += level > 0 ? -1 : 1;
   return level;
 }
 

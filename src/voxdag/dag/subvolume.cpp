@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/voxelize/block_bits.hpp"
 #include "voxdag/voxelize/block_raster-inl.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
@@ -114,44 +115,97 @@ class Recursion {
       std::uint64_t mask = 0;
       for (std::size_t i = first; i < first + count; ++i) {
         const Item& item = context_.items[i];
-        mask |= triangle_block(context_.setups[item.triangle], item.conditions, at);
+        mask |= triangle_children(context_.setups[item.triangle], item.conditions, at, 0);
       }
       return block(mask);
     }
+    return log2_size % 2 == 0 ? cell_by_64(at, log2_size, first, count)
+                              : cell_by_8(at, log2_size, first, count);
+  }
+
+  /// One level down: for the odd size, of which a sub-volume has at most one.
+  Cell cell_by_8(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
-    const std::size_t classified = context_.classified.size();
-    std::uint32_t any_alive = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-      const Item item = context_.items[i];
-      const ChildConditions conditions =
-          classify_children(context_.setups[item.triangle], item.conditions, at, half);
-      any_alive |= conditions.alive;
-      if (conditions.alive != 0)
-        context_.classified.push_back(
-            {item.triangle, conditions.alive, {conditions.lanes[0], conditions.lanes[1]}});
-    }
-    const std::size_t classified_end = context_.classified.size();
+    const std::size_t list = context_.items.size();
     Children children(*this, log2_size - 1);
-    for (std::uint32_t left = any_alive; left != 0; left &= left - 1) {
-      const int child = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-      const std::size_t list = context_.items.size();
-      for (std::size_t i = classified; i < classified_end; ++i) {
-        const Classified& c = context_.classified[i];
-        if ((c.alive >> child) & 1)
-          context_.items.push_back(
-              child_item(c.triangle, c.lanes[child >> 2] >> (16 * (child & 3))));
+    for (int child = 0; child < 8; ++child) {
+      const Vec3i child_at = child_cell(at, half, child);
+      for (std::size_t i = first; i < first + count; ++i) {
+        const Item item = context_.items[i];
+        const TriangleSetup& t = context_.setups[item.triangle];
+        const ChildConditions c = classify_children(t, item.conditions, at, half);
+        if ((c.alive >> child) & 1) context_.items.push_back({item.triangle, c.conditions(child)});
       }
-      children.add(child, cell(child_cell(at, half, child), log2_size - 1, list,
-                               context_.items.size() - list));
+      if (context_.items.size() != list)
+        children.add(child, cell(child_at, log2_size - 1, list, context_.items.size() - list));
       context_.items.resize(list);
     }
-    context_.classified.resize(classified);
     return {children.node(), kNoNode};
+  }
+
+  /// Two levels down at once: each triangle's 4³ grandchildren as one mask.
+  Cell cell_by_64(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
+    const int log2_child = log2_size - 2;
+    const std::size_t classified = context_.classified.size();
+    std::uint64_t any = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Item item = context_.items[i];
+      const TriangleSetup& t = context_.setups[item.triangle];
+      const std::uint32_t open = open_conditions(t, item.conditions, at, 1 << log2_size);
+      const std::uint64_t met = linear_to_morton(triangle_children(t, open, at, log2_child));
+      any |= met;
+      if (met != 0) context_.classified.push_back({item.triangle, open, met});
+    }
+    const std::size_t classified_end = context_.classified.size();
+    Children octants(*this, log2_size - 1);
+    for (int octant = 0; octant < 8; ++octant) {
+      std::uint64_t left = any & (std::uint64_t{0xFF} << (8 * octant));
+      if (left == 0) continue;
+      Children children(*this, log2_child);
+      for (; left != 0; left &= left - 1) {
+        const int code = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+        const Vec3i step = morton_decode(static_cast<std::uint64_t>(code));
+        const Vec3i child_at{at.x + (step.x << log2_child), at.y + (step.y << log2_child),
+                             at.z + (step.z << log2_child)};
+        children.add(code & 7,
+                     log2_child == 2
+                         ? block_of(child_at, code, classified, classified_end)
+                         : cell_of(child_at, log2_child, code, classified, classified_end));
+      }
+      octants.add(octant, {children.node(), kNoNode});
+    }
+    context_.classified.resize(classified);
+    return {octants.node(), kNoNode};
+  }
+
+  /// The leaf block with Morton code `code` in its cell, of the classified triangles that meet it.
+  Cell block_of(Vec3i at, int code, std::size_t first, std::size_t end) {
+    std::uint64_t mask = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const Classified& c = context_.classified[i];
+      if ((c.met >> code) & 1)
+        mask |= triangle_children(context_.setups[c.triangle], c.conditions, at, 0);
+    }
+    return block(mask);
+  }
+
+  /// The same for a larger cell.
+  Cell cell_of(Vec3i at, int log2_size, int code, std::size_t first, std::size_t end) {
+    const std::size_t list = context_.items.size();
+    for (std::size_t i = first; i < end; ++i) {
+      const Classified& c = context_.classified[i];
+      if (((c.met >> code) & 1) == 0) continue;
+      context_.items.push_back({c.triangle, open_conditions(context_.setups[c.triangle],
+                                                            c.conditions, at, 1 << log2_size)});
+    }
+    const Cell result = cell(at, log2_size, list, context_.items.size() - list);
+    context_.items.resize(list);
+    return result;
   }
 
   Cell single(Vec3i at, int log2_size, const Item item) {
     const TriangleSetup& t = context_.setups[item.triangle];
-    if (log2_size == 2) return block(triangle_block(t, item.conditions, at));
+    if (log2_size == 2) return block(triangle_children(t, item.conditions, at, 0));
     if constexpr (Sink::kMemo) {
       if (item.conditions == kPlane) {
         const int range = slab_range(t, at, std::int32_t{1} << log2_size);

@@ -105,8 +105,8 @@ struct SubvolumeContext {
     std::uint32_t conditions;  // what can still fail in the cell in hand
   };
   struct Classified {
-    std::uint32_t triangle, alive;
-    std::uint64_t lanes[2];
+    std::uint32_t triangle, conditions;
+    std::uint64_t met;  // grandchildren, in Morton order
   };
 
   SubvolumeContext(const QuantizedMesh& mesh_in, int levels_in, Sink sink_in)

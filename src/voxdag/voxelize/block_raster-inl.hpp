@@ -101,36 +101,56 @@ HWY_INLINE SlabBlock slab_block_in(const PlaneSlab& slab, std::int64_t lo) {
   return {mask, static_cast<U>(~top), up};
 }
 
-/// The slab whose least value seen from the block is lo. |lo| <= 12 |n|1: it comes near the block.
+/// The slab whose least value seen from the block is lo. |lo| <= 16 |n|1: it comes near the block.
 HWY_INLINE SlabBlock slab_block(const PlaneSlab& slab, std::int64_t lo) {
   return slab.width < (std::int64_t{1} << 26) ? slab_block_in<std::int32_t>(slab, lo)
                                               : slab_block_in<std::int64_t>(slab, lo);
 }
 
-/// The voxels that a triangle sets in the block at `block`, of those conditions; linear order.
-HWY_INLINE std::uint64_t triangle_block(const TriangleSetup& t, std::uint32_t conditions,
-                                        Vec3i block) {
-  std::uint64_t mask = conditions & kBox ? box_mask(block, t.box_lo, t.box_hi) : ~std::uint64_t{0};
+/// The children that a triangle meets, of those conditions, in a cell of 4³ children of
+/// 2^log2_child voxels a side each; linear order. With log2_child = 0: the voxels that it sets in a
+/// leaf block.
+HWY_INLINE std::uint64_t triangle_children(const TriangleSetup& t, std::uint32_t conditions,
+                                           Vec3i cell, int log2_child) {
+  using detail::absolute;
+  using detail::negative;
+  using detail::positive;
+  std::uint64_t mask = ~std::uint64_t{0};
+  if (conditions & kBox) {
+    const Vec3i lo = t.box_lo - cell, hi = t.box_hi - cell;
+    mask = box_mask({0, 0, 0}, {lo.x >> log2_child, lo.y >> log2_child, lo.z >> log2_child},
+                    {hi.x >> log2_child, hi.y >> log2_child, hi.z >> log2_child});
+  }
+  const std::int64_t size = std::int64_t{1} << log2_child, last = size - 1;
   for (std::uint32_t left = conditions & kAllEdges; left != 0 && mask != 0; left &= left - 1) {
     const int edge = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
     const int projection = edge / 3;
     const std::int64_t a = t.a[edge], b = t.b[edge];
-    const std::int64_t value =
-        t.c[edge] + a * block[kProjectionU[projection]] + b * block[kProjectionV[projection]];
-    // Where the value is out of reach of the block's own range the whole block passes or fails.
-    const std::int64_t reach = 3 * ((a < 0 ? -a : a) + (b < 0 ? -b : b));
+    // The greatest value in the first child; it changes by a and b times the size to the others.
+    const std::int64_t value = t.c[edge] + a * cell[kProjectionU[projection]] +
+                               b * cell[kProjectionV[projection]] +
+                               last * (positive(a) + positive(b));
+    // Where the value is out of reach of the cell's own range all children pass or fail.
+    const std::int64_t reach = 3 * size * (absolute(a) + absolute(b));
     if (value >= reach) continue;
     if (value < -reach) return 0;
     const std::uint64_t square =
         reach < (std::int64_t{1} << 29)
-            ? edge_square(static_cast<std::int32_t>(value), static_cast<std::int32_t>(a),
-                          static_cast<std::int32_t>(b))
-            : edge_square_wide(value, a, b);
+            ? edge_square(static_cast<std::int32_t>(value), static_cast<std::int32_t>(a * size),
+                          static_cast<std::int32_t>(b * size))
+            : edge_square_wide(value, a * size, b * size);
     mask &= expand_square(projection, square);
   }
   if ((conditions & kPlane) && mask != 0) {
-    if (slab_range(t, block, 4) == 0) return 0;
-    mask &= slab_block(t.plane, slab_lo_at(t, block)).mask;
+    const int range = slab_range(t, cell, 4 << log2_child);
+    if (range == 0) return 0;
+    if (range == 1) {
+      const Vec3l& n = t.plane.normal;
+      const std::int64_t above = last * (positive(n.x) + positive(n.y) + positive(n.z));
+      const std::int64_t below = last * (negative(n.x) + negative(n.y) + negative(n.z));
+      const PlaneSlab children{n * size, t.plane.width + above - below};
+      mask &= slab_block(children, slab_lo_at(t, cell) - above).mask;
+    }
   }
   return mask;
 }

@@ -159,6 +159,25 @@ VOXDAG_HD inline TriangleSetup make_triangle_setup(const QuantizedTriangle& tria
   return s;
 }
 
+/// Of `conditions`, those that some voxel of the cell of size³ voxels at v may fail. Dominant edges
+/// stay until the cell's whole column is inside the triangle; then the plane alone is left.
+VOXDAG_HD VOXDAG_FORCE_INLINE std::uint32_t open_conditions(const TriangleSetup& s,
+                                                            std::uint32_t conditions, Vec3i v,
+                                                            std::int32_t size) {
+  using namespace detail;
+  for (int edge = 0; edge < 9; ++edge) {
+    if (((conditions >> edge) & 1) == 0) continue;
+    const std::int64_t a = s.a[edge], b = s.b[edge];
+    const std::int64_t least = s.c[edge] + a * v[kProjectionU[edge / 3]] +
+                               b * v[kProjectionV[edge / 3]] +
+                               (size - 1) * (negative(a) + negative(b));
+    const bool dominant = (s.dominant_edges >> edge) & 1;
+    if (least >= (dominant ? absolute(a) + absolute(b) : 0)) conditions &= ~(1u << edge);
+  }
+  if ((conditions & kPlane) && (conditions & s.dominant_edges) == 0) return kPlane;
+  return conditions;
+}
+
 /// dot(n, v) of the slab's least value, seen from the cell at v; meaningful where the plane is
 /// near.
 VOXDAG_HD VOXDAG_FORCE_INLINE std::int64_t slab_lo_at(const TriangleSetup& s, Vec3i v) {
