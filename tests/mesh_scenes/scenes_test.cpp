@@ -27,7 +27,7 @@ struct SmallScene {
 /// here.
 constexpr SmallScene kSmall[] = {
     {"city", 1, 0x53f8789889480855},      {"courtyard", 0.4, 0x1b8e25bd4cc4ecc},
-    {"hairball", 20, 0x83a3eb0d35ad552b}, {"sponge", 2, 0x48f77797a24deb0},
+    {"hairball", 20, 0x3e682f539f47fcc1}, {"sponge", 2, 0x48f77797a24deb0},
     {"terrain", 64, 0xf05a02a278f91509},
 };
 
