@@ -104,6 +104,22 @@ TEST(RenderImage, ASlantedPlaneDoesNotShadowItself) {
   EXPECT_EQ(with.rgb, render_image(dag.view(), test_grid(), options).rgb);
 }
 
+TEST(RenderImage, TheSunLightsTheSideThatFacesIt) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.view.eye = {0, 0, 6};
+  options.view.target = {0, 0, 0};
+  options.view.vertical_fov_degrees = 2;  // the front of the block, at z = 0.25
+  options.shade.exposure = 0.1f;
+  options.sun = {0, 0, 7};
+  const RenderedImage lit = render_image(dag.view(), test_grid(), options);
+  options.sun = {0, 1, -2};
+  const RenderedImage unlit = render_image(dag.view(), test_grid(), options);
+  for (std::size_t i = 0; i < lit.rgb.size(); ++i) EXPECT_GT(lit.rgb[i].x, 2 * unlit.rgb[i].x);
+  options.sun = {0, 0, 0};
+  EXPECT_THROW(render_image(dag.view(), test_grid(), options), Error);
+}
+
 TEST(RenderImage, AnEmptySceneIsSky) {
   const RenderedImage image = render_image(Svdag{}.view(), Grid{}, small_picture());
   for (std::size_t i = 0; i < image.depth.size(); ++i) {

@@ -31,14 +31,14 @@ void check(const RenderOptions& options) {
   if (options.samples_per_pixel < 1) throw Error("a picture has at least 1 sample per pixel");
 }
 
-/// The sun over the viewer's left shoulder, where it models what the camera looks at.
-Sky make_sky(const Camera& camera, const View& view) {
+/// Without a direction, the sun is where it models what the camera looks at.
+Sky make_sky(const Camera& camera, const View& view, const std::optional<Vec3d>& sun) {
   Sky sky;
   const Vec3d up = normalized(view.up);
   const Vec3d right = normalized(camera.right);
   const Vec3d back = cross(right, up);
   sky.up = static_cast<Vec3f>(up);
-  sky.sun = static_cast<Vec3f>(normalized(up * 0.9 - right * 0.6 + back * 0.25));
+  sky.sun = static_cast<Vec3f>(normalized(sun.value_or(up * 0.9 - right * 0.6 + back * 0.25)));
   sky.fill = static_cast<Vec3f>(right);
   return sky;
 }
@@ -82,7 +82,7 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
   image.normal.resize(pixels);
 
   const Camera camera = make_camera(image.view, width, height);
-  const Sky sky = make_sky(camera, image.view);
+  const Sky sky = make_sky(camera, image.view, options.sun);
   const SvdagNodes nodes(dag);
   const float exposure = options.shade.exposure > 0
                              ? options.shade.exposure

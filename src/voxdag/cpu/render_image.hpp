@@ -1,5 +1,6 @@
 #pragma once
 /// A picture of a DAG, on the CPU.
+#include <optional>
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
@@ -13,7 +14,8 @@ namespace voxdag {
 struct RenderOptions {
   int width = 1920, height = 1080;  ///< Pixels; at least 1 each.
   ViewRequest view;                 ///< What is not set, frame_scene finds.
-  int samples_per_pixel = 1;        ///< At least 1; averaged in linear light.
+  std::optional<Vec3d> sun;   ///< Towards the sun; without it, over the viewer's left shoulder.
+  int samples_per_pixel = 1;  ///< At least 1; averaged in linear light.
   ShadeOptions shade;
 };
 

@@ -14,9 +14,9 @@ namespace voxdag {
 namespace {
 
 constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
-/// Open rooms, seen from inside, have less; the most folded objects, such as a statue in drapery,
-/// more.
-constexpr double kInsideOpenness = 0.29;
+/// Rooms and courtyards are less open and fill more of their box; statues in folded drapery and
+/// things with much inside them do not do both.
+constexpr double kInsideOpenness = 0.29, kInsideFill = 0.75;
 constexpr double kPi = 3.14159265358979323846;
 
 double length(Vec3d v) { return std::sqrt(dot(v, v)); }
@@ -65,6 +65,13 @@ class Explorer {
   Grid grid_;
   StopBelowSize stop_;
 };
+
+/// Whether the scene's outline, seen along each axis, fills its bounds as that of a building does.
+bool fills_its_box(const CoarseCells& scene) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (scene.side_cover(axis, true, scene.side()) < kInsideFill) return false;
+  return true;
+}
 
 /// Directions spread evenly over the sphere: a Fibonacci spiral.
 Vec3d sphere_direction(const Compass& compass, int i, int count) {
@@ -261,7 +268,8 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
 
   const Explorer explorer(dag, grid);
 
-  if (!request.target && openness(scene, explorer, grid, compass) < kInsideOpenness) {
+  if (!request.target && fills_its_box(scene) &&
+      openness(scene, explorer, grid, compass) < kInsideOpenness) {
     const InsideView inside =
         best_inside_view(scene, explorer, grid, compass, view.vertical_fov_degrees, aspect);
     if (inside.score > 0) return inside.view;

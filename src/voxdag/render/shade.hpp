@@ -32,15 +32,16 @@ struct Sample {
 };
 
 /// Whether something stands between a surface cell and the sun. The ray starts two cells above the
-/// surface: every cell of a plane with this normal lies within sqrt(3) cells of the point where a
-/// ray met it, so that a smooth surface does not shadow itself. It ends at cells of the surface
-/// cell's own size, so that picture and shadow agree on what is there.
+/// surface and one before the face where the cell was met: every cell of a plane with this normal
+/// lies within sqrt(3) cells of the point where a ray met it, so that a smooth surface does not
+/// shadow itself. It ends at cells of the surface cell's own size, so that picture and shadow agree
+/// on what is there.
 template <class Nodes>
 VOXDAG_HD inline bool is_in_shadow(const Nodes& nodes, const Grid& grid, Vec3d point, Vec3f normal,
-                                   int level, Vec3f sun) {
+                                   Vec3f face, int level, Vec3f sun) {
   const double cell_size =
       grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - level));
-  const Vec3d origin = point + static_cast<Vec3d>(normal) * (2 * cell_size);
+  const Vec3d origin = point + static_cast<Vec3d>(normal * 2.0f + face) * cell_size;
   const GridRay ray = make_grid_ray(grid, origin, static_cast<Vec3d>(sun), 0, HUGE_VAL);
   const StopBelowSize stop{std::ldexp(1.0f, -level), 0, 2};
   CellHit cell;
@@ -52,7 +53,6 @@ template <class Nodes>
 VOXDAG_HD inline Sample shade_sample(const Nodes& nodes, const Grid& grid, const Camera& camera,
                                      const Sky& sky, const ShadeOptions& options, double x,
                                      double y) {
-  constexpr float kOutlineCosine = 0.25f;
   Sample sample;
   const Vec3d direction = camera.direction(x, y);
   const GridRay ray = make_grid_ray(grid, camera.eye, direction, 0, HUGE_VAL);
@@ -72,16 +72,15 @@ VOXDAG_HD inline Sample shade_sample(const Nodes& nodes, const Grid& grid, const
   const Vec3f view = -unit_direction;
   const int shift = grid.levels - hit.level;
   const Vec3f face = hit.face == Face::kNone ? view : static_cast<Vec3f>(face_normal(hit.face));
+  Vec3f smooth = face;
   sample.normal = face;
   const float cell_pixels = static_cast<float>(
       grid.voxel_size * static_cast<double>(std::int64_t{1} << shift) / (pixel_size * depth));
   const float cube = smooth_step(options.cube_pixels / 2, options.cube_pixels, cell_pixels);
   if (cube < 1 && hit.level >= 2) {
     const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
-    const Vec3f smooth = surface_normal(nodes, hit.level, at, normalized(view + face));
-    // At an outline the layer may be one that turns away: what is seen there is the face.
-    const float outline = smooth_step(kOutlineCosine, 0, dot(smooth, view));
-    sample.normal = normalized(mix(smooth, face, cube < outline ? outline : cube));
+    smooth = surface_normal(nodes, hit.level, at, view, face);
+    sample.normal = normalized(mix(smooth, face, cube));
   }
 
   // No occlusion is computed, so that the sky's light alone would leave shadows flat: light from
@@ -95,7 +94,7 @@ VOXDAG_HD inline Sample shade_sample(const Nodes& nodes, const Grid& grid, const
     bool is_lit = true;
     if (options.shadows) {
       const Vec3d point = camera.eye + direction * depth;
-      is_lit = !is_in_shadow(nodes, grid, point, sample.normal, hit.level, sky.sun);
+      is_lit = !is_in_shadow(nodes, grid, point, smooth, face, hit.level, sky.sun);
       ++sample.rays;
     }
     if (is_lit) light = light + sky.sun_irradiance * towards_sun;

@@ -41,6 +41,7 @@ struct SymmetricMatrix {
 struct LayerFit {
   Vec3f normal;         ///< Unit length.
   float thickness = 0;  ///< The variance of the cells along it, in cells².
+  float outwards = 0;   ///< How far along the normal the cell lies from the layer's mean, in cells.
 };
 
 /// The layer of cells around a point of `cell` of `level` (2..L), which lies at `offset` cells from
@@ -74,7 +75,7 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
       moments.add_outer_product(d, w);
     }
   }
-  if (!(weight > 0)) return {front, 0};
+  if (!(weight > 0)) return {front, 0, 0};
   mean = mean * (1 / weight);
   // A cell's own extent, 1/12, keeps the matrix regular.
   SymmetricMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
@@ -89,26 +90,34 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   const SymmetricMatrix inverse = covariance.adjugate();
   Vec3f normal = front;
   for (int i = 0; i < 4; ++i) normal = normalized(inverse * normal);
-  return {normal, dot(normal, covariance * normal)};
+  return {normal, dot(normal, covariance * normal), -dot(normal, mean)};
 }
 
-/// The normal, of unit length, of the surface at `cell` of `level` (2..L); `front` is a unit
-/// vector on its outer side, with which it has a positive dot product: the middle between the
-/// direction to the viewer and the normal of the face that the ray entered. The viewer alone would
-/// not do: at the far edge of a box the layer's normal leans away.
+/// The normal, of unit length, of the surface at `cell` of `level` (2..L). `view` is the unit
+/// vector to the viewer, `face` the normal of the face that the ray entered (or view again). Where
+/// these two name different sides of the layer, at outlines, its outer side is the one on which the
+/// cell lies: an outline is convex. Where an edge turns away, what is seen there is the face.
 template <class Nodes>
-VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f front) {
-  // Cells that a plane near an axis passes through have a variance of 0.1 to 0.2, diagonal planes
-  // 0.3.
-  constexpr float kThin = 0.20f, kThick = 0.30f;
+VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
+                                      Vec3f face) {
+  // The variance of planes is 0.1 to 0.2 near an axis and 0.34 at most; that of right-angled edges
+  // 0.5.
+  constexpr float kThin = 0.20f, kThick = 0.30f, kPlane = 0.36f, kEdge = 0.50f;
+  constexpr float kOutlineCosine = 0.25f;
   constexpr int kCoarser = 2;
-  Vec3f normal = fit_layer(nodes, level, cell, {}, front).normal;
+  const Vec3f front = normalized(view + face);
+  const LayerFit fine = fit_layer(nodes, level, cell, {}, front);
+  Vec3f normal = fine.normal;
+  const float edge = smooth_step(kPlane, kEdge, fine.thickness);
+  if ((dot(normal, view) < 0) != (dot(normal, face) < 0) && fine.outwards < 0) normal = -normal;
+  const float outline = edge * smooth_step(kOutlineCosine, 0, dot(normal, view));
+  normal = normalized(mix(normal, face, outline));
   for (int up = 1; up <= kCoarser && level - up >= 2; ++up) {
     const Vec3i at{cell.x >> up, cell.y >> up, cell.z >> up};
     const float size = 1.0f / static_cast<float>(1 << up);
     const Vec3f half{0.5f, 0.5f, 0.5f};
     const Vec3f offset = (static_cast<Vec3f>(cell - at * (1 << up)) + half) * size - half;
-    const LayerFit fit = fit_layer(nodes, level - up, at, offset, front);
+    const LayerFit fit = fit_layer(nodes, level - up, at, offset, normal);
     const float trust = smooth_step(kThick, kThin, fit.thickness);
     if (trust <= 0) break;
     normal = normalized(mix(normal, fit.normal, trust));

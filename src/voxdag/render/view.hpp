@@ -24,7 +24,7 @@ struct ViewRequest {
 /// The view that was asked for, completed so that it shows the scene well in a picture of
 /// `aspect` = width / height. Without an up vector: y, or z where the scene lies or stands on that
 /// axis. Without an eye: from above one corner with all voxels in the picture, or from inside where
-/// most voxels cannot be seen from outside and there is room to look around. A valid view even for
+/// it is a closed box, as buildings are, with room to look around. A valid view even for
 /// an empty DAG. Deterministic; some ten milliseconds. Throws Error for a request that names no
 /// view: numbers that are not finite, eye = target, an angle not in (0,180), up along the view.
 View frame_scene(const SvdagView& dag, const Grid& grid, double aspect, const ViewRequest& request);
