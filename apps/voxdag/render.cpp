@@ -110,6 +110,8 @@ void add_render_command(CLI::App& app, Session& session) {
   add_parsed_option(command, "--size", arguments->size, parse_image_size, "WxH",
                     "Pixels (default 1920x1080)");
   add_view_options(command, options.view);
+  add_parsed_option(command, "--sun", options.sun, parse_vec3, "X,Y,Z",
+                    "Direction towards the sun (default: over the viewer's left shoulder)");
   command.add_option("--samples", options.samples_per_pixel, "Samples per pixel")
       ->check(CLI::Range(1, 4096))
       ->type_name("N")

@@ -29,6 +29,10 @@ void check(const RenderOptions& options) {
       options.height > kMaxSide)
     throw Error("a picture has 1 to 65536 pixels a side");
   if (options.samples_per_pixel < 1) throw Error("a picture has at least 1 sample per pixel");
+  if (options.sun) {
+    const double length2 = dot(*options.sun, *options.sun);
+    if (!(length2 > 0 && length2 < HUGE_VAL)) throw Error("the sun needs a direction");
+  }
 }
 
 /// Without a direction, the sun is where it models what the camera looks at.
