@@ -26,14 +26,14 @@ struct SlabBlock {
   std::uint64_t down, up;
 };
 
-/// Lane i of `D` gets the low bits of a mask into `bits` at `shift`.
+/// Bit i: lane i of the mask, of up to 16 lanes. Reads as many bytes as were stored, since a wider
+/// load would wait for the store.
 template <class D, class M>
 HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
-  std::uint8_t bytes[8] = {};
+  std::uint8_t bytes[8];
   hn::StoreMaskBits(d, mask, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, 8);
-  return bits;
+  if constexpr (hn::MaxLanes(D()) <= 8) return bytes[0];
+  return bytes[0] | static_cast<std::uint64_t>(bytes[1]) << 8;
 }
 
 /// Sixteen bits u + 4v: is value + a*u + b*v >= 0? The sums fit in 32 bits.
