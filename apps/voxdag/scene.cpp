@@ -19,13 +19,15 @@ struct SceneArguments {
   bool list = false, view = false;
 };
 
+std::string option_text(const std::string& name, Vec3d v) {
+  return fmt::format("{} {:.6g},{:.6g},{:.6g} ", name, v.x, v.y, v.z);
+}
+
 /// The options of `render` that show a scene well.
 std::string view_options(const ScenePreset& preset) {
-  const Vec3d eye = preset.eye, target = preset.target, up = preset.up;
-  return fmt::format(
-      "--eye {:.6g},{:.6g},{:.6g} --target {:.6g},{:.6g},{:.6g} "
-      "--up {:.6g},{:.6g},{:.6g} --fov {:.6g}",
-      eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z, preset.fov_degrees);
+  return option_text("--eye", preset.eye) + option_text("--target", preset.target) +
+         option_text("--up", preset.up) + option_text("--sun", preset.sun_direction) +
+         fmt::format("--fov {:.6g}", preset.fov_degrees);
 }
 
 void print_list(bool json) {

@@ -261,7 +261,7 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
     const Vec3d middle = scene.cells().empty()
                              ? Vec3d{0.5, 0.5, 0.5} * static_cast<double>(scene.side())
                              : static_cast<Vec3d>(twice_middle) * 0.5;
-    view.target = grid.to_world(middle * static_cast<double>(grid.resolution() / scene.side()));
+    view.target = grid.to_world(middle * (static_cast<double>(grid.resolution()) / scene.side()));
     check(view);
     return view;
   }
