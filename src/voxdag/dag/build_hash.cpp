@@ -128,6 +128,7 @@ BuildResult build_hash_consed(const QuantizedMesh& mesh, int levels, MemoryBudge
     StoreSource source(stores);
     const std::uint64_t copy = source.node_words() * 4 + source.leaf_blocks() * 12;
     budget.add(copy);
+    if (budget.exceeded()) throw_over_memory(budget, 1);
     result.dag = canonical_order(source, levels, root);
     budget.remove(source.leaf_blocks() * 4);
   }

@@ -173,6 +173,7 @@ BuildResult build_by_sorting(const QuantizedMesh& mesh, int levels, MemoryBudget
     cells.push_back(bins.cells[i]);
   }
   require_32_bits(whole);
+  if (budget.exceeded()) throw_over_memory(budget, 1);
   add_top(whole, root_level, cells);
   reduce_by_sorting(whole, true, true, all_times);
   if (progress != nullptr) progress->throw_if_cancelled();
@@ -184,6 +185,7 @@ BuildResult build_by_sorting(const QuantizedMesh& mesh, int levels, MemoryBudget
   result.dag.levels = levels;
   if (!whole.leaf_blocks.empty()) {
     budget.add(whole.bytes());
+    if (budget.exceeded()) throw_over_memory(budget, 1);
     WordSource source(whole);
     result.dag = canonical_order(source, levels, 0);
   }

@@ -26,26 +26,25 @@ std::string mebibytes(std::uint64_t bytes) {
 }  // namespace
 
 void throw_over_memory(const MemoryBudget& budget, double fraction) {
-  std::string reason = "the memory limit is too small: the build needs more than " +
-                       mebibytes(budget.limit()) + " beside what the process already held";
-  if (fraction > 0.01)
-    reason += ", about " +
-              mebibytes(static_cast<std::uint64_t>(static_cast<double>(budget.used()) / fraction)) +
-              " by what " + std::to_string(static_cast<int>(fraction * 100)) + "% of it took";
+  std::string reason =
+      "the memory limit of " + mebibytes(budget.limit()) + " is too small: the build needs ";
+  if (fraction > 0.01) {
+    const double whole = static_cast<double>(budget.peak()) / fraction;
+    reason += "about " + mebibytes(budget.base() + static_cast<std::uint64_t>(whole));
+  } else {
+    reason += "more than " + mebibytes(budget.base() + budget.peak());
+  }
   throw Error(reason);
 }
 
 BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options,
                         Progress* progress) {
-  std::uint64_t limit = 0;
-  if (options.memory_limit != 0) {
-    const std::uint64_t held = resident_bytes();
-    if (held >= options.memory_limit)
-      throw Error("the memory limit of " + mebibytes(options.memory_limit) +
-                  " is too small: the mesh and the program take " + mebibytes(held));
-    limit = options.memory_limit - held;
-  }
-  MemoryBudget budget(limit);
+  // The mesh, the program, and what stacks and half-filled pages of tables take uncounted.
+  constexpr std::uint64_t kUncounted = std::uint64_t{12} << 20;
+  const std::uint64_t base = resident_bytes() + kUncounted;
+  MemoryBudget budget(options.memory_limit, base);
+  budget.add(0);
+  if (budget.exceeded()) throw_over_memory(budget, 0);
   StopWatch watch;
   const QuantizedMesh quantized(mesh, grid);
   budget.add(quantized.bytes());
