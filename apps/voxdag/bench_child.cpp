@@ -100,6 +100,7 @@ ChildResult run_child(const std::vector<std::string>& command,
   const Descriptor out(memfd_create("out", MFD_CLOEXEC), command[0]);
   const Descriptor err(memfd_create("err", MFD_CLOEXEC), command[0]);
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& argument : command)
     arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);

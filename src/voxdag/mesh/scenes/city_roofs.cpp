@@ -84,8 +84,9 @@ void roof_clutter(Builder& b, Random& random, double x0, double x1, double z0, d
     std::swap(spots[i - 1], spots[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
   for (int i = 0; i < things && i < static_cast<int>(spots.size()); ++i) {
     const int spot = spots[static_cast<std::size_t>(i)];
-    const double x = x0 + 1 + (spot % nx + 0.5) * (w - 2) / nx,
-                 z = z0 + 1 + (spot / nx + 0.5) * (d - 2) / nz;
+    const int column = spot % nx, row = spot / nx;
+    const double x = x0 + 1 + (column + 0.5) * (w - 2) / nx,
+                 z = z0 + 1 + (row + 0.5) * (d - 2) / nz;
     b.at(placed({x, y, z}, 0.25 * random.below(4)), [&] {
       const double kind = random.uniform();
       if (i == 0) {

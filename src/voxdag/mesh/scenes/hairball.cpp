@@ -11,7 +11,8 @@ namespace voxdag::scenes {
 namespace {
 
 constexpr int kSides = 6, kRings = 120;  // 2 * 6 * 120 = 1440 triangles a hair.
-// Thick enough for about the octree nodes of the SVDAG paper's hairball: 769 million at 8192³ (781).
+// Thick enough for about the octree nodes of the SVDAG paper's hairball: 769 million at 8192³
+// (781).
 constexpr double kRadius = 0.0036;
 
 /// A hair climbs from near the centre to near the surface while two slow waves turn it about.

@@ -141,8 +141,9 @@ double HeightField::slope(double x, double z) const {
 
 HeightField mountain_heights(int cells, double side, std::uint32_t seed) {
   HeightField field{cells, side, {}};
-  field.heights.resize(static_cast<std::size_t>(cells + 1) * (cells + 1));
-  parallel_for(static_cast<std::size_t>(cells + 1), [&](std::size_t row) {
+  const auto rows = static_cast<std::size_t>(cells) + 1;
+  field.heights.resize(rows * rows);
+  parallel_for(rows, [&](std::size_t row) {
     const int z = static_cast<int>(row);
     for (int x = 0; x <= cells; ++x)
       field.at(x, z) =
