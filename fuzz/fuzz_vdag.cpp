@@ -18,6 +18,7 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
+#include "voxdag/layout/svdag_lookup.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
@@ -35,7 +36,7 @@ std::vector<Vec3i> first_voxels(const SvdagView& view) {
   std::vector<Vec3i> voxels;
   try {
     for_each_voxel(view, whole_grid(view.levels), [&](Vec3i voxel) {
-      if (!has_voxel(view, voxel)) std::abort();
+      if (!svdag_contains(view, voxel, view.levels)) std::abort();
       voxels.push_back(voxel);
       if (voxels.size() > kMostVoxels) throw TooMany();
     });
@@ -48,7 +49,7 @@ void cast_rays(const SvdagView& view, const Grid& grid, const std::vector<Vec3i>
   const SvdagNodes nodes(view);
   const auto check = [&](const Ray& ray) {
     const Hit hit = closest_hit(nodes, grid, ray);
-    if (hit.hit && !has_voxel(view, hit.voxel)) std::abort();
+    if (hit.hit && !svdag_contains(view, hit.voxel, view.levels)) std::abort();
   };
   const Vec3d center = grid.to_world(Vec3d{0.5, 0.5, 0.5} * static_cast<double>(grid.resolution()));
   for (std::size_t i = 0; i < voxels.size(); i += 50) {

@@ -13,7 +13,7 @@ voxdag_packages=(
   libcli11-dev libfmt-dev
 )
 voxdag_test_packages=(
-  libgtest-dev libbenchmark-dev
+  libgtest-dev libbenchmark-dev zstd
   clang clang-format clang-tidy
 )
 

@@ -37,5 +37,11 @@ if [ "$tidy" = yes ]; then
     xargs -0 -r -n 1 -P "$jobs" clang-tidy -p build/clang --quiet --warnings-as-errors='*'
 fi
 
+# Real scenes are tested too where they lie beside the checkout.
+if [ -z "${VOXDAG_SCENES-}" ] && [ -f ../shared/scenes/unpack.sh ]; then
+  bash ../shared/scenes/unpack.sh build/scenes
+  export VOXDAG_SCENES=$PWD/build/scenes
+fi
+
 echo "== tests"
 ctest --preset release -j "$jobs" --no-tests=error

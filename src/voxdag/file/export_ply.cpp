@@ -8,6 +8,7 @@
 #include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/export_common.hpp"
+#include "voxdag/layout/svdag_lookup.hpp"
 
 namespace voxdag {
 namespace {

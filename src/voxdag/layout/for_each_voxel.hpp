@@ -82,26 +82,4 @@ void for_each_voxel(const SvdagView& dag, const Box3i& window, const Fn& fn) {
   });
 }
 
-/// The mask of the leaf block that holds `voxel`; 0 if it has no voxels or lies outside the grid.
-inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) {
-  const auto outside = [&](std::int32_t c) { return c < 0 || c >> dag.levels != 0; };
-  if (dag.is_empty() || outside(voxel.x) || outside(voxel.y) || outside(voxel.z)) return 0;
-  std::uint32_t at = 0;
-  for (int level = 0; level < dag.levels - 2; ++level) {
-    const int shift = dag.levels - level - 1;
-    const int child =
-        (voxel.x >> shift & 1) | (voxel.y >> shift & 1) << 1 | (voxel.z >> shift & 1) << 2;
-    const std::uint32_t* node = dag.nodes + at;
-    if ((child_mask(node) >> child & 1) == 0) return 0;
-    at = child_pointer(node, child);
-  }
-  return dag.leaf_blocks[at];
-}
-
-/// Whether the voxel is set; false outside the grid.
-inline bool has_voxel(const SvdagView& dag, Vec3i voxel) {
-  return (leaf_block_at(dag, voxel) >> morton_encode({voxel.x & 3, voxel.y & 3, voxel.z & 3}) &
-          1) != 0;
-}
-
 }  // namespace voxdag

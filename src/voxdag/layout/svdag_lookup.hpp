@@ -4,10 +4,27 @@
 
 namespace voxdag {
 
+/// The mask of the leaf block that holds `voxel`; 0 if it has no voxels or lies outside the grid.
+VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) {
+  const auto outside = [&](std::int32_t c) { return c < 0 || c >> dag.levels != 0; };
+  if (dag.is_empty() || outside(voxel.x) || outside(voxel.y) || outside(voxel.z)) return 0;
+  std::uint32_t at = 0;
+  for (int level = 0; level < dag.levels - 2; ++level) {
+    const int shift = dag.levels - level - 1;
+    const int child =
+        (voxel.x >> shift & 1) | (voxel.y >> shift & 1) << 1 | (voxel.z >> shift & 1) << 2;
+    const std::uint32_t* node = dag.nodes + at;
+    if ((child_mask(node) >> child & 1) == 0) return 0;
+    at = child_pointer(node, child);
+  }
+  return dag.leaf_blocks[at];
+}
+
 /// Whether the cell `cell` of `level` (cells of 2^(L-level) voxels, coordinates in [0, 2^level))
 /// contains a voxel that is set. level in [0, L]; level L asks for one voxel.
+/// False outside the grid.
 VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level) {
-  if (dag.is_empty()) return false;
+  if (dag.is_empty() || (cell.x | cell.y | cell.z) >> level != 0) return false;
   std::uint32_t at = 0;
   for (int l = 0; l < level; ++l) {
     const int shift = level - 1 - l;
