@@ -137,4 +137,49 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, const Ray& ray) {
                        static_cast<double>(ray.t_min), static_cast<double>(ray.t_max));
 }
 
+/// A point in the grid as the traversal takes it: rounded once, for all rays that start there.
+struct GridPoint {
+  Vec3f position{1, 1, 1};  ///< The grid is [1,2]³; multiples of 2^-23.
+};
+
+/// The nearest point of the closed grid, rounded by up to 2^-24 of its side.
+VOXDAG_HD inline GridPoint make_grid_point(const Grid& grid, Vec3d world) {
+  const double to_unit = 1.0 / (grid.voxel_size * static_cast<double>(grid.resolution()));
+  GridPoint point;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double p = (world[axis] - grid.origin[axis]) * to_unit;
+    point.position[axis] = static_cast<float>(1.0 + (p < 0 ? 0.0 : p > 1 ? 1.0 : p));
+  }
+  return point;
+}
+
+/// The ray start + t * direction, t_min <= t <= t_max with t_min >= 0. The direction is in units of
+/// the grid's side, need not have unit length, and t is in units of it. All in float: for the many
+/// short rays of one point. A zero direction meets nothing.
+VOXDAG_HD inline GridRay make_grid_ray(const GridPoint& start, Vec3f direction, float t_min,
+                                       float t_max) {
+  constexpr float kParallel = 0x1p-32f;
+  GridRay ray;
+  const float ax = std::fabs(direction.x), ay = std::fabs(direction.y), az = std::fabs(direction.z);
+  const float axy = ax > ay ? ax : ay;
+  const float length = axy > az ? axy : az;
+  if (!(length > 0 && length < HUGE_VALF)) return ray;
+  ray.mirrored = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float d = direction[axis], p = start.position[axis];
+    const bool still = !(std::fabs(d) >= kParallel * length);
+    const bool up = still || d > 0;
+    // As above: a ray that does not move along an axis is in the voxels of floor(origin).
+    const float q = still && p > 2 - 0x1p-23f ? 2 - 0x1p-23f : p;
+    ray.parallel |= still ? 1u << axis : 0u;
+    ray.mirrored |= up ? 1u << axis : 0u;
+    ray.origin[axis] = up ? 3.0f - q : q;
+    ray.inverse[axis] = still ? 0x1p32f : length / std::fabs(d);
+  }
+  ray.t_scale = 1.0 / static_cast<double>(length);
+  ray.t_min = t_min * length;
+  ray.t_max = t_max * length;
+  return ray;
+}
+
 }  // namespace voxdag

@@ -11,15 +11,17 @@
 namespace voxdag {
 
 /// A termination hook for cast(): true for cells of level `coarsest_level` or finer whose side is
-/// at most at_start + per_t * T. Sides are in units of the grid's side, so that level l has 2^-l.
+/// at most at_start + per_t * T, T being where the ray leaves the cell: that, unlike where it
+/// enters, is the same wherever on its way to the cell the ray starts, so that shortened rays end
+/// at the same cells. Sides are in units of the grid's side, so that level l has 2^-l.
 struct StopBelowSize {
   float at_start = 0;
   float per_t = 0;
   int coarsest_level = 2;
 
-  VOXDAG_HD bool operator()(int level, float t_enter, float /*t_exit*/) const {
+  VOXDAG_HD bool operator()(int level, float /*t_enter*/, float t_exit) const {
     const float side = float_from_bits(static_cast<std::uint32_t>(127 - level) << 23);
-    return level >= coarsest_level && side <= at_start + per_t * t_enter;
+    return level >= coarsest_level && side <= at_start + per_t * t_exit;
   }
 };
 
