@@ -19,6 +19,13 @@ else()
   message(STATUS "voxdag: assimp not found: meshes other than OBJ, PLY, STL and glTF will be refused")
 endif()
 
+find_package(embree 3 QUIET)
+if(embree_FOUND)
+  list(APPEND VOXDAG_LIBRARY_PACKAGES embree)
+else()
+  message(STATUS "voxdag: Embree 3 (libembree-dev) not found: no `render --primary mesh`, no comparison with it in `bench trace`")
+endif()
+
 if(VOXDAG_BUILD_APPS)
   find_package(fmt REQUIRED)
   find_package(CLI11 REQUIRED)

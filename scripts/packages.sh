@@ -8,7 +8,7 @@ voxdag_packages=(
   ca-certificates g++ cmake ninja-build
   # the library
   libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev
-  nlohmann-json3-dev libxxhash-dev libzstd-dev libassimp-dev
+  nlohmann-json3-dev libxxhash-dev libzstd-dev libassimp-dev libembree-dev
   # the command line
   libcli11-dev libfmt-dev
 )

@@ -1,0 +1,19 @@
+/// MeshViewSource of a library that was built without Embree.
+#include "voxdag/core/error.hpp"
+#include "voxdag/deferred/mesh_view_source.hpp"
+
+namespace voxdag {
+
+class MeshViewSource::Scene {};
+
+MeshViewSource::MeshViewSource(Mesh /*mesh*/, const MeshViewOptions& /*options*/) {
+  throw Error(
+      "view samples from a mesh need Embree 3, which this voxdag was built without (install "
+      "libembree-dev and build again)");
+}
+
+MeshViewSource::~MeshViewSource() = default;
+
+void MeshViewSource::sample(const Camera&, const ViewTile&, std::span<ViewSample>) const {}
+
+}  // namespace voxdag

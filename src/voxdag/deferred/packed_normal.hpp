@@ -1,0 +1,57 @@
+#pragma once
+/// A unit vector in 32 bits.
+///
+/// Source: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal Vectors",
+/// EGSR 2010: the octahedron |x| + |y| + |z| = 1, its lower half folded out, as a square.
+#include <cmath>
+#include <cstdint>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+/// x in the low 16 bits, y in the high ones: signed, +-32767 is +-1. Good to 0.004 degrees. The
+/// default is the vector (0,0,1).
+class PackedNormal {
+ public:
+  constexpr PackedNormal() = default;
+
+  /// `v` is finite and not zero; its length does not matter.
+  explicit PackedNormal(Vec3f v) {
+    const float scale = 1 / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+    float x = v.x * scale, y = v.y * scale;
+    if (v.z < 0) fold(x, y);
+    bits_ = pack(x) | pack(y) << 16;
+  }
+
+  /// Of unit length.
+  Vec3f unpack() const {
+    float x = unpack(bits_ & 0xFFFFu), y = unpack(bits_ >> 16);
+    const float z = 1 - std::fabs(x) - std::fabs(y);
+    if (z < 0) fold(x, y);
+    const Vec3f v{x, y, z};
+    return v * (1 / std::sqrt(dot(v, v)));
+  }
+
+  friend bool operator==(PackedNormal, PackedNormal) = default;
+
+ private:
+  static constexpr float kOne = 32767;
+
+  static void fold(float& x, float& y) {
+    const float folded_x = std::copysign(1 - std::fabs(y), x);
+    y = std::copysign(1 - std::fabs(x), y);
+    x = folded_x;
+  }
+  static std::uint32_t pack(float x) {
+    return static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(x * kOne)));
+  }
+  static float unpack(std::uint32_t bits) {
+    return static_cast<float>(static_cast<std::int16_t>(bits)) * (1 / kOne);
+  }
+
+  std::uint32_t bits_ = 0;
+};
+static_assert(sizeof(PackedNormal) == 4);
+
+}  // namespace voxdag
