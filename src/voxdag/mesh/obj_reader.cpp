@@ -9,6 +9,7 @@
 
 #include "voxdag/mesh/chunks.hpp"
 #include "voxdag/mesh/mesh_checks.hpp"
+#include "voxdag/mesh/polygon.hpp"
 
 namespace voxdag {
 namespace {
@@ -21,7 +22,8 @@ struct Chunk {
   std::size_t first_vertex = 0, first_triangle = 0;
   std::uint32_t material = kNoMaterial;  ///< In force at the start of the chunk.
   bool faces_before_material = false;
-  bool not_finite = false;             ///< A vertex of the chunk is NaN or infinite.
+  bool not_finite = false;         ///< A vertex of the chunk is NaN or infinite.
+  std::vector<bool> is_same_face;  ///< Triangles of the face of the one before, if there are any.
   std::vector<std::string> materials;  ///< Distinct, in the order of first appearance.
   std::set<std::string, std::less<>> known_materials;
   std::string last_material;
@@ -118,6 +120,7 @@ class ObjReader {
     place_chunks();
     for_each_chunk(source_, texts_, line_end_, "read", [this](std::size_t i) { parse(i); });
     check_finite();
+    parallel_for(chunks_.size(), [this](std::size_t i) { cut_faces(chunks_[i]); });
     return std::move(mesh_);
   }
 
@@ -192,6 +195,7 @@ class ObjReader {
         if (!mesh_.triangle_materials.empty())
           std::fill(mesh_.triangle_materials.begin() + static_cast<std::ptrdiff_t>(triangle),
                     mesh_.triangle_materials.begin() + static_cast<std::ptrdiff_t>(end), material);
+        if (end > triangle + 1) mark_face(chunk, triangle, end);
         triangle = end;
       } else if (statement == Statement::kMaterial) {
         material = material_ids_.find(trim(line))->second;
@@ -210,6 +214,25 @@ class ObjReader {
       if (n == 0) first = index;
       if (n >= 2) mesh_.triangles[triangle++] = {first, previous, index};
       previous = index;
+    }
+  }
+
+  /// Notes that the triangles [first, end) are the fan of one face.
+  static void mark_face(Chunk& chunk, std::size_t first, std::size_t end) {
+    if (chunk.is_same_face.empty()) chunk.is_same_face.resize(chunk.triangles, false);
+    for (std::size_t t = first + 1; t < end; ++t)
+      chunk.is_same_face[t - chunk.first_triangle] = true;
+  }
+
+  /// Cuts the faces of a chunk, now that every vertex is known.
+  void cut_faces(const Chunk& chunk) {
+    const std::vector<bool>& is_same_face = chunk.is_same_face;
+    const auto triangles = std::span(mesh_.triangles).subspan(chunk.first_triangle);
+    for (std::size_t first = 0; first < is_same_face.size();) {
+      std::size_t end = first + 1;
+      while (end < is_same_face.size() && is_same_face[end]) ++end;
+      cut_polygon(triangles.subspan(first, end - first), mesh_.vertices);
+      first = end;
     }
   }
 

@@ -4,6 +4,7 @@
 
 #include "voxdag/mesh/chunks.hpp"
 #include "voxdag/mesh/mesh_checks.hpp"
+#include "voxdag/mesh/polygon.hpp"
 
 namespace voxdag {
 namespace {
@@ -107,6 +108,7 @@ class OffReader {
     for (std::size_t face = 0; face < faces; ++face) {
       std::string_view row = next_row();
       const std::size_t corners = corner_count(row);
+      const std::size_t first_triangle = triangle;
       std::uint32_t first = 0, previous = 0;
       for (std::size_t corner = 0; corner < corners; ++corner) {
         const std::uint32_t index = vertex_index(row);
@@ -114,6 +116,8 @@ class OffReader {
         if (corner >= 2) mesh_.triangles[triangle++] = {first, previous, index};
         previous = index;
       }
+      cut_polygon(std::span(mesh_.triangles).subspan(first_triangle, triangle - first_triangle),
+                  mesh_.vertices);
       release();
     }
   }

@@ -135,7 +135,7 @@ class AsciiReader {
     mesh_.vertices[index] = vertex;
   }
 
-  /// Writes the fan of one face from `triangle` on and returns the index after it.
+  /// Writes the triangles of one face from `triangle` on and returns the index after it.
   std::size_t parse_face(std::string_view row, std::size_t triangle) {
     const auto& properties = fields_.face.properties;
     const std::size_t first_triangle = triangle;
@@ -155,6 +155,7 @@ class AsciiReader {
       });
     }
     check_row_end(row);
+    cut_face(mesh_, first_triangle, triangle);
     for (std::size_t t = first_triangle; t < triangle && fields_.material >= 0; ++t)
       mesh_.triangle_materials[t] = material;
     return triangle;

@@ -248,6 +248,7 @@ class BinaryReader {
             previous = current;
           }
         });
+        cut_face(mesh_, first_triangle, triangle);
         if (fields_.material >= 0) read_material(layout, row_start, end, first_triangle, triangle);
       }
     });

@@ -6,6 +6,7 @@
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/mesh/ply_header.hpp"
+#include "voxdag/mesh/polygon.hpp"
 
 namespace voxdag {
 
@@ -59,6 +60,11 @@ inline std::uint32_t checked_material(std::int64_t index, const Mesh& mesh, cons
     throw Fault{position, "material index " + std::to_string(index) + " is out of range: " +
                               std::to_string(mesh.materials.size()) + " materials"};
   return static_cast<std::uint32_t>(index);
+}
+
+/// Cuts the face whose fan is the triangles [first, last).
+inline void cut_face(Mesh& mesh, std::size_t first, std::size_t last) {
+  cut_polygon(std::span(mesh.triangles).subspan(first, last - first), mesh.vertices);
 }
 
 /// Index of a vertex that is not finite and that a triangle uses, or -1.

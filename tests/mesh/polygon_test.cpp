@@ -1,0 +1,238 @@
+#include "voxdag/mesh/polygon.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <string>
+
+#include "mesh/mesh_text.hpp"
+#include "voxdag/mesh/obj_reader.hpp"
+#include "voxdag/mesh/off_reader.hpp"
+#include "voxdag/mesh/ply_reader.hpp"
+
+namespace voxdag {
+namespace {
+
+using Polygon = std::vector<Vec3f>;
+
+std::vector<Triangle> fan_of(const Polygon& polygon) {
+  std::vector<Triangle> fan;
+  for (std::uint32_t i = 2; i < polygon.size(); ++i) fan.push_back({0, i - 1, i});
+  return fan;
+}
+
+std::vector<Triangle> cut(const Polygon& polygon) {
+  std::vector<Triangle> triangles = fan_of(polygon);
+  cut_polygon(triangles, polygon);
+  return triangles;
+}
+
+/// Twice the area, with its sign, of a polygon in a plane of constant z.
+double flat_area(const Polygon& polygon, const std::vector<std::uint32_t>& corners) {
+  double sum = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3d a(polygon[corners[i]]), b(polygon[corners[(i + 1) % corners.size()]]);
+    sum += a.x * b.y - a.y * b.x;
+  }
+  return sum;
+}
+
+/// Expects triangles that tile a flat polygon, which goes around to the left. Their boundary is
+/// the polygon and none turns right, so that they cover each of its points once and no others.
+void expect_tiles(const Polygon& polygon, const std::vector<Triangle>& triangles) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  double sum = 0, whole = 0;
+  for (const Triangle& t : triangles) {
+    const double area = flat_area(polygon, {t[0], t[1], t[2]});
+    sum += area;
+    EXPECT_GE(area, -1e-9);  // corners on one line, rounded
+    for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2]), std::pair(t[2], t[0])})
+      a < b ? ++edges[{a, b}] : --edges[{b, a}];
+  }
+  std::erase_if(edges, [](const auto& edge) { return edge.second == 0; });
+  EXPECT_EQ(edges.size(), polygon.size());
+  for (std::uint32_t i = 0; i < polygon.size(); ++i) {
+    const std::uint32_t j = i + 1 == polygon.size() ? 0 : i + 1;
+    EXPECT_EQ((edges[{std::min(i, j), std::max(i, j)}]), i < j ? 1 : -1);
+    whole += Vec3d(polygon[i]).x * Vec3d(polygon[j]).y - Vec3d(polygon[i]).y * Vec3d(polygon[j]).x;
+  }
+  EXPECT_NEAR(sum, whole, 1e-9 * std::abs(whole));
+}
+
+/// The polygon in every order of its corners that goes around to the left tiles.
+void expect_cut_well(const Polygon& polygon) {
+  Polygon turned = polygon;
+  for (std::size_t first = 0; first < std::min<std::size_t>(polygon.size(), 40); ++first) {
+    SCOPED_TRACE(first);
+    expect_tiles(turned, cut(turned));
+    std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+  }
+}
+
+const Polygon kDart = {{0, 0, 0}, {2, 2, 0}, {0, 1, 0}, {-2, 2, 0}};
+
+TEST(Polygon, ConvexOnesKeepTheirFan) {
+  Polygon circle;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = i * std::numbers::pi / 30;
+    circle.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                      static_cast<float>(0.3 * std::cos(angle) + 7)});
+    EXPECT_EQ(cut(circle), fan_of(circle));
+  }
+  std::reverse(circle.begin(), circle.end());
+  EXPECT_EQ(cut(circle), fan_of(circle));
+}
+
+TEST(Polygon, CornersOnAnEdgeOrInOnePlaceKeepTheFan) {
+  for (const Polygon& polygon :
+       {Polygon{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 1, 0}},
+        Polygon{{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, 2, 0}, {0, 2, 0}},
+        Polygon{{0, 0, 0}, {1, 0, 0.3f}, {1, 1, 0}, {0, 1, 0.3f}}})
+    EXPECT_EQ(cut(polygon), fan_of(polygon));
+}
+
+TEST(Polygon, ConcaveQuadsAreCutWhereTheyBend) {
+  expect_cut_well(kDart);
+  const auto has_long_diagonal = [](const std::vector<Triangle>& triangles) {
+    return std::any_of(triangles.begin(), triangles.end(), [](Triangle t) {
+      std::sort(t.begin(), t.end());
+      return t == Triangle{0, 1, 3};
+    });
+  };
+  EXPECT_FALSE(has_long_diagonal(cut(kDart)));
+  EXPECT_EQ(cut(kDart), fan_of(kDart));  // Its first corner sees all others.
+  const Polygon turned{kDart[1], kDart[2], kDart[3], kDart[0]};
+  EXPECT_NE(cut(turned), fan_of(turned));
+}
+
+TEST(Polygon, AnyDirectionIsSeenFromItsOwnSide) {
+  const Polygon flat = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {3, 3, 0},
+                        {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+  for (const auto& [u, v] :
+       {std::pair(Vec3f{1, 0, 0}, Vec3f{0, 1, 0}), std::pair(Vec3f{0, 1, 0}, Vec3f{1, 0, 0}),
+        std::pair(Vec3f{0, 0, 1}, Vec3f{0, 1, 0}), std::pair(Vec3f{0, 0, -1}, Vec3f{1, 0, 0}),
+        std::pair(Vec3f{0.6f, 0.8f, 0}, Vec3f{-0.4f, 0.3f, -0.86f})}) {
+    Polygon tilted;
+    for (const Vec3f& p : flat) tilted.push_back(u * p.x + v * p.y + Vec3f{100, -50, 20});
+    expect_tiles(flat, cut(tilted));
+  }
+}
+
+TEST(Polygon, StarsCombsAndSpiralsTile) {
+  Polygon comb{{0, 0, 0}, {60, 0, 0}}, spiral, star;
+  for (int i = 29; i >= 0; --i) {
+    comb.push_back({static_cast<float>(2 * i + 1.5), 10, 0});
+    comb.push_back({static_cast<float>(2 * i), 1, 0});
+  }
+  for (int side = 0; side < 2; ++side)
+    for (int i = 0; i < 100; ++i) {
+      const double t = 0.2 * (side == 0 ? 100 - i : 1 + i), r = t + (side == 0 ? 1.5 : 0);
+      spiral.push_back(
+          {static_cast<float>(r * std::sin(t)), static_cast<float>(r * std::cos(t)), 0});
+    }
+  for (int i = 0; i < 50; ++i) {
+    const double r = i % 2 == 0 ? 10 : 1, angle = i * std::numbers::pi / 25;
+    star.push_back(
+        {static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)), 0});
+  }
+  std::vector<std::uint32_t> all(spiral.size());
+  std::iota(all.begin(), all.end(), 0u);
+  if (flat_area(spiral, all) < 0) std::reverse(spiral.begin(), spiral.end());
+  expect_cut_well(comb);
+  expect_cut_well(star);
+  expect_cut_well(spiral);
+}
+
+TEST(Polygon, RandomSimpleOnesTile) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int n = 4; n < 200; ++n) {
+    SCOPED_TRACE(n);
+    Polygon polygon;
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.9 * uniform(random)) / n;
+      const double r = 0.05 + uniform(random);
+      polygon.push_back(
+          {static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)), 0.5f});
+    }
+    std::rotate(polygon.begin(), polygon.begin() + n / 3, polygon.end());
+    expect_tiles(polygon, cut(polygon));
+  }
+}
+
+TEST(Polygon, ABridgeToAHoleLeavesTheHoleOpen) {
+  expect_cut_well({{0, 0, 0},
+                   {3, 0, 0},
+                   {3, 3, 0},
+                   {0, 3, 0},
+                   {0, 0, 0},
+                   {1, 1, 0},
+                   {1, 2, 0},
+                   {2, 2, 0},
+                   {2, 1, 0},
+                   {1, 1, 0}});
+}
+
+TEST(Polygon, CrossingAndDegenerateOnesUseEveryCornerAndEnd) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> small(0, 3);
+  for (int trial = 0; trial < 3000; ++trial) {
+    Polygon polygon(static_cast<std::size_t>(3 + trial % 30));
+    for (Vec3f& p : polygon)
+      p = {static_cast<float>(small(random)), static_cast<float>(small(random)),
+           static_cast<float>(trial % 3 == 0 ? small(random) : 1)};
+    const std::vector<Triangle> triangles = cut(polygon);
+    std::vector<int> uses(polygon.size());
+    for (const Triangle& triangle : triangles)
+      for (const std::uint32_t corner : triangle) ++uses.at(corner);
+    EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
+    EXPECT_EQ(cut(polygon), triangles);
+  }
+}
+
+TEST(Polygon, NotFiniteCornersKeepTheFan) {
+  for (const float bad : {INFINITY, NAN}) {
+    Polygon polygon{kDart[1], kDart[2], kDart[3], kDart[0], {bad, 0, 0}};
+    EXPECT_EQ(cut(polygon), fan_of(polygon));
+  }
+  Polygon huge;
+  for (const Vec3f& p : kDart) huge.push_back(p * 1e38f);
+  std::rotate(huge.begin(), huge.begin() + 1, huge.end());
+  EXPECT_NE(cut(huge), fan_of(huge));
+}
+
+TEST(Polygon, EveryReaderCutsConcaveFaces) {
+  // A triangle, then a dart that starts at its second corner, then a triangle.
+  const std::string points = "0 0 0\n2 2 0\n0 1 0\n-2 2 0\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string obj, binary = ply;
+  binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+  for (const Vec3f& p : kDart) {
+    for (int axis = 0; axis < 3; ++axis) append(binary, p[axis]);
+    obj += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " 0\n";
+  }
+  for (const std::vector<int>& face : {std::vector{0, 1, 2}, {1, 2, 3, 0}, {0, 2, 3}}) {
+    binary += static_cast<char>(face.size());
+    for (const int corner : face) append(binary, corner);
+  }
+  const std::string faces = "3 0 1 2\n4 1 2 3 0\n3 0 2 3\n";
+
+  std::vector<Triangle> dart{{1, 2, 3}, {1, 3, 0}};
+  cut_polygon(dart, kDart);
+  const std::vector<Triangle> expected{{0, 1, 2}, dart[0], dart[1], {0, 2, 3}};
+  EXPECT_EQ(read_text(read_obj, obj + "f 1 2 3\nf 2 3 4 1\nf 1 3 4\n").triangles, expected);
+  EXPECT_EQ(read_text(read_obj, "f 1 2 3\nf 2 3 4 1\nf 1 3 4\n" + obj).triangles, expected);
+  EXPECT_EQ(read_text(read_ply, ply + points + faces).triangles, expected);
+  EXPECT_EQ(read_text(read_ply, binary).triangles, expected);
+  EXPECT_EQ(read_text(read_off, "OFF\n4 3 0\n" + points + faces).triangles, expected);
+}
+
+}  // namespace
+}  // namespace voxdag
