@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/mesh.hpp"
@@ -23,12 +24,19 @@ struct SceneInfo {
   double default_size, min_size, max_size;
 };
 
+/// Where a flight is at a time.
+struct SceneKey {
+  double time = 0;  ///< Seconds, from 0 on, rising.
+  Vec3d eye, target;
+};
+
 /// A camera and a sun that show a scene well, in the mesh's world units.
 struct ScenePreset {
   Vec3d eye, target;
   Vec3d up{0, 1, 0};
-  double fov_degrees = 60;  ///< Vertical angle of view, for pictures of 16:9.
-  Vec3d sun_direction;      ///< Unit vector from the scene towards the sun.
+  double fov_degrees = 60;       ///< Vertical angle of view, for pictures of 16:9.
+  Vec3d sun_direction;           ///< Unit vector from the scene towards the sun.
+  std::vector<SceneKey> flight;  ///< A film, with the same up and angle of view.
 };
 
 /// Every scene, in alphabetical order.

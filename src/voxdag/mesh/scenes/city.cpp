@@ -132,6 +132,18 @@ ScenePreset city_preset(double size) {
   preset.target = {0, 8 + 3 * blocks, 0};
   preset.fov_degrees = 50;
   preset.sun_direction = normalize({-0.72, 0.55, 0.42});
+  // Down from the air into the street nearest to the middle, round a corner, and up again.
+  const bool is_even = std::fmod(blocks, 2) == 0;
+  const double x = is_even ? 0 : kPitchX / 2, z = is_even ? 0 : kPitchZ / 2;
+  const double far_x = blocks * kPitchX / 2, far_z = blocks * kPitchZ / 2;
+  preset.flight = {{0, preset.eye, preset.target},
+                   {4, {x + 30, 24 + 7 * blocks, far_z + 50}, {x, 14, 0}},
+                   {8, {x, 15, far_z * 0.8}, {x, 10, -far_z * 0.2}},
+                   {12, {x, 7, z + 0.2 * far_z}, {x + 6, 8, z - 20}},
+                   {14, {x + 5, 6.5, z + 4}, {x + 40, 9, z}},
+                   {17, {x + 0.4 * kPitchX, 7, z}, {x + 1.2 * kPitchX, 9, z}},
+                   {22, {far_x + 0.3 * kPitchX, 18, z}, {far_x + kPitchX, 18, z - 20}},
+                   {26, {far_x + 60, 30 + 8 * blocks, -0.5 * far_z}, {0, 10, 0}}};
   return preset;
 }
 

@@ -363,6 +363,13 @@ ScenePreset courtyard_preset(double) {
   preset.target = {2.0, 2.9, -3};
   preset.fov_degrees = 58;
   preset.sun_direction = normalize({-0.55, 0.9, 0.35});
+  // Past the fountain, through the arcade and along the gallery behind it, and up over the roofs.
+  preset.flight = {
+      {0, preset.eye, preset.target},           {4, {-1.5, 2.2, 6.0}, {0.6, 1.6, -1}},
+      {8, {-2.7, 1.7, 0.0}, {-1.0, 1.6, -3.5}}, {11, {-1.7, 1.8, -6.9}, {-5.5, 1.9, -8.2}},
+      {14, {-5.6, 1.8, -7.4}, {-6.3, 1.9, -3}}, {18, {-6.3, 1.8, -1.0}, {-5.2, 1.9, 4}},
+      {21, {-4.4, 2.1, 4.5}, {0, 3.2, 5.0}},    {25, {-1.0, 6.5, 6.0}, {0.5, 5.5, -4}},
+      {28, {-2.0, 13.5, 9.5}, {0.2, 4.5, -4}},  {31, {1.5, 18, 21}, {0, 4, -2}}};
   return preset;
 }
 

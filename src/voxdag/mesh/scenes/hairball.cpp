@@ -61,6 +61,14 @@ ScenePreset hairball_preset(double) {
   preset.eye = {1.1, 0.5, 2.2};
   preset.fov_degrees = 46;
   preset.sun_direction = normalize({-0.5, 0.9, 0.6});
+  // Once around it, coming near.
+  constexpr int kKeys = 9;
+  for (int i = 0; i < kKeys; ++i) {
+    const double part = static_cast<double>(i) / (kKeys - 1);
+    const double turns = 0.074 + part, radius = lerp(2.0, 2.5, cos_turns(part));
+    const Vec3d eye{radius * sin_turns(turns), 0.5 * cos_turns(part), radius * cos_turns(turns)};
+    preset.flight.push_back({2.5 * i, eye, Vec3d{}});
+  }
   return preset;
 }
 

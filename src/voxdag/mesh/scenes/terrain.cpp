@@ -145,6 +145,10 @@ ScenePreset terrain_preset(double) {
   preset.target = {20, 105, 0};
   preset.fov_degrees = 48;
   preset.sun_direction = normalize({-0.8, 0.42, 0.3});
+  preset.flight = {{0, preset.eye, preset.target},           {4, {-160, 120, 640}, {20, 100, 0}},
+                   {8, {-100, 190, 300}, {60, 120, -200}},   {12, {40, 330, -20}, {200, 170, -400}},
+                   {16, {260, 450, -250}, {200, 220, -700}}, {20, {520, 500, -420}, {0, 150, -600}},
+                   {24, {620, 430, 100}, {0, 150, 0}},       {28, {420, 420, 760}, {0, 120, 0}}};
   return preset;
 }
 
