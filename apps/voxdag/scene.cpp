@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "human.hpp"
 #include "parse.hpp"
+#include "path_file.hpp"
 #include "voxdag/mesh/ply_writer.hpp"
 #include "voxdag/mesh/scenes.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 struct SceneArguments {
   std::string name, output;
   SceneOptions options;
-  bool list = false, view = false;
+  bool list = false, view = false, path = false;
 };
 
 std::string option_text(const std::string& name, Vec3d v) {
@@ -28,6 +29,17 @@ std::string view_options(const ScenePreset& preset) {
   return option_text("--eye", preset.eye) + option_text("--target", preset.target) +
          option_text("--up", preset.up) + option_text("--sun", preset.sun_direction) +
          fmt::format("--fov {:.6g}", preset.fov_degrees);
+}
+
+/// The flight through a scene as `render --path` reads it.
+PathFile path_file(const ScenePreset& preset) {
+  PathFile path;
+  path.sun = preset.sun_direction;
+  for (const SceneKey& key : preset.flight)
+    path.keys.push_back({key.time, key.eye, key.target, {}, {}});
+  path.keys.front().up = preset.up;
+  path.keys.front().fov_degrees = preset.fov_degrees;
+  return path;
 }
 
 void print_list(bool json) {
@@ -74,6 +86,8 @@ void add_scene_command(CLI::App& app, Session& session) {
   command.add_flag("--list", arguments->list, "List the scenes and what their size counts");
   command.add_flag("--view", arguments->view,
                    "Only print the options with which `voxdag render` shows the scene well");
+  command.add_flag("--path", arguments->path,
+                   "Only print a flight through the scene for `voxdag render --path`");
   add_parsed_option(command, "--size", arguments->options.size, parse_positive, "SIZE",
                     "How large or fine the scene is; see --list");
   command.add_option("--seed", arguments->options.seed, "Another seed gives another scene")
@@ -89,6 +103,12 @@ void add_scene_command(CLI::App& app, Session& session) {
     if (arguments->view) {
       session.work = [arguments] {
         fmt::print("{}\n", view_options(scene_preset(arguments->name, arguments->options)));
+      };
+      return;
+    }
+    if (arguments->path) {
+      session.work = [arguments] {
+        fmt::print("{}", path_json(path_file(scene_preset(arguments->name, arguments->options))));
       };
       return;
     }

@@ -30,6 +30,17 @@ TEST_F(Sponge, ListNamesTheScenesWithTheirSizes) {
   EXPECT_GE(nlohmann::json::parse(run_voxdag({"scene", "--list", "--json"}).out).size(), 3u);
 }
 
+TEST_F(Sponge, EverySceneHasAFlight) {
+  for (const auto& scene : nlohmann::json::parse(run_voxdag({"scene", "--list", "--json"}).out)) {
+    const ProcessResult result = run_voxdag({"scene", scene.at("name"), "--path"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto path = nlohmann::json::parse(result.out);
+    EXPECT_EQ(path.at("sun").size(), 3u);
+    EXPECT_GE(path.at("keys").size(), 8u);
+    EXPECT_EQ(path.at("keys").at(0).at("time"), 0);
+  }
+}
+
 TEST_F(Sponge, UnknownScenesAndSizesAreRefused) {
   expect_failure(run_voxdag({"scene", "nowhere", "-o", path("x.ply")}), 1, "nowhere");
   expect_failure(run_voxdag({"scene", "sponge", "--size", "99", "-o", path("x.ply")}), 1, "99");
