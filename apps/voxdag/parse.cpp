@@ -52,6 +52,17 @@ Box<T> parse_box_of(const std::string& text, const char* expected) {
 
 }  // namespace
 
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> values;
+  std::string_view rest = text;
+  for (;;) {
+    const std::size_t comma = rest.find(',');
+    values.push_back(parse_number<double>(rest.substr(0, comma), "a number"));
+    if (comma == std::string_view::npos) return values;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
 Vec3d parse_vec3(const std::string& text) {
   const auto v = parse_list<double, 3>(text, "a number");
   return {v[0], v[1], v[2]};

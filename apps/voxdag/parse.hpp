@@ -3,6 +3,7 @@
 /// reason where the text is not what it should be.
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/vec.hpp"
@@ -13,8 +14,9 @@ struct ImageSize {
   int width = 0, height = 0;
 };
 
-Vec3d parse_vec3(const std::string& text);  ///< "1.5,-2,0": three finite numbers.
-Box3d parse_box(const std::string& text);   ///< "x0,y0,z0,x1,y1,z1", the second corner above.
+std::vector<double> parse_numbers(const std::string& text);  ///< "1,2.5": finite, at least one.
+Vec3d parse_vec3(const std::string& text);                   ///< "1.5,-2,0": three finite numbers.
+Box3d parse_box(const std::string& text);  ///< "x0,y0,z0,x1,y1,z1", the second corner above.
 Box3i parse_window(
     const std::string& text);  ///< As parse_box, of voxels: `hi` is one past the last.
 double parse_positive(const std::string& text);  ///< A finite number above zero.

@@ -1,58 +1,60 @@
 /// `voxdag render`: a picture of a .vdag file.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <memory>
+#include <numeric>
 
 #include "commands.hpp"
 #include "human.hpp"
 #include "parse.hpp"
+#include "render_light.hpp"
+#include "render_passes.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/file/vdag_file.hpp"
-#include "voxdag/image/color.hpp"
-#include "voxdag/image/exr.hpp"
-#include "voxdag/image/png.hpp"
 
 namespace voxdag {
 namespace {
 
 struct RenderArguments {
   std::string output, depth, normal;
+  std::vector<RenderPass> passes;
   ImageSize size{1920, 1080};
   RenderOptions options;
 };
 
-bool has_extension(const std::string& path, std::string_view extension) {
-  return std::filesystem::path(path).extension() == extension;
+/// Every file to write.
+std::vector<RenderPass> all_passes(const RenderArguments& arguments) {
+  std::vector<RenderPass> passes = {{"picture", arguments.output}};
+  if (!arguments.depth.empty()) passes.push_back({"depth", arguments.depth});
+  if (!arguments.normal.empty()) passes.push_back({"normal", arguments.normal});
+  passes.insert(passes.end(), arguments.passes.begin(), arguments.passes.end());
+  return passes;
 }
 
-ImageF vector_image(const RenderedImage& image, const std::vector<Vec3f>& values) {
-  ImageF out(image.width, image.height, 3);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) out.pixels[3 * i + axis] = values[i][axis];
-  return out;
-}
-
-void write_picture(const std::string& path, const RenderedImage& image) {
-  if (has_extension(path, ".exr"))
-    return write_exr(path, vector_image(image, image.rgb), {"R", "G", "B"});
-  ImageRgb8 png(image.width, image.height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      png.pixels[3 * i + axis] = linear_to_srgb8(image.rgb[i][axis]);
-  write_png(path, png);
-}
-
-void write_depth(const std::string& path, const RenderedImage& image) {
-  ImageF out(image.width, image.height, 1);
-  out.pixels = image.depth;
-  write_exr(path, out, {"Z"});
+void print_summary(const RenderArguments& arguments, const RenderedImage& image, double seconds) {
+  fmt::print("{}: {} x {} pixels in {}, {} rays/s\n", arguments.output, image.width, image.height,
+             human_seconds(seconds), human_count(static_cast<double>(image.rays) / seconds));
+  const View& view = image.view;
+  fmt::print(
+      "  --eye {:.6g},{:.6g},{:.6g} --target {:.6g},{:.6g},{:.6g} --up {:.6g},{:.6g},{:.6g} --fov "
+      "{:.6g} --exposure {:.4g}\n",
+      view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z, view.up.x,
+      view.up.y, view.up.z, view.vertical_fov_degrees, static_cast<double>(image.exposure));
+  if (image.steps.empty()) return;
+  const double sum = std::accumulate(image.steps.begin(), image.steps.end(), 0.0);
+  fmt::print("  steps per primary ray: {:.1f} on average, {:.0f} at most\n",
+             sum / static_cast<double>(image.steps.size()),
+             static_cast<double>(*std::max_element(image.steps.begin(), image.steps.end())));
 }
 
 void render(RenderArguments& arguments, Session& session) {
-  for (const std::string& path : {arguments.output, arguments.depth, arguments.normal})
-    if (!path.empty()) check_writable(path);
+  const std::vector<RenderPass> passes = all_passes(arguments);
+  for (const RenderPass& pass : passes) {
+    check_writable(pass.path);
+    if (pass.name == "steps") arguments.options.with_steps = true;
+  }
   const VdagFile file(session.subject);
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
@@ -61,28 +63,36 @@ void render(RenderArguments& arguments, Session& session) {
       render_image(file.view(), file.grid(), arguments.options, &session.progress);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_picture(arguments.output, image);
-  if (!arguments.depth.empty()) write_depth(arguments.depth, image);
-  if (!arguments.normal.empty())
-    write_exr(arguments.normal, vector_image(image, image.normal), {"N.X", "N.Y", "N.Z"});
+  for (const RenderPass& pass : passes) write_pass(pass, image);
   session.bar.clear();
-  if (session.quiet) return;
-  const View& view = image.view;
-  fmt::print("{}: {} x {} pixels in {}, {} rays/s\n", arguments.output, image.width, image.height,
-             human_seconds(seconds), human_count(static_cast<double>(image.rays) / seconds));
-  fmt::print(
-      "  --eye {:.6g},{:.6g},{:.6g} --target {:.6g},{:.6g},{:.6g} --up {:.6g},{:.6g},{:.6g} --fov "
-      "{:.6g}\n",
-      view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z, view.up.x,
-      view.up.y, view.up.z, view.vertical_fov_degrees);
+  if (!session.quiet) print_summary(arguments, image, seconds);
 }
 
-void require_extension(const std::string& option, const std::string& path,
-                       const std::vector<std::string_view>& extensions) {
-  for (const std::string_view extension : extensions)
-    if (path.empty() || has_extension(path, extension)) return;
-  throw CLI::ValidationError(
-      option, fmt::format("\"{}\" does not end in {}", path, fmt::join(extensions, " or ")));
+/// An option that may be given several times; each text becomes one value.
+template <class Value>
+void add_list_option(CLI::App& command, const std::string& name, std::vector<Value>& values,
+                     Value (*parse)(const std::string&), const std::string& shape,
+                     const std::string& help) {
+  const auto store = [&values, parse, name](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      try {
+        values.push_back(parse(text));
+      } catch (const std::invalid_argument& wrong) {
+        throw CLI::ValidationError(name, fmt::format("\"{}\": {}", text, wrong.what()));
+      }
+    }
+  };
+  command.add_option_function<std::vector<std::string>>(name, store, help)
+      ->type_name(shape)
+      ->allow_extra_args(false);
+}
+
+void check_output(const std::string& option, const std::string& path) {
+  try {
+    check_picture_path(path);
+  } catch (const std::invalid_argument& wrong) {
+    throw CLI::ValidationError(option, wrong.what());
+  }
 }
 
 void add_view_options(CLI::App& command, ViewRequest& view) {
@@ -95,13 +105,71 @@ void add_view_options(CLI::App& command, ViewRequest& view) {
                     "Vertical angle of view");
 }
 
+void add_light_options(CLI::App& command, RenderOptions& options) {
+  add_parsed_option(command, "--sun", options.sun, parse_vec3, "X,Y,Z",
+                    "Direction towards the sun (default: over the viewer's left shoulder)");
+  command.add_option("--sun-angle", options.sun_degrees, "The sun's angle across; 0: hard shadows")
+      ->check(CLI::Range(0.0, 89.0))
+      ->type_name("DEGREES")
+      ->capture_default_str();
+  command.add_flag("!--no-sun", options.with_sun, "Leave the sun out");
+  add_list_option(command, "--light", options.lights, parse_light, "KIND:...",
+                  "A light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
+                  "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, and ,R,G,B for its colour; may be repeated");
+  command.add_option("--sky", options.sky, "Factor on the sky's light; 0: black")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("FACTOR")
+      ->capture_default_str();
+  command.add_flag("!--no-shadows", options.shadows, "Leave the shadows of sun and lights out");
+  command
+      .add_option("--shadow-samples", options.shadow_samples,
+                  "Shadow rays per pixel and light with soft edges")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--ao", options.occlusion_samples, "Rays of ambient occlusion per pixel; 0: none")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N")
+      ->capture_default_str();
+  add_parsed_option(command, "--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
+                    "How far occlusion reaches, in world units (default: a tenth of the grid)");
+  command
+      .add_option("--ao-cone", options.occlusion_cone,
+                  "End its rays at cells of this solid angle, such as 0.07; 0: never")
+      ->check(CLI::Range(0.0, 6.0))
+      ->type_name("SR")
+      ->capture_default_str();
+}
+
+void add_quality_options(CLI::App& command, RenderOptions& options) {
+  command.add_option("--spp,--samples", options.samples_per_pixel, "Samples per pixel")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--lod", options.lod_pixels,
+                  "Stop at cells of this many pixels; 0: always at voxels")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->type_name("PIXELS")
+      ->capture_default_str();
+  command.add_flag("!--no-beams", options.beams,
+                   "Cast every ray over its whole length: slower, the same picture");
+  command
+      .add_option("--exposure", options.exposure,
+                  "Factor on the light before tone mapping (default: what suits the picture)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("FACTOR");
+}
+
 }  // namespace
 
 void add_render_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<RenderArguments>();
   RenderOptions& options = arguments->options;
-  CLI::App& command = add_command(app, "render", "Make a picture: sun, sky and shadows",
-                                  "voxdag render scene.vdag -o scene.png --size 1920x1080");
+  CLI::App& command =
+      add_command(app, "render", "Make a picture: sun, sky, shadows and ambient occlusion",
+                  "voxdag render scene.vdag -o scene.png --size 1920x1080");
   command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
   command
       .add_option("-o,--output", arguments->output, "The picture: .png, or .exr for linear light")
@@ -110,29 +178,22 @@ void add_render_command(CLI::App& app, Session& session) {
   add_parsed_option(command, "--size", arguments->size, parse_image_size, "WxH",
                     "Pixels (default 1920x1080)");
   add_view_options(command, options.view);
-  add_parsed_option(command, "--sun", options.sun, parse_vec3, "X,Y,Z",
-                    "Direction towards the sun (default: over the viewer's left shoulder)");
-  command.add_option("--samples", options.samples_per_pixel, "Samples per pixel")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_flag("!--no-shadows", options.shade.shadows, "Leave the sun's shadows out");
+  add_light_options(command, options);
+  add_quality_options(command, options);
   command
-      .add_option("--lod", options.shade.lod_pixels,
-                  "Stop at cells of this many pixels; 0: always at voxels")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->type_name("PIXELS")
-      ->capture_default_str();
-  command.add_option("--depth", arguments->depth, "Write the depth along the view, channel Z")
-      ->type_name("OUT.exr");
-  command.add_option("--normal", arguments->normal, "Write world space normals, N.X N.Y N.Z")
-      ->type_name("OUT.exr");
+      .add_option("--depth", arguments->depth, "Write the depth along the view: --pass depth=OUT")
+      ->type_name("OUT");
+  command.add_option("--normal", arguments->normal, "Write world space normals: --pass normal=OUT")
+      ->type_name("OUT");
+  add_list_option(command, "--pass", arguments->passes, parse_pass, "NAME=OUT",
+                  "Also write picture, radiance, depth, normal, occlusion, shadow or steps as .exr "
+                  "or .png; may be repeated");
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {
-    require_extension("--output", arguments->output, {".png", ".exr"});
-    require_extension("--depth", arguments->depth, {".exr"});
-    require_extension("--normal", arguments->normal, {".exr"});
+    check_output("--output", arguments->output);
+    if (!arguments->depth.empty()) check_output("--depth", arguments->depth);
+    if (!arguments->normal.empty()) check_output("--normal", arguments->normal);
     session.work = [arguments, &session] { render(*arguments, session); };
   });
 }

@@ -36,7 +36,7 @@ RenderOptions small_picture() {
   RenderOptions options;
   options.width = 97;
   options.height = 61;
-  options.shade.lod_pixels = 0;
+  options.lod_pixels = 0;
   return options;
 }
 
@@ -77,7 +77,7 @@ TEST(RenderImage, TheBlockShadowsTheFloorAndNothingElseIsDark) {
   options.view.eye = {0, 6, 3};
   options.view.target = {0, -0.8, 0};
   RenderedImage with = render_image(dag.view(), test_grid(), options);
-  options.shade.shadows = false;
+  options.shadows = false;
   RenderedImage without = render_image(dag.view(), test_grid(), options);
   int floor = 0, darker = 0;
   for (std::size_t i = 0; i < with.rgb.size(); ++i) {
@@ -100,7 +100,7 @@ TEST(RenderImage, ASlantedPlaneDoesNotShadowItself) {
   const Svdag dag = brute_svdag(kLevels, voxels);
   RenderOptions options = small_picture();
   const RenderedImage with = render_image(dag.view(), test_grid(), options);
-  options.shade.shadows = false;
+  options.shadows = false;
   EXPECT_EQ(with.rgb, render_image(dag.view(), test_grid(), options).rgb);
 }
 
@@ -110,7 +110,7 @@ TEST(RenderImage, TheSunLightsTheSideThatFacesIt) {
   options.view.eye = {0, 0, 6};
   options.view.target = {0, 0, 0};
   options.view.vertical_fov_degrees = 2;  // the front of the block, at z = 0.25
-  options.shade.exposure = 0.1f;
+  options.exposure = 0.1f;
   options.sun = {0, 0, 7};
   const RenderedImage lit = render_image(dag.view(), test_grid(), options);
   options.sun = {0, 1, -2};

@@ -1,18 +1,31 @@
-// A picture's sample instantiated in a kernel: that it compiles as device code is the test.
-#include "voxdag/render/shade.hpp"
+// The renderer instantiated in kernels: that it compiles as device code is the test.
+#include "voxdag/render/count_steps.hpp"
+#include "voxdag/render/render_tile.hpp"
 #include "voxdag/render/tone_map.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 
-__global__ void shade_kernel(SvdagView dag, Grid grid, Camera camera, Sky sky, ShadeOptions options,
-                             Vec3f* rgb) {
-  const int x = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  const int y = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y);
-  if (x >= camera.width || y >= camera.height) return;
-  const Sample sample =
-      shade_sample(SvdagNodes(dag), grid, camera, sky, options, x + 0.5, y + 0.5);
-  rgb[y * camera.width + x] = tone_map(sample.radiance * options.exposure);
+__global__ void beam_kernel(SvdagView dag, RenderSetup setup, float* starts) {
+  const int x = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x) * kCoarseBeamPixels;
+  const int y = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y) * kCoarseBeamPixels;
+  if (x >= setup.camera.width || y >= setup.camera.height) return;
+  set_beam_starts(SvdagNodes(dag), setup, x, y, starts);
+  count_steps(SvdagNodes(dag), setup, x, y);
+}
+
+__global__ void render_kernel(SvdagView dag, RenderSetup setup) {
+  ViewTile tile;
+  tile.x = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  tile.y = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y);
+  tile.width = tile.height = 1;
+  if (tile.x >= setup.camera.width || tile.y >= setup.camera.height) return;
+  const SvdagNodes nodes(dag);
+  const ScalarCaster<SvdagNodes> caster(nodes);
+  TileScratch<1> scratch;
+  render_tile(nodes, caster, setup, tile, scratch, [&](const ViewTile& at, TileScratch<1>& out) {
+    return trace_view_samples(nodes, caster, setup, at, out);
+  });
 }
 
 }  // namespace voxdag

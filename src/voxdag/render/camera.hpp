@@ -2,13 +2,10 @@
 /// A pinhole camera.
 #include <cmath>
 
-#include "voxdag/core/vec.hpp"
+#include "voxdag/render/basis.hpp"
 #include "voxdag/render/view.hpp"
 
 namespace voxdag {
-
-VOXDAG_HD inline Vec3d normalized(Vec3d v) { return v * (1.0 / std::sqrt(dot(v, v))); }
-VOXDAG_HD inline Vec3f normalized(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
 
 /// Maps pixels to rays. Kept in double: at 131,072³ a float eye would be off by voxels.
 struct Camera {

@@ -7,10 +7,10 @@
 namespace voxdag {
 
 struct Sky {
-  Vec3f up{0, 1, 0};                        ///< Unit length.
-  Vec3f sun{0, 1, 0};                       ///< Unit length, towards the sun.
-  Vec3f fill{1, 0, 0};                      ///< Unit length, towards the soft fill light.
-  Vec3f sun_irradiance{2.9f, 2.65f, 2.3f};  ///< On a surface that faces the sun.
+  Vec3f up{0, 1, 0};                   ///< Unit length.
+  Vec3f sun{0, 1, 0};                  ///< Unit length, towards the sun.
+  Vec3f fill{1, 0, 0};                 ///< Unit length, towards the soft fill light.
+  Vec3f sun_light{2.9f, 2.65f, 2.3f};  ///< Irradiance / pi on a surface that faces the sun.
   Vec3f zenith{0.32f, 0.52f, 0.95f};
   Vec3f horizon{0.86f, 0.92f, 1.0f};
   Vec3f ground{0.43f, 0.41f, 0.39f};  ///< What is below the horizon sends up.
@@ -34,7 +34,7 @@ VOXDAG_HD inline Vec3f sky_radiance(const Sky& sky, Vec3f direction) {
   Vec3f radiance = mix(sky.zenith, sky.horizon, haze2 * haze2);
   // The glow around the sun, without the disc: a picture's background, not a light.
   const float glow = towards_sun > 0 ? towards_sun * towards_sun : 0.0f;
-  radiance = radiance + sky.sun_irradiance * (0.10f * glow * glow * glow * glow);
+  radiance = radiance + sky.sun_light * (0.10f * glow * glow * glow * glow);
   return mix(radiance, sky.ground * 1.3f, smooth_step(0.03f, -0.75f, height));
 }
 

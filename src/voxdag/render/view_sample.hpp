@@ -1,6 +1,6 @@
 #pragma once
 /// A point of a surface that a picture shows: what is shaded, whatever found it.
-#include <limits>
+#include <cmath>
 
 #include "voxdag/core/vec.hpp"
 
@@ -12,10 +12,10 @@ struct ViewSample {
   Vec3f normal{};  ///< For shading: unit length, towards the viewer; zero where nothing is.
   Vec3f face{};    ///< Of the flat piece of surface itself: likewise.
   Vec3f albedo{};  ///< Linear, in [0,1].
-  float depth = std::numeric_limits<float>::infinity();  ///< World units along the camera's axis.
+  float depth = HUGE_VALF;  ///< World units along the camera's axis.
   float cell_size = 0;  ///< Side of the cell met, world units: how far the voxels are off.
 
-  VOXDAG_HD bool is_hit() const { return depth < std::numeric_limits<float>::infinity(); }
+  VOXDAG_HD bool is_hit() const { return depth < HUGE_VALF; }
 };
 
 }  // namespace voxdag

@@ -5,17 +5,10 @@
 #include <span>
 
 #include "voxdag/render/camera.hpp"
+#include "voxdag/render/tile.hpp"
 #include "voxdag/render/view_sample.hpp"
 
 namespace voxdag {
-
-/// A rectangle of pixels and where in each of them the sample lies.
-struct ViewTile {
-  int x = 0, y = 0;           ///< The top left pixel.
-  int width = 0, height = 0;  ///< Pixels; the tile lies within the picture.
-  int sample_index = 0;       ///< Which of a pixel's samples.
-  double dx = 0.5, dy = 0.5;  ///< In [0,1): the sample of pixel (i,j) is at (i + dx, j + dy).
-};
 
 /// Host only. Implementations are called from many threads at once.
 class ViewSource {

@@ -70,6 +70,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   select_child();
 
   for (;;) {
+    if constexpr (requires { nodes.on_step(); }) nodes.on_step();
     const float tx = (ox - float_from_bits(x)) * ix;
     const float ty = (oy - float_from_bits(y)) * iy;
     const float tz = (oz - float_from_bits(z)) * iz;

@@ -142,13 +142,13 @@ struct GridPoint {
   Vec3f position{1, 1, 1};  ///< The grid is [1,2]³; multiples of 2^-23.
 };
 
-/// The nearest point of the closed grid, rounded by up to 2^-24 of its side.
+/// The nearest point of the closed grid, rounded by up to 2^-24 of its side; NaN is taken for 0.
 VOXDAG_HD inline GridPoint make_grid_point(const Grid& grid, Vec3d world) {
   const double to_unit = 1.0 / (grid.voxel_size * static_cast<double>(grid.resolution()));
   GridPoint point;
   for (int axis = 0; axis < 3; ++axis) {
     const double p = (world[axis] - grid.origin[axis]) * to_unit;
-    point.position[axis] = static_cast<float>(1.0 + (p < 0 ? 0.0 : p > 1 ? 1.0 : p));
+    point.position[axis] = static_cast<float>(1.0 + (p > 0 ? (p < 1 ? p : 1.0) : 0.0));
   }
   return point;
 }

@@ -8,7 +8,8 @@
 ///   root()              the node of level 0; not called on an empty DAG
 ///   child_mask(n, l)    the 8-bit child mask of node n of level l
 ///   child(n, l, i)      child i, which is present, of node n of level l < L-1
-/// Children of level L-1 are voxels: their presence in the mask is all there is.
+/// Children of level L-1 are voxels: their presence in the mask is all there is. A layout may also
+/// have on_step(), called at each step of a walk: see counting_nodes.hpp.
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {

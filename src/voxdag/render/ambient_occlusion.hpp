@@ -1,0 +1,60 @@
+#pragma once
+/// Ambient occlusion: how much of the sky's light reaches a point past what is near.
+///
+/// Source: S. Laine and T. Karras, "Two Methods for Fast Ray-Cast Ambient Occlusion", EGSR 2010, as
+/// Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4, use
+/// it: what a surface at distance d hides is weighted with a falloff, here (1 - d/longest)², and
+/// instead of looking for the closest hit of rays of equal length, it is asked whether rays of
+/// random length meet anything, the lengths being such that the mean is the same. Rays may end at
+/// cells that subtend a given solid angle where they are: darker, but near contacts stay exact.
+#include "voxdag/render/basis.hpp"
+#include "voxdag/render/tile.hpp"
+#include "voxdag/render/tile_scratch.hpp"
+#include "voxdag/trace/scalar_caster.hpp"
+
+namespace voxdag {
+
+/// Ray `i` of a point. Its direction is spread around the normal; what would run below the flat
+/// piece of surface, which the normal of a curved mesh does not know about, is mirrored at it.
+VOXDAG_HD inline CastRay occlusion_ray(const RenderSetup& setup, const SurfacePoint& point,
+                                       const PixelSamples& pixel, int i) {
+  const SampleTables& tables = setup.tables;
+  const HemisphereSample sample = tables.hemisphere[pixel.set * tables.hemisphere_count + i];
+  const Basis<float> basis = make_basis(point.normal);
+  const Point2f flat = pixel.rotated({sample.direction.x, sample.direction.y});
+  Vec3f direction = basis.u * flat.x + basis.v * flat.y + point.normal * sample.direction.z;
+  const float above = dot(direction, point.face);
+  if (above < 0) direction = direction - point.face * (2 * above);
+  CastRay ray;
+  ray.ray =
+      make_grid_ray(point.start, direction, 0, sample.reach * setup.settings.occlusion_distance);
+  ray.stop.at_start = point.cell_side;
+  ray.stop.per_t = setup.settings.occlusion_cone * static_cast<float>(ray.ray.t_scale);
+  return ray;
+}
+
+/// Sets scratch.open for the pixels that see something. Returns the number of rays.
+template <class Caster, class Scratch>
+VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& setup,
+                                     const ViewTile& tile, Scratch& scratch) {
+  const int rays = setup.settings.occlusion_samples;
+  const int first = tile.sample_index * rays;
+  int active = 0;
+  for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+    if (!scratch.points[pixel].is_hit()) continue;
+    scratch.active[active++] = pixel;
+    scratch.open[pixel] = 0;
+    scratch.pixels[pixel] =
+        pixel_samples(setup.tables, tile.x + pixel % tile.width, tile.y + pixel / tile.width, 0);
+  }
+  caster.any(
+      active * rays,
+      [&](int i) {
+        const int pixel = scratch.active[i / rays];
+        return occlusion_ray(setup, scratch.points[pixel], scratch.pixels[pixel], first + i % rays);
+      },
+      [&](int i, bool is_hit) { scratch.open[scratch.active[i / rays]] += is_hit ? 0 : 1; });
+  return active * rays;
+}
+
+}  // namespace voxdag

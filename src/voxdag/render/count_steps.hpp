@@ -1,0 +1,37 @@
+#pragma once
+/// What the primary rays of a picture cost: the measure of Laine and Karras, "Efficient Sparse
+/// Voxel Octrees", I3D 2010, Figure 9.
+#include "voxdag/render/primary_beams.hpp"
+#include "voxdag/render/voxel_view_samples.hpp"
+#include "voxdag/trace/counting_nodes.hpp"
+
+namespace voxdag {
+
+/// Sets setup.image.steps of the 8×8 pixels at (x,y) to the steps of their first samples' rays,
+/// with equal parts of those of their beams where setup.beam_starts is set.
+template <class Nodes>
+VOXDAG_HD inline void count_steps(const Nodes& nodes, const RenderSetup& setup, int x, int y) {
+  constexpr int kSide = kCoarseBeamPixels, kBeams = kSide / kBeamPixels;
+  const Camera& camera = setup.camera;
+  std::uint32_t beam_steps = 0;
+  if (setup.beam_starts != nullptr) {
+    const CountingNodes<Nodes> counting(nodes, beam_steps);
+    float starts[kBeams * kBeams];
+    cast_primary_beams(counting, setup, x, y, starts);
+  }
+  for (int row = y; row < y + kSide && row < camera.height; ++row)
+    for (int column = x; column < x + kSide && column < camera.width; ++column) {
+      std::uint32_t steps = 0;
+      const CountingNodes<Nodes> counting(nodes, steps);
+      const CastRay ray = primary_ray(setup, {column, row, 1, 1}, 0);
+      CellHit cell;
+      cast(counting, ray.ray, ray.stop, cell);
+      const std::size_t at =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(camera.width) +
+          static_cast<std::size_t>(column);
+      setup.image.steps[at] =
+          static_cast<float>(steps) + static_cast<float>(beam_steps) / (kSide * kSide);
+    }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,111 @@
+#pragma once
+/// Light from sun and lamps, with hard and soft shadows.
+///
+/// Source: Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
+/// section 4: shadow rays from each view sample to points on the light, shortened to the interval
+/// in which a beam between them meets anything; where it meets nothing no ray is needed.
+#include "voxdag/render/light_beam.hpp"
+#include "voxdag/render/light_sample.hpp"
+#include "voxdag/render/tile.hpp"
+#include "voxdag/render/tile_scratch.hpp"
+#include "voxdag/trace/scalar_caster.hpp"
+
+namespace voxdag {
+
+/// Light `index`, lit by samples [begin, begin + count) of a pixel's.
+struct LightBatch {
+  int index = 0, begin = 0, count = 0;
+};
+
+/// Sets scratch.active to the pixels that need rays to the light, with their intervals, and
+/// scratch.pixels of all. Returns how many are active.
+template <class Nodes, class Scratch>
+VOXDAG_HD inline int find_shadowed_pixels(const Nodes& nodes, const RenderSetup& setup, int index,
+                                          const ViewTile& tile, Scratch& scratch) {
+  const Light& light = setup.lights[index];
+  int active = 0;
+  for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+    const SurfacePoint& point = scratch.points[pixel];
+    if (!point.is_hit()) continue;
+    scratch.pixels[pixel] = pixel_samples(setup.tables, tile.x + pixel % tile.width,
+                                          tile.y + pixel / tile.width, 1 + index);
+    scratch.lit[pixel] = scratch.unhindered[pixel] = 0;
+    scratch.visible[pixel] = ~std::uint64_t{0};
+    if (!setup.settings.shadows) continue;
+    const DirectionBounds bounds = directions_to(light, point.start.position);
+    if (!reach_above(bounds, point.normal) || !reach_above(bounds, point.face)) continue;
+    LightInterval interval = light_interval(light);
+    if (setup.settings.beams && light.is_extended())
+      interval = cast_light_beam(nodes, light, point);
+    if (interval.is_clear) continue;
+    scratch.intervals[pixel] = interval;
+    scratch.active[active++] = pixel;
+  }
+  return active;
+}
+
+/// Casts a batch of the active pixels' shadow rays into scratch.visible.
+template <class Caster, class Scratch>
+VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup& setup,
+                                        const LightBatch& batch, int active, Scratch& scratch) {
+  const Light& light = setup.lights[batch.index];
+  for (int i = 0; i < active; ++i) scratch.visible[scratch.active[i]] = 0;
+  caster.any(
+      active * batch.count,
+      [&](int i) {
+        const int pixel = scratch.active[i / batch.count];
+        const SurfacePoint& point = scratch.points[pixel];
+        const LightSample sample = sample_light(setup.tables, light, point, scratch.pixels[pixel],
+                                                batch.begin + i % batch.count);
+        CastRay ray;
+        if (!(sample.weight > 0)) return ray;
+        const LightInterval& interval = scratch.intervals[pixel];
+        ray.ray = make_grid_ray(point.start, sample.direction, interval.first, interval.last);
+        // Cells of the size that the picture shows: both agree on what is there.
+        ray.stop.at_start = point.cell_side;
+        return ray;
+      },
+      [&](int i, bool is_hit) {
+        const std::uint64_t bit = is_hit ? 0 : 1;
+        scratch.visible[scratch.active[i / batch.count]] |= bit << (i % batch.count);
+      });
+}
+
+/// Adds what light `index` brings to scratch.irradiance and scratch.lit and scratch.unhindered.
+/// Returns the number of rays.
+template <class Nodes, class Caster, class Scratch>
+VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
+                                 int index, const ViewTile& tile, Scratch& scratch) {
+  constexpr int kBatch = 64;  // a bit each in scratch.visible
+  constexpr Vec3f kLuminance{0.2126f, 0.7152f, 0.0722f};
+  const Light& light = setup.lights[index];
+  const int samples = light.is_extended() ? setup.settings.light_samples : 1;
+  const int begin = light.is_extended() ? tile.sample_index * samples : 0;
+  const int active = find_shadowed_pixels(nodes, setup, index, tile, scratch);
+  for (int done = 0; done < samples; done += kBatch) {
+    const LightBatch batch{index, begin + done, samples - done < kBatch ? samples - done : kBatch};
+    if (active > 0) trace_shadow_rays(caster, setup, batch, active, scratch);
+    for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+      const SurfacePoint& point = scratch.points[pixel];
+      if (!point.is_hit()) continue;
+      for (int i = 0; i < batch.count; ++i) {
+        const float weight =
+            sample_light(setup.tables, light, point, scratch.pixels[pixel], batch.begin + i).weight;
+        scratch.unhindered[pixel] += weight;
+        scratch.lit[pixel] += (scratch.visible[pixel] >> i & 1u) != 0 ? weight : 0.0f;
+      }
+    }
+  }
+  const float scale = 1.0f / static_cast<float>(samples);
+  for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+    if (!scratch.points[pixel].is_hit()) continue;
+    scratch.irradiance[pixel] =
+        scratch.irradiance[pixel] + light.color * (scratch.lit[pixel] * scale);
+    const float luminance = dot(light.color, kLuminance) * scale;
+    scratch.lit_sum[pixel] += scratch.lit[pixel] * luminance;
+    scratch.unhindered_sum[pixel] += scratch.unhindered[pixel] * luminance;
+  }
+  return active * samples;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,13 @@
+#pragma once
+/// How bright a picture is to be.
+#include <span>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+/// The factor that gives the picture's surfaces, where depth is finite, a middling brightness;
+/// between what suits a sunlit object and what a closed room needs. One value for each pixel.
+float automatic_exposure(std::span<const Vec3f> radiance, std::span<const float> depth);
+
+}  // namespace voxdag

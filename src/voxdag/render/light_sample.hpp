@@ -1,0 +1,84 @@
+#pragma once
+/// Points on lights: which way a shadow ray goes, and what light comes back along it.
+///
+/// Discs and rectangles are sampled by area, spheres by the solid angle under which they are seen
+/// (P. Shirley, C. Wang and K. Zimmerman, "Monte Carlo Techniques for Direct Lighting
+/// Calculations", 1996), the sun's disc by its projection.
+#include <cmath>
+
+#include "voxdag/render/basis.hpp"
+#include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/surface_point.hpp"
+
+namespace voxdag {
+
+struct LightSample {
+  Vec3f direction;   ///< The light is at start + direction; the sun at any multiple of it.
+  float weight = 0;  ///< Irradiance per unit of the light's colour; 0 where none can arrive.
+};
+
+/// Sample `i` of a pixel as seen from `point`. The mean of the weights over all samples is what
+/// arrives with nothing in the way.
+VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Light& light,
+                                          const SurfacePoint& point, const PixelSamples& pixel,
+                                          int i) {
+  constexpr float kPi = 3.14159265f;
+  const Vec3f to_light = light.position - point.start.position;
+  const int at = pixel.set * tables.light_count + i;
+  LightSample sample;
+  float emitted = 1;  // times the cosine at the surface and over the square of the distance below
+  switch (light.kind) {
+    case LightKind::kSun: {
+      const Point2f p = pixel.rotated(tables.disc[at]);
+      sample.direction = light.position + light.u * p.x + light.v * p.y;
+      emitted = dot(sample.direction, sample.direction);
+      break;
+    }
+    case LightKind::kPoint:
+      sample.direction = to_light;
+      break;
+    case LightKind::kDisc: {
+      const Point2f p = pixel.rotated(tables.disc[at]);
+      sample.direction = to_light + light.u * p.x + light.v * p.y;
+      break;
+    }
+    case LightKind::kRectangle: {
+      const Point2f p = pixel.shifted(tables.square[at]);
+      sample.direction = to_light + light.u * p.x + light.v * p.y;
+      break;
+    }
+    case LightKind::kSphere: {
+      const float distance2 = dot(to_light, to_light), radius2 = light.radius * light.radius;
+      if (!(distance2 > radius2)) return sample;
+      const float distance = std::sqrt(distance2);
+      const float sin2 = radius2 / distance2;
+      // 1 - cos of the cone's angle, without cancellation where it is small.
+      const float cap = sin2 / (1 + std::sqrt(1 - sin2));
+      const Point2f p = pixel.rotated(tables.disc[at]);
+      const float p2 = p.x * p.x + p.y * p.y;
+      const float rise = p2 * cap;  // 1 - cos of the sample's angle
+      const float spread2 = rise * (2 - rise);
+      const Vec3f axis = to_light * (1 / distance);
+      const Basis<float> basis = make_basis(axis);
+      const float scale = std::sqrt(spread2 / p2);
+      const Vec3f unit = basis.u * (p.x * scale) + basis.v * (p.y * scale) + axis * (1 - rise);
+      const float depth2 = radius2 - distance2 * spread2;
+      const float front = distance * (1 - rise) - std::sqrt(depth2 > 0 ? depth2 : 0.0f);
+      sample.direction = unit * front;
+      emitted = 2 * kPi * cap * front * front;
+      break;
+    }
+  }
+  const float distance2 = dot(sample.direction, sample.direction);
+  if (!(distance2 > 0)) return sample;
+  if (light.kind == LightKind::kDisc || light.kind == LightKind::kRectangle) {
+    const float facing = -dot(light.normal, sample.direction);
+    emitted = facing > 0 ? light.area * facing / std::sqrt(distance2) : 0.0f;
+  }
+  const float above = dot(point.normal, sample.direction);
+  if (!(above > 0) || !(dot(point.face, sample.direction) > 0)) return sample;
+  sample.weight = emitted * above / (distance2 * std::sqrt(distance2));
+  return sample;
+}
+
+}  // namespace voxdag

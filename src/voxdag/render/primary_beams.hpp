@@ -1,0 +1,69 @@
+#pragma once
+/// The coarse pass before the primary rays: where the rays of 4×4 pixels may start.
+///
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.2; here with
+/// beams of 8×8 pixels that start off those of 4×4.
+#include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/tile.hpp"
+#include "voxdag/trace/beam.hpp"
+
+namespace voxdag {
+
+/// The beam of the pixels [x, x + size) × [y, y + size).
+VOXDAG_HD inline Beam pixel_beam(const RenderSetup& setup, int x, int y, int size) {
+  const double to_unit = 1.0 / setup.side();
+  Beam beam;
+  beam.apex = (setup.camera.eye - setup.grid.origin) * to_unit;
+  beam.lowest = beam.highest = setup.camera.direction(x, y) * to_unit;
+  for (int corner = 1; corner < 4; ++corner) {
+    const Vec3d direction =
+        setup.camera.direction(x + (corner & 1) * size, y + (corner >> 1) * size) * to_unit;
+    beam.lowest = min(beam.lowest, direction);
+    beam.highest = max(beam.highest, direction);
+  }
+  return beam;
+}
+
+/// Ends at cells that the beam is wider than, or at which a ray of the picture may end.
+VOXDAG_HD inline BeamStop pixel_beam_stop(const RenderSetup& setup, int size) {
+  constexpr double kRounding = 1 + 1e-6;  // of the rays' own test, in float
+  const double pixel = setup.camera.pixel_size() / setup.side();
+  BeamStop stop;
+  stop.per_enter = size * pixel;
+  stop.per_exit = static_cast<double>(setup.settings.lod_pixels) * pixel * kRounding;
+  return stop;
+}
+
+/// Sets starts[0..4) for the 2×2 beams of the 8×8 pixels at (x,y), row by row: t that is no later
+/// than where any ray through a beam's pixels meets anything, +infinity where none does.
+template <class Nodes>
+VOXDAG_HD inline void cast_primary_beams(const Nodes& nodes, const RenderSetup& setup, int x, int y,
+                                         float* starts) {
+  constexpr double kDown = 1 - 1e-6;  // to float, downwards
+  double coarse = 0;
+  const bool is_met = first_met(nodes, pixel_beam(setup, x, y, kCoarseBeamPixels),
+                                pixel_beam_stop(setup, kCoarseBeamPixels), coarse);
+  for (int part = 0; part < 4; ++part) {
+    Beam beam =
+        pixel_beam(setup, x + (part & 1) * kBeamPixels, y + (part >> 1) * kBeamPixels, kBeamPixels);
+    beam.t_min = coarse;
+    double start = 0;
+    const bool is_part_met =
+        is_met && first_met(nodes, beam, pixel_beam_stop(setup, kBeamPixels), start);
+    starts[part] = is_part_met ? static_cast<float>(start * kDown) : HUGE_VALF;
+  }
+}
+
+/// The same into the starts of a whole picture: beams_across(width) * beams_across(height) of them,
+/// see beam_index.
+template <class Nodes>
+VOXDAG_HD inline void set_beam_starts(const Nodes& nodes, const RenderSetup& setup, int x, int y,
+                                      float* picture) {
+  float starts[4];
+  cast_primary_beams(nodes, setup, x, y, starts);
+  for (int part = 0; part < 4; ++part)
+    picture[beam_index(setup.camera.width, x + (part & 1) * kBeamPixels,
+                       y + (part >> 1) * kBeamPixels)] = starts[part];
+}
+
+}  // namespace voxdag

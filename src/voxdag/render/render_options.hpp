@@ -1,0 +1,57 @@
+#pragma once
+/// What a caller asks of a picture, and what it gets.
+#include <optional>
+#include <vector>
+
+#include "voxdag/render/light.hpp"
+#include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/view.hpp"
+
+namespace voxdag {
+
+struct RenderOptions {
+  int width = 1920, height = 1080;  ///< Pixels; at least 1 each.
+  ViewRequest view;                 ///< What is not set, frame_scene finds.
+  int samples_per_pixel = 1;        ///< At least 1.
+
+  bool with_sun = true;
+  std::optional<Vec3d> sun;       ///< Towards the sun; without it, over the viewer's left shoulder.
+  double sun_degrees = 0.53;      ///< The sun's angle across; 0: hard shadows.
+  std::vector<LightSpec> lights;  ///< Besides the sun; at most RenderSetup::kMaxLights - 1.
+  bool shadows = true;
+  int shadow_samples = 16;  ///< Shadow rays per pixel and light with soft edges.
+  float sky = 1;            ///< Factor on the light of the sky, and on the sky in the picture.
+
+  int occlusion_samples = 64;  ///< Rays of ambient occlusion per pixel; 0: none.
+  /// Longest ray of occlusion, world units; 0: a tenth of the grid's side.
+  double occlusion_distance = 0;
+  /// Rays of occlusion end at cells that subtend this solid angle, in steradians; 0: at cells of
+  /// the surface's own size. The paper has 0.07.
+  double occlusion_cone = 0;
+
+  float lod_pixels = 1;  ///< As in RenderSettings; likewise what follows.
+  float cube_pixels = 24;
+  bool beams = true;
+  Vec3f albedo{0.62f, 0.60f, 0.57f};
+  float exposure = 0;  ///< Factor before tone mapping; 0: what suits the picture.
+
+  bool with_steps = false;  ///< Fill RenderedImage::steps.
+  int tile_size = 32;       ///< Pixels, 1 to 32. Pictures do not depend on it.
+};
+
+/// Rows from top to bottom, pixels from left to right, width * height values each.
+struct RenderedImage {
+  int width = 0, height = 0;
+  View view;                     ///< The view it shows.
+  float exposure = 0;            ///< The factor that was applied.
+  std::vector<Vec3f> rgb;        ///< Tone mapped, linear light in [0,1]: encode as sRGB to display.
+  std::vector<Vec3f> radiance;   ///< Linear, before exposure and tone mapping.
+  std::vector<float> depth;      ///< World units along the view axis; +infinity where nothing is.
+  std::vector<Vec3f> normal;     ///< World space, unit length; zero where nothing is.
+  std::vector<float> occlusion;  ///< The part of the sky's light that arrives, 0 to 1.
+  std::vector<float> shadow;     ///< The part of the lights' light that arrives, 0 to 1.
+  std::vector<float> steps;  ///< Steps of primary rays with their beams; empty unless asked for.
+  std::uint64_t rays = 0;    ///< Rays cast: primary, shadow, occlusion.
+};
+
+}  // namespace voxdag

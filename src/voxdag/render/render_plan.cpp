@@ -1,0 +1,134 @@
+#include "voxdag/render/render_plan.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/render/exposure.hpp"
+#include "voxdag/render/tone_map.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kOcclusionDistance = 0.1;  // of the grid's side
+
+void check(const RenderOptions& options) {
+  constexpr int kMaxSide = 1 << 16, kMaxSamples = 1 << 16;
+  if (options.width < 1 || options.height < 1 || options.width > kMaxSide ||
+      options.height > kMaxSide)
+    throw Error("a picture has 1 to 65536 pixels a side");
+  if (options.samples_per_pixel < 1 || options.samples_per_pixel > kMaxSamples)
+    throw Error("a picture has 1 to 65536 samples per pixel");
+  if (options.shadow_samples < 1 || options.shadow_samples > kMaxSamples)
+    throw Error("soft shadows take 1 to 65536 rays per pixel");
+  if (options.occlusion_samples < 0 || options.occlusion_samples > kMaxSamples)
+    throw Error("ambient occlusion takes 0 to 65536 rays per pixel");
+  if (!(options.occlusion_distance >= 0 && options.occlusion_distance < HUGE_VAL))
+    throw Error("the distance of ambient occlusion must be finite and not negative");
+  if (!(options.occlusion_cone >= 0 && options.occlusion_cone < 2 * kPi))
+    throw Error("a solid angle of occlusion must lie between 0 and 2 pi steradians");
+  if (!(options.sun_degrees >= 0 && options.sun_degrees < 90))
+    throw Error("the sun's angle must lie between 0 and 90 degrees");
+  if (!(options.sky >= 0 && options.sky < HUGE_VALF))
+    throw Error("the sky's factor must be finite and not negative");
+  if (options.lights.size() >= static_cast<std::size_t>(RenderSetup::kMaxLights))
+    throw Error("a picture has at most 15 lights besides the sun");
+  if (options.tile_size < 1 || options.tile_size > 32)
+    throw Error("tiles have 1 to 32 pixels a side");
+}
+
+/// Samples per view sample when a pixel with `samples_per_pixel` of those takes `per_pixel`.
+int per_view_sample(int per_pixel, int samples_per_pixel) {
+  return (per_pixel + samples_per_pixel - 1) / samples_per_pixel;
+}
+
+SampleSets make_samples(const RenderOptions& options) {
+  check(options);
+  const int samples = options.samples_per_pixel;
+  return {per_view_sample(options.shadow_samples, samples) * samples,
+          std::max(1, per_view_sample(options.occlusion_samples, samples) * samples)};
+}
+
+/// Without a direction, the sun is where it models what the camera looks at.
+Sky make_sky(const Camera& camera, const View& view, const RenderOptions& options) {
+  Sky sky;
+  const Vec3d up = normalized(view.up);
+  const Vec3d right = normalized(camera.right);
+  const Vec3d back = cross(right, up);
+  const Vec3d sun = options.sun.value_or(up * 0.9 - right * 0.6 + back * 0.25);
+  const double length2 = dot(sun, sun);
+  if (!(length2 > 0 && length2 < HUGE_VAL)) throw Error("the sun needs a direction");
+  sky.up = static_cast<Vec3f>(up);
+  sky.sun = static_cast<Vec3f>(normalized(sun));
+  sky.fill = static_cast<Vec3f>(right);
+  sky.zenith = sky.zenith * options.sky;
+  sky.horizon = sky.horizon * options.sky;
+  sky.ground = sky.ground * options.sky;
+  if (!options.with_sun) sky.sun_light = {};
+  return sky;
+}
+
+}  // namespace
+
+RenderPlan::RenderPlan(const SvdagView& dag, const Grid& grid, const RenderOptions& options)
+    : samples_(make_samples(options)), exposure_(options.exposure) {
+  assert(grid.levels == dag.levels);
+  const std::size_t pixels =
+      static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+  image_.width = options.width;
+  image_.height = options.height;
+  image_.view =
+      frame_scene(dag, grid, static_cast<double>(options.width) / options.height, options.view);
+  image_.rgb.resize(pixels);
+  image_.radiance.resize(pixels);
+  image_.depth.resize(pixels);
+  image_.normal.resize(pixels);
+  image_.occlusion.resize(pixels);
+  image_.shadow.resize(pixels);
+  if (options.with_steps) image_.steps.resize(pixels);
+
+  setup_.grid = grid;
+  setup_.camera = make_camera(image_.view, options.width, options.height);
+  setup_.sky = make_sky(setup_.camera, image_.view, options);
+  setup_.tables = samples_.view();
+  setup_.image = {image_.radiance.data(),  image_.depth.data(),  image_.normal.data(),
+                  image_.occlusion.data(), image_.shadow.data(), nullptr};
+  if (options.with_steps) setup_.image.steps = image_.steps.data();
+
+  RenderSettings& settings = setup_.settings;
+  settings.samples_per_pixel = options.samples_per_pixel;
+  settings.shadows = options.shadows;
+  settings.light_samples = per_view_sample(options.shadow_samples, options.samples_per_pixel);
+  settings.occlusion_samples =
+      per_view_sample(options.occlusion_samples, options.samples_per_pixel);
+  settings.occlusion_distance =
+      static_cast<float>(options.occlusion_distance > 0 ? options.occlusion_distance / setup_.side()
+                                                        : kOcclusionDistance);
+  settings.occlusion_cone = static_cast<float>(std::sqrt(options.occlusion_cone));
+  settings.lod_pixels = options.lod_pixels;
+  settings.cube_pixels = options.cube_pixels;
+  settings.beams = options.beams;
+  settings.albedo = options.albedo;
+
+  if (options.with_sun) {
+    LightSpec sun;
+    sun.kind = LightKind::kSun;
+    sun.position = static_cast<Vec3d>(setup_.sky.sun);
+    sun.radius = std::tan(options.sun_degrees * kPi / 360);
+    setup_.lights[setup_.light_count++] = make_light(sun, grid);
+  }
+  for (const LightSpec& light : options.lights)
+    setup_.lights[setup_.light_count++] = make_light(light, grid);
+}
+
+RenderedImage RenderPlan::finish() {
+  image_.exposure = exposure_ > 0 ? exposure_ : automatic_exposure(image_.radiance, image_.depth);
+  for (std::size_t i = 0; i < image_.rgb.size(); ++i)
+    image_.rgb[i] = tone_map(image_.radiance[i] * image_.exposure);
+  return std::move(image_);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,92 @@
+#pragma once
+/// A tile of a picture, in stages that each cast one long stream of rays: view samples, the light
+/// of each lamp, occlusion, then the shading of what they found.
+///
+/// Every value depends on its pixel alone and what is added up is added in a fixed order, so that
+/// pictures depend neither on the size of the tiles nor on who renders them.
+#include "voxdag/render/ambient_occlusion.hpp"
+#include "voxdag/render/direct_light.hpp"
+#include "voxdag/render/voxel_view_samples.hpp"
+
+namespace voxdag {
+
+/// What the sky sends to a surface. `open` is the part that occlusion lets through.
+VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
+                                 float open) {
+  const Vec3f light = sky_ambient(setup.sky, sample.normal);
+  if (setup.settings.occlusion_samples > 0) return light * open;
+  // Without occlusion the sky's light alone would leave shadows flat: light from the viewer and,
+  // softly, from the viewer's right keeps apart what sun and sky do not.
+  const float facing = dot(sample.normal, view), aside = dot(sample.normal, setup.sky.fill);
+  return light * (0.40f + 0.35f * facing + 0.25f * aside);
+}
+
+/// Makes the tile's view samples into light, and adds them to the picture.
+template <class Scratch>
+VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
+                                 const Scratch& scratch) {
+  const RenderSettings& settings = setup.settings;
+  const ImageBuffers& image = setup.image;
+  const float share = 1.0f / static_cast<float>(settings.samples_per_pixel);
+  for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+    const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+    const std::size_t at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(setup.camera.width) +
+        static_cast<std::size_t>(x);
+    const ViewSample& sample = scratch.samples[pixel];
+    const Vec3f direction =
+        static_cast<Vec3f>(normalized(setup.camera.direction(x + tile.dx, y + tile.dy)));
+    const bool is_hit = scratch.points[pixel].is_hit();
+    float open = 1, lit = 1;
+    Vec3f radiance;
+    if (is_hit) {
+      constexpr float kInversePi = 0.318309886f;
+      if (settings.occlusion_samples > 0)
+        open = static_cast<float>(scratch.open[pixel]) /
+               static_cast<float>(settings.occlusion_samples);
+      if (scratch.unhindered_sum[pixel] > 0)
+        lit = scratch.lit_sum[pixel] / scratch.unhindered_sum[pixel];
+      radiance =
+          (sky_light(setup, sample, -direction, open) + scratch.irradiance[pixel] * kInversePi) *
+          sample.albedo;
+    } else {
+      radiance = sky_radiance(setup.sky, direction);
+    }
+    const bool is_first = tile.sample_index == 0;
+    const auto add = [&](auto* values, auto value) {
+      if (values != nullptr) values[at] = is_first ? value * share : values[at] + value * share;
+    };
+    add(image.radiance, radiance);
+    add(image.occlusion, open);
+    add(image.shadow, lit);
+    if (is_first && image.depth != nullptr) image.depth[at] = sample.depth;
+    if (is_first && image.normal != nullptr) image.normal[at] = sample.normal;
+  }
+}
+
+/// All samples of the pixels of a tile. `find_samples(tile, scratch)` sets scratch.samples for a
+/// sample of each pixel and returns the number of rays that it cast: trace_view_samples() where the
+/// picture is of voxels. Returns the number of all rays.
+template <class Nodes, class Caster, class Scratch, class FindSamples>
+VOXDAG_HD inline int render_tile(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
+                                 ViewTile tile, Scratch& scratch, const FindSamples& find_samples) {
+  int rays = 0;
+  for (int i = 0; i < setup.settings.samples_per_pixel; ++i) {
+    set_sample(tile, i);
+    rays += find_samples(tile, scratch);
+    for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+      const ViewSample& sample = scratch.samples[pixel];
+      scratch.points[pixel] =
+          sample.is_hit() ? make_surface_point(nodes, setup, sample) : SurfacePoint{};
+      scratch.irradiance[pixel] = {};
+      scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
+    }
+    for (int light = 0; light < setup.light_count; ++light)
+      rays += trace_light(nodes, caster, setup, light, tile, scratch);
+    if (setup.settings.occlusion_samples > 0) rays += trace_occlusion(caster, setup, tile, scratch);
+    shade_tile(setup, tile, scratch);
+  }
+  return rays;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,93 @@
+#pragma once
+/// The points at which areas and hemispheres are sampled, made once on the host: kernels neither
+/// call sine nor cosine, so that every machine casts the same rays.
+///
+/// Each set is a prefix of the Sobol sequence under an Owen scrambling of its own, so that any
+/// first 2^k points of it are well spread. A pixel takes a set and a rotation or shift by a hash of
+/// its coordinates: neighbours are not alike, and what is left of the error looks like grain.
+/// Sources: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; T. Kollig and A.
+/// Keller, "Efficient Multidimensional Sampling", 2002.
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+struct Point2f {
+  float x = 0, y = 0;
+};
+
+/// A ray of ambient occlusion around the normal (0,0,1).
+struct HemisphereSample {
+  Vec3f direction;  ///< Unit length, spread as the cosine to the normal.
+  float reach = 0;  ///< Length of the ray as a part of the longest.
+};
+
+/// `sets` * `count` points each; point i of set s is at s * count + i.
+struct SampleTables {
+  static constexpr int kSets = 64, kRotations = 256;  // powers of two
+
+  const Point2f* square = nullptr;  ///< In [0,1)².
+  const Point2f* disc = nullptr;    ///< In the unit disc, uniform, never its centre.
+  int light_count = 0;
+  const HemisphereSample* hemisphere = nullptr;
+  int hemisphere_count = 0;
+  const Point2f* rotations = nullptr;  ///< kRotations unit vectors around the circle.
+};
+
+/// What one pixel takes of the tables.
+struct PixelSamples {
+  int set = 0;
+  Point2f rotation{1, 0};
+  Point2f shift{};
+
+  VOXDAG_HD Point2f rotated(Point2f p) const {
+    return {p.x * rotation.x - p.y * rotation.y, p.x * rotation.y + p.y * rotation.x};
+  }
+  VOXDAG_HD Point2f shifted(Point2f p) const {
+    const float x = p.x + shift.x, y = p.y + shift.y;
+    return {x < 1 ? x : x - 1, y < 1 ? y : y - 1};
+  }
+};
+
+/// A good hash of 32 bits: C. Wellons' "lowbias32".
+VOXDAG_HD inline std::uint32_t hash_bits(std::uint32_t v) {
+  v ^= v >> 16;
+  v *= 0x7FEB352Du;
+  v ^= v >> 15;
+  v *= 0x846CA68Bu;
+  return v ^ v >> 16;
+}
+
+/// `purpose` keeps apart what a pixel samples: 0 is occlusion, 1 + i is light i.
+VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, int y, int purpose) {
+  const std::uint32_t column = hash_bits(static_cast<std::uint32_t>(x));
+  const std::uint32_t row = hash_bits(column + static_cast<std::uint32_t>(y));
+  const std::uint32_t bits = hash_bits(row + static_cast<std::uint32_t>(purpose) * 0x9E3779B9u);
+  const std::uint32_t more = hash_bits(bits);
+  constexpr float kScale = 1.0f / 65536;
+  return {static_cast<int>(bits % SampleTables::kSets),
+          tables.rotations[bits / SampleTables::kSets % SampleTables::kRotations],
+          {static_cast<float>(more & 0xFFFFu) * kScale, static_cast<float>(more >> 16) * kScale}};
+}
+
+/// Owns the tables.
+class SampleSets {
+ public:
+  /// For `light_count` points on a light and `hemisphere_count` rays of occlusion, at least 1 each.
+  SampleSets(int light_count, int hemisphere_count);
+
+  SampleTables view() const;
+  const std::vector<Point2f>& square() const { return square_; }
+  const std::vector<Point2f>& disc() const { return disc_; }
+  const std::vector<HemisphereSample>& hemisphere() const { return hemisphere_; }
+  const std::vector<Point2f>& rotations() const { return rotations_; }
+
+ private:
+  std::vector<Point2f> square_, disc_;
+  std::vector<HemisphereSample> hemisphere_;
+  std::vector<Point2f> rotations_;
+};
+
+}  // namespace voxdag

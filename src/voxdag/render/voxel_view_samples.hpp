@@ -1,0 +1,79 @@
+#pragma once
+/// The primary rays of a tile: what of the voxels its pixels see.
+#include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/surface_normal.hpp"
+#include "voxdag/render/tile.hpp"
+#include "voxdag/render/tile_scratch.hpp"
+#include "voxdag/trace/scalar_caster.hpp"
+
+namespace voxdag {
+
+/// The primary ray of a tile's pixel.
+VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& tile, int pixel) {
+  const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+  double t_min = 0;
+  if (setup.beam_starts != nullptr) {
+    t_min = static_cast<double>(setup.beam_starts[beam_index(setup.camera.width, x, y)]);
+    if (!(t_min < HUGE_VAL)) return {};
+  }
+  const Vec3d direction = setup.camera.direction(x + tile.dx, y + tile.dy);
+  CastRay ray;
+  ray.ray = make_grid_ray(setup.grid, setup.camera.eye, direction, t_min, HUGE_VAL);
+  const double size_per_t =
+      static_cast<double>(setup.settings.lod_pixels) * setup.camera.pixel_size();
+  ray.stop = stop_below_size(setup.grid, ray.ray, size_per_t);
+  return ray;
+}
+
+/// The surface where a primary ray met a cell. `direction` is the ray's, `hit` and `depth` where it
+/// ended.
+template <class Nodes>
+VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSetup& setup,
+                                              Vec3d direction, const Hit& hit, double depth) {
+  const RenderSettings& settings = setup.settings;
+  const int shift = setup.grid.levels - hit.level;
+  const double cell_size = setup.grid.voxel_size * static_cast<double>(std::int64_t{1} << shift);
+  const Vec3f view = -static_cast<Vec3f>(normalized(direction));
+  const Vec3f face = hit.face == Face::kNone ? view : static_cast<Vec3f>(face_normal(hit.face));
+  const float cell_pixels = static_cast<float>(cell_size / (setup.camera.pixel_size() * depth));
+  const float cube = smooth_step(settings.cube_pixels / 2, settings.cube_pixels, cell_pixels);
+  ViewSample sample;
+  sample.normal = face;
+  if (cube < 1 && hit.level >= 2) {
+    const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
+    const Vec3f smooth = surface_normal(nodes, hit.level, at, view, face);
+    sample.normal = normalized(mix(smooth, face, cube));
+  }
+  sample.face = sample.normal;
+  sample.albedo = settings.albedo;
+  sample.depth = static_cast<float>(depth);
+  sample.cell_size = static_cast<float>(cell_size);
+  // The cell meets the surface's plane somewhere, so that this face of it lies at most this far
+  // below.
+  const float below = cube_height(sample.face) - dot(sample.face, face);
+  const double lift = below > 0 ? static_cast<double>(below) * cell_size : 0.0;
+  sample.point = setup.camera.eye + direction * depth + static_cast<Vec3d>(sample.face) * lift;
+  return sample;
+}
+
+/// Sets scratch.samples. Returns the number of rays.
+template <class Nodes, class Caster, class Scratch>
+VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
+                                        const RenderSetup& setup, const ViewTile& tile,
+                                        Scratch& scratch) {
+  caster.closest(
+      tile.width * tile.height, [&](int pixel) { return primary_ray(setup, tile, pixel); },
+      [&](int pixel, const GridRay& ray, const CellHit& cell, bool is_hit) {
+        ViewSample& sample = scratch.samples[pixel];
+        sample = ViewSample{};
+        if (!is_hit) return;
+        const Hit hit = to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF);
+        const double depth = ray.to_world_t(static_cast<double>(cell.t));
+        const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+        const Vec3d direction = setup.camera.direction(x + tile.dx, y + tile.dy);
+        sample = voxel_view_sample(nodes, setup, direction, hit, depth);
+      });
+  return tile.width * tile.height;
+}
+
+}  // namespace voxdag

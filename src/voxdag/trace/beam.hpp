@@ -1,0 +1,165 @@
+#pragma once
+/// Beams: a bound on where any of many rays from one point can meet anything.
+///
+/// Sources: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.2, who shorten
+/// primary rays by a coarse distance image; Kämpe, Sintorn and Assarsson, "High Resolution Sparse
+/// Voxel DAGs", SIGGRAPH 2013, section 4, who do so for shadow rays, from both ends. They cast the
+/// corner rays of a beam, which is conservative only where cells are too wide to hide between
+/// these. Here the beam itself is cast, by interval arithmetic: its rays share an apex and at the
+/// parameter t lie in the box [apex + t * lowest, apex + t * highest], a superset of the rays. Such
+/// a box meets a cell on an interval of t that has a closed form: on each axis two inequalities
+/// that are linear in t. A depth-first walk, nearest octants first, finds the least t (or from the
+/// far end the greatest) at which the beam meets a non-empty cell.
+///
+/// Why the bound holds for the rays of grid_ray.hpp. At its T such a ray is off the line that it
+/// stands for by at most, on each axis and in units of the grid's side: 2^-24 (origin) + 2 * 2^-24
+/// (plane_t, which rounds twice) + 2^-24 (t_min or t_max as a T) + 2^-32 (parallel axes), so less
+/// than 2^-21. Cells are widened by that. What the walk itself rounds, in double, is far below. The
+/// walk ends at cells no finer than those at which a ray may end, and the beam is in a cell for all
+/// t for which one of its rays is.
+#include <cmath>
+
+#include "voxdag/core/bits.hpp"
+#include "voxdag/core/grid.hpp"
+
+namespace voxdag {
+
+/// In units of the grid's side, the grid being [0,1]³. The apex may lie anywhere.
+struct Beam {
+  Vec3d apex{};
+  Vec3d lowest{}, highest{};  ///< Bounds on the rays' directions, per axis.
+  double t_min = 0, t_max = HUGE_VAL;
+};
+
+/// Which non-empty cells a beam is not to look into, by their side in units of the grid's: those
+/// that are small where the beam enters them, so that looking closer gains little, and all those at
+/// which a ray may end for its level of detail, which StopBelowSize judges where it leaves them.
+struct BeamStop {
+  double at_start = 0;   ///< Of any side up to this,
+  double per_enter = 0;  ///< or up to this times t where the beam enters them,
+  double per_exit = 0;   ///< or up to this times t where it leaves them.
+};
+
+/// How far cells are widened.
+inline constexpr double kBeamSlack = 0x1p-21;
+
+/// The two inequalities of an axis: t * lowest <= hi - apex and t * highest >= lo - apex.
+struct BeamAxis {
+  double apex = 0, inverse_lowest = 0, inverse_highest = 0;
+
+  VOXDAG_HD static double inverse(double d, double instead) {
+    // A bound of zero is moved outwards, to where the quotient is still finite.
+    return 1 / (std::fabs(d) < 1e-100 ? instead : d);
+  }
+  VOXDAG_HD static BeamAxis make(double apex, double lowest, double highest) {
+    return {apex, inverse(lowest, -1e-100), inverse(highest, 1e-100)};
+  }
+  /// Narrows [enter, exit] to the t at which the beam overlaps [lo, hi].
+  VOXDAG_HD void clip(double lo, double hi, double& enter, double& exit) const {
+    const double below = (hi - apex) * inverse_lowest;
+    const double above = (lo - apex) * inverse_highest;
+    if (inverse_lowest > 0)
+      exit = below < exit ? below : exit;
+    else
+      enter = below > enter ? below : enter;
+    if (inverse_highest > 0)
+      enter = above > enter ? above : enter;
+    else
+      exit = above < exit ? above : exit;
+  }
+};
+
+/// The common walk of first_met and last_met.
+template <bool kFromEnd, class Nodes>
+VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
+                                double& bound) {
+  if (nodes.is_empty() || !(beam.t_min <= beam.t_max)) return false;
+  struct Entry {
+    typename Nodes::Node node;
+    Vec3i cell;             // in cells of the node's level
+    std::uint32_t pending;  // children not yet looked at, as index ^ order
+  };
+  Entry stack[kMaxLevels];
+  BeamAxis axes[3];
+  std::uint32_t order = 0;  // the octant that the beam enters first
+  for (int axis = 0; axis < 3; ++axis) {
+    axes[axis] = BeamAxis::make(beam.apex[axis], beam.lowest[axis], beam.highest[axis]);
+    const bool is_down = beam.lowest[axis] + beam.highest[axis] < 0;
+    order |= is_down != kFromEnd ? 1u << axis : 0u;
+  }
+  const auto reordered = [order](std::uint32_t mask) {
+    if ((order & 1u) != 0) mask = (mask & 0x55u) << 1 | (mask >> 1 & 0x55u);
+    if ((order & 2u) != 0) mask = (mask & 0x33u) << 2 | (mask >> 2 & 0x33u);
+    if ((order & 4u) != 0) mask = (mask & 0x0Fu) << 4 | mask >> 4;
+    return mask;
+  };
+  const int levels = nodes.levels();
+  bool is_met = false;
+  double first = beam.t_min, last = beam.t_max;  // where a cell that matters is met
+  int level = 0;
+  stack[0] = {nodes.root(), {}, reordered(nodes.child_mask(nodes.root(), 0))};
+  for (;;) {
+    if constexpr (requires { nodes.on_step(); }) nodes.on_step();
+    Entry& top = stack[level];
+    if (top.pending == 0) {
+      if (level == 0) break;
+      --level;
+      continue;
+    }
+    const auto index = static_cast<std::uint32_t>(lowest_bit64(top.pending)) ^ order;
+    top.pending &= top.pending - 1;
+    const Vec3i cell = top.cell * 2 + Vec3i{static_cast<std::int32_t>(index & 1u),
+                                            static_cast<std::int32_t>(index >> 1 & 1u),
+                                            static_cast<std::int32_t>(index >> 2)};
+    const double side =
+        static_cast<double>(float_from_bits(static_cast<std::uint32_t>(127 - (level + 1)) << 23));
+    double enter = first, exit = last;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = cell[axis] * side;
+      axes[axis].clip(lo - kBeamSlack, lo + side + kBeamSlack, enter, exit);
+    }
+    if (!(enter <= exit)) continue;
+    // `first` or `last` has moved to the best so far: its equal is no better.
+    if (is_met && (kFromEnd ? exit <= first : enter >= last)) continue;
+    double leave = exit;
+    if (!kFromEnd && stop.per_exit > 0) {
+      double unused = first;
+      leave = HUGE_VAL;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double lo = cell[axis] * side;
+        axes[axis].clip(lo - kBeamSlack, lo + side + kBeamSlack, unused, leave);
+      }
+    }
+    if (level + 1 == levels || side <= stop.at_start || side <= stop.per_enter * enter ||
+        side <= stop.per_exit * leave) {
+      is_met = true;
+      if (kFromEnd)
+        first = exit;
+      else
+        last = enter;
+      continue;
+    }
+    const auto child = nodes.child(top.node, level, static_cast<int>(index));
+    ++level;
+    stack[level] = {child, cell, reordered(nodes.child_mask(child, level))};
+  }
+  if (is_met) bound = kFromEnd ? first : last;
+  return is_met;
+}
+
+/// Whether any ray of the beam can meet a non-empty cell within [t_min, t_max]; if so `bound`
+/// becomes a t before which none does.
+template <class Nodes>
+VOXDAG_HD inline bool first_met(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
+                                double& bound) {
+  return cast_beam<false>(nodes, beam, stop, bound);
+}
+
+/// The same from the far end: `bound` becomes a t beyond which none does.
+template <class Nodes>
+VOXDAG_HD inline bool last_met(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
+                               double& bound) {
+  return cast_beam<true>(nodes, beam, stop, bound);
+}
+
+}  // namespace voxdag

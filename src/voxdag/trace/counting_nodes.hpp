@@ -1,0 +1,22 @@
+#pragma once
+/// Counts what a walk through the nodes takes.
+#include <cstdint>
+
+#include "voxdag/core/host_device.hpp"
+
+namespace voxdag {
+
+/// A node layout that is another one with a count of the walks' steps.
+template <class Nodes>
+class CountingNodes : public Nodes {
+ public:
+  VOXDAG_HD CountingNodes(const Nodes& nodes, std::uint32_t& steps)
+      : Nodes(nodes), steps_(&steps) {}
+
+  VOXDAG_HD void on_step() const { ++*steps_; }
+
+ private:
+  std::uint32_t* steps_;
+};
+
+}  // namespace voxdag
