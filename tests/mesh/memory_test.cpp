@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -56,13 +57,14 @@ void for_each_triangle(const Body& body) {
 class MeshMemory : public testing::Test {
  protected:
   /// Peak allocation while reading, over the bytes of the finished mesh.
-  double ratio(const char* name) {
+  double ratio(const char* name, std::size_t triangles = std::size_t{2} * (kSide - 1) * (kSide - 1),
+               std::size_t vertices = std::size_t{kSide} * kSide) {
     const auto path = directory_.path() / name;
     const std::size_t before = live;
     peak = before;
     const Mesh mesh = read_mesh(path);
-    EXPECT_EQ(mesh.triangles.size(), 2u * (kSide - 1) * (kSide - 1));
-    EXPECT_EQ(mesh.vertices.size(), std::size_t{kSide} * kSide);
+    EXPECT_EQ(mesh.triangles.size(), triangles);
+    EXPECT_EQ(mesh.vertices.size(), vertices);
     const std::size_t bytes =
         12 * mesh.vertices.size() + 12 * mesh.triangles.size() + 4 * mesh.triangle_materials.size();
     std::printf("%s: %.3f\n", name,
@@ -146,6 +148,21 @@ TEST_F(MeshMemory, StlStaysWithinItsBound) {
     std::fclose(file);
     EXPECT_LT(ratio("grid.stl"), 1.3);
   }
+}
+
+TEST_F(MeshMemory, StlWithoutSharedCornersStaysWithinItsBound) {
+  constexpr std::uint32_t kFacets = 600'000;
+  std::FILE* file = open("soup.stl");
+  std::fwrite(std::string(80, ' ').data(), 1, 80, file);
+  std::fwrite(&kFacets, 1, 4, file);
+  std::array<float, 12> facet{};
+  for (std::uint32_t i = 0; i < kFacets; ++i) {
+    for (std::size_t k = 3; k < 12; ++k) facet[k] = static_cast<float>(12 * i + k);
+    std::fwrite(facet.data(), 4, 12, file);
+    std::fwrite(facet.data(), 1, 2, file);
+  }
+  std::fclose(file);
+  EXPECT_LT(ratio("soup.stl", kFacets, 3 * kFacets), 1.3);
 }
 
 }  // namespace

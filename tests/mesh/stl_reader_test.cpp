@@ -53,6 +53,20 @@ TEST(StlReader, WeldingComparesBits) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 0}}));
 }
 
+TEST(StlReader, NumbersEndWhereTheirWordEnds) {
+  const auto first_x = [](std::string_view number) {
+    std::string text = kTwoFacets;
+    return text.replace(text.find("1 0 0"), 1, number);
+  };
+  for (const char* one : {"+1", "1.", "10e-1", "1.00000000000000000001", "0001"})
+    EXPECT_EQ(read_text(read_stl, first_x(one)).vertices[1], (Vec3f{1, 0, 0})) << one;
+  for (const std::string word : {"1x", "1.5.2", "1e", "+-1", "0x1", "e1", "-", "1,0"})
+    EXPECT_EQ(refusal(read_stl, first_x(word)),
+              "mesh: line 5: coordinate '" + word + "' is not a number");
+  for (const char* word : {"inf", "nan", "1e39"})
+    EXPECT_TRUE(refusal(read_stl, first_x(word)).ends_with("a vertex that is not finite")) << word;
+}
+
 TEST(StlReader, SeveralSolidsAreOneMesh) {
   EXPECT_EQ(
       read_text(read_stl, kTwoFacets + "solid empty\nendsolid\n" + kTwoFacets).triangles.size(),

@@ -3,7 +3,6 @@
 #include "voxdag/deferred/corner_normals.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -22,21 +21,19 @@ struct CornersByPosition {
   std::size_t positions() const { return starts.size() - 1; }
 };
 
-/// The first vertex that lies where each vertex lies.
-std::vector<std::uint32_t> first_equal_vertices(const std::vector<Vec3f>& vertices) {
-  std::vector<std::uint32_t> first(vertices.size());
-  FirstCornerTable table(vertices.size());
+/// Where each vertex lies: the same number for those in the same place.
+std::vector<std::uint32_t> position_numbers(const std::vector<Vec3f>& vertices) {
+  std::vector<std::uint32_t> numbers(vertices.size());
+  VertexTable table(vertices.size(), 2 * vertices.size() + 1);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Vec3f plus_zero{0, 0, 0};  // -0 and +0 are one place
-    const auto key = std::bit_cast<FirstCornerTable::Key>(vertices[i] + plus_zero);
-    const auto index = static_cast<std::uint32_t>(i);
-    first[i] = table.find_or_add(key, FirstCornerTable::hash(key), index);
+    numbers[i] = table.find_or_add(vertices[i] + plus_zero);
   }
-  return first;
+  return numbers;
 }
 
 CornersByPosition corners_by_position(const Mesh& mesh) {
-  const std::vector<std::uint32_t> position = first_equal_vertices(mesh.vertices);
+  const std::vector<std::uint32_t> position = position_numbers(mesh.vertices);
   CornersByPosition by;
   by.starts.assign(mesh.vertices.size() + 1, 0);
   for (const Triangle& triangle : mesh.triangles)

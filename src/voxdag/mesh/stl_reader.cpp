@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 constexpr std::size_t kMaxFacets = 0xFFFFFFFF / 3;
+constexpr std::size_t kFacetsPerPart = 2048;  ///< About what a part of an ascii file has.
 
 /// Number of facets that a binary file says it has; `bytes` hold a header.
 std::uint32_t binary_facet_count(std::string_view bytes) {
@@ -26,86 +27,48 @@ float load_float(const char* p) {
   return std::bit_cast<float>(bits);
 }
 
-class BinarySoup {
- public:
-  explicit BinarySoup(const MeshBytes& source) : source_(source), starts_{0} {
-    if (source.bytes.size() < kHeaderBytes)
-      throw source.error("neither an ascii STL file nor long enough for a binary one");
-    std::size_t left = binary_facet_count(source.bytes);
-    const std::size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
-    if (left > room)
-      throw source.error_at_byte(source.bytes.size(), "the file ends after " +
-                                                          std::to_string(room) + " of " +
-                                                          std::to_string(left) + " facets");
-    if (left == 0) throw source.error("STL with 0 facets: there is no surface to read");
-    if (left > kMaxFacets) throw source.error("more than 1,431,655,765 facets");
-    for (std::size_t offset = kHeaderBytes; left > 0;) {
-      const std::size_t count = std::min(left, kChunkBytes / kFacetBytes);
-      parts_.push_back(source.bytes.substr(offset, count * kFacetBytes));
-      starts_.push_back(starts_.back() + count);
-      offset += count * kFacetBytes;
-      left -= count;
+/// The facets of a binary file, in parts.
+std::vector<std::string_view> split_binary(const MeshBytes& source) {
+  if (source.bytes.size() < kHeaderBytes)
+    throw source.error("neither an ascii STL file nor long enough for a binary one");
+  std::size_t left = binary_facet_count(source.bytes);
+  const std::size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
+  if (left > room)
+    throw source.error_at_byte(source.bytes.size(), "the file ends after " + std::to_string(room) +
+                                                        " of " + std::to_string(left) + " facets");
+  if (left == 0) throw source.error("STL with 0 facets: there is no surface to read");
+  std::vector<std::string_view> parts;
+  for (std::size_t offset = kHeaderBytes; left > 0;) {
+    const std::size_t count = std::min(left, kFacetsPerPart);
+    parts.push_back(source.bytes.substr(offset, count * kFacetBytes));
+    offset += count * kFacetBytes;
+    left -= count;
+  }
+  return parts;
+}
+
+/// Calls body(Vec3f) for each corner of a part of a binary file. Throws Fault for a vertex that is
+/// not finite.
+template <class Body>
+void parse_binary(std::string_view facets, const Body& body) {
+  for (std::size_t facet = 0; facet < facets.size(); facet += kFacetBytes)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const char* p = facets.data() + facet + 12 * (corner + 1);
+      const Vec3f position{load_float(p), load_float(p + 4), load_float(p + 8)};
+      if (!is_finite(position)) throw Fault{p, "vertex is not finite"};
+      body(position);
     }
-    for_each_chunk(source, parts_, kBinary, "scan", [this](std::size_t part) { check(part); });
-  }
+}
 
-  const std::vector<std::size_t>& first_triangles() const { return starts_; }
-
-  template <class Body>
-  void visit(std::size_t part, const Body& body) const {
-    const std::string_view facets = parts_[part];
-    for (std::size_t facet = 0; facet < facets.size(); facet += kFacetBytes)
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const char* p = facets.data() + facet + 12 * (corner + 1);
-        body(Vec3f{load_float(p), load_float(p + 4), load_float(p + 8)});
-      }
-    source_.done_with(facets, "weld");
-  }
-
- private:
-  void check(std::size_t part) const {
-    std::size_t corner = 0;
-    visit(part, [&](Vec3f position) {
-      if (!is_finite(position))
-        throw Fault{parts_[part].data() + corner / 3 * kFacetBytes + 12 * (corner % 3 + 1),
-                    "vertex is not finite"};
-      ++corner;
-    });
-  }
-
-  const MeshBytes& source_;
-  std::vector<std::string_view> parts_;
-  std::vector<std::size_t> starts_;
-};
-
-class TextSoup {
- public:
-  explicit TextSoup(const MeshBytes& source)
-      : source_(source), parts_(split_facets(source.bytes)), starts_(parts_.size() + 1) {
-    const char line_end = line_end_of(source.bytes);
-    for_each_chunk(source, parts_, line_end, "scan", [this](std::size_t part) {
-      std::size_t corners = 0;
-      parse_stl_text(parts_[part], part == 0, part + 1 == parts_.size(), [&](Vec3f) { ++corners; });
-      starts_[part + 1] = corners / 3;
-    });
-    for (std::size_t i = 0; i < parts_.size(); ++i) starts_[i + 1] += starts_[i];
-    if (starts_.back() == 0) throw source.error("STL without facets: there is no surface to read");
-    if (starts_.back() > kMaxFacets) throw source.error("more than 1,431,655,765 facets");
-  }
-
-  const std::vector<std::size_t>& first_triangles() const { return starts_; }
-
-  template <class Body>
-  void visit(std::size_t part, const Body& body) const {
-    parse_stl_text(parts_[part], part == 0, part + 1 == parts_.size(), body);
-    source_.done_with(parts_[part], "weld");
-  }
-
- private:
-  const MeshBytes& source_;
-  const std::vector<std::string_view> parts_;
-  std::vector<std::size_t> starts_;
-};
+template <class Visit>
+Mesh weld_facets(const MeshBytes& source, const std::vector<std::string_view>& parts, char line_end,
+                 const Visit& visit) {
+  const SoupSize size = measure_soup(source, parts, line_end, visit);
+  const std::size_t facets = size.first_triangles.back();
+  if (facets == 0) throw source.error("STL without facets: there is no surface to read");
+  if (facets > kMaxFacets) throw source.error("more than 1,431,655,765 facets");
+  return weld(source, parts, line_end, visit, size);
+}
 
 }  // namespace
 
@@ -126,8 +89,15 @@ Mesh read_stl(const MeshBytes& source) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   std::string_view head = without_byte_order_mark(source.bytes).substr(0, 4096);
   const bool starts_as_text = same_word(StlTokens(head).next(), "solid");
-  if (starts_as_text && !is_exact_binary_stl(source.bytes)) return weld(TextSoup(source));
-  return weld(BinarySoup(source));
+  if (starts_as_text && !is_exact_binary_stl(source.bytes)) {
+    const std::vector<std::string_view> parts = split_facets(source.bytes, kChunkBytes / 2);
+    return weld_facets(source, parts, line_end_of(source.bytes), [&](std::size_t i, auto&& body) {
+      parse_stl_text(parts[i], i == 0, i + 1 == parts.size(), body);
+    });
+  }
+  const std::vector<std::string_view> parts = split_binary(source);
+  return weld_facets(source, parts, kBinary,
+                     [&](std::size_t i, auto&& body) { parse_binary(parts[i], body); });
 }
 
 }  // namespace voxdag

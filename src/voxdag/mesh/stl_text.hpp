@@ -23,10 +23,28 @@ class StlTokens {
 
   /// Empty at the end.
   std::string_view next() {
-    while (p_ != end_ && is_space(*p_)) ++p_;
+    skip_space();
     const char* const first = p_;
     while (p_ != end_ && !is_space(*p_)) ++p_;
     return {first, static_cast<std::size_t>(p_ - first)};
+  }
+  /// Passes over the next word if it is `word`, which is in lower case. Returns whether it is.
+  bool take(std::string_view word) {
+    skip_space();
+    if (static_cast<std::size_t>(end_ - p_) < word.size() || !same_word({p_, word.size()}, word) ||
+        (p_ + word.size() != end_ && !is_space(p_[word.size()])))
+      return false;
+    p_ += word.size();
+    return true;
+  }
+  /// Passes over the next word if it is a number, which is then the nearest float32 of it. Returns
+  /// whether it is.
+  bool take_number(float& value) {
+    skip_space();
+    const auto result = parse_float_prefix(p_, end_, value);
+    if (result == nullptr || (result != end_ && !is_space(*result))) return false;
+    p_ = result;
+    return true;
   }
   /// Passes over the rest of the line: the name of a solid.
   void skip_line() {
@@ -34,7 +52,10 @@ class StlTokens {
   }
 
  private:
-  static bool is_space(char c) { return c == '\n' || is_blank(c); }
+  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+  void skip_space() {
+    while (p_ != end_ && is_space(*p_)) ++p_;
+  }
 
   const char* p_;
   const char* end_;
@@ -50,18 +71,17 @@ template <class Body>
 void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Body& body) {
   StlTokens tokens(is_first ? without_byte_order_mark(part) : part);
   const auto expect = [&](std::string_view word) {
+    if (tokens.take(word)) return;
     const std::string_view token = tokens.next();
     if (token.empty()) throw Fault{token.data(), "the file ends inside a facet"};
-    if (!same_word(token, word))
-      throw Fault{token.data(), "'" + std::string(word) + "' expected, not " + in_quotes(token)};
+    throw Fault{token.data(), "'" + std::string(word) + "' expected, not " + in_quotes(token)};
   };
   const auto number = [&] {
-    const std::string_view token = tokens.next();
     float value = 0;
+    if (tokens.take_number(value)) return value;
+    const std::string_view token = tokens.next();
     if (token.empty()) throw Fault{token.data(), "the file ends inside a facet"};
-    if (!parse_float(token, value))
-      throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
-    return value;
+    throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
   };
 
   bool in_solid = !is_first;

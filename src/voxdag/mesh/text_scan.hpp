@@ -31,14 +31,19 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// The whole token as the nearest float32 (ties to even). Infinities and NaN are numbers here, and
-/// what is too large is infinite. Returns false if the token is not a number.
-inline bool parse_float(std::string_view token, float& value) {
-  const char* first = token.data();
-  const char* const last = first + token.size();
+/// The nearest float32 (ties to even) of the number that the text starts with, and where that ends;
+/// null if it starts with none. Infinities and NaN are numbers here, and what is too large is
+/// infinite.
+inline const char* parse_float_prefix(const char* first, const char* last, float& value) {
   if (first != last && *first == '+' && last - first > 1 && first[1] != '-') ++first;
   const auto result = fast_float::from_chars(first, last, value);
-  return result.ptr == last && result.ec != std::errc::invalid_argument;
+  return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
+}
+
+/// As above for the whole token. Returns false if it is not a number.
+inline bool parse_float(std::string_view token, float& value) {
+  const char* const last = token.data() + token.size();
+  return parse_float_prefix(token.data(), last, value) == last;
 }
 
 /// The whole token as a decimal integer, with or without a sign.

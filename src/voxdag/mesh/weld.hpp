@@ -2,122 +2,161 @@
 /// Welding of a triangle soup: corners with equal bits become one vertex, in the order in which the
 /// soup first has them.
 ///
-/// Memory stays near that of the finished mesh. The triangles' own array first holds, for each
-/// corner, the first corner that equals it. To find that, threads split the corners by hash: each
-/// scans the whole soup several times, each time with a table for a fraction of the hashes only.
-/// Vertices are numbered in place and gathered in a last scan, when their number is known.
+/// The soup is read twice: once to count its triangles and, from a sample, its vertices, so that
+/// what is made has the right size from the start; and once to make it, a batch of parts at a time.
+/// Threads weld each part on its own; then the vertices of the parts, far fewer than their corners,
+/// are welded in order. Beside the finished mesh there is a table of vertices, of at most 0.27
+/// times its size.
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "voxdag/mesh/chunks.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
 
-/// Maps the bits of a position to the corner that had it first.
-class FirstCornerTable {
+inline std::uint64_t hash_bits(Vec3f position) {
+  const auto key = std::bit_cast<std::array<std::uint32_t, 3>>(position);
+  std::uint64_t h = (key[0] | std::uint64_t{key[1]} << 32) * 0x9E3779B97F4A7C15ull;
+  h = (h ^ h >> 32 ^ key[2]) * 0xD6E8FEB86659FD93ull;
+  return (h ^ h >> 29) * 0x9E3779B97F4A7C15ull;
+}
+
+/// Vertices with distinct bits, numbered in the order in which they were added.
+class VertexTable {
  public:
-  using Key = std::array<std::uint32_t, 3>;
-
-  explicit FirstCornerTable(std::size_t expected) : slots_(expected * 3 / 2 + 16) {}
-
-  static std::uint64_t hash(const Key& key) {
-    std::uint64_t h = (key[0] | std::uint64_t{key[1]} << 32) * 0x9E3779B97F4A7C15ull;
-    h = (h ^ h >> 32 ^ key[2]) * 0xD6E8FEB86659FD93ull;
-    return (h ^ h >> 29) * 0x9E3779B97F4A7C15ull;
+  /// Makes room for `vertices` in a table of `slots`; both grow where they must.
+  explicit VertexTable(std::size_t vertices = 0, std::size_t slots = 64) : slots_(slots, kFree) {
+    vertices_.reserve(vertices);
   }
 
-  /// The corner that had this key first: `corner` itself if the key is new.
-  std::uint32_t find_or_add(const Key& key, std::uint64_t hash, std::uint32_t corner) {
-    std::size_t i = home(hash);
-    for (; slots_[i].corner != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
-      if (slots_[i].key == key) return slots_[i].corner;
-    slots_[i] = {key, corner};
-    if (++used_ > slots_.size() / 4 * 3) grow();
-    return corner;
+  std::uint32_t find_or_add(Vec3f position) {
+    std::size_t i = home(position);
+    for (; slots_[i] != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
+      if (has_bits(vertices_[slots_[i]], position)) return slots_[i];
+    const auto vertex = static_cast<std::uint32_t>(vertices_.size());
+    slots_[i] = vertex;
+    vertices_.push_back(position);
+    if (vertices_.size() > slots_.size() / 16 * 15) grow();
+    return vertex;
   }
+
+  const std::vector<Vec3f>& vertices() const { return vertices_; }
+  std::vector<Vec3f> take_vertices() { return std::move(vertices_); }
 
  private:
   static constexpr std::uint32_t kFree = ~0u;
-  struct Slot {
-    Key key{};
-    std::uint32_t corner = kFree;
-  };
 
-  std::size_t home(std::uint64_t hash) const {
-    return static_cast<std::size_t>((hash >> 32) * slots_.size() >> 32);
+  static bool has_bits(Vec3f a, Vec3f b) {
+    using Bits = std::array<std::uint32_t, 3>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+  }
+  std::size_t home(Vec3f position) const {
+    return static_cast<std::size_t>((hash_bits(position) >> 32) * slots_.size() >> 32);
   }
 
   void grow() {
-    std::vector<Slot> old(slots_.size() + slots_.size() / 2);
-    old.swap(slots_);
-    for (const Slot& slot : old) {
-      if (slot.corner == kFree) continue;
-      std::size_t i = home(hash(slot.key));
-      while (slots_[i].corner != kFree) i = i + 1 == slots_.size() ? 0 : i + 1;
-      slots_[i] = slot;
+    std::fill(slots_.begin(), slots_.end(), kFree);
+    slots_.resize(2 * slots_.size(), kFree);
+    for (std::uint32_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+      std::size_t i = home(vertices_[vertex]);
+      while (slots_[i] != kFree) i = i + 1 == slots_.size() ? 0 : i + 1;
+      slots_[i] = vertex;
     }
   }
 
-  std::vector<Slot> slots_;
-  std::size_t used_ = 0;
+  std::vector<std::uint32_t> slots_;
+  std::vector<Vec3f> vertices_;
 };
 
-/// A soup is read in parts: `soup.first_triangles()` tells where each part starts and, last, how
-/// many triangles there are, fewer than 2^32 / 3; `soup.visit(part, body)` calls body(Vec3f) for
-/// the corners of one part in order, from any thread.
-template <class Soup>
-Mesh weld(const Soup& soup) {
-  Mesh mesh;
-  const std::vector<std::size_t>& starts = soup.first_triangles();
-  const std::size_t parts = starts.size() - 1;
-  mesh.triangles.resize(starts.back());
-  if (starts.back() == 0) return mesh;
-  std::uint32_t* const corners = mesh.triangles.data()->data();
-  const std::size_t corner_count = 3 * starts.back();
+/// What a first reading of a soup tells.
+struct SoupSize {
+  std::vector<std::size_t> first_triangles;  ///< Of each part and, last, their number.
+  std::size_t vertices = 0;                  ///< Distinct ones; may be exceeded by a few.
+};
 
-  // One table per lane at a time, for a quarter of its hashes where memory is worth more scans.
-  constexpr std::size_t kSmall = 300'000;
-  const auto lanes =
-      static_cast<std::size_t>(std::clamp(tbb::this_task_arena::max_concurrency(), 1, 16));
-  const std::size_t shares = corner_count < kSmall ? lanes : 4 * lanes;
-  parallel_for(lanes, [&](std::size_t lane) {
-    for (std::size_t share = lane; share < shares; share += lanes) {
-      FirstCornerTable table(corner_count / 6 / shares * 9 / 8);
-      for (std::size_t part = 0; part < parts; ++part) {
-        auto corner = static_cast<std::uint32_t>(3 * starts[part]);
-        soup.visit(part, [&](Vec3f position) {
-          const auto key = std::bit_cast<FirstCornerTable::Key>(position);
-          const std::uint64_t hash = FirstCornerTable::hash(key);
-          if ((hash & 0xFFFFFFFF) * shares >> 32 == share)
-            corners[corner] = table.find_or_add(key, hash, corner);
-          ++corner;
-        });
-      }
-    }
-  });
-
-  // Number the vertices: a corner that is its own first one is the next vertex.
-  std::vector<std::uint32_t> first_vertices(parts);
-  std::uint32_t vertices = 0;
-  for (std::size_t part = 0, corner = 0; part < parts; ++part) {
-    first_vertices[part] = vertices;
-    for (; corner < 3 * starts[part + 1]; ++corner)
-      corners[corner] = corners[corner] == corner ? vertices++ : corners[corners[corner]];
-  }
-
-  mesh.vertices.resize(vertices);
-  parallel_for(parts, [&](std::size_t part) {
-    std::uint32_t vertex = first_vertices[part];
-    const std::uint32_t* corner = corners + 3 * starts[part];
-    soup.visit(part, [&](Vec3f position) {
-      if (*corner++ == vertex) mesh.vertices[vertex++] = position;
+/// Reads a soup in parts: `visit(part, body)` calls body(Vec3f) for the corners of one part in
+/// order, three for each triangle, and throws Fault at bad input, which is thrown as an Error.
+template <class Visit>
+SoupSize measure_soup(const MeshBytes& source, const std::vector<std::string_view>& parts,
+                      char line_end, const Visit& visit) {
+  constexpr unsigned kOneIn = 16;  // vertices in the sample, by hash
+  SoupSize size{std::vector<std::size_t>(parts.size() + 1), 0};
+  std::vector<std::vector<Vec3f>> samples(parts.size());
+  for_each_chunk(source, parts, line_end, "scan", [&](std::size_t part) {
+    VertexTable sample;
+    std::size_t corners = 0;
+    visit(part, [&](Vec3f position) {
+      ++corners;
+      if (hash_bits(position) % kOneIn == 0) sample.find_or_add(position);
     });
+    size.first_triangles[part + 1] = corners / 3;
+    samples[part] = sample.take_vertices();
   });
+  VertexTable sample;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    size.first_triangles[part + 1] += size.first_triangles[part];
+    for (const Vec3f position : samples[part]) sample.find_or_add(position);
+  }
+  // Four standard deviations above the estimate are hardly ever exceeded.
+  const auto sampled = static_cast<double>(sample.vertices().size());
+  size.vertices = static_cast<std::size_t>(kOneIn * (sampled + 4 * std::sqrt(sampled) + 4));
+  size.vertices = std::min(size.vertices, 3 * size.first_triangles.back());
+  return size;
+}
+
+/// Welds a soup as measure_soup takes it, which has fewer than 2^32 / 3 triangles.
+template <class Visit>
+Mesh weld(const MeshBytes& source, const std::vector<std::string_view>& parts, char line_end,
+          const Visit& visit, const SoupSize& size) {
+  Mesh mesh;
+  const std::vector<std::size_t>& starts = size.first_triangles;
+  const std::size_t triangles = starts.back();
+  mesh.triangles.resize(triangles);
+  // A full table is slow, so it is full only where nearly no corners are shared.
+  VertexTable table(size.vertices,
+                    64 + std::min(size.vertices * 8 / 5, (triangles + size.vertices) / 5 * 4));
+
+  const auto threads =
+      static_cast<std::size_t>(std::max(tbb::this_task_arena::max_concurrency(), 1));
+  const std::size_t batch = 2 * threads;
+  for (std::size_t first = 0; first < parts.size(); first += batch) {
+    const std::size_t last = std::min(first + batch, parts.size());
+    const auto at = [&](std::size_t part) {
+      return parts.begin() + static_cast<std::ptrdiff_t>(part);
+    };
+    std::vector<std::vector<Vec3f>> vertices(last - first);
+    for_each_chunk(source, {at(first), at(last)}, line_end, "weld", [&](std::size_t i) {
+      VertexTable own;
+      std::uint32_t* corner = mesh.triangles.data()->data() + 3 * starts[first + i];
+      const std::uint32_t* const end = mesh.triangles.data()->data() + 3 * starts[first + i + 1];
+      const Fault changed{parts[first + i].data(), "the file changed while it was read"};
+      visit(first + i, [&](Vec3f position) {
+        if (corner == end) throw changed;
+        *corner++ = own.find_or_add(position);
+      });
+      if (corner != end) throw changed;
+      vertices[i] = own.take_vertices();
+    });
+    std::vector<std::vector<std::uint32_t>> numbers(last - first);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      numbers[i].reserve(vertices[i].size());
+      for (const Vec3f position : vertices[i]) numbers[i].push_back(table.find_or_add(position));
+    }
+    parallel_for(numbers.size(), [&](std::size_t i) {
+      for (std::size_t t = starts[first + i]; t < starts[first + i + 1]; ++t)
+        for (std::uint32_t& corner : mesh.triangles[t]) corner = numbers[i][corner];
+    });
+  }
+  mesh.vertices = table.take_vertices();
   return mesh;
 }
 
