@@ -1,0 +1,362 @@
+// Beams change nothing; occlusion and soft shadows are what mathematics says.
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/brute_svdag.hpp"
+#include "voxdag/cpu/render_image.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// The grid of 2^levels voxels is [-1,1]³.
+Grid test_grid(int levels) {
+  Grid grid;
+  grid.levels = levels;
+  grid.origin = {-1, -1, -1};
+  grid.voxel_size = std::ldexp(2.0, -levels);
+  return grid;
+}
+
+/// Voxels (x,y,z) of 2^levels for which keep(x,y,z).
+template <class Keep>
+Svdag voxels_where(int levels, const Keep& keep) {
+  std::vector<Vec3i> voxels;
+  const std::int32_t n = 1 << levels;
+  for (std::int32_t z = 0; z < n; ++z)
+    for (std::int32_t y = 0; y < n; ++y)
+      for (std::int32_t x = 0; x < n; ++x)
+        if (keep(x, y, z)) voxels.push_back({x, y, z});
+  return brute_svdag(levels, voxels);
+}
+
+/// Blocks, a shell and dust on a floor.
+Svdag mixed_scene(int levels, unsigned seed) {
+  std::mt19937 rng(seed);
+  const double n = 1 << levels;
+  return voxels_where(levels, [&](int x, int y, int z) {
+    const double dx = x / n - 0.5, dy = y / n - 0.5, dz = z / n - 0.4;
+    const double r = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const bool is_pillar = (x * 4 / (1 << levels)) % 2 == 1 && std::fabs(dz - 0.35) < 0.05;
+    return y < 2 || std::fabs(r - 0.22) < 0.9 / n || (is_pillar && y < 0.7 * n) || rng() % 900 == 0;
+  });
+}
+
+void expect_same_picture(const RenderedImage& a, const RenderedImage& b) {
+  EXPECT_EQ(a.radiance, b.radiance);
+  EXPECT_EQ(a.rgb, b.rgb);
+  EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(a.occlusion, b.occlusion);
+  EXPECT_EQ(a.shadow, b.shadow);
+}
+
+LightSpec sphere_light(Vec3d position, double radius) {
+  LightSpec light;
+  light.position = position;
+  light.radius = radius;
+  return light;
+}
+
+LightSpec disc_light(Vec3d position, double radius) {
+  LightSpec light = sphere_light(position, radius);
+  light.kind = LightKind::kDisc;
+  light.normal = -position;
+  return light;
+}
+
+LightSpec rectangle_light(Vec3d corner, Vec3d u, Vec3d v) {
+  LightSpec light;
+  light.kind = LightKind::kRectangle;
+  light.position = corner;
+  light.edge_u = u;
+  light.edge_v = v;
+  return light;
+}
+
+LightSpec point_light(Vec3d position) {
+  LightSpec light;
+  light.kind = LightKind::kPoint;
+  light.position = position;
+  return light;
+}
+
+RenderOptions small_picture() {
+  RenderOptions options;
+  options.width = 83;
+  options.height = 59;
+  options.occlusion_samples = 4;
+  options.shadow_samples = 8;
+  return options;
+}
+
+TEST(RenderBeams, ThePictureIsTheSameWithout) {
+  constexpr int kLevels = 6;
+  std::mt19937 rng(11);
+  const auto number = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(rng);
+  };
+  int shorter = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Svdag dag = mixed_scene(kLevels, static_cast<unsigned>(i % 4));
+    RenderOptions options = small_picture();
+    const double reach = i % 2 == 0 ? 0.95 : 3;  // inside and outside
+    options.view.eye = {number(-reach, reach), number(-0.8, reach), number(-reach, reach)};
+    options.view.target = {number(-1, 1), number(-1, 0.5), number(-1, 1)};
+    options.view.up = {0, 1, 0};
+    options.view.vertical_fov_degrees = number(0, 1) < 0.2 ? 120 : number(5, 80);
+    const float lods[] = {0, 1, 3, 12};
+    options.lod_pixels = lods[i % 4];
+    options.sun_degrees = i % 3 == 0 ? 0 : number(0.5, 20);
+    options.with_steps = true;
+    const RenderedImage with = render_image(dag.view(), test_grid(kLevels), options);
+    options.beams = false;
+    const RenderedImage without = render_image(dag.view(), test_grid(kLevels), options);
+    expect_same_picture(with, without);
+    double steps = 0;
+    for (std::size_t at = 0; at < with.steps.size(); ++at)
+      steps += static_cast<double>(without.steps[at] - with.steps[at]);
+    shorter += steps > 0 ? 1 : 0;
+  }
+  EXPECT_GT(shorter, 5);  // at 64³ there is little to skip
+}
+
+TEST(RenderBeams, SoftShadowsAreTheSameWithoutForEveryLight) {
+  constexpr int kLevels = 6;
+  const Svdag dag = mixed_scene(kLevels, 2);
+  const LightSpec lights[] = {sphere_light({0.3, 0.8, 0.2}, 0.1),
+                              sphere_light({4, 9, -3}, 2),
+                              sphere_light({-0.2, -0.5, 0.8}, 0.4),
+                              disc_light({-0.7, 0.6, 0.4}, 0.3),
+                              disc_light({0.1, 3, 0.1}, 0.01),
+                              rectangle_light({-0.5, 0.9, -0.5}, {1, 0, 0}, {0, 0, 1}),
+                              rectangle_light({2, 1, 0}, {0, 0, 1}, {0, 1, 0}),
+                              point_light({0.2, 0.7, 0.9})};
+  int fewer = 0;
+  for (const LightSpec& light : lights) {
+    RenderOptions options = small_picture();
+    options.occlusion_samples = 0;
+    options.with_sun = false;
+    options.lights = {light};
+    const RenderedImage with = render_image(dag.view(), test_grid(kLevels), options);
+    options.beams = false;
+    const RenderedImage without = render_image(dag.view(), test_grid(kLevels), options);
+    expect_same_picture(with, without);
+    EXPECT_LE(with.rays, without.rays);
+    fewer += with.rays < without.rays ? 1 : 0;
+    double shadow = 0;
+    for (const float part : with.shadow) shadow += static_cast<double>(part);
+    EXPECT_GT(shadow, 0);
+    EXPECT_LT(shadow, static_cast<double>(with.shadow.size()));
+  }
+  EXPECT_GE(fewer, 3);  // wide beams meet something everywhere
+}
+
+TEST(RenderEffects, PicturesDependNeitherOnTilesNorThreads) {
+  constexpr int kLevels = 6;
+  const Svdag dag = mixed_scene(kLevels, 1);
+  RenderOptions options = small_picture();
+  options.samples_per_pixel = 3;
+  options.lights = {sphere_light({0.3, 0.8, 0.2}, 0.1), point_light({0.2, 0.7, 0.9})};
+  const RenderedImage expected = render_image(dag.view(), test_grid(kLevels), options);
+  for (const int tile_size : {1, 7, 32})
+    for (const int threads : {1, 3}) {
+      options.tile_size = tile_size;
+      RenderedImage image;
+      tbb::task_arena(threads).execute(
+          [&] { image = render_image(dag.view(), test_grid(kLevels), options); });
+      expect_same_picture(image, expected);
+      EXPECT_EQ(image.rays, expected.rays);
+    }
+}
+
+/// Straight down on the middle of the picture's plane, cells shown as cubes.
+RenderOptions from_above(double height_of_picture) {
+  RenderOptions options;
+  options.width = options.height = 24;
+  options.view.eye = {0, 40, 0};
+  options.view.target = {0, 0, 0};
+  options.view.up = {0, 0, -1};
+  options.view.vertical_fov_degrees = 2 * std::atan(height_of_picture / 2 / 40.7) * 180 / kPi;
+  options.lod_pixels = 0;
+  options.cube_pixels = 0;
+  options.with_sun = false;
+  options.sky = 0;
+  return options;
+}
+
+/// World x of a column's middle, on the plane at y.
+double column_x(const RenderedImage& image, int column, double y) {
+  const double half = std::tan(image.view.vertical_fov_degrees * kPi / 360) * (40 - y);
+  return (2 * (column + 0.5) / image.width - 1) * half;
+}
+
+TEST(AmbientOcclusion, AnOpenPlaneHasNone) {
+  const Svdag dag = voxels_where(6, [](int, int y, int) { return y == 8; });
+  RenderOptions options = from_above(1);
+  options.occlusion_distance = 1;
+  const RenderedImage image = render_image(dag.view(), test_grid(6), options);
+  for (const float open : image.occlusion) EXPECT_EQ(open, 1);
+}
+
+TEST(AmbientOcclusion, BesideAWallIsWhatQuadratureGives) {
+  constexpr int kLevels = 7, kWall = 40;
+  constexpr double kReach = 0.5;
+  const Svdag dag =
+      voxels_where(kLevels, [](int x, int y, int) { return y == 8 || (x == kWall && y > 8); });
+  const Grid grid = test_grid(kLevels);
+  const double wall = -1 + (kWall + 1) * grid.voxel_size, floor = -1 + 9 * grid.voxel_size;
+  RenderOptions options = from_above(1.6);
+  options.occlusion_samples = 256;
+  options.occlusion_distance = kReach;
+  const RenderedImage image = render_image(dag.view(), grid, options);
+
+  // The mean over the hemisphere, cosine-weighted, of 1 - (1 - d/reach)² for the distance d to the
+  // wall.
+  const auto open_at = [&](double distance) {
+    constexpr int kSteps = 400;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const double r = std::sqrt((i + 0.5) / kSteps), angle = 2 * kPi * (j + 0.5) / kSteps;
+        const double towards = -r * std::cos(angle);
+        const double d = towards > 0 ? distance / towards / kReach : 1;
+        sum += d < 1 ? (1 - d) * (1 - d) : 0;
+      }
+    return 1 - sum / (kSteps * kSteps);
+  };
+  int near = 0;
+  for (int column = 0; column < image.width; ++column) {
+    const double x = column_x(image, column, floor);
+    if (x < wall) continue;
+    const double expected = open_at(x - wall);
+    near += x - wall < kReach / 4 ? 1 : 0;
+    double mean = 0;
+    for (int row = 4; row < image.height - 4; ++row) {
+      const float open = image.occlusion[static_cast<std::size_t>(row * image.width + column)];
+      mean += static_cast<double>(open) / (image.height - 8);
+      EXPECT_NEAR(static_cast<double>(open), expected, 0.06);  // 256 rays, well spread
+    }
+    EXPECT_NEAR(mean, expected, 0.012) << x - wall;
+  }
+  EXPECT_GE(near, 1);
+}
+
+TEST(AmbientOcclusion, TheEdgeOfAWallHidesHalfOfTheSky) {
+  constexpr int kLevels = 8;
+  const Svdag dag = voxels_where(kLevels, [](int x, int y, int z) {
+    return std::abs(z - 128) < 40 && ((y == 8 && std::abs(x - 128) < 40) || (x == 127 && y > 8));
+  });
+  const Grid grid = test_grid(kLevels);
+  RenderOptions options = from_above(0.001);  // 24 pixels in an eighth of a voxel
+  options.view.eye = {0.0009, 40, 0};
+  options.view.target = {0.0009, 0, 0};
+  options.occlusion_distance = 1000;  // nothing is too far to count
+  const RenderedImage image = render_image(dag.view(), grid, options);
+  double mean = 0;
+  for (const float open : image.occlusion)
+    mean += static_cast<double>(open) / static_cast<double>(image.occlusion.size());
+  EXPECT_NEAR(mean, 0.5, 0.02);
+}
+
+TEST(AmbientOcclusion, AConeOnlyDarkens) {
+  const Svdag dag = mixed_scene(6, 3);
+  RenderOptions options = small_picture();
+  options.occlusion_samples = 16;
+  const RenderedImage exact = render_image(dag.view(), test_grid(6), options);
+  options.occlusion_cone = 0.07;
+  const RenderedImage cone = render_image(dag.view(), test_grid(6), options);
+  double darker = 0;
+  for (std::size_t i = 0; i < exact.occlusion.size(); ++i) {
+    EXPECT_LE(cone.occlusion[i], exact.occlusion[i]);
+    darker += static_cast<double>(exact.occlusion[i] - cone.occlusion[i]);
+  }
+  EXPECT_GT(darker, 0);
+  EXPECT_LT(darker / static_cast<double>(exact.occlusion.size()), 0.2);
+}
+
+TEST(SoftShadow, APlaneUnderASphereReceivesWhatItShould) {
+  constexpr double kHeight = 1.5, kRadius = 0.2;
+  const Svdag dag = voxels_where(6, [](int, int y, int) { return y == 8; });
+  const Grid grid = test_grid(6);
+  RenderOptions options = from_above(1.8);
+  const double floor = -1 + 9 * grid.voxel_size;
+  options.lights = {sphere_light({0, floor + kHeight, 0}, kRadius)};
+  options.lights[0].color = Vec3f{2, 2, 2};
+  options.shadow_samples = 64;
+  const RenderedImage image = render_image(dag.view(), grid, options);
+  const double lift = 1.25 * grid.voxel_size;  // shadow rays start above the surface
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
+      const double x = column_x(image, column, floor), z = column_x(image, row, floor);
+      const double height = kHeight - lift;
+      const double distance2 = x * x + z * z + height * height;
+      const double expected = 2 * kRadius * kRadius / distance2 * height / std::sqrt(distance2) *
+                              static_cast<double>(options.albedo.x);
+      const Vec3f radiance = image.radiance[static_cast<std::size_t>(row * image.width + column)];
+      EXPECT_NEAR(static_cast<double>(radiance.x) / expected, 1, 2e-3);
+    }
+}
+
+TEST(SoftShadow, ThePenumbraOfAStraightEdgeIsACircularSegment) {
+  constexpr int kLevels = 7, kTop = 100;
+  const Svdag dag =
+      voxels_where(kLevels, [](int x, int y, int) { return y == 8 || (y == kTop && x < 64); });
+  const Grid grid = test_grid(kLevels);
+  RenderOptions options = from_above(1);
+  // From below the cover the floor is not to be seen from above: look from the side that is open.
+  options.view.eye = {0, -1 + 50 * grid.voxel_size, 0};
+  options.view.target = {0, -1, 0};
+  options.view.vertical_fov_degrees = 70;
+  options.with_sun = true;
+  options.sun = {0, 1, 0};
+  options.sun_degrees = 20;
+  options.occlusion_samples = 0;
+  options.shadow_samples = 256;
+  const RenderedImage image = render_image(dag.view(), grid, options);
+  const double floor = 9 * grid.voxel_size - 1, start = floor + 1.25 * grid.voxel_size;
+  const double gap = -1 + kTop * grid.voxel_size - start;
+  const double radius = gap * std::tan(10 * kPi / 180);
+  int half_lit = 0;
+  for (int column = 0; column < image.width; ++column) {
+    const double scale = std::tan(35 * kPi / 180) * (49.0 - 8) * grid.voxel_size;
+    const double x = (2 * (column + 0.5) / image.width - 1) * scale;
+    // The sun's disc, projected on the cover's plane around x, is free where it reaches beyond 0;
+    // the cover has a thickness of a voxel, which only the far side of the disc sees.
+    const double c = std::clamp(x / radius, -1.0, 1.0);
+    const double expected = 1 - (std::acos(c) - c * std::sqrt(1 - c * c)) / kPi;
+    double mean = 0;
+    for (int row = 0; row < image.height; ++row)
+      mean +=
+          static_cast<double>(image.shadow[static_cast<std::size_t>(row * image.width + column)]) /
+          image.height;
+    half_lit += expected > 0.1 && expected < 0.9 ? 1 : 0;
+    EXPECT_NEAR(mean, expected, 0.02) << x;
+  }
+  EXPECT_GE(half_lit, 3);
+}
+
+TEST(RenderEffects, RefusesWhatIsOutOfRange) {
+  const Svdag dag = mixed_scene(4, 0);
+  const auto refuses = [&](auto change) {
+    RenderOptions options = small_picture();
+    change(options);
+    EXPECT_THROW(render_image(dag.view(), test_grid(4), options), Error);
+  };
+  refuses([](RenderOptions& o) { o.shadow_samples = 0; });
+  refuses([](RenderOptions& o) { o.occlusion_samples = -1; });
+  refuses([](RenderOptions& o) { o.occlusion_distance = HUGE_VAL; });
+  refuses([](RenderOptions& o) { o.occlusion_cone = 7; });
+  refuses([](RenderOptions& o) { o.sun_degrees = 90; });
+  refuses([](RenderOptions& o) { o.sky = -1; });
+  refuses([](RenderOptions& o) { o.tile_size = 33; });
+  refuses([](RenderOptions& o) { o.lights = {LightSpec{}}; });
+  refuses([](RenderOptions& o) { o.lights.assign(16, sphere_light({0, 0, 0}, 1)); });
+}
+
+}  // namespace
+}  // namespace voxdag
