@@ -34,8 +34,7 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
         static_cast<std::size_t>(y) * static_cast<std::size_t>(setup.camera.width) +
         static_cast<std::size_t>(x);
     const ViewSample& sample = scratch.samples[pixel];
-    const Vec3f direction =
-        static_cast<Vec3f>(normalized(setup.camera.direction(x + tile.dx, y + tile.dy)));
+    const auto direction = static_cast<Vec3f>(normalized(pixel_direction(setup, tile, pixel)));
     const bool is_hit = scratch.points[pixel].is_hit();
     float open = 1, lit = 1;
     Vec3f radiance;
@@ -76,8 +75,10 @@ VOXDAG_HD inline int render_tile(const Nodes& nodes, const Caster& caster, const
     rays += find_samples(tile, scratch);
     for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
       const ViewSample& sample = scratch.samples[pixel];
-      scratch.points[pixel] =
-          sample.is_hit() ? make_surface_point(nodes, setup, sample) : SurfacePoint{};
+      scratch.points[pixel] = {};
+      if (sample.is_hit())
+        scratch.points[pixel] =
+            make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
       scratch.irradiance[pixel] = {};
       scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
     }

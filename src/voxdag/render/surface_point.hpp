@@ -28,12 +28,14 @@ VOXDAG_HD inline float cube_height(Vec3f normal) {
   return std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
 }
 
-/// Whether a cell with at most this side, in units of the grid's, lies at the point.
+/// Whether a cell of the surface's own size lies at the point or right before it, as the viewer
+/// sees it. `to_viewer` has unit length.
 template <class Nodes>
-VOXDAG_HD inline bool is_occupied(const Nodes& nodes, GridPoint point, float cell_side) {
-  const GridRay ray = make_grid_ray(point, {1, 0, 0}, 0, 0);
+VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const SurfacePoint& point, Vec3f to_viewer) {
+  constexpr float kCells = 4;
+  const GridRay ray = make_grid_ray(point.start, to_viewer, 0, kCells * point.cell_side);
   CellHit cell;
-  return cast(nodes, ray, StopBelowSize{cell_side, 0, 2}, cell);
+  return cast(nodes, ray, StopBelowSize{point.cell_side, 0, 2}, cell);
 }
 
 /// The side of the cells, in world units, that stand for a surface at this depth: those at which a
@@ -46,10 +48,11 @@ VOXDAG_HD inline float cell_size_at(const RenderSetup& setup, double depth) {
   return static_cast<float>(size);
 }
 
-/// `sample` is hit, and its point lies on its surface or above.
+/// `sample` is hit, and its point lies on its surface or above. `direction` is that of the camera's
+/// ray to it.
 template <class Nodes>
 VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const RenderSetup& setup,
-                                                 const ViewSample& sample) {
+                                                 const ViewSample& sample, Vec3d direction) {
   constexpr float kSlack = 0.25f;  // cells: normals are estimates, surfaces bend
   SurfacePoint point;
   point.normal = sample.normal;
@@ -57,16 +60,18 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   const double cell_size = static_cast<double>(sample.cell_size);
   point.cell_side = static_cast<float>(cell_size / setup.side());
   const double lift = static_cast<double>(cube_height(sample.face) + kSlack);
-  Vec3d start = sample.point + static_cast<Vec3d>(sample.face) * (lift * cell_size);
-  point.start = make_grid_point(setup.grid, start);
-  // In the corner between two surfaces that may still be inside a cell of the other one. The way to
-  // the viewer leads out of it.
-  constexpr int kTries = 2;
-  const Vec3d to_viewer = setup.camera.eye - sample.point;
-  for (int i = 0; i < kTries && is_occupied(nodes, point.start, point.cell_side); ++i) {
-    start = start + to_viewer * (cell_size / std::sqrt(dot(to_viewer, to_viewer)));
-    point.start = make_grid_point(setup.grid, start);
-  }
+  point.start = make_grid_point(
+      setup.grid, sample.point + static_cast<Vec3d>(sample.face) * (lift * cell_size));
+  // In a corner, in a gap, at the edge of something thin that may be inside or behind a cell of
+  // another surface: the viewer sees the sample, but not that point. What the viewer looks along is
+  // free, for voxels at once and for a mesh when its cells are left.
+  constexpr int kTries = 3;
+  const double depth = static_cast<double>(sample.depth);
+  const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
+  const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
+  for (int i = 1; i <= kTries && is_hidden(nodes, point, to_viewer); ++i)
+    point.start =
+        make_grid_point(setup.grid, setup.camera.eye + direction * (depth - i * cell_depth));
   return point;
 }
 

@@ -13,7 +13,7 @@ struct ViewSample {
   Vec3f face{};    ///< Of the flat piece of surface itself: likewise.
   Vec3f albedo{};  ///< Linear, in [0,1].
   float depth = HUGE_VALF;  ///< World units along the camera's axis.
-  float cell_size = 0;  ///< Side of the cell met, world units: how far the voxels are off.
+  float cell_size = 0;      ///< Side of the cell met, world units: how far the voxels are off.
 
   VOXDAG_HD bool is_hit() const { return depth < HUGE_VALF; }
 };

@@ -8,6 +8,12 @@
 
 namespace voxdag {
 
+/// The direction in which the camera sees a pixel of the tile; its t is depth.
+VOXDAG_HD inline Vec3d pixel_direction(const RenderSetup& setup, const ViewTile& tile, int pixel) {
+  return setup.camera.direction(tile.x + pixel % tile.width + tile.dx,
+                                tile.y + pixel / tile.width + tile.dy);
+}
+
 /// The primary ray of a tile's pixel.
 VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& tile, int pixel) {
   const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
@@ -16,9 +22,9 @@ VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& t
     t_min = static_cast<double>(setup.beam_starts[beam_index(setup.camera.width, x, y)]);
     if (!(t_min < HUGE_VAL)) return {};
   }
-  const Vec3d direction = setup.camera.direction(x + tile.dx, y + tile.dy);
   CastRay ray;
-  ray.ray = make_grid_ray(setup.grid, setup.camera.eye, direction, t_min, HUGE_VAL);
+  ray.ray = make_grid_ray(setup.grid, setup.camera.eye, pixel_direction(setup, tile, pixel), t_min,
+                          HUGE_VAL);
   const double size_per_t =
       static_cast<double>(setup.settings.lod_pixels) * setup.camera.pixel_size();
   ray.stop = stop_below_size(setup.grid, ray.ray, size_per_t);
@@ -69,8 +75,7 @@ VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster
         if (!is_hit) return;
         const Hit hit = to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF);
         const double depth = ray.to_world_t(static_cast<double>(cell.t));
-        const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
-        const Vec3d direction = setup.camera.direction(x + tile.dx, y + tile.dy);
+        const Vec3d direction = pixel_direction(setup, tile, pixel);
         sample = voxel_view_sample(nodes, setup, direction, hit, depth);
       });
   return tile.width * tile.height;
