@@ -82,6 +82,37 @@ TEST(FrameScene, LooksFromInsideWhereTheSceneIsARoom) {
   }
 }
 
+TEST(SceneViews, AreInsideARoomAndDiffer) {
+  const Svdag dag = room();
+  const Grid grid = grid_of(6);
+  const std::vector<View> views = scene_views(dag.view(), grid, 1.5, 3);
+  ASSERT_EQ(views.size(), 3u);
+  EXPECT_EQ(views[0].eye, frame_scene(dag.view(), grid, 1.5, {}).eye);
+  for (const View& view : views)
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GT(grid.to_grid(view.eye)[axis], 1);
+      EXPECT_LT(grid.to_grid(view.eye)[axis], 63);
+    }
+  EXPECT_NE(views[0].eye, views[1].eye);
+  EXPECT_NE(views[1].eye, views[2].eye);
+}
+
+TEST(SceneViews, AreAroundAnObject) {
+  std::vector<Vec3i> voxels;
+  for (std::int32_t i = 10; i < 50; ++i) voxels.push_back({i, i, i});
+  const Svdag dag = brute_svdag(6, voxels);
+  const std::vector<View> views = scene_views(dag.view(), grid_of(6), 1.5, 4);
+  ASSERT_EQ(views.size(), 4u);
+  for (const View& view : views)
+    for (const Vec3i v : voxels)
+      EXPECT_TRUE(is_in_picture(view, 1.5, grid_of(6).to_world(static_cast<Vec3d>(v))));
+}
+
+TEST(SceneViews, OfAnEmptySceneAreViews) {
+  for (const View& view : scene_views(Svdag{}.view(), Grid{}, 1, 3))
+    EXPECT_NE(view.eye, view.target);
+}
+
 TEST(FrameScene, KeepsWhatIsAskedFor) {
   const Svdag dag = room();
   const Grid grid = grid_of(6);

@@ -173,15 +173,17 @@ double view_score(const Explorer& explorer, const Camera& camera, double size) {
   return sum / (kColumns * kRows);
 }
 
-InsideView best_inside_view(const CoarseCells& scene, const Explorer& explorer, const Grid& grid,
-                            const Compass& compass, double fov, double aspect) {
+/// The best view of each roomy place, best first.
+std::vector<InsideView> inside_views(const CoarseCells& scene, const Explorer& explorer,
+                                     const Grid& grid, const Compass& compass, double fov,
+                                     double aspect) {
   constexpr int kPlaces = 160, kDirections = 48, kYaws = 24;
   const double cell_size =
       grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
   const Vec3d lo = grid.origin + static_cast<Vec3d>(scene.bounds().lo) * cell_size;
   const Vec3d extent = static_cast<Vec3d>(scene.bounds().hi - scene.bounds().lo) * cell_size;
   const double size = length(extent);
-  InsideView best;
+  std::vector<InsideView> views;
   for (int place = 0; place < kPlaces; ++place) {
     // The R3 sequence; low places, where people stand, rather than high ones.
     double u[3] = {0.8191725134, 0.6710436067, 0.5497004779};
@@ -206,6 +208,7 @@ InsideView best_inside_view(const CoarseCells& scene, const Explorer& explorer, 
       close += distance < 0.02 * size ? 1 : 0;
     }
     if (met < kDirections * 3 / 4 || close > 0) continue;
+    InsideView best;
     for (int i = 0; i < kYaws; ++i) {
       View view;
       view.eye = eye;
@@ -216,8 +219,11 @@ InsideView best_inside_view(const CoarseCells& scene, const Explorer& explorer, 
       const double score = view_score(explorer, camera, size);
       if (score > best.score) best = {score, view};
     }
+    if (best.score > 0) views.push_back(best);
   }
-  return best;
+  std::stable_sort(views.begin(), views.end(),
+                   [](const InsideView& a, const InsideView& b) { return a.score > b.score; });
+  return views;
 }
 
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -270,9 +276,9 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
 
   if (!request.target && fills_its_box(scene) &&
       openness(scene, explorer, grid, compass) < kInsideOpenness) {
-    const InsideView inside =
-        best_inside_view(scene, explorer, grid, compass, view.vertical_fov_degrees, aspect);
-    if (inside.score > 0) return inside.view;
+    const auto inside =
+        inside_views(scene, explorer, grid, compass, view.vertical_fov_degrees, aspect);
+    if (!inside.empty()) return inside.front().view;
   }
   const double fov = request.vertical_fov_degrees.value_or(kOutsideFov);
   const Vec3d forward = compass.direction(2.2, -0.42);
@@ -283,6 +289,35 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
   }
   check(outside);
   return outside;
+}
+
+std::vector<View> scene_views(const SvdagView& dag, const Grid& grid, double aspect, int count) {
+  constexpr int kCoarseLevel = 7;
+  constexpr double kApart = 0.12;    // of the scene's size, for views that look much the same way
+  constexpr double kOtherWay = 0.3;  // cosine
+  const CoarseCells scene(dag, kCoarseLevel);
+  const Explorer explorer(dag, grid);
+  const Vec3d up = guess_up(scene);
+  const Compass compass(up);
+  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  std::vector<View> views;
+  const auto is_new = [&](const View& view) {
+    const Vec3d forward = normalized(view.target - view.eye);
+    return std::all_of(views.begin(), views.end(), [&](const View& other) {
+      return length(view.eye - other.eye) > kApart * side ||
+             dot(forward, normalized(other.target - other.eye)) < kOtherWay;
+    });
+  };
+  for (const InsideView& inside :
+       inside_views(scene, explorer, grid, compass, kInsideFov, aspect)) {
+    if (static_cast<int>(views.size()) >= count) break;
+    if (is_new(inside.view)) views.push_back(inside.view);
+  }
+  for (int i = 0; static_cast<int>(views.size()) < count; ++i) {
+    const Vec3d forward = compass.direction(0.7 + 2.399963229728653 * i, i % 2 == 0 ? -0.2 : -0.6);
+    views.push_back(view_from_outside(scene, grid, forward, up, kOutsideFov, aspect));
+  }
+  return views;
 }
 
 }  // namespace voxdag

@@ -1,6 +1,7 @@
 #pragma once
 /// Where a picture is taken from, and the views that show a scene when nobody says.
 #include <optional>
+#include <vector>
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/layout/svdag.hpp"
@@ -28,5 +29,9 @@ struct ViewRequest {
 /// an empty DAG. Deterministic; some ten milliseconds. Throws Error for a request that names no
 /// view: numbers that are not finite, eye = target, an angle not in (0,180), up along the view.
 View frame_scene(const SvdagView& dag, const Grid& grid, double aspect, const ViewRequest& request);
+
+/// `count` views that differ from each other: from inside, from roomy places with far to see, where
+/// the scene has such, then from outside around it. Deterministic; some ten milliseconds.
+std::vector<View> scene_views(const SvdagView& dag, const Grid& grid, double aspect, int count);
 
 }  // namespace voxdag
