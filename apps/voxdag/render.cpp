@@ -7,10 +7,13 @@
 #include <numeric>
 
 #include "commands.hpp"
+#include "frame_names.hpp"
 #include "human.hpp"
 #include "parse.hpp"
 #include "render_light.hpp"
+#include "render_mesh.hpp"
 #include "render_passes.hpp"
+#include "render_path.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
@@ -22,6 +25,8 @@ struct RenderArguments {
   std::vector<RenderPass> passes;
   ImageSize size{1920, 1080};
   RenderOptions options;
+  MeshArguments mesh;
+  PathArguments path;
 };
 
 /// Every file to write.
@@ -52,15 +57,28 @@ void print_summary(const RenderArguments& arguments, const RenderedImage& image,
 void render(RenderArguments& arguments, Session& session) {
   const std::vector<RenderPass> passes = all_passes(arguments);
   for (const RenderPass& pass : passes) {
-    check_writable(pass.path);
+    check_writable(frame_name(pass.path, 0));
     if (pass.name == "steps") arguments.options.with_steps = true;
   }
   const VdagFile file(session.subject);
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
+  const std::unique_ptr<ViewSource> source =
+      open_view_source(arguments.mesh, arguments.options.albedo, file.view(), file.grid(), session);
+  if (!arguments.path.file.empty()) {
+    const auto render_frame = [&](const RenderOptions& options, Progress* progress) {
+      return render_image(file.view(), file.grid(), options, progress, source.get());
+    };
+    const auto write_frame = [&](const RenderedImage& image, int frame) {
+      for (const RenderPass& pass : passes)
+        write_pass({pass.name, frame_name(pass.path, frame)}, image);
+    };
+    return render_path(file.view(), file.grid(), arguments.options, arguments.path,
+                       {render_frame, write_frame}, session);
+  }
   const auto start = std::chrono::steady_clock::now();
   const RenderedImage image =
-      render_image(file.view(), file.grid(), arguments.options, &session.progress);
+      render_image(file.view(), file.grid(), arguments.options, &session.progress, source.get());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const RenderPass& pass : passes) write_pass(pass, image);
@@ -188,9 +206,14 @@ void add_render_command(CLI::App& app, Session& session) {
   add_list_option(command, "--pass", arguments->passes, parse_pass, "NAME=OUT",
                   "Also write picture, radiance, depth, normal, occlusion, shadow or steps as .exr "
                   "or .png; may be repeated");
+  add_mesh_options(command, arguments->mesh);
+  add_path_options(command, arguments->path);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {
+    check_mesh_options(arguments->mesh);
+    if (!arguments->path.file.empty())
+      for (const RenderPass& pass : all_passes(*arguments)) check_frame_pattern(pass.path);
     check_output("--output", arguments->output);
     if (!arguments->depth.empty()) check_output("--depth", arguments->depth);
     if (!arguments->normal.empty()) check_output("--normal", arguments->normal);

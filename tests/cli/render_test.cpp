@@ -42,5 +42,27 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   EXPECT_FALSE(exists("bad.png"));
 }
 
+TEST_F(RenderCommand, SeesTheTrianglesOfAMesh) {
+  const auto render = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", path("in.vdag"), "-o", path("mesh.png"), "--size", "64x36",
+                               "--ao", "4"});
+    return run_voxdag(more);
+  };
+  expect_failure(render({"--primary", "mesh"}), 2, "--mesh");
+  expect_failure(render({"--mesh", path("absent.ply")}), 1, "absent.ply");
+  ASSERT_EQ(render({}).status, 0);
+  const std::string voxels = read_text(path("mesh.png"));
+  ASSERT_EQ(render({"--mesh", path("sponge.ply"), "--primary", "voxels"}).status, 0);
+  EXPECT_EQ(read_text(path("mesh.png")), voxels);
+  ASSERT_EQ(run_voxdag({"scene", "hairball", "--size", "1", "-o", path("hair.ply")}).status, 0);
+  expect_failure(render({"--mesh", path("hair.ply")}), 1, "hair.ply: the ");
+  const ProcessResult result = render({"--mesh", path("sponge.ply"), "--primary", "mesh"});
+  if (result.status != 0) {
+    expect_failure(result, 1, "libembree-dev");
+    return;
+  }
+  EXPECT_NE(read_text(path("mesh.png")), voxels);
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -76,10 +76,11 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
     const auto pixels = static_cast<std::size_t>(tile.width * tile.height);
     std::fill_n(scratch.samples, pixels, ViewSample{});
     source->sample(setup.camera, tile, {scratch.samples, pixels});
+    // Points are exact, so nothing needs to be coarser than the voxels: edges and contacts would
+    // show it.
     for (std::size_t i = 0; i < pixels; ++i)
       if (scratch.samples[i].is_hit())
-        scratch.samples[i].cell_size =
-            cell_size_at(setup, static_cast<double>(scratch.samples[i].depth));
+        scratch.samples[i].cell_size = static_cast<float>(grid.voxel_size);
     return static_cast<int>(pixels);
   };
 

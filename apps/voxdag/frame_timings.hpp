@@ -1,0 +1,26 @@
+#pragma once
+/// What the frames of a film took, as CSV and as a picture.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace voxdag {
+
+struct FrameTiming {
+  int frame = 0;
+  double time = 0;       ///< In the film, seconds.
+  double render_ms = 0;  ///< Casting and shading.
+  double write_ms = 0;   ///< Encoding and writing the picture.
+  std::uint64_t rays = 0;
+
+  double mrays_per_second() const {
+    return render_ms > 0 ? static_cast<double>(rays) / render_ms * 1e-3 : 0;
+  }
+};
+
+std::string timings_csv(const std::vector<FrameTiming>& frames);
+
+/// Milliseconds and rays per second over the film's time.
+std::string timings_svg(const std::vector<FrameTiming>& frames);
+
+}  // namespace voxdag

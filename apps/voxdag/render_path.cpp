@@ -1,0 +1,185 @@
+#include "render_path.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "frame_names.hpp"
+#include "frame_timings.hpp"
+#include "human.hpp"
+#include "parse.hpp"
+#include "path_file.hpp"
+#include "voxdag/core/atomic_file.hpp"
+#include "voxdag/render/camera_path.hpp"
+#include "voxdag/render/render_plan.hpp"
+
+namespace voxdag {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// The camera path of a file. What its first key leaves out, frame_scene finds.
+CameraPath camera_path(const PathFile& path, const std::string& file, const SvdagView& dag,
+                       const Grid& grid, const RenderOptions& options) {
+  std::vector<CameraKey> keys;
+  try {
+    for (const PathKey& key : path.keys) {
+      CameraKey next;
+      next.time = key.time;
+      if (keys.empty()) {
+        const ViewRequest request{
+            key.eye, key.target, key.up ? key.up : options.view.up,
+            key.fov_degrees ? key.fov_degrees : options.view.vertical_fov_degrees};
+        next.view =
+            frame_scene(dag, grid, static_cast<double>(options.width) / options.height, request);
+      } else {
+        next.view = keys.back().view;
+        next.view.eye = key.eye;
+        next.view.target = key.target;
+        next.view.up = key.up.value_or(next.view.up);
+        next.view.vertical_fov_degrees = key.fov_degrees.value_or(next.view.vertical_fov_degrees);
+      }
+      keys.push_back(next);
+    }
+    return CameraPath(std::move(keys));
+  } catch (const Error& error) {
+    throw Error(file, error.place().empty() ? fmt::format("key {}", keys.size()) : error.place(),
+                error.reason());
+  }
+}
+
+void set_view(RenderOptions& options, const View& view) {
+  options.view = {view.eye, view.target, view.up, view.vertical_fov_degrees};
+}
+
+/// What would expose each frame well, made smooth, so that the eye seems to adapt: from small
+/// pictures, in the mean over a second or so around each frame.
+std::vector<float> exposures(const CameraPath& path, const std::vector<double>& times,
+                             RenderOptions options, const FrameMaker& maker, Session& session) {
+  constexpr double kSpread = 0.5;  // standard deviation, seconds
+  if (options.exposure > 0) return std::vector<float>(times.size(), options.exposure);
+  options.width = 64;
+  options.height = 36;
+  options.samples_per_pixel = 1;
+  options.shadow_samples = std::min(options.shadow_samples, 4);
+  options.occlusion_samples = std::min(options.occlusion_samples, 8);
+  std::vector<double> logs;
+  for (const double time : times) {
+    set_view(options, path.at(time));
+    logs.push_back(std::log(static_cast<double>(maker.render(options, nullptr).exposure)));
+    session.progress.throw_if_cancelled();
+    session.progress.report("exposure",
+                            static_cast<double>(logs.size()) / static_cast<double>(times.size()),
+                            logs.size());
+  }
+  std::vector<float> smooth;
+  for (const double time : times) {
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double d = (times[i] - time) / kSpread;
+      const double w = std::exp(-0.5 * d * d);
+      sum += w * logs[i];
+      weight += w;
+    }
+    smooth.push_back(static_cast<float>(std::exp(sum / weight)));
+  }
+  return smooth;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  AtomicFile file(path);
+  file.write(std::string_view(text));
+  file.commit();
+}
+
+std::string plot_beside(const std::string& csv) {
+  return std::filesystem::path(csv).replace_extension(".svg").string();
+}
+
+}  // namespace
+
+void add_path_options(CLI::App& command, PathArguments& arguments) {
+  command
+      .add_option("--path", arguments.file,
+                  "Make a film: camera keys as JSON (see `voxdag scene NAME --path`); the names of "
+                  "the files then hold a number, such as frame_%04d.png")
+      ->type_name("KEYS.json");
+  add_parsed_option(command, "--fps", arguments.fps, parse_positive, "N",
+                    "Frames of the film for each second (default 30)");
+  command
+      .add_option("--timings", arguments.timings,
+                  "Write what each frame took, and a plot beside it as .svg")
+      ->type_name("OUT.csv");
+}
+
+void check_frame_pattern(const std::string& path) {
+  if (!is_frame_pattern(path))
+    throw CLI::ValidationError("--path",
+                               fmt::format("\"{}\" has no place for a number, such as %04d", path));
+}
+
+void render_path(const SvdagView& dag, const Grid& grid, const RenderOptions& given,
+                 const PathArguments& arguments, const FrameMaker& maker, Session& session) {
+  constexpr double kMostFrames = 1e6;
+  const PathFile file = read_path_file(arguments.file);
+  RenderOptions options = given;
+  const CameraPath path = camera_path(file, arguments.file, dag, grid, options);
+  const double count = std::floor((path.end() - path.start()) * arguments.fps + 1e-6) + 1;
+  if (!(count <= kMostFrames)) throw Error(arguments.file, "", "a million frames are too many");
+  for (const std::string& out : {arguments.timings, plot_beside(arguments.timings)})
+    if (!arguments.timings.empty()) check_writable(out);
+  if (!options.sun) options.sun = file.sun;
+  if (!options.sun) {
+    RenderOptions first = options;
+    set_view(first, path.at(path.start()));
+    options.sun = static_cast<Vec3d>(RenderPlan(dag, grid, first).setup().sky.sun);
+  }
+
+  std::vector<double> times;
+  for (int i = 0; i < static_cast<int>(count); ++i)
+    times.push_back(path.start() + i / arguments.fps);
+  const auto start = Clock::now();
+  const std::vector<float> exposure = exposures(path, times, options, maker, session);
+  std::vector<FrameTiming> timings;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    FrameTiming timing;
+    timing.frame = static_cast<int>(i);
+    timing.time = times[i];
+    set_view(options, path.at(times[i]));
+    options.exposure = exposure[i];
+    auto stage = Clock::now();
+    const RenderedImage image = maker.render(options, nullptr);
+    session.progress.throw_if_cancelled();
+    timing.render_ms = milliseconds_since(stage);
+    timing.rays = image.rays;
+    stage = Clock::now();
+    maker.write(image, timing.frame);
+    timing.write_ms = milliseconds_since(stage);
+    timings.push_back(timing);
+    session.progress.report("frames", static_cast<double>(i + 1) / count, i + 1);
+  }
+  if (!arguments.timings.empty()) {
+    write_text(arguments.timings, timings_csv(timings));
+    write_text(plot_beside(arguments.timings), timings_svg(timings));
+  }
+  session.bar.clear();
+  if (session.quiet) return;
+  std::uint64_t rays = 0;
+  double render_ms = 0;
+  for (const FrameTiming& timing : timings) {
+    rays += timing.rays;
+    render_ms += timing.render_ms;
+  }
+  fmt::print("{} frames of {} x {} pixels in {}, {:.1f} ms each, {} rays/s\n", timings.size(),
+             options.width, options.height, human_seconds(milliseconds_since(start) / 1000),
+             render_ms / count, human_count(static_cast<double>(rays) / render_ms * 1000));
+}
+
+}  // namespace voxdag

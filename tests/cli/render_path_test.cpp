@@ -1,0 +1,93 @@
+#include <algorithm>
+
+#include "frame_names.hpp"
+#include "sponge.hpp"
+
+namespace voxdag {
+namespace {
+
+TEST(FrameNames, TakeOneNumber) {
+  EXPECT_TRUE(is_frame_pattern("a_%04d.png"));
+  EXPECT_TRUE(is_frame_pattern("%d.png"));
+  EXPECT_EQ(frame_name("a_%04d.png", 12), "a_0012.png");
+  EXPECT_EQ(frame_name("%d.png", 7), "7.png");
+  EXPECT_EQ(frame_name("%02d", 12345), "12345");
+  for (const char* other : {"a.png", "%s.png", "%4d.png", "%d_%d.png", "100%.png", "%00d.png"}) {
+    EXPECT_FALSE(is_frame_pattern(other)) << other;
+    EXPECT_EQ(frame_name(other, 1), other);
+  }
+}
+
+class RenderPath : public Sponge {
+ protected:
+  static ProcessResult film(const std::string& keys, std::vector<std::string> more = {},
+                            const std::string& fps = "4") {
+    write_text(path("keys.json"), keys);
+    std::vector<std::string> arguments = {"render",    path("in.vdag"),
+                                          "--path",    path("keys.json"),
+                                          "-o",        path("f_%03d.png"),
+                                          "--size",    "48x32",
+                                          "--fps",     fps,
+                                          "--ao",      "4",
+                                          "--timings", path("t.csv")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_voxdag(arguments);
+  }
+};
+
+constexpr const char* kFilm =
+    R"({"keys": [{"time": 1, "eye": [2, 1, 2], "target": [0.3, 0.3, 0.3], "fov": 50},
+                 {"time": 2, "eye": [2, 1.5, -2], "target": [0.3, 0.3, 0.3]}]})";
+
+TEST_F(RenderPath, WritesAFrameForEachMomentAndWhatItTook) {
+  const ProcessResult result = film(kFilm, {"--pass", "depth=" + path("z_%d.exr")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("5 frames"), std::string::npos) << result.out;
+  for (const char* name : {"f_000.png", "f_004.png", "z_0.exr", "z_4.exr"})
+    EXPECT_TRUE(exists(name)) << name;
+  EXPECT_FALSE(exists("f_005.png"));
+  EXPECT_NE(read_text(path("f_000.png")), read_text(path("f_004.png")));
+  const std::string csv = read_text(path("t.csv"));
+  EXPECT_TRUE(csv.starts_with("frame,time,render_ms,write_ms,rays,mrays_per_s\n0,1,")) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+  EXPECT_TRUE(read_text(path("t.svg")).starts_with("<svg"));
+}
+
+TEST_F(RenderPath, FramesDoNotDependOnThreads) {
+  ASSERT_EQ(film(kFilm, {"--threads", "1"}).status, 0);
+  const std::string one = read_text(path("f_002.png"));
+  ASSERT_EQ(film(kFilm, {"--threads", "3"}).status, 0);
+  EXPECT_EQ(read_text(path("f_002.png")), one);
+}
+
+TEST_F(RenderPath, TakesTheFlightOfAScene) {
+  const ProcessResult flight = run_voxdag({"scene", "sponge", "--size", "2", "--path"});
+  const ProcessResult result = film(flight.out, {}, "0.2");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("5 frames"), std::string::npos) << result.out;
+}
+
+TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
+  expect_failure(film("{\"keys\": [}"), 1, "keys.json: byte 11: syntax error");
+  expect_failure(film("[]"), 1, "keys.json: not an object");
+  expect_failure(film(R"({"keys": []})"), 1, "keys.json: key 0");
+  expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2]}]})"), 1, "key 0: \"target\"");
+  expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2], "target": [0, 0, 0]}]})"), 1,
+                 "key 0: \"eye\"");
+  expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [0, 0, 0]},
+                                   {"time": 0, "eye": [1, 2, 4], "target": [0, 0, 0]}]})"),
+                 1, "key 1: its time");
+  expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [0, 0, 0], "x": 1}]})"),
+                 1, "key 0: \"x\"");
+  expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [1, 2, 3]}]})"), 1,
+                 "keys.json: key 0");
+  expect_failure(
+      run_voxdag({"render", path("in.vdag"), "--path", path("keys.json"), "-o", path("plain.png")}),
+      2, "%04d");
+  expect_failure(
+      run_voxdag({"render", path("in.vdag"), "--path", path("absent.json"), "-o", path("%d.png")}),
+      1, "absent.json");
+}
+
+}  // namespace
+}  // namespace voxdag
