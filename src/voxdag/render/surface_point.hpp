@@ -60,18 +60,35 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   const double cell_size = static_cast<double>(sample.cell_size);
   point.cell_side = static_cast<float>(cell_size / setup.side());
   const double lift = static_cast<double>(cube_height(sample.face) + kSlack);
-  point.start = make_grid_point(
-      setup.grid, sample.point + static_cast<Vec3d>(sample.face) * (lift * cell_size));
+  const Vec3d lifted = sample.point + static_cast<Vec3d>(sample.face) * (lift * cell_size);
+  point.start = make_grid_point(setup.grid, lifted);
+  const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
+  if (!is_hidden(nodes, point, to_viewer)) return point;
   // In a corner, in a gap, at the edge of something thin that may be inside or behind a cell of
   // another surface: the viewer sees the sample, but not that point. What the viewer looks along is
   // free, for voxels at once and for a mesh when its cells are left.
   constexpr int kTries = 3;
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
-  const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
-  for (int i = 1; i <= kTries && is_hidden(nodes, point, to_viewer); ++i)
+  for (int i = 1; i <= kTries; ++i) {
     point.start =
         make_grid_point(setup.grid, setup.camera.eye + direction * (depth - i * cell_depth));
+    if (!is_hidden(nodes, point, to_viewer)) return point;
+  }
+  // That way may all but graze the other surface of a corner. The steps along the axes that it is
+  // made of, the longest first, do not.
+  Vec3f left = to_viewer;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3f size{std::fabs(left.x), std::fabs(left.y), std::fabs(left.z)};
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    for (int cells = 1; cells <= 2; ++cells) {
+      Vec3d there = lifted;
+      there[axis] += (left[axis] < 0 ? -cells : cells) * cell_size;
+      point.start = make_grid_point(setup.grid, there);
+      if (!is_hidden(nodes, point, to_viewer)) return point;
+    }
+    left[axis] = 0;
+  }
   return point;
 }
 
