@@ -105,6 +105,13 @@ void add_list_option(CLI::App& command, const std::string& name, std::vector<Val
       ->allow_extra_args(false);
 }
 
+/// A flag that makes `value` false.
+void add_off_switch(CLI::App& command, const std::string& name, bool& value,
+                    const std::string& help) {
+  command.add_flag_callback(
+      name, [&value] { value = false; }, help);
+}
+
 void check_output(const std::string& option, const std::string& path) {
   try {
     check_picture_path(path);
@@ -130,7 +137,7 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
       ->check(CLI::Range(0.0, 89.0))
       ->type_name("DEGREES")
       ->capture_default_str();
-  command.add_flag("!--no-sun", options.with_sun, "Leave the sun out");
+  add_off_switch(command, "--no-sun", options.with_sun, "Leave the sun out");
   add_list_option(command, "--light", options.lights, parse_light, "KIND:...",
                   "A light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
                   "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, and ,R,G,B for its colour; may be repeated");
@@ -138,7 +145,8 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("FACTOR")
       ->capture_default_str();
-  command.add_flag("!--no-shadows", options.shadows, "Leave the shadows of sun and lights out");
+  add_off_switch(command, "--no-shadows", options.shadows,
+                 "Leave the shadows of sun and lights out");
   command
       .add_option("--shadow-samples", options.shadow_samples,
                   "Shadow rays per pixel and light with soft edges")
@@ -151,7 +159,7 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
       ->type_name("N")
       ->capture_default_str();
   add_parsed_option(command, "--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
-                    "How far occlusion reaches, in world units (default: a tenth of the grid)");
+                    "How far occlusion reaches, in world units (default: 0.15 of the grid)");
   command
       .add_option("--ao-cone", options.occlusion_cone,
                   "End its rays at cells of this solid angle, such as 0.07; 0: never")
@@ -171,8 +179,8 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
       ->check(CLI::Range(0.0, 1000.0))
       ->type_name("PIXELS")
       ->capture_default_str();
-  command.add_flag("!--no-beams", options.beams,
-                   "Cast every ray over its whole length: slower, the same picture");
+  add_off_switch(command, "--no-beams", options.beams,
+                 "Cast every ray over its whole length: slower, the same picture");
   command
       .add_option("--exposure", options.exposure,
                   "Factor on the light before tone mapping (default: what suits the picture)")

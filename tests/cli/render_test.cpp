@@ -1,4 +1,6 @@
 #include "sponge.hpp"
+#include "voxdag/image/exr.hpp"
+#include "voxdag/image/png.hpp"
 
 namespace voxdag {
 namespace {
@@ -14,6 +16,52 @@ TEST_F(RenderCommand, WritesPngAndExr) {
   EXPECT_EQ(read_text(path("a.png")).substr(1, 3), "PNG");
   for (const char* name : {"z.exr", "n.exr"})
     EXPECT_EQ(read_text(path(name)).substr(0, 4), "\x76\x2f\x31\x01") << name;
+}
+
+TEST_F(RenderCommand, WritesEveryPassInBothFormats) {
+  std::vector<std::string> words = {"render", path("in.vdag"), "-o",   path("p.exr"),
+                                    "--size", "40x30",         "--ao", "4"};
+  const std::vector<std::string> names = {"picture",   "radiance", "depth", "normal",
+                                          "occlusion", "shadow",   "steps"};
+  for (const std::string& name : names)
+    for (const char* extension : {".png", ".exr"}) {
+      words.push_back("--pass");
+      words.push_back(name + "=" + path(name + extension));
+    }
+  const ProcessResult result = run_voxdag(words);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("steps per primary ray"), std::string::npos);
+  for (const std::string& name : names) {
+    EXPECT_EQ(read_png(path(name + ".png")).width, 40) << name;
+    EXPECT_EQ(read_exr(path(name + ".exr")).image.height, 30) << name;
+  }
+  for (const float part : read_exr(path("occlusion.exr")).image.pixels) {
+    EXPECT_GE(part, 0);
+    EXPECT_LE(part, 1);
+  }
+}
+
+TEST_F(RenderCommand, BeamsChangeNothingAndLightsDo) {
+  const auto render = [](std::vector<std::string> options, const std::string& name) {
+    options.insert(options.begin(),
+                   {"render", path("in.vdag"), "-o", path(name), "--size", "64x36", "--ao", "4"});
+    EXPECT_EQ(run_voxdag(options).status, 0);
+    return read_text(path(name));
+  };
+  const std::string plain = render({"--sun-angle", "5", "--spp", "2"}, "plain.png");
+  EXPECT_EQ(render({"--sun-angle", "5", "--spp", "2", "--no-beams"}, "whole.png"), plain);
+  for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+           {"--light", "point:3,3,-3"},
+           {"--light", "sphere:3,3,-3,1,9,9,9"},
+           {"--light", "disc:3,3,-3,-1,-1,1,1", "--light", "rect:2,3,-2,1,0,0,0,0,1"},
+           {"--no-sun"},
+           {"--sky", "0.5"},
+           {"--ao-distance", "0.2"},
+           {"--exposure", "0.1"}}) {
+    std::vector<std::string> words = {"--sun-angle", "5", "--spp", "2"};
+    words.insert(words.end(), options.begin(), options.end());
+    EXPECT_NE(render(words, "other.png"), plain) << options[0];
+  }
 }
 
 TEST_F(RenderCommand, TakesTheViewThatItPrints) {
@@ -39,6 +87,12 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   expect_failure(run_voxdag({"render", in, "-o", out, "--eye", "1,1,1", "--target", "1,1,1"}), 1,
                  "in.vdag");
   expect_failure(run_voxdag({"render", path("sponge.ply"), "-o", out}), 1, "sponge.ply");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth"}), 2, "NAME=FILE");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "albedo=a.png"}), 2, "none of");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth=z.tif"}), 2, ".png or .exr");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--light", "tube:1,2,3"}), 2, "sphere:");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3"}), 2, "4 numbers");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3,0"}), 1, "radius");
   EXPECT_FALSE(exists("bad.png"));
 }
 

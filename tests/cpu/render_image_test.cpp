@@ -76,6 +76,7 @@ TEST(RenderImage, TheBlockShadowsTheFloorAndNothingElseIsDark) {
   RenderOptions options = small_picture();
   options.view.eye = {0, 6, 3};
   options.view.target = {0, -0.8, 0};
+  options.exposure = 0.5f;
   RenderedImage with = render_image(dag.view(), test_grid(), options);
   options.shadows = false;
   RenderedImage without = render_image(dag.view(), test_grid(), options);

@@ -23,7 +23,7 @@ struct RenderOptions {
   float sky = 1;            ///< Factor on the light of the sky, and on the sky in the picture.
 
   int occlusion_samples = 64;  ///< Rays of ambient occlusion per pixel; 0: none.
-  /// Longest ray of occlusion, world units; 0: a tenth of the grid's side.
+  /// Longest ray of occlusion, world units; 0: 0.15 of the grid's side.
   double occlusion_distance = 0;
   /// Rays of occlusion end at cells that subtend this solid angle, in steradians; 0: at cells of
   /// the surface's own size. The paper has 0.07.

@@ -13,7 +13,7 @@ namespace voxdag {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kOcclusionDistance = 0.1;  // of the grid's side
+constexpr double kOcclusionDistance = 0.15;  // of the grid's side
 
 void check(const RenderOptions& options) {
   constexpr int kMaxSide = 1 << 16, kMaxSamples = 1 << 16;

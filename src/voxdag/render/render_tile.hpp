@@ -14,11 +14,14 @@ namespace voxdag {
 VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
                                  float open) {
   const Vec3f light = sky_ambient(setup.sky, sample.normal);
-  if (setup.settings.occlusion_samples > 0) return light * open;
+  // Not all that is open nearby is open sky.
+  constexpr float kSky = 0.7f;
+  if (setup.settings.occlusion_samples > 0) return light * (kSky * open);
   // Without occlusion the sky's light alone would leave shadows flat: light from the viewer and,
   // softly, from the viewer's right keeps apart what sun and sky do not.
   const float facing = dot(sample.normal, view), aside = dot(sample.normal, setup.sky.fill);
-  return light * (0.40f + 0.35f * facing + 0.25f * aside);
+  const float fill = 0.40f + 0.35f * facing + 0.25f * aside;
+  return light * (fill > 0 ? fill : 0.0f);
 }
 
 /// Makes the tile's view samples into light, and adds them to the picture.
