@@ -5,14 +5,18 @@
 
 #include <cstddef>
 
+#include "voxdag/parallel/loop_order.hpp"
+
 namespace voxdag {
 
 /// Calls body(i) for every i in [0, count), in any order, on the threads of the current TBB arena.
 /// `grain` is the least number of items that one task takes.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  LoopOrder order;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) {
+                      const LoopOrder::Items items(order);
                       for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
                     });
 }
@@ -20,7 +24,11 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
 /// As above with one item per task: for few, heavy items.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body) {
-  tbb::parallel_for(std::size_t{0}, count, body);
+  LoopOrder order;
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const LoopOrder::Items items(order);
+    body(i);
+  });
 }
 
 }  // namespace voxdag
