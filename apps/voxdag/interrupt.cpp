@@ -1,5 +1,9 @@
 #include "interrupt.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
 
 namespace voxdag {
@@ -15,6 +19,14 @@ extern "C" void on_signal(int number) {
 
 }  // namespace
 
+void make_writes_fail_plainly() {
+  for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);
+  // Open for reading only, so that writes to it fail. The lowest free descriptor is taken.
+  for (int stream = 0; stream <= 2; ++stream)
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDONLY) != stream)
+      return;
+}
+
 void cancel_on_signals(Progress& progress) {
   progress_to_cancel = &progress;
   struct sigaction action {};
@@ -26,7 +38,6 @@ void cancel_on_signals(Progress& progress) {
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
   }
-  for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);
 }
 
 int cancelling_signal() { return caught_signal; }

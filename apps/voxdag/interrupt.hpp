@@ -1,12 +1,16 @@
 #pragma once
-/// Ctrl-C and termination as cancellation.
+/// Ctrl-C and termination as cancellation; failed writes as errors.
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
+/// From now on a write to a closed pipe or past the limit of a file's size is an error instead of a
+/// signal, and so is one to a standard stream that the caller closed: without this the next file
+/// opened would take its place and its text.
+void make_writes_fail_plainly();
+
 /// From now on SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the
-/// process. A second signal of the kind ends the process at once. Signals of failed writes
-/// (SIGPIPE, SIGXFSZ) are ignored, so that they are seen as errors of the write.
+/// process. A second signal of the kind ends the process at once.
 void cancel_on_signals(Progress& progress);
 
 /// The signal that cancelled, or 0.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <iostream>
 #include <new>
 #include <optional>
 #include <system_error>
@@ -37,6 +38,13 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{} (usage: {} --help)", reason, usage);
 }
 
+/// Throws Error if what was printed could not be written.
+void check_output() {
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
+    throw Error("standard output", "", std::system_category().message(errno));
+}
+
 void work(Session& session) {
   std::optional<tbb::global_control> threads;
   if (session.threads > 0)
@@ -44,8 +52,7 @@ void work(Session& session) {
   session.bar.enable(!session.quiet);
   session.work();
   session.bar.clear();
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    throw Error("standard output", "", std::system_category().message(errno));
+  check_output();
 }
 
 int run(int argc, char** argv) {
@@ -62,7 +69,11 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      const int status = app.exit(error);  // Prints the help or the version.
+      check_output();
+      return status;
+    }
     return report(usage_line(app, error), kBadUsage);
   }
   cancel_on_signals(session.progress);
@@ -89,6 +100,7 @@ int run(int argc, char** argv) {
 }  // namespace voxdag
 
 int main(int argc, char** argv) try {
+  voxdag::make_writes_fail_plainly();
   return voxdag::run(argc, argv);
 } catch (const std::exception& error) {
   return voxdag::report(error.what(), voxdag::kFailure);

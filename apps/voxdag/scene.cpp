@@ -60,10 +60,10 @@ void print_list(bool json) {
                "", scene.size_meaning, scene.min_size, scene.max_size, scene.default_size);
 }
 
-void make(const SceneArguments& arguments, bool json) {
+void make(const SceneArguments& arguments, bool json, const Progress& progress) {
   check_writable(arguments.output);
-  const Mesh mesh = make_scene(arguments.name, arguments.options);
-  write_ply(arguments.output, mesh);
+  const Mesh mesh = make_scene(arguments.name, arguments.options, &progress);
+  write_ply(arguments.output, mesh, &progress);
   if (json) {
     const nlohmann::ordered_json summary = {{"file", arguments.output},
                                             {"vertices", mesh.vertices.size()},
@@ -113,7 +113,7 @@ void add_scene_command(CLI::App& app, Session& session) {
       return;
     }
     if (arguments->output.empty()) throw CLI::RequiredError("--output");
-    session.work = [arguments, &session] { make(*arguments, session.json); };
+    session.work = [arguments, &session] { make(*arguments, session.json, session.progress); };
   });
 }
 

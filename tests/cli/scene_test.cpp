@@ -1,6 +1,7 @@
 /// Procedural scenes through every command that follows.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "sponge.hpp"
@@ -47,6 +48,22 @@ TEST_F(Sponge, UnknownScenesAndSizesAreRefused) {
   expect_failure(run_voxdag({"scene", "sponge"}), 2, "--output");
   expect_failure(run_voxdag({"scene", "-o", path("x.ply")}), 2, "name");
   EXPECT_FALSE(exists("x.ply"));
+}
+
+TEST_F(Sponge, AFileThatGrowsTooLargeIsAClearErrorAndIsRemoved) {
+  std::string command = "ulimit -f 1; exec";
+  for (const std::string& word : voxdag_command({"scene", "sponge", "-o", path("x.ply")}))
+    command += " '" + word + "'";
+  expect_failure(Process({"bash", "-c", command}).wait(), 1, "x.ply: byte 1024: cannot write");
+  EXPECT_EQ(files_like("x.ply"), 0);
+}
+
+TEST_F(Sponge, AStoppedSceneLeavesNothing) {
+  Process process(voxdag_command({"scene", "hairball", "--size", "8000", "-o", path("x.ply")}));
+  process.wait_until_it_catches(SIGTERM);
+  process.send_signal(SIGTERM);
+  EXPECT_EQ(process.wait().status, 128 + SIGTERM);
+  EXPECT_EQ(files_like("x.ply"), 0);
 }
 
 TEST_F(Sponge, TraceWritesOneHitForEachRay) {

@@ -20,6 +20,13 @@ class Sponge : public testing::Test {
 
   static std::string path(const std::string& name) { return *dir_ / name; }
   static bool exists(const std::string& name) { return std::filesystem::exists(path(name)); }
+  /// How many files have names that begin so: temporary ones too.
+  static int files_like(const std::string& start) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(dir_->path()))
+      files += entry.path().filename().string().starts_with(start);
+    return files;
+  }
 
   static inline TempDir* dir_ = nullptr;
 };

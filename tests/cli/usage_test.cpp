@@ -39,8 +39,26 @@ TEST(Usage, AnUnknownOptionIsNamed) {
     expect_failure(run_voxdag({command, "--frobnicate"}), 2, "voxdag " + command + " --help");
 }
 
+/// Runs a shell command in which $VOXDAG is the program.
+ProcessResult run_shell(const std::string& command) {
+  return Process({"bash", "-c", "VOXDAG='" + voxdag_command({})[0] + "'; " + command}).wait();
+}
+
 TEST(Usage, AFullDiskUnderStandardOutputIsAFailure) {
-  expect_failure(run_voxdag({"completion", "bash"}, "/dev/full"), 1, "standard output");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"completion", "bash"}, {"--version"}, {"build", "--help"}})
+    expect_failure(run_voxdag(arguments, "/dev/full"), 1, "standard output");
+}
+
+TEST(Usage, AClosedStandardOutputIsAFailure) {
+  for (const std::string command : {"--version", "--help", "completion bash"})
+    expect_failure(run_shell("$VOXDAG " + command + " >&-"), 1, "standard output");
+}
+
+TEST(Usage, AReaderThatIsGoneIsAFailure) {
+  for (const std::string command : {"--help", "completion bash"})
+    expect_failure(run_shell("exec 3> >(:); wait $!; $VOXDAG " + command + " >&3"), 1,
+                   "standard output");
 }
 
 TEST(Usage, BashCompletionNamesEveryCommandAndParses) {

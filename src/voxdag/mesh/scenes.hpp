@@ -8,6 +8,7 @@
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/mesh.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
@@ -44,8 +45,9 @@ std::span<const SceneInfo> scene_list();
 
 /// World units are metres, y is up, right-handed; triangles wind counter-clockwise seen from
 /// outside. Materials name the parts. Throws Error for an unknown name or a size outside the
-/// scene's range.
-Mesh make_scene(std::string_view name, const SceneOptions& options = {});
+/// scene's range, Cancelled when `progress` (may be null) is asked to stop.
+Mesh make_scene(std::string_view name, const SceneOptions& options = {},
+                const Progress* progress = nullptr);
 
 /// The view for the scene that make_scene gives for the same arguments. Throws as make_scene.
 ScenePreset scene_preset(std::string_view name, const SceneOptions& options = {});

@@ -7,6 +7,7 @@
 
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/scenes/math.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag::scenes {
 
@@ -18,6 +19,9 @@ using Profile = std::vector<Point2>;
 
 class Builder {
  public:
+  /// Throws Cancelled from triangle() when `progress` is asked to stop.
+  explicit Builder(const Progress* progress = nullptr) : progress_(progress) {}
+
   /// What follows has this material, found by name or made.
   void material(std::string_view name);
   /// What follows has its coordinates in this frame.
@@ -95,6 +99,7 @@ class Builder {
   Mesh take() { return std::move(mesh_); }
 
  private:
+  const Progress* progress_;
   Mesh mesh_;
   Frame frame_;
   std::uint32_t material_ = 0;

@@ -27,7 +27,8 @@ constexpr double kCourtFloor = -0.36;
 
 class Courtyard {
  public:
-  Courtyard(double size, std::uint32_t seed) : detail_{size}, random_(seed, 1) {}
+  Courtyard(double size, std::uint32_t seed, const Progress* progress)
+      : b_(progress), detail_{size}, random_(seed, 1) {}
 
   Mesh make() {
     ground();
@@ -355,7 +356,9 @@ void Courtyard::furniture() {
 
 }  // namespace
 
-Mesh make_courtyard(double size, std::uint32_t seed) { return Courtyard(size, seed).make(); }
+Mesh make_courtyard(double size, std::uint32_t seed, const Progress* progress) {
+  return Courtyard(size, seed, progress).make();
+}
 
 ScenePreset courtyard_preset(double) {
   ScenePreset preset;

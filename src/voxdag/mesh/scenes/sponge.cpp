@@ -30,10 +30,10 @@ double sponge_cell(int cells) {
 
 }  // namespace
 
-Mesh make_sponge(double size, std::uint32_t) {
+Mesh make_sponge(double size, std::uint32_t, const Progress* progress) {
   const int cells = sponge_cells(size);
   const double cell = sponge_cell(cells);
-  Builder builder;
+  Builder builder(progress);
   builder.material("sponge");
   // Vertices of the two planes that a layer of cells lies between, so that neighbours share them.
   constexpr std::uint32_t kNone = ~0u;
