@@ -113,7 +113,7 @@ void write_as_png(const RenderPass& pass, const RenderedImage& image) {
 RenderPass parse_pass(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw std::invalid_argument("needs NAME=FILE");
-  const RenderPass pass{text.substr(0, equals), text.substr(equals + 1)};
+  RenderPass pass{text.substr(0, equals), text.substr(equals + 1)};
   if (std::find(kPassNames.begin(), kPassNames.end(), pass.name) == kPassNames.end())
     throw std::invalid_argument(
         fmt::format("\"{}\" is none of {}", pass.name, fmt::join(kPassNames, ", ")));

@@ -21,9 +21,9 @@ using Scratch = TileScratch<kMaxTileSize * kMaxTileSize>;
 
 /// Tiles that cover the picture, in Morton order: what one thread does next is near what it did.
 std::vector<ViewTile> make_tiles(int width, int height, int size) {
-  std::vector<ViewTile> tiles;
   const int across = (width + size - 1) / size, down = (height + size - 1) / size;
-  std::vector<std::pair<std::uint64_t, ViewTile>> ordered;
+  std::vector<ViewTile> tiles;
+  tiles.reserve(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
   for (int y = 0; y < down; ++y)
     for (int x = 0; x < across; ++x) {
       ViewTile tile;
@@ -31,11 +31,13 @@ std::vector<ViewTile> make_tiles(int width, int height, int size) {
       tile.y = y * size;
       tile.width = std::min(size, width - tile.x);
       tile.height = std::min(size, height - tile.y);
-      ordered.push_back({morton_encode({x, y, 0}), tile});
+      tiles.push_back(tile);
     }
-  std::sort(ordered.begin(), ordered.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (const auto& [code, tile] : ordered) tiles.push_back(tile);
+  const auto code = [size](const ViewTile& tile) {
+    return morton_encode({tile.x / size, tile.y / size, 0});
+  };
+  std::sort(tiles.begin(), tiles.end(),
+            [&](const ViewTile& a, const ViewTile& b) { return code(a) < code(b); });
   return tiles;
 }
 
@@ -73,7 +75,8 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
 
   const auto find = [&](const ViewTile& tile, Scratch& scratch) {
     if (source == nullptr) return trace_view_samples(nodes, caster, setup, tile, scratch);
-    const auto pixels = static_cast<std::size_t>(tile.width * tile.height);
+    const auto pixels =
+        static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
     std::fill_n(scratch.samples, pixels, ViewSample{});
     source->sample(setup.camera, tile, {scratch.samples, pixels});
     // Points are exact, so nothing needs to be coarser than the voxels: edges and contacts would

@@ -10,8 +10,8 @@ namespace voxdag {
 
 /// The direction in which the camera sees a pixel of the tile; its t is depth.
 VOXDAG_HD inline Vec3d pixel_direction(const RenderSetup& setup, const ViewTile& tile, int pixel) {
-  return setup.camera.direction(tile.x + pixel % tile.width + tile.dx,
-                                tile.y + pixel / tile.width + tile.dy);
+  const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+  return setup.camera.direction(x + tile.dx, y + tile.dy);
 }
 
 /// The primary ray of a tile's pixel.
