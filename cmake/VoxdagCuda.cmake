@@ -1,12 +1,17 @@
-# VOXDAG_HAS_CUDA: nvcc was found, and CUDA is a language of this build. Nothing needs it.
+# VOXDAG_HAS_CUDA: nvcc was found, and CUDA is a language of this build. Nothing needs it: without
+# it src/voxdag/cuda says that there is no device.
 set(VOXDAG_HAS_CUDA OFF)
 if(VOXDAG_CUDA)
   find_program(VOXDAG_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda/bin)
   if(VOXDAG_NVCC)
     if(NOT CMAKE_CUDA_ARCHITECTURES)
-      set(CMAKE_CUDA_ARCHITECTURES 75 CACHE STRING "CUDA architectures; newer devices compile the PTX")
+      set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 90-real 90-virtual CACHE STRING
+          "CUDA architectures: Turing, Ampere, Hopper; newer devices compile the PTX")
     endif()
     set(CMAKE_CUDA_COMPILER ${VOXDAG_NVCC} CACHE FILEPATH "")
+    if(VOXDAG_CCACHE AND NOT CMAKE_CUDA_COMPILER_LAUNCHER)
+      set(CMAKE_CUDA_COMPILER_LAUNCHER ${VOXDAG_CCACHE})
+    endif()
     enable_language(CUDA)
     # CMake 3.25 of Debian 12 does not know that nvcc 12 and later compile C++20.
     if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
@@ -14,8 +19,11 @@ if(VOXDAG_CUDA)
       set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
       list(APPEND CMAKE_CUDA_COMPILE_FEATURES cuda_std_20)
     endif()
+    # The runtime is linked statically: what is built runs where no CUDA is installed.
+    find_package(CUDAToolkit REQUIRED)
+    list(APPEND VOXDAG_LIBRARY_PACKAGES CUDAToolkit)
     set(VOXDAG_HAS_CUDA ON)
   else()
-    message(STATUS "voxdag: nvcc not found: host/device headers are compiled for the host only")
+    message(STATUS "voxdag: nvcc not found: no `--device cuda`")
   endif()
 endif()

@@ -8,16 +8,18 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "device.hpp"
 #include "human.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
+#include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Rays in memory at once: enough for every thread, little to hold.
-constexpr std::size_t kBatch = std::size_t{1} << 18;
+/// Rays in memory at once: enough for every thread of a CPU or GPU, little to hold.
+constexpr std::size_t kBatch = std::size_t{1} << 20;
 
 /// A row of hits.npy, 18 bytes without padding.
 constexpr const char* kHitType =
@@ -26,6 +28,7 @@ constexpr std::size_t kHitBytes = 18;
 
 struct TraceArguments {
   std::string rays, output;
+  DeviceChoice device;
 };
 
 void pack_hit(const Hit& hit, std::byte* row) {
@@ -39,6 +42,9 @@ void pack_hit(const Hit& hit, std::byte* row) {
 
 void trace(const TraceArguments& arguments, Session& session) {
   const VdagFile file(session.subject);
+  const std::optional<DeviceSvdag> device_dag = load_on_device(arguments.device, file.view());
+  std::optional<CudaTracer> cuda;
+  if (device_dag) cuda.emplace(*device_dag, file.grid());
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
   NpyWriter writer(arguments.output, kHitType, {}, kHitBytes, reader.rows());
 
@@ -50,8 +56,12 @@ void trace(const TraceArguments& arguments, Session& session) {
   std::uint64_t hit_count = 0;
   while (const std::size_t count = reader.read_rows(rays.data(), batch)) {
     session.progress.throw_if_cancelled();
-    trace_batch(file.view(), file.grid(), std::span(rays).first(count),
-                std::span(hits).first(count));
+    const auto batch_rays = std::span(rays).first(count);
+    const auto batch_hits = std::span(hits).first(count);
+    if (cuda)
+      cuda->trace(batch_rays, batch_hits);
+    else
+      trace_batch(file.view(), file.grid(), batch_rays, batch_hits);
     for (std::size_t i = 0; i < count; ++i) pack_hit(hits[i], &rows[i * kHitBytes]);
     hit_count += static_cast<std::uint64_t>(
         std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),
@@ -64,8 +74,8 @@ void trace(const TraceArguments& arguments, Session& session) {
   writer.commit();
   session.bar.clear();
   if (!session.quiet)
-    fmt::print("{}: {} rays, {} hits\n", arguments.output, with_commas(reader.rows()),
-               with_commas(hit_count));
+    fmt::print("{}: {} rays, {} hits, on {}\n", arguments.output, with_commas(reader.rows()),
+               with_commas(hit_count), device_name(device_dag));
 }
 
 }  // namespace
@@ -87,6 +97,7 @@ void add_trace_command(CLI::App& app, Session& session) {
                   "ray starts inside), hit")
       ->type_name("HITS.npy")
       ->required();
+  add_device_option(command, arguments->device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {

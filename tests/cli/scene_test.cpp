@@ -4,24 +4,11 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "npy_rays.hpp"
 #include "sponge.hpp"
 
 namespace voxdag {
 namespace {
-
-/// Rays as the file that NumPy writes for a float32 array of shape (N, 8).
-std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {
-  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
-                       std::to_string(rays.size()) + ", 8), }";
-  header.resize(117, ' ');
-  header += '\n';
-  std::string text("\x93NUMPY\x01\x00", 8);
-  text += static_cast<char>(header.size());
-  text += '\0';
-  text += header;
-  text.append(reinterpret_cast<const char*>(rays.data()), rays.size() * sizeof rays[0]);
-  return text;
-}
 
 TEST_F(Sponge, ListNamesTheScenesWithTheirSizes) {
   const ProcessResult list = run_voxdag({"scene", "--list"});

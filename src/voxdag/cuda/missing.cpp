@@ -1,0 +1,28 @@
+/// What stands for the CUDA backend in a build without nvcc.
+#include "voxdag/core/error.hpp"
+#include "voxdag/cuda/device.hpp"
+#include "voxdag/cuda/device_svdag.hpp"
+#include "voxdag/cuda/trace_batch.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr const char* kReason = "this program was built without CUDA";
+
+[[noreturn]] void refuse() { throw Error(std::string("no CUDA device: ") + kReason); }
+
+}  // namespace
+
+CudaDevices cuda_devices() { return {{}, kReason}; }
+
+DeviceSvdag::DeviceSvdag(const CudaDevice&, const SvdagView&) { refuse(); }
+const CudaDevice& DeviceSvdag::device() const { refuse(); }
+const SvdagView& DeviceSvdag::host() const { refuse(); }
+const SvdagView& DeviceSvdag::view() const { refuse(); }
+void DeviceSvdag::make_current() const { refuse(); }
+
+struct CudaTracer::State {};
+CudaTracer::CudaTracer(const DeviceSvdag&, const Grid&) { refuse(); }
+void CudaTracer::trace(std::span<const Ray>, std::span<Hit>, Progress*) const { refuse(); }
+
+}  // namespace voxdag

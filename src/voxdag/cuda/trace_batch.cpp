@@ -1,0 +1,92 @@
+#include "voxdag/cuda/trace_batch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "voxdag/cuda/memory.hpp"
+#include "voxdag/cuda/stream.hpp"
+#include "voxdag/cuda/trace_kernels.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{1} << 18;
+
+/// A block of rays on its way to the device, in it, or as hits on its way back.
+struct Block {
+  Block()
+      : rays(make_pinned_buffer<Ray>(kBlock, "rays")),
+        hits(make_pinned_buffer<Hit>(kBlock, "hits")),
+        device_rays(make_device_buffer<Ray>(kBlock, "rays")),
+        device_hits(make_device_buffer<Hit>(kBlock, "hits")) {}
+
+  PinnedBuffer<Ray> rays;
+  PinnedBuffer<Hit> hits;
+  DeviceBuffer<Ray> device_rays;
+  DeviceBuffer<Hit> device_hits;
+  std::size_t begin = 0, count = 0;  // of all rays; none where the block is free
+  CudaStream stream;                 // last: destroyed before the memory that it works on
+};
+
+}  // namespace
+
+struct CudaTracer::State {
+  State(const DeviceSvdag& dag_in, const Grid& grid_in) : dag(dag_in), grid(grid_in) {}
+
+  void send(Block& block, std::span<const Ray> rays) const {
+    std::copy(rays.begin(), rays.end(), block.rays.data());
+    const cudaStream_t stream = block.stream.get();
+    check_cuda(cudaMemcpyAsync(block.device_rays.data(), block.rays.data(), rays.size_bytes(),
+                               cudaMemcpyHostToDevice, stream),
+               "copying rays to the device");
+    launch_closest_hits(dag.view(), grid, block.device_rays.data(), block.device_hits.data(),
+                        static_cast<std::uint32_t>(rays.size()), stream);
+    check_cuda(cudaMemcpyAsync(block.hits.data(), block.device_hits.data(),
+                               rays.size() * sizeof(Hit), cudaMemcpyDeviceToHost, stream),
+               "copying hits from the device");
+  }
+
+  static void receive(Block& block, std::span<Hit> hits) {
+    block.stream.wait("casting rays");
+    std::copy_n(block.hits.data(), block.count, hits.data() + block.begin);
+    block.count = 0;
+  }
+
+  DeviceSvdag dag;
+  Grid grid;
+  std::array<Block, 2> blocks;
+};
+
+CudaTracer::CudaTracer(const DeviceSvdag& dag, const Grid& grid) {
+  assert(grid.levels == dag.host().levels);
+  dag.make_current();
+  state_ = std::make_shared<State>(dag, grid);
+}
+
+void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Progress* progress) const {
+  assert(rays.size() == hits.size());
+  state_->dag.make_current();
+  std::size_t turn = 0;
+  const auto next = [&]() -> Block& { return state_->blocks[turn++ % state_->blocks.size()]; };
+  for (Block& block : state_->blocks) {
+    // What a cancelled call left behind.
+    block.stream.wait("casting rays");
+    block.count = 0;
+  }
+  for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
+    if (progress != nullptr) progress->throw_if_cancelled();
+    Block& block = next();
+    if (block.count > 0) state_->receive(block, hits);
+    block.begin = begin;
+    block.count = std::min(kBlock, rays.size() - begin);
+    state_->send(block, rays.subspan(begin, block.count));
+    if (progress != nullptr)
+      progress->report("trace", static_cast<double>(begin) / static_cast<double>(rays.size()),
+                       begin);
+  }
+  for (std::size_t i = 0; i < state_->blocks.size(); ++i)
+    if (Block& block = next(); block.count > 0) state_->receive(block, hits);
+}
+
+}  // namespace voxdag
