@@ -1,5 +1,7 @@
 #pragma once
 /// A picture to be made, as kernels take it: plain values and pointers.
+#include <type_traits>
+
 #include "voxdag/core/grid.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/light.hpp"
@@ -54,5 +56,8 @@ struct RenderSetup {
 
   VOXDAG_HD double side() const { return grid.voxel_size * static_cast<double>(grid.resolution()); }
 };
+
+// It is passed to kernels by value, whose parameters have room for 4 KB.
+static_assert(std::is_trivially_copyable_v<RenderSetup> && sizeof(RenderSetup) <= 3584);
 
 }  // namespace voxdag
