@@ -130,10 +130,11 @@ void add_build(CLI::App& parent, Session& session) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, Session& session) {
-  CLI::App& command = add_command(app, "bench", "Measure: what a build takes, and how it grows",
+  CLI::App& command = add_command(app, "bench", "Measure builds and rays, and others beside them",
                                   "voxdag bench build sponza.obj -r 2048,4096,8192");
   command.require_subcommand(1);
   add_build(command, session);
+  add_bench_trace_command(command, session);
 }
 
 }  // namespace voxdag

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "bench_machine.hpp"
+#include "scratch_folder.hpp"
 #include "voxdag/mesh/scenes.hpp"
 
 namespace voxdag {
@@ -17,26 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// A folder that goes with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = fs::temp_directory_path() / "voxdag-bench-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "", "cannot make the folder");
-    path_ = pattern;
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// "hairball:100" into name and size; the size is empty where none is given.
 std::array<std::string, 2> split_scene(const std::string& text) {

@@ -1,0 +1,210 @@
+#include "bench_trace.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "trace_casters.hpp"
+#include "trace_rival_openvdb.hpp"
+#include "trace_rivals.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+/// What a runner took for a set, and found.
+struct Measured {
+  double seconds = HUGE_VAL;
+  std::vector<std::uint8_t> hits;
+};
+
+double cast_all(const TraceRunner& runner, std::size_t count, std::uint8_t* hits) {
+  constexpr std::size_t kBlock = 2048;  // a multiple of a packet's 16
+  const auto start = std::chrono::steady_clock::now();
+  if (runner.before) runner.before();
+  parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block) {
+    runner.cast(block * kBlock, std::min((block + 1) * kBlock, count), hits);
+  });
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// All runners take turns, so that what disturbs the machine disturbs all of them; the first turn
+/// warms up.
+std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size_t count,
+                              int repeat) {
+  std::vector<Measured> measured(runners.size());
+  for (Measured& m : measured) m.hits.resize(count);
+  for (int turn = 0; turn <= repeat; ++turn)
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      const double seconds = cast_all(runners[i], count, measured[i].hits.data());
+      if (turn > 0) measured[i].seconds = std::min(measured[i].seconds, seconds);
+    }
+  return measured;
+}
+
+std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] == b[i] ? 1 : 0;
+  return count;
+}
+
+/// Adds up views.
+struct Sums {
+  double seconds = 0, agreeing = 0;
+  void add(double more_seconds, double more_agreeing) {
+    seconds += more_seconds;
+    agreeing += more_agreeing;
+  }
+};
+
+struct RowSums {
+  Sums ours;
+  double rays = 0, hits = 0, cells = 0, bytes = 0;
+  std::vector<double> view_rates;
+  std::map<std::string, Sums> rivals;  ///< Sorted by name: a fixed order.
+};
+
+/// A sample of a set, for what need not see all of it: whole packets.
+std::vector<CastRay> some_of(const std::vector<CastRay>& rays, std::size_t most) {
+  constexpr std::size_t kRun = 64;
+  const std::size_t step = std::max<std::size_t>(1, rays.size() / most);
+  std::vector<CastRay> some;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (i / kRun % step == 0) some.push_back(rays[i]);
+  return some;
+}
+
+/// Measures a set on our layout and its rivals, and adds what it took.
+void measure_set(const TraceLayout& layout, const TraceRunner& ours,
+                 const std::vector<CastRay>& casts, std::vector<TraceRunner> runners, int repeat,
+                 RowSums& sums) {
+  constexpr std::size_t kCounted = 50'000;
+  const WalkCost cost = layout.cost(some_of(casts, kCounted));
+  runners.insert(runners.begin(), ours);
+  const std::vector<Measured> measured = measure(runners, casts.size(), repeat);
+  const auto count = static_cast<double>(casts.size());
+  sums.rays += count;
+  sums.cells += cost.cells * count;
+  sums.bytes += cost.bytes * count;
+  sums.ours.add(measured[0].seconds, count);
+  sums.view_rates.push_back(count / measured[0].seconds * 1e-6);
+  sums.hits += static_cast<double>(
+      std::count(measured[0].hits.begin(), measured[0].hits.end(), std::uint8_t{1}));
+  std::map<std::string, Sums> best;  // of runners with the same name
+  for (std::size_t i = 1; i < runners.size(); ++i) {
+    const Sums s{measured[i].seconds,
+                 static_cast<double>(agreeing(measured[0].hits, measured[i].hits))};
+    const auto [at, is_new] = best.try_emplace(runners[i].name, s);
+    if (!is_new && s.seconds < at->second.seconds) at->second = s;
+  }
+  for (const auto& [name, s] : best) sums.rivals[name].add(s.seconds, s.agreeing);
+}
+
+/// A set that OpenVDB is to cast, and what we found for it.
+struct OpenVdbSet {
+  RayClass rays_class;
+  double rays;  ///< Of the whole set.
+  std::vector<std::uint8_t> hits;
+};
+
+std::vector<std::uint8_t> hits_of(const SvdagView& dag, const std::vector<CastRay>& casts) {
+  const SvdagNodes nodes(dag);
+  std::vector<std::uint8_t> hits;
+  for (const CastRay& ray : casts) {
+    CellHit cell;
+    hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
+  }
+  return hits;
+}
+
+TraceRow row_of(const TraceScene& scene, const std::string& layout_name, const TraceLayout& layout,
+                RayClass rays, const RowSums& sums) {
+  TraceRow row;
+  row.scene = scene.name;
+  row.layout = layout_name;
+  row.levels = scene.grid.levels;
+  row.rays = rays;
+  row.count = static_cast<std::uint64_t>(sums.rays);
+  row.dag_bytes = layout.bytes();
+  row.view_mrays_per_second = sums.view_rates;
+  row.mrays_per_second = sums.rays / sums.ours.seconds * 1e-6;
+  row.hit_part = sums.hits / sums.rays;
+  row.cells_per_ray = sums.cells / sums.rays;
+  row.bytes_per_ray = sums.bytes / sums.rays;
+  for (const auto& [name, s] : sums.rivals)
+    row.rivals.push_back({name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays});
+  return row;
+}
+
+}  // namespace
+
+void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progress,
+                 TraceResults& results) {
+  constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
+  results.threads = tbb::this_task_arena::max_concurrency();
+  const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
+  const std::vector<View> views = bench_views(scene.dag, scene.grid, aspect, plan.views);
+  std::optional<EmbreeRival> embree;
+  if (scene.mesh != nullptr && EmbreeRival::is_available()) embree.emplace(*scene.mesh);
+  std::vector<std::unique_ptr<TraceLayout>> layouts;
+  for (const std::string& name : plan.layouts)
+    layouts.push_back(make_trace_layout(name, scene.dag));
+  std::optional<OpenVdbRival> openvdb;
+  if (!plan.openvdb_program.empty() && !scene.file.empty()) openvdb.emplace();
+  std::vector<OpenVdbSet> openvdb_sets;
+
+  std::vector<std::array<RowSums, kRayClasses.size()>> sums(layouts.size());
+  const double steps = static_cast<double>(views.size() * kRayClasses.size());
+  std::size_t done = 0;
+  for (const View& view : views) {
+    BeamPass beams(scene.dag, scene.grid, picture_options(scene.dag, scene.grid, view, plan.rays));
+    beams.run();
+    const RecordedRays recorded = record_rays(scene.dag, beams, plan.rays);
+    for (const RayClass rays : kRayClasses) {
+      progress.throw_if_cancelled();
+      progress.report(scene.name, static_cast<double>(done) / steps, done);
+      ++done;
+      const std::vector<CastRay>& casts = recorded.of(rays);
+      if (casts.empty()) continue;
+      // Rivals have no beams: they cast those rays from the eye.
+      const bool with_beams = rays == RayClass::kPrimaryBeams;
+      const std::vector<CastRay>& whole = with_beams ? recorded.of(RayClass::kPrimary) : casts;
+      std::vector<TraceRunner> rivals;
+      if (embree) rivals = embree->prepare(scene.grid, rays, whole);
+      for (std::size_t i = 0; i < layouts.size(); ++i) {
+        TraceRunner ours = layouts[i]->runner(rays, casts);
+        if (with_beams) ours.before = [&beams] { beams.run(); };
+        measure_set(*layouts[i], ours, casts, rivals, plan.repeat,
+                    sums[i][static_cast<std::size_t>(rays)]);
+      }
+      if (!openvdb) continue;
+      const std::vector<CastRay> some = some_of(whole, kOpenVdbRays);
+      openvdb->add(scene.grid, some);
+      openvdb_sets.push_back({rays, static_cast<double>(casts.size()), hits_of(scene.dag, some)});
+    }
+  }
+  if (openvdb) {
+    const auto answers =
+        openvdb->cast(plan.openvdb_program, scene.file, results.threads, plan.repeat, progress);
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const OpenVdbSet& set = openvdb_sets[i];
+      const double scale = set.rays / static_cast<double>(set.hits.size());
+      const double same = static_cast<double>(agreeing(set.hits, answers[i].hits));
+      for (auto& layout_sums : sums)
+        layout_sums[static_cast<std::size_t>(set.rays_class)].rivals["openvdb"].add(
+            answers[i].seconds * scale, same * scale);
+    }
+  }
+  for (std::size_t i = 0; i < layouts.size(); ++i)
+    for (const RayClass rays : kRayClasses) {
+      const RowSums& s = sums[i][static_cast<std::size_t>(rays)];
+      if (s.rays > 0) results.rows.push_back(row_of(scene, plan.layouts[i], *layouts[i], rays, s));
+    }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,84 @@
+#include "trace_casters.hpp"
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/trace/counting_nodes.hpp"
+#include "voxdag/trace/scalar_caster.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+/// A runner for any caster (see trace/scalar_caster.hpp).
+template <class Caster>
+TraceRunner runner_of(const Caster& caster, RayClass rays, std::span<const CastRay> casts) {
+  TraceRunner runner;
+  runner.name = "voxdag";
+  runner.cast = [caster, casts, closest = is_closest(rays)](std::size_t first, std::size_t last,
+                                                            std::uint8_t* hits) {
+    const auto count = static_cast<int>(last - first);
+    const auto make_ray = [&](int i) { return casts[first + static_cast<std::size_t>(i)]; };
+    const auto set = [&](int i, bool is_hit) {
+      hits[first + static_cast<std::size_t>(i)] = is_hit ? 1 : 0;
+    };
+    if (closest)
+      caster.closest(count, make_ray,
+                     [&](int i, const GridRay&, const CellHit&, bool is_hit) { set(i, is_hit); });
+    else
+      caster.any(count, make_ray, set);
+  };
+  return runner;
+}
+
+/// Counts the bytes that a walk through the paper's layout reads.
+class ByteCountingNodes : public SvdagNodes {
+ public:
+  ByteCountingNodes(const SvdagNodes& nodes, std::uint64_t& steps, std::uint64_t& bytes)
+      : SvdagNodes(nodes), steps_(&steps), bytes_(&bytes) {}
+
+  void on_step() const { ++*steps_; }
+  std::uint32_t child_mask(Node node, int level) const {
+    *bytes_ += level < levels() - 2 ? 4u : level == levels() - 2 ? 8u : 0u;
+    return SvdagNodes::child_mask(node, level);
+  }
+  Node child(Node node, int level, int index) const {
+    *bytes_ += level < levels() - 2 ? 4u : 0u;
+    return SvdagNodes::child(node, level, index);
+  }
+
+ private:
+  std::uint64_t *steps_, *bytes_;
+};
+
+class PaperLayout : public TraceLayout {
+ public:
+  explicit PaperLayout(const SvdagView& dag) : dag_(dag) {}
+
+  std::uint64_t bytes() const override { return dag_.bytes(); }
+  TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
+    return runner_of(ScalarCaster<SvdagNodes>(SvdagNodes(dag_)), rays, casts);
+  }
+  WalkCost cost(std::span<const CastRay> casts) const override {
+    std::uint64_t steps = 0, read = 0;
+    const ByteCountingNodes nodes(SvdagNodes(dag_), steps, read);
+    for (const CastRay& ray : casts) {
+      CellHit cell;
+      cast(nodes, ray.ray, ray.stop, cell);
+    }
+    const auto count = static_cast<double>(casts.size());
+    return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
+  }
+
+ private:
+  SvdagView dag_;
+};
+
+}  // namespace
+
+std::vector<std::string> trace_layouts() { return {"paper"}; }
+
+std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const SvdagView& dag) {
+  if (name == "paper") return std::make_unique<PaperLayout>(dag);
+  throw Error("there is no layout \"" + name + "\"");
+}
+
+}  // namespace voxdag

@@ -1,0 +1,35 @@
+#pragma once
+/// Our own casts, by layout.
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trace_rivals.hpp"
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// What walks through the nodes take, in the mean over rays.
+struct WalkCost {
+  double cells = 0;  ///< Steps: cells looked at.
+  double bytes = 0;  ///< Read from nodes.
+};
+
+/// A DAG in one of the layouts that can be cast at.
+class TraceLayout {
+ public:
+  virtual ~TraceLayout() = default;
+
+  virtual std::uint64_t bytes() const = 0;
+  /// Casts with the fastest caster of the layout. `casts` must outlive the runner.
+  virtual TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const = 0;
+  virtual WalkCost cost(std::span<const CastRay> casts) const = 0;
+};
+
+/// The layouts' names, the default first.
+std::vector<std::string> trace_layouts();
+
+/// Throws Error where memory is short. The DAG must outlive the result.
+std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const SvdagView& dag);
+
+}  // namespace voxdag

@@ -1,0 +1,71 @@
+#include <nlohmann/json.hpp>
+
+#include "sponge.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::json;
+
+class BenchTrace : public Sponge {
+ protected:
+  static ProcessResult bench(std::vector<std::string> options) {
+    const std::vector<std::string> start = {"bench",    "trace", "--size",  "40x32",
+                                            "--repeat", "1",     "--views", "2"};
+    options.insert(options.begin(), start.begin(), start.end());
+    return run_voxdag(options);
+  }
+};
+
+TEST_F(BenchTrace, JsonHasEveryKindOfRays) {
+  const ProcessResult result = bench({path("in.vdag"), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  ASSERT_EQ(json.size(), 5u);
+  const char* const kinds[] = {"primary", "primary_beams", "shadow", "soft", "ao"};
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    EXPECT_EQ(json[i].at("rays"), kinds[i]);
+    EXPECT_EQ(json[i].at("scene"), "sponge.ply");
+    EXPECT_EQ(json[i].at("resolution"), 32);
+    EXPECT_EQ(json[i].at("device"), "cpu");
+    EXPECT_TRUE(json[i].at("rival").is_null());
+    for (const char* key : {"mrays_per_s", "cells_per_ray", "bytes_per_ray", "ray_count"})
+      EXPECT_GT(json[i].at(key), 0) << kinds[i] << " " << key;
+  }
+  // Beams only shorten rays: they meet what the rays from the eye meet.
+  EXPECT_EQ(json[0].at("ray_count"), json[1].at("ray_count"));
+  EXPECT_EQ(json[0].at("hit_part"), json[1].at("hit_part"));
+}
+
+TEST_F(BenchTrace, EmbreeMeetsTheSameWithTheSameRays) {
+  const ProcessResult result = bench({path("in.vdag"), "--mesh", path("sponge.ply"), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  if (json.at(0).at("rival").is_null()) GTEST_SKIP() << "built without Embree";
+  ASSERT_EQ(json.size(), 10u);
+  for (const Json& row : json) {
+    EXPECT_TRUE(row.at("rival") == "embree_single" || row.at("rival") == "embree_packet16");
+    EXPECT_GT(row.at("rival_mrays_per_s"), 0);
+    // Voxels of a 32nd of the scene are not its triangles: outlines differ by a voxel.
+    EXPECT_GT(row.at("rival_agreement"), 0.9) << row.at("rays");
+  }
+}
+
+TEST_F(BenchTrace, WritesTableJsonAndPlot) {
+  const ProcessResult result =
+      bench({path("in.vdag"), "-o", path("rays.json"), "--plot", path("rays.svg")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* text : {"sponge.ply 32³", "Mrays/s", "cells", "primary_beams", "ao"})
+    EXPECT_NE(result.out.find(text), std::string::npos) << text;
+  EXPECT_EQ(Json::parse(read_text(path("rays.json"))).size(), 5u);
+  EXPECT_TRUE(read_text(path("rays.svg")).starts_with("<svg"));
+}
+
+TEST_F(BenchTrace, RefusesWhatItCannotMeasure) {
+  expect_failure(bench({path("sponge.ply")}), 1, "sponge.ply");
+  expect_failure(bench({path("in.vdag"), "--layout", "thin"}), 2, "--layout");
+  expect_failure(bench({path("in.vdag"), "--openvdb", path("absent")}), 1, "absent");
+}
+
+}  // namespace
+}  // namespace voxdag
