@@ -65,9 +65,9 @@ TEST_P(Flights, KeepClearOfTheScene) {
 
 INSTANTIATE_TEST_SUITE_P(All, Flights,
                          testing::Values(Flight{"city", 1, 2}, Flight{"city", 2, 2},
-                                         Flight{"city", 3, 2}, Flight{"courtyard", 0.4, 0.3},
-                                         Flight{"hairball", 20, 0.5}, Flight{"sponge", 3, 0.08},
-                                         Flight{"terrain", 128, 25}),
+                                         Flight{"city", 3, 2}, Flight{"city", 6, 2},
+                                         Flight{"courtyard", 0.4, 0.3}, Flight{"hairball", 20, 0.5},
+                                         Flight{"sponge", 3, 0.08}, Flight{"terrain", 128, 25}),
                          [](const auto& flight) {
                            return std::string(flight.param.scene) +
                                   std::to_string(static_cast<int>(flight.param.size));

@@ -141,9 +141,10 @@ ScenePreset city_preset(double size) {
                    {8, {x, 15, far_z * 0.8}, {x, 10, -far_z * 0.2}},
                    {12, {x, 7, z + 0.2 * far_z}, {x + 6, 8, z - 20}},
                    {14, {x + 5, 6.5, z + 4}, {x + 40, 9, z}},
-                   {17, {x + 0.4 * kPitchX, 7, z}, {x + 1.2 * kPitchX, 9, z}},
-                   {22, {far_x + 0.3 * kPitchX, 18, z}, {far_x + kPitchX, 18, z - 20}},
-                   {26, {far_x + 60, 30 + 8 * blocks, -0.5 * far_z}, {0, 10, 0}}};
+                   {17, {x + 0.4 * kPitchX, 7, z}, {x + 1.4 * kPitchX, 9, z}},
+                   {20, {x + kPitchX, 12, z}, {x + 1.7 * kPitchX, 30, z}},
+                   {24, {x + kPitchX, 40 + 6 * blocks, z}, {x, 14, z - kPitchZ}},
+                   {29, {far_x + 60, 30 + 8 * blocks, -0.5 * far_z}, {0, 10, 0}}};
   return preset;
 }
 

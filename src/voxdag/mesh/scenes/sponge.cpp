@@ -80,14 +80,14 @@ ScenePreset sponge_preset(double size) {
   preset.target = Vec3d{0.5, 0.44, 0.5} * side;
   preset.fov_degrees = 42;
   preset.sun_direction = normalize({-0.35, 0.9, 0.62});
-  // In through the hole in front, round the corner in the middle, and out at the side.
+  // In through the hole in front, and backwards out at the side.
   preset.flight = {{0, preset.eye, preset.target},
                    {3, Vec3d{0.85, 0.85, 1.9} * side, Vec3d{0.5, 0.5, 0.5} * side},
                    {6, Vec3d{0.5, 0.5, 1.25} * side, Vec3d{0.5, 0.5, 0} * side},
-                   {9, Vec3d{0.5, 0.5, 0.68} * side, Vec3d{0.56, 0.5, 0.1} * side},
-                   {12, Vec3d{0.54, 0.5, 0.5} * side, Vec3d{1.1, 0.52, 0.47} * side},
-                   {15, Vec3d{1.15, 0.52, 0.5} * side, Vec3d{1.9, 0.6, 0.8} * side},
-                   {18, Vec3d{1.75, 0.9, 1.1} * side, Vec3d{0.6, 0.5, 0.6} * side},
+                   {9, Vec3d{0.5, 0.5, 0.68} * side, Vec3d{0.38, 0.5, 0.15} * side},
+                   {12, Vec3d{0.62, 0.5, 0.5} * side, Vec3d{-0.1, 0.5, 0.46} * side},
+                   {15, Vec3d{1.2, 0.55, 0.52} * side, Vec3d{0.3, 0.5, 0.5} * side},
+                   {18, Vec3d{1.75, 0.95, 1.2} * side, Vec3d{0.5, 0.46, 0.5} * side},
                    {21, preset.eye, preset.target}};
   return preset;
 }
