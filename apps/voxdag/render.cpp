@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "commands.hpp"
+#include "device.hpp"
 #include "frame_names.hpp"
 #include "human.hpp"
 #include "parse.hpp"
@@ -15,6 +16,7 @@
 #include "render_passes.hpp"
 #include "render_path.hpp"
 #include "voxdag/cpu/render_image.hpp"
+#include "voxdag/cuda/render_image.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
 namespace voxdag {
@@ -27,6 +29,7 @@ struct RenderArguments {
   RenderOptions options;
   MeshArguments mesh;
   PathArguments path;
+  DeviceChoice device;
 };
 
 /// Every file to write.
@@ -38,9 +41,11 @@ std::vector<RenderPass> all_passes(const RenderArguments& arguments) {
   return passes;
 }
 
-void print_summary(const RenderArguments& arguments, const RenderedImage& image, double seconds) {
-  fmt::print("{}: {} x {} pixels in {}, {} rays/s\n", arguments.output, image.width, image.height,
-             human_seconds(seconds), human_count(static_cast<double>(image.rays) / seconds));
+void print_summary(const RenderArguments& arguments, const RenderedImage& image, double seconds,
+                   const std::string& device) {
+  fmt::print("{}: {} x {} pixels in {}, {} rays/s on {}\n", arguments.output, image.width,
+             image.height, human_seconds(seconds),
+             human_count(static_cast<double>(image.rays) / seconds), device);
   const View& view = image.view;
   fmt::print(
       "  --eye {:.6g},{:.6g},{:.6g} --target {:.6g},{:.6g},{:.6g} --up {:.6g},{:.6g},{:.6g} --fov "
@@ -63,12 +68,14 @@ void render(RenderArguments& arguments, Session& session) {
   const VdagFile file(session.subject);
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
+  const std::optional<DeviceSvdag> device_dag = load_on_device(arguments.device, file.view());
   const std::unique_ptr<ViewSource> source =
       open_view_source(arguments.mesh, arguments.options.albedo, file.view(), file.grid(), session);
+  const auto render_frame = [&](const RenderOptions& options, Progress* progress) {
+    if (device_dag) return render_image(*device_dag, file.grid(), options, progress, source.get());
+    return render_image(file.view(), file.grid(), options, progress, source.get());
+  };
   if (!arguments.path.file.empty()) {
-    const auto render_frame = [&](const RenderOptions& options, Progress* progress) {
-      return render_image(file.view(), file.grid(), options, progress, source.get());
-    };
     const auto write_frame = [&](const RenderedImage& image, int frame) {
       for (const RenderPass& pass : passes)
         write_pass({pass.name, frame_name(pass.path, frame)}, image);
@@ -77,13 +84,12 @@ void render(RenderArguments& arguments, Session& session) {
                        {render_frame, write_frame}, session);
   }
   const auto start = std::chrono::steady_clock::now();
-  const RenderedImage image =
-      render_image(file.view(), file.grid(), arguments.options, &session.progress, source.get());
+  const RenderedImage image = render_frame(arguments.options, &session.progress);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const RenderPass& pass : passes) write_pass(pass, image);
   session.bar.clear();
-  if (!session.quiet) print_summary(arguments, image, seconds);
+  if (!session.quiet) print_summary(arguments, image, seconds, device_name(device_dag));
 }
 
 /// An option that may be given several times; each text becomes one value.
@@ -216,6 +222,7 @@ void add_render_command(CLI::App& app, Session& session) {
                   "or .png; may be repeated");
   add_mesh_options(command, arguments->mesh);
   add_path_options(command, arguments->path);
+  add_device_option(command, arguments->device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {

@@ -28,8 +28,7 @@ std::vector<Ray> rays_of_every_kind(const Grid& grid, std::size_t count, unsigne
   return rays;
 }
 
-void expect_hits_of_the_cpu(const CudaDevice& device, int levels, int voxels,
-                            std::size_t count) {
+void expect_hits_of_the_cpu(const CudaDevice& device, int levels, int voxels, std::size_t count) {
   const Svdag dag = brute_svdag(levels, random_voxels(levels, voxels, 3));
   const Grid grid = test_grid(levels);
   const std::vector<Ray> rays = rays_of_every_kind(grid, count, 7);

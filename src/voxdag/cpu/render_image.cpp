@@ -11,6 +11,7 @@
 #include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/render_tile.hpp"
+#include "voxdag/render/source_view_samples.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
@@ -77,13 +78,7 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
     if (source == nullptr) return trace_view_samples(nodes, caster, setup, tile, scratch);
     const auto pixels =
         static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
-    std::fill_n(scratch.samples, pixels, ViewSample{});
-    source->sample(setup.camera, tile, {scratch.samples, pixels});
-    // Points are exact, so nothing needs to be coarser than the voxels: edges and contacts would
-    // show it.
-    for (std::size_t i = 0; i < pixels; ++i)
-      if (scratch.samples[i].is_hit())
-        scratch.samples[i].cell_size = static_cast<float>(grid.voxel_size);
+    find_source_samples(*source, setup, tile, {scratch.samples, pixels});
     return static_cast<int>(pixels);
   };
 

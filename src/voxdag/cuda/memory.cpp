@@ -55,7 +55,10 @@ void free_pinned(void* memory) noexcept { cudaFreeHost(memory); }
 
 void copy_to_device(void* device, const void* host, std::uint64_t bytes) {
   if (bytes == 0) return;
-  check_cuda(cudaMemcpy(device, host, bytes, cudaMemcpyHostToDevice), "copying to the device");
+  const char* doing = "copying to the device";
+  check_cuda(cudaMemcpy(device, host, bytes, cudaMemcpyHostToDevice), doing);
+  // It may return while the last bytes are on their way, and other queues would not wait for them.
+  check_cuda(cudaStreamSynchronize(nullptr), doing);
 }
 
 void copy_to_host(void* host, const void* device, std::uint64_t bytes) {

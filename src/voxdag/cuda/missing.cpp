@@ -2,6 +2,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_svdag.hpp"
+#include "voxdag/cuda/render_image.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 
 namespace voxdag {
@@ -24,5 +25,10 @@ void DeviceSvdag::make_current() const { refuse(); }
 struct CudaTracer::State {};
 CudaTracer::CudaTracer(const DeviceSvdag&, const Grid&) { refuse(); }
 void CudaTracer::trace(std::span<const Ray>, std::span<Hit>, Progress*) const { refuse(); }
+
+RenderedImage render_image(const DeviceSvdag&, const Grid&, const RenderOptions&, Progress*,
+                           const ViewSource*) {
+  refuse();
+}
 
 }  // namespace voxdag

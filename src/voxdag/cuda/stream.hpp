@@ -1,5 +1,5 @@
 #pragma once
-/// A queue of copies and kernels that run one after the other.
+/// Queues of copies and kernels that run one after the other, and moments in them.
 #include <utility>
 
 #include "voxdag/cuda/check.hpp"
@@ -19,6 +19,28 @@ class CudaStream {
 
  private:
   cudaStream_t stream_ = nullptr;
+};
+
+/// A moment in a queue.
+class CudaEvent {
+ public:
+  CudaEvent() { check_cuda(cudaEventCreate(&event_), "clock"); }
+  CudaEvent(const CudaEvent&) = delete;
+  CudaEvent& operator=(const CudaEvent&) = delete;
+  ~CudaEvent() { cudaEventDestroy(event_); }
+
+  void record(const CudaStream& stream) const {
+    check_cuda(cudaEventRecord(event_, stream.get()), "clock");
+  }
+  /// Between two moments that have passed.
+  friend double seconds_between(const CudaEvent& begin, const CudaEvent& end) {
+    float milliseconds = 0;
+    check_cuda(cudaEventElapsedTime(&milliseconds, begin.event_, end.event_), "clock");
+    return static_cast<double>(milliseconds) * 1e-3;
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
 };
 
 }  // namespace voxdag

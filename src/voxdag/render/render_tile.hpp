@@ -66,29 +66,38 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
   }
 }
 
-/// All samples of the pixels of a tile. `find_samples(tile, scratch)` sets scratch.samples for a
-/// sample of each pixel and returns the number of rays that it cast: trace_view_samples() where the
-/// picture is of voxels. Returns the number of all rays.
+/// Sample tile.sample_index of the tile's pixels (see set_sample). `find_samples(tile, scratch)`
+/// sets scratch.samples and returns the number of rays that it cast: trace_view_samples() where the
+/// picture is of voxels. A pixel's samples come in order. Returns the number of all rays.
+template <class Nodes, class Caster, class Scratch, class FindSamples>
+VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
+                                   const RenderSetup& setup, const ViewTile& tile, Scratch& scratch,
+                                   const FindSamples& find_samples) {
+  int rays = find_samples(tile, scratch);
+  for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+    const ViewSample& sample = scratch.samples[pixel];
+    scratch.points[pixel] = {};
+    if (sample.is_hit())
+      scratch.points[pixel] =
+          make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
+    scratch.irradiance[pixel] = {};
+    scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
+  }
+  for (int light = 0; light < setup.light_count; ++light)
+    rays += trace_light(nodes, caster, setup, light, tile, scratch);
+  if (setup.settings.occlusion_samples > 0) rays += trace_occlusion(caster, setup, tile, scratch);
+  shade_tile(setup, tile, scratch);
+  return rays;
+}
+
+/// All samples of the pixels of a tile.
 template <class Nodes, class Caster, class Scratch, class FindSamples>
 VOXDAG_HD inline int render_tile(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  ViewTile tile, Scratch& scratch, const FindSamples& find_samples) {
   int rays = 0;
   for (int i = 0; i < setup.settings.samples_per_pixel; ++i) {
     set_sample(tile, i);
-    rays += find_samples(tile, scratch);
-    for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
-      const ViewSample& sample = scratch.samples[pixel];
-      scratch.points[pixel] = {};
-      if (sample.is_hit())
-        scratch.points[pixel] =
-            make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
-      scratch.irradiance[pixel] = {};
-      scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
-    }
-    for (int light = 0; light < setup.light_count; ++light)
-      rays += trace_light(nodes, caster, setup, light, tile, scratch);
-    if (setup.settings.occlusion_samples > 0) rays += trace_occlusion(caster, setup, tile, scratch);
-    shade_tile(setup, tile, scratch);
+    rays += render_sample(nodes, caster, setup, tile, scratch, find_samples);
   }
   return rays;
 }

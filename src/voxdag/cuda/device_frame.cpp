@@ -1,0 +1,65 @@
+#include "voxdag/cuda/device_frame.hpp"
+
+#include "voxdag/render/tile.hpp"
+
+namespace voxdag {
+namespace {
+
+template <class T>
+DeviceBuffer<T> upload_table(const std::vector<T>& table) {
+  return upload(std::span<const T>(table), "the tables of samples");
+}
+
+template <class T>
+void fetch(std::vector<T>& values, const DeviceBuffer<T>& buffer) {
+  copy_to_host(values.data(), buffer.data(), values.size() * sizeof(T));
+}
+
+}  // namespace
+
+DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps)
+    : setup_(plan.setup()) {
+  const Camera& camera = setup_.camera;
+  const std::size_t pixels =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  const std::size_t beams = static_cast<std::size_t>(beams_across(camera.width)) *
+                            static_cast<std::size_t>(beams_across(camera.height));
+  const char* what = "the picture";
+  constexpr std::size_t kBytesPerPixel = 2 * sizeof(Vec3f) + 3 * sizeof(float);
+  require_device_memory(pixels * (kBytesPerPixel + (with_steps ? sizeof(float) : 0)) +
+                            (with_beams ? beams * sizeof(float) : 0),
+                        what);
+  radiance_ = make_device_buffer<Vec3f>(pixels, what);
+  normal_ = make_device_buffer<Vec3f>(pixels, what);
+  depth_ = make_device_buffer<float>(pixels, what);
+  occlusion_ = make_device_buffer<float>(pixels, what);
+  shadow_ = make_device_buffer<float>(pixels, what);
+  if (with_steps) steps_ = make_device_buffer<float>(pixels, what);
+  if (with_beams) beam_starts_ = make_device_buffer<float>(beams, what);
+  const unsigned long long none = 0;
+  rays_ = upload(std::span(&none, 1), what);
+
+  square_ = upload_table(plan.samples().square());
+  disc_ = upload_table(plan.samples().disc());
+  rotations_ = upload_table(plan.samples().rotations());
+  hemisphere_ = upload_table(plan.samples().hemisphere());
+  setup_.tables.square = square_.data();
+  setup_.tables.disc = disc_.data();
+  setup_.tables.rotations = rotations_.data();
+  setup_.tables.hemisphere = hemisphere_.data();
+  setup_.image = {radiance_.data(),  depth_.data(),  normal_.data(),
+                  occlusion_.data(), shadow_.data(), steps_.data()};
+  setup_.beam_starts = beam_starts_.data();
+}
+
+void DeviceFrame::copy_to(RenderedImage& image) const {
+  fetch(image.radiance, radiance_);
+  fetch(image.depth, depth_);
+  fetch(image.normal, normal_);
+  fetch(image.occlusion, occlusion_);
+  fetch(image.shadow, shadow_);
+  fetch(image.steps, steps_);
+  copy_to_host(&image.rays, rays_.data(), sizeof image.rays);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,130 @@
+#include "voxdag/cuda/render_image.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "voxdag/cuda/device_frame.hpp"
+#include "voxdag/cuda/launch_plan.hpp"
+#include "voxdag/cuda/render_kernels.hpp"
+#include "voxdag/cuda/render_pixel.hpp"
+#include "voxdag/cuda/stream.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/render/source_view_samples.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Rays of the first launch: half a second on a slow device.
+constexpr double kFirstRays = 1 << 25;
+/// Blocks whose samples are found on the host at once.
+constexpr std::uint32_t kSourceBlocks = 4096;
+/// Coarse beams per launch.
+constexpr std::uint32_t kBeamsPerLaunch = 1 << 18;
+
+/// Blocks are counted in 32 bits, by launches in 31.
+constexpr std::uint32_t kMostBlocks = 1u << 30;
+
+/// Two of these take turns: one is with the device while the host fills the other.
+struct SourceSamples {
+  PinnedBuffer<ViewSample> host;
+  DeviceBuffer<ViewSample> device;
+};
+
+/// Calls launch(first, last) for all coarse beams of a picture.
+template <class Launch>
+void for_beams(const Camera& camera, const CudaStream& stream, Progress* progress,
+               const Launch& launch) {
+  const auto across = static_cast<std::uint32_t>(beams_across(camera.width) / 2);
+  const auto down = static_cast<std::uint32_t>(beams_across(camera.height) / 2);
+  const std::uint32_t count = across * down;
+  for (std::uint32_t first = 0; first < count; first += kBeamsPerLaunch) {
+    if (progress != nullptr) progress->throw_if_cancelled();
+    launch(first, std::min(count, first + kBeamsPerLaunch));
+    stream.wait("casting beams");
+  }
+}
+
+double rays_per_sample(const RenderSetup& setup) {
+  int rays = 1 + setup.settings.occlusion_samples;
+  for (int i = 0; i < setup.light_count; ++i)
+    rays += setup.lights[i].is_extended() ? setup.settings.light_samples : 1;
+  return rays;
+}
+
+/// The view samples of a launch, which has one for each pixel.
+void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& setup,
+          const LaunchRange& range) {
+  parallel_for(std::size_t{range.last_block} - range.first_block, [&](std::size_t i) {
+    ViewTile tile = block_tile(setup.camera, range.first_block + static_cast<std::uint32_t>(i));
+    set_sample(tile, range.first_sample);
+    find_source_samples(source, setup, tile,
+                        {samples.host.data() + i * kBlockPixels,
+                         static_cast<std::size_t>(tile.width * tile.height)});
+  });
+}
+
+void render_pixels(const SvdagView& dag, const DeviceFrame& frame, const CudaStream& stream,
+                   Progress* progress, const ViewSource* source) {
+  const RenderSetup& setup = frame.setup();
+  const bool has_source = source != nullptr;
+  LaunchPlan plan(block_count(setup.camera.width, setup.camera.height),
+                  setup.settings.samples_per_pixel, rays_per_sample(setup) * kBlockPixels,
+                  kFirstRays, has_source ? kSourceBlocks : kMostBlocks,
+                  has_source ? 1 : setup.settings.samples_per_pixel);
+  SourceSamples samples[2];
+  for (SourceSamples& part : samples) {
+    if (!has_source) break;
+    part.host = make_pinned_buffer<ViewSample>(kSourceBlocks * kBlockPixels, "view samples");
+    part.device = make_device_buffer<ViewSample>(kSourceBlocks * kBlockPixels, "view samples");
+  }
+  const CudaEvent begin, end;
+  int turn = 0;
+  auto range = plan.next();
+  if (has_source && range) fill(samples[turn], *source, setup, *range);
+  while (range) {
+    if (progress != nullptr) progress->throw_if_cancelled();
+    begin.record(stream);
+    if (has_source)
+      check_cuda(cudaMemcpyAsync(
+                     samples[turn].device.data(), samples[turn].host.data(),
+                     (range->last_block - range->first_block) * kBlockPixels * sizeof(ViewSample),
+                     cudaMemcpyHostToDevice, stream.get()),
+                 "copying view samples to the device");
+    launch_render(dag, setup, *range, samples[turn].device.data(), frame.rays(), stream.get());
+    end.record(stream);
+    const double fraction = plan.fraction();
+    const auto next = plan.next();
+    turn ^= 1;
+    if (has_source && next) fill(samples[turn], *source, setup, *next);
+    stream.wait("rendering");
+    plan.measured(*range, seconds_between(begin, end));
+    if (progress != nullptr) progress->report("render", fraction);
+    range = next;
+  }
+}
+
+}  // namespace
+
+RenderedImage render_image(const DeviceSvdag& dag, const Grid& grid, const RenderOptions& options,
+                           Progress* progress, const ViewSource* source) {
+  assert(grid.levels == dag.host().levels);
+  dag.make_current();
+  RenderPlan plan(dag.host(), grid, options);
+  const bool with_beams = options.beams && source == nullptr;
+  const DeviceFrame frame(plan, with_beams, options.with_steps);
+  const RenderSetup& setup = frame.setup();
+  const CudaStream stream;
+  if (with_beams)
+    for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
+      launch_beams(dag.view(), setup, first, last, frame.beam_starts(), stream.get());
+    });
+  render_pixels(dag.view(), frame, stream, progress, source);
+  if (options.with_steps)
+    for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
+      launch_steps(dag.view(), setup, first, last, stream.get());
+    });
+  frame.copy_to(plan.image());
+  return plan.finish();
+}
+
+}  // namespace voxdag

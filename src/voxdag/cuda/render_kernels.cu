@@ -1,0 +1,83 @@
+#include "voxdag/cuda/check.hpp"
+#include "voxdag/cuda/render_kernels.hpp"
+#include "voxdag/cuda/render_pixel.hpp"
+#include "voxdag/render/count_steps.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::uint32_t kBeamThreads = 64;
+
+/// The top left pixel of coarse beam i.
+struct BeamCorner {
+  int x, y;
+
+  __device__ BeamCorner(int width, std::uint32_t i) {
+    const std::uint32_t across =
+        static_cast<std::uint32_t>((width + kCoarseBeamPixels - 1) / kCoarseBeamPixels);
+    x = static_cast<int>(i % across) * kCoarseBeamPixels;
+    y = static_cast<int>(i / across) * kCoarseBeamPixels;
+  }
+};
+
+template <class Nodes>
+__global__ void __launch_bounds__(kBeamThreads)
+    beams_kernel(Nodes nodes, const __grid_constant__ RenderSetup setup, std::uint32_t first,
+                 std::uint32_t last, float* starts) {
+  const std::uint32_t i = first + blockIdx.x * kBeamThreads + threadIdx.x;
+  if (i >= last) return;
+  const BeamCorner at(setup.camera.width, i);
+  set_beam_starts(nodes, setup, at.x, at.y, starts);
+}
+
+template <class Nodes>
+__global__ void __launch_bounds__(kBeamThreads)
+    steps_kernel(Nodes nodes, const __grid_constant__ RenderSetup setup, std::uint32_t first,
+                 std::uint32_t last) {
+  const std::uint32_t i = first + blockIdx.x * kBeamThreads + threadIdx.x;
+  if (i >= last) return;
+  const BeamCorner at(setup.camera.width, i);
+  count_steps(nodes, setup, at.x, at.y);
+}
+
+template <class Nodes, class Caster>
+__global__ void __launch_bounds__(kBlockPixels)
+    render_kernel(Nodes nodes, Caster caster, const __grid_constant__ RenderSetup setup,
+                  const __grid_constant__ LaunchRange range, const ViewSample* view_samples,
+                  unsigned long long* rays) {
+  unsigned long long count = render_pixel(nodes, caster, setup, range, view_samples,
+                                          range.first_block + blockIdx.x, threadIdx.x);
+  for (int step = 16; step > 0; step /= 2) count += __shfl_down_sync(~0u, count, step);
+  if (threadIdx.x % 32 == 0) atomicAdd(rays, count);
+}
+
+std::uint32_t beam_blocks(std::uint32_t first, std::uint32_t last) {
+  return (last - first + kBeamThreads - 1) / kBeamThreads;
+}
+
+}  // namespace
+
+void launch_beams(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
+                  std::uint32_t last, float* starts, cudaStream_t stream) {
+  beams_kernel<<<beam_blocks(first, last), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup, first,
+                                                                      last, starts);
+  check_cuda(cudaGetLastError(), "casting beams");
+}
+
+void launch_steps(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
+                  std::uint32_t last, cudaStream_t stream) {
+  steps_kernel<<<beam_blocks(first, last), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup, first,
+                                                                      last);
+  check_cuda(cudaGetLastError(), "counting steps");
+}
+
+void launch_render(const SvdagView& dag, const RenderSetup& setup, const LaunchRange& range,
+                   const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
+  const SvdagNodes nodes(dag);
+  render_kernel<<<range.last_block - range.first_block, kBlockPixels, 0, stream>>>(
+      nodes, ScalarCaster<SvdagNodes>(nodes), setup, range, view_samples, rays);
+  check_cuda(cudaGetLastError(), "rendering");
+}
+
+}  // namespace voxdag

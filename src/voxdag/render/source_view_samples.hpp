@@ -1,0 +1,21 @@
+#pragma once
+/// The view samples of a tile from a source other than the voxels.
+#include <algorithm>
+
+#include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/view_source.hpp"
+
+namespace voxdag {
+
+/// Host only. Fills `samples`, one for each pixel of the tile, row by row.
+inline void find_source_samples(const ViewSource& source, const RenderSetup& setup,
+                                const ViewTile& tile, std::span<ViewSample> samples) {
+  std::fill(samples.begin(), samples.end(), ViewSample{});
+  source.sample(setup.camera, tile, samples);
+  // Points are exact, so nothing needs to be coarser than the voxels: edges and contacts would
+  // show it.
+  for (ViewSample& sample : samples)
+    if (sample.is_hit()) sample.cell_size = static_cast<float>(setup.grid.voxel_size);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,75 @@
+#include "voxdag/cuda/render_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "cuda/cuda_device.hpp"
+#include "cuda/pictures.hpp"
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/image/color.hpp"
+
+namespace voxdag {
+namespace {
+
+using CudaRender = OnCudaDevice;
+
+int grey_level(float linear) { return static_cast<int>(linear_to_srgb(linear) * 255 + 0.5f); }
+
+/// What the user sees is within one grey level, and so are the passes.
+void expect_like(const RenderedImage& image, const RenderedImage& expected) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < expected.rgb.size(); ++i) {
+    int apart = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      apart = std::max(
+          apart, std::abs(grey_level(image.rgb[i][axis]) - grey_level(expected.rgb[i][axis])));
+    wrong += apart > 1 ? 1 : 0;
+    EXPECT_NEAR(image.occlusion[i], expected.occlusion[i], 1.0 / 255);
+    EXPECT_NEAR(image.shadow[i], expected.shadow[i], 1.0 / 255);
+  }
+  EXPECT_EQ(wrong, 0u) << "of " << expected.rgb.size() << " pixels";
+  EXPECT_EQ(image.depth, expected.depth);
+  EXPECT_EQ(image.steps, expected.steps);
+  EXPECT_EQ(image.rays, expected.rays);
+}
+
+TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForEveryEffect) {
+  const Svdag dag = picture_scene();
+  const DeviceSvdag device_dag(device_, dag.view());
+  for (const Picture& picture : pictures(4)) {
+    SCOPED_TRACE(picture.name);
+    expect_like(render_image(device_dag, picture_grid(), picture.options),
+                render_image(dag.view(), picture_grid(), picture.options));
+  }
+}
+
+TEST_F(CudaRender, TakesPointsFromASource) {
+  const Svdag dag = picture_scene();
+  RenderOptions options = pictures(8)[0].options;  // several launches
+  options.samples_per_pixel = 2;
+  const PlaneSource source;
+  expect_like(
+      render_image(DeviceSvdag(device_, dag.view()), picture_grid(), options, nullptr, &source),
+      render_image(dag.view(), picture_grid(), options, nullptr, &source));
+}
+
+TEST_F(CudaRender, AnEmptySceneIsSky) {
+  const Svdag dag;
+  RenderOptions options;
+  options.width = options.height = 33;
+  expect_like(render_image(DeviceSvdag(device_, dag.view()), Grid{}, options),
+              render_image(dag.view(), Grid{}, options));
+}
+
+TEST_F(CudaRender, StopsWhenCancelled) {
+  const Svdag dag = picture_scene();
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(render_image(DeviceSvdag(device_, dag.view()), picture_grid(),
+                            pictures(1)[0].options, &progress),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,104 @@
+/// The render kernel's body, run on the host thread by thread.
+#include "voxdag/cuda/render_pixel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "cuda/pictures.hpp"
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/render/primary_beams.hpp"
+#include "voxdag/render/render_plan.hpp"
+#include "voxdag/render/source_view_samples.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+std::vector<ViewSample> samples_of(const ViewSource& source, const RenderSetup& setup,
+                                   const LaunchRange& range) {
+  std::vector<ViewSample> samples((range.last_block - range.first_block) * kBlockPixels);
+  for (std::uint32_t block = range.first_block; block < range.last_block; ++block) {
+    ViewTile tile = block_tile(setup.camera, block);
+    set_sample(tile, range.first_sample);
+    find_source_samples(source, setup, tile,
+                        std::span(samples).subspan((block - range.first_block) * kBlockPixels,
+                                                   tile.width * tile.height));
+  }
+  return samples;
+}
+
+/// As the device does it, in launches of a few blocks.
+RenderedImage render_as_device(const SvdagView& dag, const Grid& grid, const RenderOptions& options,
+                               const ViewSource* source) {
+  RenderPlan plan(dag, grid, options);
+  RenderSetup setup = plan.setup();
+  const SvdagNodes nodes(dag);
+  std::vector<float> starts;
+  if (options.beams && source == nullptr) {
+    starts.resize(static_cast<std::size_t>(beams_across(options.width)) *
+                  static_cast<std::size_t>(beams_across(options.height)));
+    for (int y = 0; y < options.height; y += kCoarseBeamPixels)
+      for (int x = 0; x < options.width; x += kCoarseBeamPixels)
+        set_beam_starts(nodes, setup, x, y, starts.data());
+    setup.beam_starts = starts.data();
+  }
+  const int max_samples = source == nullptr ? options.samples_per_pixel : 1;
+  LaunchPlan launches(block_count(options.width, options.height), options.samples_per_pixel, 1, 7,
+                      20, max_samples);
+  while (const auto range = launches.next()) {
+    std::vector<ViewSample> samples;
+    if (source != nullptr) samples = samples_of(*source, setup, *range);
+    for (std::uint32_t block = range->first_block; block < range->last_block; ++block)
+      for (std::uint32_t thread = 0; thread < kBlockPixels; ++thread)
+        plan.image().rays +=
+            render_pixel(nodes, ScalarCaster<SvdagNodes>(nodes), setup, *range,
+                         source == nullptr ? nullptr : samples.data(), block, thread);
+  }
+  return plan.finish();
+}
+
+void expect_equal(const RenderedImage& image, const RenderedImage& expected) {
+  EXPECT_EQ(image.rgb, expected.rgb);
+  EXPECT_EQ(image.radiance, expected.radiance);
+  EXPECT_EQ(image.depth, expected.depth);
+  EXPECT_EQ(image.normal, expected.normal);
+  EXPECT_EQ(image.occlusion, expected.occlusion);
+  EXPECT_EQ(image.shadow, expected.shadow);
+  EXPECT_EQ(image.rays, expected.rays);
+}
+
+TEST(RenderPixel, ThreadsCoverTheirBlockInWarpsOfEightByFour) {
+  std::set<std::pair<int, int>> seen;
+  for (std::uint32_t thread = 0; thread < kBlockPixels; ++thread) {
+    const int x = thread_x(thread), y = thread_y(thread);
+    EXPECT_TRUE(x < kBlockWidth && y < kBlockHeight);
+    seen.insert({x, y});
+    const std::uint32_t first = thread & ~31u;
+    EXPECT_EQ(x / 8, thread_x(first) / 8);
+    EXPECT_EQ(y / 4, thread_y(first) / 4);
+  }
+  EXPECT_EQ(seen.size(), kBlockPixels);
+}
+
+TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
+  const Svdag dag = picture_scene();
+  for (Picture& picture : pictures(1)) {
+    SCOPED_TRACE(picture.name);
+    picture.options.with_steps = false;  // another kernel's
+    expect_equal(render_as_device(dag.view(), picture_grid(), picture.options, nullptr),
+                 render_image(dag.view(), picture_grid(), picture.options));
+  }
+}
+
+TEST(RenderPixel, EqualsTheTilesOfTheCpuForPointsFromASource) {
+  const Svdag dag = picture_scene();
+  RenderOptions options = pictures(1)[0].options;
+  options.samples_per_pixel = 2;
+  const PlaneSource source;
+  expect_equal(render_as_device(dag.view(), picture_grid(), options, &source),
+               render_image(dag.view(), picture_grid(), options, nullptr, &source));
+}
+
+}  // namespace
+}  // namespace voxdag
