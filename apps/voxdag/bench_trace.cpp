@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "trace_casters.hpp"
+#include "trace_cuda.hpp"
 #include "trace_rival_openvdb.hpp"
 #include "trace_rivals.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
@@ -25,6 +26,7 @@ struct Measured {
 
 double cast_all(const TraceRunner& runner, std::size_t count, std::uint8_t* hits) {
   constexpr std::size_t kBlock = 2048;  // a multiple of a packet's 16
+  if (runner.cast_set) return runner.cast_set(hits);
   const auto start = std::chrono::steady_clock::now();
   if (runner.before) runner.before();
   parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block) {
@@ -147,6 +149,10 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
                  TraceResults& results) {
   constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
   results.threads = tbb::this_task_arena::max_concurrency();
+  const std::optional<DeviceSvdag> device_dag = load_on_device(plan.device, scene.dag);
+  if (device_dag) results.cuda_device = device_dag->device().name;
+  if (device_dag && plan.layouts != std::vector<std::string>{"paper"})
+    throw Error("--device cuda", "", "casts at the layout \"paper\" alone");
   const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
   const std::vector<View> views = bench_views(scene.dag, scene.grid, aspect, plan.views);
   std::optional<EmbreeRival> embree;
@@ -179,7 +185,13 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       for (std::size_t i = 0; i < layouts.size(); ++i) {
         TraceRunner ours = layouts[i]->runner(rays, casts);
         if (with_beams) ours.before = [&beams] { beams.run(); };
-        measure_set(*layouts[i], ours, casts, rivals, plan.repeat,
+        std::vector<TraceRunner> others = rivals;
+        if (device_dag) {
+          others.push_back(ours);
+          others.back().name = "voxdag_cpu";
+          ours = cuda_runner(*device_dag, rays, casts, with_beams ? &beams.setup() : nullptr);
+        }
+        measure_set(*layouts[i], ours, casts, others, plan.repeat,
                     sums[i][static_cast<std::size_t>(rays)]);
       }
       if (!openvdb) continue;

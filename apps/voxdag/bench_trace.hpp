@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "device.hpp"
 #include "trace_rays.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -23,6 +24,7 @@ struct TraceScene {
 struct TracePlan {
   std::vector<std::string> layouts;  ///< As trace_layouts() names them.
   RayOptions rays;
+  DeviceChoice device;  ///< On CUDA our casts on the CPU are a rival: they must agree.
   int views = 4;
   int repeat = 3;               ///< The fastest of so many casts of a set counts.
   std::string openvdb_program;  ///< rival_openvdb_trace, or empty.
@@ -50,6 +52,7 @@ struct TraceRow {
 
 struct TraceResults {
   int threads = 0;
+  std::string cuda_device;            ///< Where our casts ran; empty: on the CPU.
   std::vector<TraceRow> rows;         ///< By scene, resolution, layout, class.
   std::vector<std::string> failures;  ///< Scenes that could not be measured, and why.
 };

@@ -120,7 +120,8 @@ void run(BenchTraceArguments& arguments, Session& session) {
   if (session.json)
     fmt::print("{}", json);
   else
-    fmt::print("{}, {} threads, load average {:.2f} before\n\n{}",
+    fmt::print("{}{}, {} threads, load average {:.2f} before\n\n{}",
+               results.cuda_device.empty() ? "" : results.cuda_device + "; ",
                machine.at("processor").get<std::string>(), results.threads,
                machine.at("load_average").get<double>(), trace_table(results));
   if (!results.failures.empty()) throw Error(results.failures.front());
@@ -207,6 +208,7 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
       ->type_name("FILE.json");
   command.add_option("--plot", arguments->plot_file, "Draw bars of rays per second")
       ->type_name("FILE.svg");
+  add_device_option(command, plan.device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);

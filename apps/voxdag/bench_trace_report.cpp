@@ -42,11 +42,12 @@ double rate_of(const TraceRow& row, const std::string& rival) {
 
 Json trace_json(const TraceResults& results, const Json& machine) {
   Json array = Json::array();
+  const bool is_cuda = !results.cuda_device.empty();
   for (const TraceRow& row : results.rows) {
     Json object{{"scene", row.scene},
                 {"resolution", std::int64_t{1} << row.levels},
-                {"device", "cpu"},
-                {"device_name", machine.at("processor")},
+                {"device", is_cuda ? "cuda" : "cpu"},
+                {"device_name", is_cuda ? Json(results.cuda_device) : machine.at("processor")},
                 {"threads", results.threads},
                 {"layout", row.layout},
                 {"dag_bytes", row.dag_bytes},

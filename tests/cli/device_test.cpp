@@ -44,6 +44,20 @@ TEST_F(DeviceOption, AutoFindsTheSameHitsAndSaysWhere) {
   EXPECT_NE(automatic.out.find("1 hits, on " + name), std::string::npos) << automatic.out;
 }
 
+TEST_F(DeviceOption, PicturesAndBenchmarksTakeIt) {
+  const std::string in = path("in.vdag"), out = path("auto.png"), json = path("rays.json");
+  const ProcessResult picture =
+      run_voxdag({"render", in, "-o", out, "--size", "32x18", "--device", "auto"});
+  ASSERT_EQ(picture.status, 0) << picture.err;
+  EXPECT_NE(picture.out.find("rays/s on "), std::string::npos) << picture.out;
+  const CudaDevices found = cuda_devices();
+  if (!found.devices.empty()) GTEST_SKIP() << "there is " << found.devices[0].name;
+  const std::string reason = "no CUDA device: " + found.why_none;
+  expect_failure(run_voxdag({"render", in, "-o", path("cuda.png"), "--device", "cuda"}), 1, reason);
+  expect_failure(run_voxdag({"bench", "trace", in, "-o", json, "--device", "cuda"}), 1, reason);
+  EXPECT_FALSE(exists("cuda.png") || exists("rays.json"));
+}
+
 TEST_F(DeviceOption, OtherDevicesAreBadUsage) {
   expect_failure(trace("gpu", "gpu.npy"), 2, "\"gpu\" is none of cpu, cuda");
 }

@@ -10,10 +10,12 @@ namespace {
 
 TEST(LaunchPlan, EverySampleOfEveryBlockComesOnceAndInOrder) {
   std::mt19937 rng(1);
+  const auto up_to = [&](int n) { return 1 + static_cast<int>(rng() % static_cast<unsigned>(n)); };
   for (int round = 0; round < 200; ++round) {
-    const std::uint32_t blocks = 1 + rng() % 300, max_blocks = 1 + rng() % 400;
-    const int samples = 1 + static_cast<int>(rng() % 20), max_samples = 1 + rng() % 20;
-    LaunchPlan plan(blocks, samples, 1 + rng() % 5, 1 + rng() % 3000, max_blocks, max_samples);
+    const auto blocks = static_cast<std::uint32_t>(up_to(300));
+    const auto max_blocks = static_cast<std::uint32_t>(up_to(400));
+    const int samples = up_to(20), max_samples = up_to(20);
+    LaunchPlan plan(blocks, samples, up_to(5), up_to(3000), max_blocks, max_samples);
     std::vector<int> done(blocks, 0);
     double fraction = 0;
     while (const auto range = plan.next()) {
@@ -27,7 +29,7 @@ TEST(LaunchPlan, EverySampleOfEveryBlockComesOnceAndInOrder) {
       }
       EXPECT_GT(plan.fraction(), fraction);
       fraction = plan.fraction();
-      plan.measured(*range, 1e-3 * static_cast<double>(rng() % 3000));
+      plan.measured(*range, 1e-3 * up_to(3000));
     }
     EXPECT_EQ(done, std::vector<int>(blocks, samples));
     EXPECT_EQ(fraction, 1);

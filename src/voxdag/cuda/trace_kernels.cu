@@ -15,13 +15,52 @@ __global__ void __launch_bounds__(kThreads)
   if (i < count) hits[i] = closest_hit(nodes, grid, rays[i]);
 }
 
+template <class Nodes>
+__global__ void __launch_bounds__(kThreads)
+    closest_cells_kernel(Nodes nodes, const CastRay* rays, CellHit* cells, std::uint8_t* hits,
+                         std::uint32_t count) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  if (i >= count) return;
+  const CastRay ray = rays[i];
+  CellHit cell;
+  hits[i] = cast(nodes, ray.ray, ray.stop, cell) ? 1 : 0;
+  cells[i] = cell;
+}
+
+template <class Nodes>
+__global__ void __launch_bounds__(kThreads)
+    any_hits_kernel(Nodes nodes, const CastRay* rays, std::uint8_t* hits, std::uint32_t count) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  if (i >= count) return;
+  const CastRay ray = rays[i];
+  CellHit cell;
+  hits[i] = cast(nodes, ray.ray, ray.stop, cell) ? 1 : 0;
+}
+
+std::uint32_t blocks_of(std::uint32_t count) { return (count + kThreads - 1) / kThreads; }
+
 }  // namespace
 
 void launch_closest_hits(const SvdagView& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  closest_hits_kernel<<<(count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(
-      SvdagNodes(dag), grid, rays, hits, count);
+  closest_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(SvdagNodes(dag), grid, rays, hits,
+                                                                 count);
+  check_cuda(cudaGetLastError(), "casting rays");
+}
+
+void launch_closest_cells(const SvdagView& dag, const CastRay* rays, CellHit* cells,
+                          std::uint8_t* hits, std::uint32_t count, cudaStream_t stream) {
+  if (count == 0) return;
+  closest_cells_kernel<<<blocks_of(count), kThreads, 0, stream>>>(SvdagNodes(dag), rays, cells,
+                                                                  hits, count);
+  check_cuda(cudaGetLastError(), "casting rays");
+}
+
+void launch_any_hits(const SvdagView& dag, const CastRay* rays, std::uint8_t* hits,
+                     std::uint32_t count, cudaStream_t stream) {
+  if (count == 0) return;
+  any_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(SvdagNodes(dag), rays, hits, count);
   check_cuda(cudaGetLastError(), "casting rays");
 }
 

@@ -1,16 +1,24 @@
 #pragma once
-/// The kernels of trace_batch.
+/// The kernels that cast rays from an array. All pointers are the device's.
 #include <cuda_runtime_api.h>
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
+#include "voxdag/trace/scalar_caster.hpp"
 
 namespace voxdag {
 
-/// hits[i] becomes the first voxel along rays[i], i < count. All pointers are the device's.
+/// hits[i] becomes the first voxel along rays[i], i < count.
 void launch_closest_hits(const SvdagView& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream);
+
+/// hits[i] tells whether rays[i] met anything, cells[i] what it met first.
+void launch_closest_cells(const SvdagView& dag, const CastRay* rays, CellHit* cells,
+                          std::uint8_t* hits, std::uint32_t count, cudaStream_t stream);
+/// Without what it met.
+void launch_any_hits(const SvdagView& dag, const CastRay* rays, std::uint8_t* hits,
+                     std::uint32_t count, cudaStream_t stream);
 
 }  // namespace voxdag
