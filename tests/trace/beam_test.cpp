@@ -10,7 +10,7 @@
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxel_sets.hpp"
+#include "support/voxel_sets.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "reference_dda.hpp"
 #include "support/brute_svdag.hpp"
-#include "test_rays.hpp"
+#include "support/test_rays.hpp"
+#include "support/voxel_sets.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxel_sets.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "voxdag/core/morton.hpp"
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/primary_beams.hpp"
@@ -67,7 +68,7 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
   RenderPlan plan(dag, grid, options);
   RenderSetup setup = plan.setup();
   const SvdagNodes nodes(dag);
-  const ScalarCaster<SvdagNodes> caster(nodes);
+  const PacketCaster caster(nodes);
   std::vector<float> beam_starts;
   if (options.beams && source == nullptr) {
     beam_starts = cast_beams(nodes, setup);

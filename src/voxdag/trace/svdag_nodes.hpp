@@ -36,6 +36,15 @@ class SvdagNodes {
     return nonzero_bytes(leaf_blocks_[node]);
   }
 
+  /// What child_mask() and block() will read; `level` is at most L-2.
+  VOXDAG_HD const void* address(Node node, int level) const {
+    if (level < levels_ - 2) return nodes_ + node;
+    return leaf_blocks_ + node;
+  }
+
+  /// The 4³ voxels of node `node` of level L-2.
+  VOXDAG_HD std::uint64_t block(Node node) const { return leaf_blocks_[node]; }
+
   VOXDAG_HD Node child(Node node, int level, int index) const {
     if (level < levels_ - 2) return child_pointer(nodes_ + node, index);
     return static_cast<Node>(leaf_blocks_[node] >> (8 * index) & 0xFFu);

@@ -1,0 +1,72 @@
+#pragma once
+/// How the traversal reads the wide layout (layout/wide_svdag.hpp).
+///
+/// A wide layout for cast() is a type with
+///   kIsWide             true
+///   is_empty()          no voxels at all
+///   levels()            L
+///   root()              the word index of the root; not called on an empty DAG
+///   mask(n)             the 64-bit mask of wide node or leaf block n
+///   child(n, m, c)      the child at bit c, which is set in n's mask m
+#include "voxdag/layout/wide_svdag.hpp"
+
+namespace voxdag {
+
+class WideNodes {
+ public:
+  using Node = std::uint32_t;
+  static constexpr bool kIsWide = true;
+
+  VOXDAG_HD explicit WideNodes(const WideSvdagView& dag)
+      : words_(dag.words), root_(dag.root), levels_(dag.levels), is_empty_(dag.is_empty()) {}
+
+  VOXDAG_HD bool is_empty() const { return is_empty_; }
+  VOXDAG_HD int levels() const { return levels_; }
+  VOXDAG_HD Node root() const { return root_; }
+  VOXDAG_HD const std::uint32_t* words() const { return words_; }
+
+  VOXDAG_HD std::uint64_t mask(Node node) const {
+    return words_[node] | static_cast<std::uint64_t>(words_[node + 1]) << 32;
+  }
+  VOXDAG_HD Node child(Node node, std::uint64_t mask, std::uint32_t cell) const {
+    const std::uint64_t below = (std::uint64_t{1} << cell) - 1;
+    return words_[node + 2 + static_cast<std::uint32_t>(popcount64(mask & below))];
+  }
+
+ private:
+  const std::uint32_t* words_;
+  std::uint32_t root_;
+  int levels_;
+  bool is_empty_;
+};
+
+/// A layout that cast() walks in steps of two levels.
+template <class Nodes>
+concept WideLayout = Nodes::kIsWide;
+
+/// Where a wide walk's nodes lie: with L levels, cells of the leaf blocks are voxels.
+struct WideLevels {
+  int leaf_bit;  ///< The position bit in which neighbouring voxels differ.
+  int root_bit;  ///< Likewise for the root's cells.
+
+  VOXDAG_HD explicit WideLevels(int levels)
+      : leaf_bit(23 - levels), root_bit(leaf_bit + 2 * ((levels + 1) / 2 - 1)) {}
+};
+
+/// Most wide nodes on a way from the root to a voxel.
+inline constexpr int kMaxWideDepth = (kMaxLevels + 1) / 2;
+
+/// The four cells of a wide node's octant, as bits of one 32-bit half of its mask; shifted by the
+/// octant's x and y.
+inline constexpr std::uint32_t kOctantCells = 0x00330033u;
+
+/// XORed to the cell of a mirrored position, gives the cell of the mask.
+VOXDAG_HD constexpr std::uint32_t wide_mirror(std::uint32_t mirrored) {
+  return (mirrored & 1u) * 3 | (mirrored >> 1 & 1u) * 12 | (mirrored >> 2 & 1u) * 48;
+}
+
+/// The position bits that change where a step leaves the node with cells of size 1 << bit, or the
+/// grid (which may be an octant of the root).
+VOXDAG_HD constexpr std::uint32_t leaves_node(int bit) { return ~3u << bit | ~0u << 23; }
+
+}  // namespace voxdag
