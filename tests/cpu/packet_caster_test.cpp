@@ -99,6 +99,29 @@ TEST(PacketCaster, EndsAtTheSameLevelOfDetail) {
   }
 }
 
+TEST(PacketCaster, RaysThatStartOnTheirWayEndAtTheSameLevelOfDetail) {
+  const int levels = 7;
+  Grid grid;
+  grid.levels = levels;
+  std::vector<CastRay> rays;
+  // Bundles, as beams shorten them: all start after some way, close together.
+  for (int bundle = 0; bundle < 200; ++bundle) {
+    const double a = bundle * 0.7, b = bundle * 0.31;
+    const Vec3d eye{64 + 50 * std::sin(a), 64 + 40 * std::cos(b), 64 + 30 * std::sin(a + b)};
+    for (int i = 0; i < 64; ++i) {
+      const Vec3d direction{std::cos(a) + 0.002 * (i % 8), std::sin(b) + 0.002 * (i / 8), 0.3};
+      CastRay ray;
+      ray.ray = make_grid_ray(grid, eye, direction, bundle % 40, HUGE_VAL);
+      ray.stop = stop_below_size(grid, ray.ray, 0.01 * (bundle % 7));
+      rays.push_back(ray);
+    }
+  }
+  for (const NamedVoxels& set : voxel_sets(levels, 9)) {
+    const Svdag dag = brute_svdag(levels, set.voxels);
+    expect_same_results(SvdagNodes(dag.view()), rays, set.name);
+  }
+}
+
 // As occlusion casts them: many short rays from one point, packed into the same packets.
 TEST(PacketCaster, ShortRaysOfOnePointMeetTheSame) {
   const int levels = 7;

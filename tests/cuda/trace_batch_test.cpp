@@ -4,7 +4,7 @@
 
 #include "cuda/cuda_device.hpp"
 #include "support/brute_svdag.hpp"
-#include "trace/test_rays.hpp"
+#include "support/test_rays.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 
 namespace voxdag {

@@ -115,6 +115,7 @@ class PacketWalk {
   std::uint32_t children_met_by_hull(const std::uint32_t corner[3], int level) const;
   bool is_narrow(const std::uint32_t corner[3], int level) const;
   void common_cells(CommonCell& starts, CommonCell& reach, int finest) const;
+  int finest_without_stop() const;
   std::size_t begin(Rays all, Visit* stack) const;
   template <bool kWithStop>
   Rays walk(Rays all);
@@ -145,6 +146,7 @@ class PacketWalk {
   RayPacket& packet_;
   /// Least and greatest of all rays, by axis, then of t_min and t_end.
   float origin_range_[3][2], inverse_range_[3][2], t_range_[2];
+  float last_t_min_, stop_range_[2];    ///< The greatest; of stop_start and stop_per_t.
   float width_at_start_, width_per_t_;  ///< About how far apart the rays are at T.
 };
 
@@ -187,6 +189,12 @@ inline void PacketWalk::bound() {
   range(packet_.t_end, most);
   t_range_[0] = least[0];
   t_range_[1] = most[1];
+  last_t_min_ = least[1];
+  if (!packet_.has_stop) return;
+  range(packet_.stop_start, least);
+  range(packet_.stop_per_t, most);
+  stop_range_[0] = least[1];
+  stop_range_[1] = most[1];
 }
 
 /// Whether the rays are close together for the children of this node: not worth telling apart.
@@ -284,10 +292,23 @@ inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int 
   finish(reach, reach_differs);
 }
 
+/// The finest level above the blocks down to which no ray may end at the cell where it starts: it
+/// leaves a cell of this side no later than at t_min + side, as T grows by 1 across the grid.
+inline int PacketWalk::finest_without_stop() const {
+  int level = 0;
+  for (; level < nodes_.levels() - 2; ++level) {
+    if (level + 1 < packet_.coarsest) continue;
+    const float side = float_from_bits(static_cast<std::uint32_t>(126 - level) << 23);
+    const float leaves = last_t_min_ + side;
+    if (side <= (stop_range_[0] + stop_range_[1] * leaves) * (1 + 0x1p-10f)) break;
+  }
+  return level;
+}
+
 /// Puts the nodes to visit first on the stack; returns how many.
 inline std::size_t PacketWalk::begin(Rays all, Visit* stack) const {
   CommonCell starts, reach;
-  common_cells(starts, reach, nodes_.levels() - 2);
+  common_cells(starts, reach, packet_.has_stop ? finest_without_stop() : nodes_.levels() - 2);
   std::size_t top = 0;
   std::uint32_t node = nodes_.root();
   for (int level = 0;; ++level) {

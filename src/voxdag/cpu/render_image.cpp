@@ -77,9 +77,12 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
 
   const auto find = [&](const ViewTile& tile, Scratch& scratch) {
     if (source == nullptr) return trace_view_samples(nodes, caster, setup, tile, scratch);
-    const auto pixels =
-        static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
-    find_source_samples(*source, setup, tile, {scratch.samples, pixels});
+    const auto pixels = static_cast<std::size_t>(tile.pixels());
+    std::vector<ViewSample> rows(pixels);
+    find_source_samples(*source, setup, tile, rows);
+    for (int pixel = 0; pixel < tile.pixels(); ++pixel)
+      scratch.samples[pixel] =
+          rows[static_cast<std::size_t>(tile.row(pixel) * tile.width + tile.column(pixel))];
     return static_cast<int>(pixels);
   };
 

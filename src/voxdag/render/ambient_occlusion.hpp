@@ -45,7 +45,7 @@ VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& se
     scratch.active[active++] = pixel;
     scratch.open[pixel] = 0;
     scratch.pixels[pixel] =
-        pixel_samples(setup.tables, tile.x + pixel % tile.width, tile.y + pixel / tile.width, 0);
+        pixel_samples(setup.tables, tile.x + tile.column(pixel), tile.y + tile.row(pixel), 0);
   }
   caster.any(
       active * rays,

@@ -27,8 +27,8 @@ VOXDAG_HD inline int find_shadowed_pixels(const Nodes& nodes, const RenderSetup&
   for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
     const SurfacePoint& point = scratch.points[pixel];
     if (!point.is_hit()) continue;
-    scratch.pixels[pixel] = pixel_samples(setup.tables, tile.x + pixel % tile.width,
-                                          tile.y + pixel / tile.width, 1 + index);
+    scratch.pixels[pixel] = pixel_samples(setup.tables, tile.x + tile.column(pixel),
+                                          tile.y + tile.row(pixel), 1 + index);
     scratch.lit[pixel] = scratch.unhindered[pixel] = 0;
     scratch.visible[pixel] = ~std::uint64_t{0};
     if (!setup.settings.shadows) continue;

@@ -32,7 +32,7 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
   const ImageBuffers& image = setup.image;
   const float share = 1.0f / static_cast<float>(settings.samples_per_pixel);
   for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
-    const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+    const int x = tile.x + tile.column(pixel), y = tile.y + tile.row(pixel);
     const std::size_t at =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(setup.camera.width) +
         static_cast<std::size_t>(x);

@@ -10,6 +10,24 @@ struct ViewTile {
   int width = 0, height = 0;  ///< Pixels; the tile lies within the picture.
   int sample_index = 0;       ///< Which of a pixel's samples.
   double dx = 0.5, dy = 0.5;  ///< In [0,1): the sample of pixel (i,j) is at (i + dx, j + dy).
+
+  /// Pixels are numbered down the columns of strips of 8 rows, so that any 8, 64 or so that follow
+  /// one another lie close together: their rays are cast together.
+  VOXDAG_HD constexpr int pixels() const { return width * height; }
+  VOXDAG_HD constexpr int column(int pixel) const {
+    return pixel % (kStripRows * width) / strip_height(pixel);
+  }
+  VOXDAG_HD constexpr int row(int pixel) const {
+    return strip(pixel) * kStripRows + pixel % (kStripRows * width) % strip_height(pixel);
+  }
+
+ private:
+  static constexpr int kStripRows = 8;
+  VOXDAG_HD constexpr int strip(int pixel) const { return pixel / (kStripRows * width); }
+  VOXDAG_HD constexpr int strip_height(int pixel) const {
+    const int left = height - strip(pixel) * kStripRows;
+    return left < kStripRows ? left : kStripRows;
+  }
 };
 
 /// Pixels along the side of a beam, and of the beam that starts it off.

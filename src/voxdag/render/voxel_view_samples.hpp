@@ -10,13 +10,13 @@ namespace voxdag {
 
 /// The direction in which the camera sees a pixel of the tile; its t is depth.
 VOXDAG_HD inline Vec3d pixel_direction(const RenderSetup& setup, const ViewTile& tile, int pixel) {
-  const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
-  return setup.camera.direction(x + tile.dx, y + tile.dy);
+  return setup.camera.direction(tile.x + tile.column(pixel) + tile.dx,
+                                tile.y + tile.row(pixel) + tile.dy);
 }
 
 /// The primary ray of a tile's pixel.
 VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& tile, int pixel) {
-  const int x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+  const int x = tile.x + tile.column(pixel), y = tile.y + tile.row(pixel);
   double t_min = 0;
   if (setup.beam_starts != nullptr) {
     t_min = static_cast<double>(setup.beam_starts[beam_index(setup.camera.width, x, y)]);
