@@ -59,7 +59,7 @@ done
 # bench NAME FILE.vdag MESH
 bench() {
   echo "== $1"
-  voxdag bench trace "$2" --mesh "$3" --device cuda --layout paper --size 1920x1080 --rays 8000000 \
+  voxdag bench trace "$2" --mesh "$3" --device cuda --layout paper,wide --size 1920x1080 --rays 8000000 \
     -o "$folder/$1.json"
 }
 mkdir -p "$folder"

@@ -149,10 +149,6 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
                  TraceResults& results) {
   constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
   results.threads = tbb::this_task_arena::max_concurrency();
-  const std::optional<DeviceSvdag> device_dag = load_on_device(plan.device, scene.dag);
-  if (device_dag) results.cuda_device = device_dag->device().name;
-  if (device_dag && plan.layouts != std::vector<std::string>{"paper"})
-    throw Error("--device cuda", "", "casts at the layout \"paper\" alone");
   const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
   const std::vector<View> views = bench_views(scene.dag, scene.grid, aspect, plan.views);
   std::optional<EmbreeRival> embree;
@@ -160,6 +156,11 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   std::vector<std::unique_ptr<TraceLayout>> layouts;
   for (const std::string& name : plan.layouts)
     layouts.push_back(make_trace_layout(name, scene.dag));
+  std::vector<std::optional<DeviceSvdag>> device_dags;
+  for (const auto& layout : layouts) {
+    device_dags.push_back(load_on_device(plan.device, scene.dag, layout->device_layout()));
+    if (device_dags.back()) results.cuda_device = device_dags.back()->device().name;
+  }
   std::optional<OpenVdbRival> openvdb;
   if (!plan.openvdb_program.empty() && !scene.file.empty()) openvdb.emplace();
   std::vector<OpenVdbSet> openvdb_sets;
@@ -186,10 +187,10 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
         TraceRunner ours = layouts[i]->runner(rays, casts);
         if (with_beams) ours.before = [&beams] { beams.run(); };
         std::vector<TraceRunner> others = rivals;
-        if (device_dag) {
+        if (device_dags[i]) {
           others.push_back(ours);
           others.back().name = "voxdag_cpu";
-          ours = cuda_runner(*device_dag, rays, casts, with_beams ? &beams.setup() : nullptr);
+          ours = cuda_runner(*device_dags[i], rays, casts, with_beams ? &beams.setup() : nullptr);
         }
         measure_set(*layouts[i], ours, casts, others, plan.repeat,
                     sums[i][static_cast<std::size_t>(rays)]);

@@ -23,7 +23,8 @@ void add_device_option(CLI::App& command, DeviceChoice& choice);
 /// The DAG in the memory of the CUDA device that was asked for; nothing where the CPU is to work:
 /// with "auto" also where there is no device, or not enough memory on it. `dag` must outlive it.
 /// Throws Error where CUDA was asked for and cannot be.
-std::optional<DeviceSvdag> load_on_device(const DeviceChoice& choice, const SvdagView& dag);
+std::optional<DeviceSvdag> load_on_device(const DeviceChoice& choice, const SvdagView& dag,
+                                          DeviceLayout layout = DeviceLayout::kPaper);
 
 /// "the CPU" or the device's name, for people.
 std::string device_name(const std::optional<DeviceSvdag>& dag);

@@ -4,6 +4,7 @@
 #include "voxdag/trace/counting_nodes.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {
 namespace {
@@ -49,35 +50,83 @@ class ByteCountingNodes : public SvdagNodes {
   std::uint64_t *steps_, *bytes_;
 };
 
+/// The mean of what `nodes` counts in `steps` and `read` while the rays are cast.
+template <class Nodes>
+WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::uint64_t& steps,
+                 const std::uint64_t& read) {
+  for (const CastRay& ray : casts) {
+    CellHit cell;
+    cast(nodes, ray.ray, ray.stop, cell);
+  }
+  const auto count = static_cast<double>(casts.size());
+  return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
+}
+
 class PaperLayout : public TraceLayout {
  public:
   explicit PaperLayout(const SvdagView& dag) : dag_(dag) {}
 
   std::uint64_t bytes() const override { return dag_.bytes(); }
+  DeviceLayout device_layout() const override { return DeviceLayout::kPaper; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
     return runner_of(ScalarCaster<SvdagNodes>(SvdagNodes(dag_)), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;
     const ByteCountingNodes nodes(SvdagNodes(dag_), steps, read);
-    for (const CastRay& ray : casts) {
-      CellHit cell;
-      cast(nodes, ray.ray, ray.stop, cell);
-    }
-    const auto count = static_cast<double>(casts.size());
-    return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
+    return cost_of(nodes, casts, steps, read);
   }
 
  private:
   SvdagView dag_;
 };
 
+/// The same for the wide layout.
+class ByteCountingWideNodes : public WideNodes {
+ public:
+  ByteCountingWideNodes(const WideNodes& nodes, std::uint64_t& steps, std::uint64_t& bytes)
+      : WideNodes(nodes), steps_(&steps), bytes_(&bytes) {}
+
+  void on_step() const { ++*steps_; }
+  std::uint64_t mask(Node node) const {
+    *bytes_ += 8;
+    return WideNodes::mask(node);
+  }
+  Node child(Node node, std::uint64_t mask, std::uint32_t cell) const {
+    *bytes_ += 4;
+    return WideNodes::child(node, mask, cell);
+  }
+
+ private:
+  std::uint64_t *steps_, *bytes_;
+};
+
+class Wide : public TraceLayout {
+ public:
+  explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}
+
+  std::uint64_t bytes() const override { return dag_.view().bytes(); }
+  DeviceLayout device_layout() const override { return DeviceLayout::kWide; }
+  TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
+    return runner_of(ScalarCaster<WideNodes>(WideNodes(dag_.view())), rays, casts);
+  }
+  WalkCost cost(std::span<const CastRay> casts) const override {
+    std::uint64_t steps = 0, read = 0;
+    const ByteCountingWideNodes nodes(WideNodes(dag_.view()), steps, read);
+    return cost_of(nodes, casts, steps, read);
+  }
+
+ private:
+  WideSvdag dag_;
+};
+
 }  // namespace
 
-std::vector<std::string> trace_layouts() { return {"paper"}; }
+std::vector<std::string> trace_layouts() { return {"paper", "wide"}; }
 
 std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const SvdagView& dag) {
   if (name == "paper") return std::make_unique<PaperLayout>(dag);
+  if (name == "wide") return std::make_unique<Wide>(dag);
   throw Error("there is no layout \"" + name + "\"");
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trace_rivals.hpp"
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/cuda/device_dag.hpp"
 
 namespace voxdag {
 
@@ -21,6 +21,7 @@ class TraceLayout {
   virtual ~TraceLayout() = default;
 
   virtual std::uint64_t bytes() const = 0;
+  virtual DeviceLayout device_layout() const = 0;  ///< The same on a CUDA device.
   /// Casts with the fastest caster of the layout. `casts` must outlive the runner.
   virtual TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const = 0;
   virtual WalkCost cost(std::span<const CastRay> casts) const = 0;

@@ -36,11 +36,12 @@ void expect_like(const RenderedImage& image, const RenderedImage& expected) {
 
 TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForEveryEffect) {
   const Svdag dag = picture_scene();
-  const DeviceSvdag device_dag(device_, dag.view());
+  const DeviceSvdag paper(device_, dag.view()), wide(device_, dag.view(), DeviceLayout::kWide);
   for (const Picture& picture : pictures(4)) {
     SCOPED_TRACE(picture.name);
-    expect_like(render_image(device_dag, picture_grid(), picture.options),
-                render_image(dag.view(), picture_grid(), picture.options));
+    const RenderedImage expected = render_image(dag.view(), picture_grid(), picture.options);
+    expect_like(render_image(paper, picture_grid(), picture.options), expected);
+    expect_like(render_image(wide, picture_grid(), picture.options), expected);
   }
 }
 

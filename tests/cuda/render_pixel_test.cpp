@@ -11,6 +11,7 @@
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/source_view_samples.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {
 namespace {
@@ -29,8 +30,10 @@ std::vector<ViewSample> samples_of(const ViewSource& source, const RenderSetup& 
 }
 
 /// As the device does it, in launches of a few blocks.
-RenderedImage render_as_device(const SvdagView& dag, const Grid& grid, const RenderOptions& options,
-                               const ViewSource* source) {
+template <class Caster>
+RenderedImage render_as_device(const SvdagView& dag, const Caster& caster,
+                               const RenderOptions& options, const ViewSource* source) {
+  const Grid grid = picture_grid();
   RenderPlan plan(dag, grid, options);
   RenderSetup setup = plan.setup();
   const SvdagNodes nodes(dag);
@@ -52,8 +55,8 @@ RenderedImage render_as_device(const SvdagView& dag, const Grid& grid, const Ren
     for (std::uint32_t block = range->first_block; block < range->last_block; ++block)
       for (std::uint32_t thread = 0; thread < kBlockPixels; ++thread)
         plan.image().rays +=
-            render_pixel(nodes, ScalarCaster<SvdagNodes>(nodes), setup, *range,
-                         source == nullptr ? nullptr : samples.data(), block, thread);
+            render_pixel(nodes, caster, setup, *range, source == nullptr ? nullptr : samples.data(),
+                         block, thread);
   }
   return plan.finish();
 }
@@ -83,11 +86,15 @@ TEST(RenderPixel, ThreadsCoverTheirBlockInWarpsOfEightByFour) {
 
 TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
   const Svdag dag = picture_scene();
+  const WideSvdag wide_dag = make_wide_svdag(dag.view());
+  const ScalarCaster paper(SvdagNodes(dag.view()));
+  const ScalarCaster wide(WideNodes(wide_dag.view()));
   for (Picture& picture : pictures(1)) {
     SCOPED_TRACE(picture.name);
     picture.options.with_steps = false;  // another kernel's
-    expect_equal(render_as_device(dag.view(), picture_grid(), picture.options, nullptr),
-                 render_image(dag.view(), picture_grid(), picture.options));
+    const RenderedImage expected = render_image(dag.view(), picture_grid(), picture.options);
+    expect_equal(render_as_device(dag.view(), paper, picture.options, nullptr), expected);
+    expect_equal(render_as_device(dag.view(), wide, picture.options, nullptr), expected);
   }
 }
 
@@ -96,7 +103,8 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForPointsFromASource) {
   RenderOptions options = pictures(1)[0].options;
   options.samples_per_pixel = 2;
   const PlaneSource source;
-  expect_equal(render_as_device(dag.view(), picture_grid(), options, &source),
+  const ScalarCaster caster(SvdagNodes(dag.view()));
+  expect_equal(render_as_device(dag.view(), caster, options, &source),
                render_image(dag.view(), picture_grid(), options, nullptr, &source));
 }
 

@@ -17,10 +17,10 @@ constexpr const char* kReason = "this program was built without CUDA";
 
 CudaDevices cuda_devices() { return {{}, kReason}; }
 
-DeviceSvdag::DeviceSvdag(const CudaDevice&, const SvdagView&) { refuse(); }
+DeviceSvdag::DeviceSvdag(const CudaDevice&, const SvdagView&, DeviceLayout) { refuse(); }
 const CudaDevice& DeviceSvdag::device() const { refuse(); }
 const SvdagView& DeviceSvdag::host() const { refuse(); }
-const SvdagView& DeviceSvdag::view() const { refuse(); }
+const DeviceDag& DeviceSvdag::view() const { refuse(); }
 void DeviceSvdag::make_current() const { refuse(); }
 
 struct CudaTracer::State {};

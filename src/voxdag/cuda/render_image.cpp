@@ -63,7 +63,7 @@ void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& s
   });
 }
 
-void render_pixels(const SvdagView& dag, const DeviceFrame& frame, const CudaStream& stream,
+void render_pixels(const DeviceDag& dag, const DeviceFrame& frame, const CudaStream& stream,
                    Progress* progress, const ViewSource* source) {
   const RenderSetup& setup = frame.setup();
   const bool has_source = source != nullptr;
@@ -116,12 +116,12 @@ RenderedImage render_image(const DeviceSvdag& dag, const Grid& grid, const Rende
   const CudaStream stream;
   if (with_beams)
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
-      launch_beams(dag.view(), setup, first, last, frame.beam_starts(), stream.get());
+      launch_beams(dag.view().paper, setup, first, last, frame.beam_starts(), stream.get());
     });
   render_pixels(dag.view(), frame, stream, progress, source);
   if (options.with_steps)
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
-      launch_steps(dag.view(), setup, first, last, stream.get());
+      launch_steps(dag.view().paper, setup, first, last, stream.get());
     });
   frame.copy_to(plan.image());
   return plan.finish();

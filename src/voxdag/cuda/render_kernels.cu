@@ -1,8 +1,8 @@
 #include "voxdag/cuda/check.hpp"
 #include "voxdag/cuda/render_kernels.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
+#include "voxdag/cuda/with_nodes.hpp"
 #include "voxdag/render/count_steps.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -72,11 +72,12 @@ void launch_steps(const SvdagView& dag, const RenderSetup& setup, std::uint32_t 
   check_cuda(cudaGetLastError(), "counting steps");
 }
 
-void launch_render(const SvdagView& dag, const RenderSetup& setup, const LaunchRange& range,
+void launch_render(const DeviceDag& dag, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
-  const SvdagNodes nodes(dag);
-  render_kernel<<<range.last_block - range.first_block, kBlockPixels, 0, stream>>>(
-      nodes, ScalarCaster<SvdagNodes>(nodes), setup, range, view_samples, rays);
+  with_nodes(dag, [&](const auto& nodes) {
+    render_kernel<<<range.last_block - range.first_block, kBlockPixels, 0, stream>>>(
+        SvdagNodes(dag.paper), ScalarCaster(nodes), setup, range, view_samples, rays);
+  });
   check_cuda(cudaGetLastError(), "rendering");
 }
 

@@ -2,8 +2,8 @@
 /// The kernels of render_image. All pointers are the device's; `setup` has such ones only.
 #include <cuda_runtime_api.h>
 
+#include "voxdag/cuda/device_dag.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
-#include "voxdag/layout/svdag.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/view_sample.hpp"
 
@@ -18,7 +18,7 @@ void launch_steps(const SvdagView& dag, const RenderSetup& setup, std::uint32_t 
                   std::uint32_t last, cudaStream_t stream);
 
 /// render_pixel() for all pixels of the range; adds the number of rays to `*rays`.
-void launch_render(const SvdagView& dag, const RenderSetup& setup, const LaunchRange& range,
+void launch_render(const DeviceDag& dag, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
 
 }  // namespace voxdag

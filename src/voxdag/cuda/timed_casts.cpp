@@ -79,7 +79,7 @@ TimedBeams::TimedBeams(const DeviceSvdag& dag, const RenderSetup& setup) {
 double TimedBeams::run() const {
   state_->dag.make_current();
   return seconds_of("casting beams", [&](cudaStream_t stream) {
-    launch_beams(state_->dag.view(), state_->setup, 0,
+    launch_beams(state_->dag.view().paper, state_->setup, 0,
                  static_cast<std::uint32_t>(state_->starts.size() / 4), state_->starts.data(),
                  stream);
   });

@@ -1,7 +1,6 @@
 #include "voxdag/cuda/check.hpp"
 #include "voxdag/cuda/trace_kernels.hpp"
-#include "voxdag/trace/cast.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/cuda/with_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,26 +40,31 @@ std::uint32_t blocks_of(std::uint32_t count) { return (count + kThreads - 1) / k
 
 }  // namespace
 
-void launch_closest_hits(const SvdagView& dag, const Grid& grid, const Ray* rays, Hit* hits,
+void launch_closest_hits(const DeviceDag& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  closest_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(SvdagNodes(dag), grid, rays, hits,
-                                                                 count);
+  with_nodes(dag, [&](const auto& nodes) {
+    closest_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(nodes, grid, rays, hits, count);
+  });
   check_cuda(cudaGetLastError(), "casting rays");
 }
 
-void launch_closest_cells(const SvdagView& dag, const CastRay* rays, CellHit* cells,
+void launch_closest_cells(const DeviceDag& dag, const CastRay* rays, CellHit* cells,
                           std::uint8_t* hits, std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  closest_cells_kernel<<<blocks_of(count), kThreads, 0, stream>>>(SvdagNodes(dag), rays, cells,
-                                                                  hits, count);
+  with_nodes(dag, [&](const auto& nodes) {
+    closest_cells_kernel<<<blocks_of(count), kThreads, 0, stream>>>(nodes, rays, cells, hits,
+                                                                    count);
+  });
   check_cuda(cudaGetLastError(), "casting rays");
 }
 
-void launch_any_hits(const SvdagView& dag, const CastRay* rays, std::uint8_t* hits,
+void launch_any_hits(const DeviceDag& dag, const CastRay* rays, std::uint8_t* hits,
                      std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  any_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(SvdagNodes(dag), rays, hits, count);
+  with_nodes(dag, [&](const auto& nodes) {
+    any_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(nodes, rays, hits, count);
+  });
   check_cuda(cudaGetLastError(), "casting rays");
 }
 

@@ -48,6 +48,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   refine(bit);
 
   for (;;) {
+    if constexpr (requires { nodes.on_step(); }) nodes.on_step();
     const std::uint32_t cell =
         ((x >> bit & 3u) | (y >> bit & 3u) << 2 | (z >> bit & 3u) << 4) ^ mirror;
     const auto half = static_cast<std::uint32_t>(mask >> (cell & 32u));
