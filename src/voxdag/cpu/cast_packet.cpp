@@ -146,6 +146,7 @@ class PacketWalk {
   RayPacket& packet_;
   /// Least and greatest of all rays, by axis, then of t_min and t_end.
   float origin_range_[3][2], inverse_range_[3][2], t_range_[2];
+  int stop_level_;  ///< Rays that may end above the voxels do so at this level or finer ones.
   float last_t_min_, stop_range_[2];    ///< The greatest; of stop_start and stop_per_t.
   float width_at_start_, width_per_t_;  ///< About how far apart the rays are at T.
 };
@@ -195,6 +196,10 @@ inline void PacketWalk::bound() {
   range(packet_.stop_per_t, most);
   stop_range_[0] = least[1];
   stop_range_[1] = most[1];
+  // T is at most 1 in the grid.
+  const float limit = (stop_range_[0] + stop_range_[1]) * (1 + 0x1p-10f);
+  for (stop_level_ = packet_.coarsest; stop_level_ < nodes_.levels(); ++stop_level_)
+    if (float_from_bits(static_cast<std::uint32_t>(127 - stop_level_) << 23) <= limit) break;
 }
 
 /// Whether the rays are close together for the children of this node: not worth telling apart.
@@ -297,7 +302,7 @@ inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int 
 inline int PacketWalk::finest_without_stop() const {
   int level = 0;
   for (; level < nodes_.levels() - 2; ++level) {
-    if (level + 1 < packet_.coarsest) continue;
+    if (level + 1 < stop_level_) continue;
     const float side = float_from_bits(static_cast<std::uint32_t>(126 - level) << 23);
     const float leaves = last_t_min_ + side;
     if (side <= (stop_range_[0] + stop_range_[1] * leaves) * (1 + 0x1p-10f)) break;
@@ -505,9 +510,8 @@ inline PacketWalk::Rays PacketWalk::walk(Rays all) {
     ChildRays children;
     std::uint32_t met;
     const std::uint32_t child_level = visit.level + 1;
-    const bool with_stop = kWithStop &&
-                           child_level >= static_cast<std::uint32_t>(packet_.coarsest) &&
-                           child_level < levels;
+    const bool with_stop =
+        kWithStop && child_level >= static_cast<std::uint32_t>(stop_level_) && child_level < levels;
     if (!with_stop && (rays >> (2 * kWidth - 1) >> 1) != 0 && child_level < levels &&
         is_narrow(visit.corner, level)) {
       met = children_met_by_hull(visit.corner, level) & mask;
@@ -558,7 +562,7 @@ inline PacketWalk::Rays PacketWalk::cast() {
   pad();
   bound();
   const Rays all = packet_.size == RayPacket::kMaxRays ? ~Rays{0} : (Rays{1} << packet_.size) - 1;
-  return packet_.has_stop ? walk<true>(all) : walk<false>(all);
+  return packet_.has_stop && stop_level_ < nodes_.levels() ? walk<true>(all) : walk<false>(all);
 }
 
 std::uint64_t cast_packet_simd(const SvdagNodes& nodes, RayPacket& packet) {
