@@ -7,7 +7,7 @@
 
 #include "cuda/pictures.hpp"
 #include "voxdag/cpu/render_image.hpp"
-#include "voxdag/render/primary_beams.hpp"
+#include "voxdag/cuda/beam_start.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/source_view_samples.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
@@ -41,9 +41,8 @@ RenderedImage render_as_device(const SvdagView& dag, const Caster& caster,
   if (options.beams && source == nullptr) {
     starts.resize(static_cast<std::size_t>(beams_across(options.width)) *
                   static_cast<std::size_t>(beams_across(options.height)));
-    for (int y = 0; y < options.height; y += kCoarseBeamPixels)
-      for (int x = 0; x < options.width; x += kCoarseBeamPixels)
-        set_beam_starts(nodes, setup, x, y, starts.data());
+    for (std::uint32_t i = 0; i < starts.size(); ++i)
+      set_beam_start(nodes, setup, i, starts.data());
     setup.beam_starts = starts.data();
   }
   const int max_samples = source == nullptr ? options.samples_per_pixel : 1;
@@ -69,6 +68,22 @@ void expect_equal(const RenderedImage& image, const RenderedImage& expected) {
   EXPECT_EQ(image.occlusion, expected.occlusion);
   EXPECT_EQ(image.shadow, expected.shadow);
   EXPECT_EQ(image.rays, expected.rays);
+}
+
+TEST(RenderPixel, BeamsOfThreadsAreThoseOfTheCpu) {
+  const Svdag dag = picture_scene();
+  const RenderPlan plan(dag.view(), picture_grid(), pictures(1)[0].options);
+  const Camera& camera = plan.setup().camera;
+  const SvdagNodes nodes(dag.view());
+  std::vector<float> expected(static_cast<std::size_t>(beams_across(camera.width)) *
+                              static_cast<std::size_t>(beams_across(camera.height)));
+  for (int y = 0; y < camera.height; y += kCoarseBeamPixels)
+    for (int x = 0; x < camera.width; x += kCoarseBeamPixels)
+      set_beam_starts(nodes, plan.setup(), x, y, expected.data());
+  std::vector<float> starts(expected.size());
+  for (std::uint32_t i = 0; i < starts.size(); ++i)
+    set_beam_start(nodes, plan.setup(), i, starts.data());
+  EXPECT_EQ(starts, expected);
 }
 
 TEST(RenderPixel, ThreadsCoverTheirBlockInWarpsOfEightByFour) {

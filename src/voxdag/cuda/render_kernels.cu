@@ -1,3 +1,4 @@
+#include "voxdag/cuda/beam_start.hpp"
 #include "voxdag/cuda/check.hpp"
 #include "voxdag/cuda/render_kernels.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
@@ -9,26 +10,12 @@ namespace {
 
 constexpr std::uint32_t kBeamThreads = 64;
 
-/// The top left pixel of coarse beam i.
-struct BeamCorner {
-  int x, y;
-
-  __device__ BeamCorner(int width, std::uint32_t i) {
-    const std::uint32_t across =
-        static_cast<std::uint32_t>((width + kCoarseBeamPixels - 1) / kCoarseBeamPixels);
-    x = static_cast<int>(i % across) * kCoarseBeamPixels;
-    y = static_cast<int>(i / across) * kCoarseBeamPixels;
-  }
-};
-
 template <class Nodes>
 __global__ void __launch_bounds__(kBeamThreads)
     beams_kernel(Nodes nodes, const __grid_constant__ RenderSetup setup, std::uint32_t first,
                  std::uint32_t last, float* starts) {
-  const std::uint32_t i = first + blockIdx.x * kBeamThreads + threadIdx.x;
-  if (i >= last) return;
-  const BeamCorner at(setup.camera.width, i);
-  set_beam_starts(nodes, setup, at.x, at.y, starts);
+  const std::uint32_t i = 4 * first + blockIdx.x * kBeamThreads + threadIdx.x;
+  if (i < 4 * last) set_beam_start(nodes, setup, i, starts);
 }
 
 template <class Nodes>
@@ -37,8 +24,10 @@ __global__ void __launch_bounds__(kBeamThreads)
                  std::uint32_t last) {
   const std::uint32_t i = first + blockIdx.x * kBeamThreads + threadIdx.x;
   if (i >= last) return;
-  const BeamCorner at(setup.camera.width, i);
-  count_steps(nodes, setup, at.x, at.y);
+  const auto across = static_cast<std::uint32_t>(beams_across(setup.camera.width) * kBeamPixels /
+                                                 kCoarseBeamPixels);
+  count_steps(nodes, setup, static_cast<int>(i % across) * kCoarseBeamPixels,
+              static_cast<int>(i / across) * kCoarseBeamPixels);
 }
 
 template <class Nodes, class Caster>
@@ -52,23 +41,23 @@ __global__ void __launch_bounds__(kBlockPixels)
   if (threadIdx.x % 32 == 0) atomicAdd(rays, count);
 }
 
-std::uint32_t beam_blocks(std::uint32_t first, std::uint32_t last) {
-  return (last - first + kBeamThreads - 1) / kBeamThreads;
+std::uint32_t beam_blocks(std::uint32_t threads) {
+  return (threads + kBeamThreads - 1) / kBeamThreads;
 }
 
 }  // namespace
 
 void launch_beams(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, float* starts, cudaStream_t stream) {
-  beams_kernel<<<beam_blocks(first, last), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup, first,
-                                                                      last, starts);
+  beams_kernel<<<beam_blocks(4 * (last - first)), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup,
+                                                                             first, last, starts);
   check_cuda(cudaGetLastError(), "casting beams");
 }
 
 void launch_steps(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream) {
-  steps_kernel<<<beam_blocks(first, last), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup, first,
-                                                                      last);
+  steps_kernel<<<beam_blocks(last - first), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup,
+                                                                       first, last);
   check_cuda(cudaGetLastError(), "counting steps");
 }
 

@@ -34,23 +34,38 @@ VOXDAG_HD inline BeamStop pixel_beam_stop(const RenderSetup& setup, int size) {
   return stop;
 }
 
-/// Sets starts[0..4) for the 2×2 beams of the 8×8 pixels at (x,y), row by row: t that is no later
-/// than where any ray through a beam's pixels meets anything, +infinity where none does.
+/// Whether any ray through the 8×8 pixels at (x,y) meets anything; if so `start` becomes a t before
+/// which none does.
+template <class Nodes>
+VOXDAG_HD inline bool cast_coarse_beam(const Nodes& nodes, const RenderSetup& setup, int x, int y,
+                                       double& start) {
+  return first_met(nodes, pixel_beam(setup, x, y, kCoarseBeamPixels),
+                   pixel_beam_stop(setup, kCoarseBeamPixels), start);
+}
+
+/// For the 4×4 pixels at (x,y), from the start of the 8×8 that they are in: t that is no later than
+/// where any ray through them meets anything, +infinity where none does.
+template <class Nodes>
+VOXDAG_HD inline float cast_fine_beam(const Nodes& nodes, const RenderSetup& setup, int x, int y,
+                                      double coarse) {
+  constexpr double kDown = 1 - 1e-6;  // to float, downwards
+  Beam beam = pixel_beam(setup, x, y, kBeamPixels);
+  beam.t_min = coarse;
+  double start = 0;
+  if (!first_met(nodes, beam, pixel_beam_stop(setup, kBeamPixels), start)) return HUGE_VALF;
+  return static_cast<float>(start * kDown);
+}
+
+/// Sets starts[0..4) for the 2×2 beams of the 8×8 pixels at (x,y), row by row, to what
+/// cast_fine_beam() finds, or +infinity.
 template <class Nodes>
 VOXDAG_HD inline void cast_primary_beams(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                          float* starts) {
-  constexpr double kDown = 1 - 1e-6;  // to float, downwards
   double coarse = 0;
-  const bool is_met = first_met(nodes, pixel_beam(setup, x, y, kCoarseBeamPixels),
-                                pixel_beam_stop(setup, kCoarseBeamPixels), coarse);
+  const bool is_met = cast_coarse_beam(nodes, setup, x, y, coarse);
   for (int part = 0; part < 4; ++part) {
-    Beam beam =
-        pixel_beam(setup, x + (part & 1) * kBeamPixels, y + (part >> 1) * kBeamPixels, kBeamPixels);
-    beam.t_min = coarse;
-    double start = 0;
-    const bool is_part_met =
-        is_met && first_met(nodes, beam, pixel_beam_stop(setup, kBeamPixels), start);
-    starts[part] = is_part_met ? static_cast<float>(start * kDown) : HUGE_VALF;
+    const int fine_x = x + (part & 1) * kBeamPixels, fine_y = y + (part >> 1) * kBeamPixels;
+    starts[part] = is_met ? cast_fine_beam(nodes, setup, fine_x, fine_y, coarse) : HUGE_VALF;
   }
 }
 
