@@ -1,7 +1,7 @@
 #include "trace_casters.hpp"
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/trace/counting_nodes.hpp"
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
@@ -62,6 +62,7 @@ WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::
   return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
 }
 
+/// The layout of files, by packets of rays.
 class PaperLayout : public TraceLayout {
  public:
   explicit PaperLayout(const SvdagView& dag) : dag_(dag) {}
@@ -69,7 +70,7 @@ class PaperLayout : public TraceLayout {
   std::uint64_t bytes() const override { return dag_.bytes(); }
   DeviceLayout device_layout() const override { return DeviceLayout::kPaper; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(ScalarCaster<SvdagNodes>(SvdagNodes(dag_)), rays, casts);
+    return runner_of(PacketCaster(SvdagNodes(dag_)), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;
@@ -81,7 +82,20 @@ class PaperLayout : public TraceLayout {
   SvdagView dag_;
 };
 
-/// The same for the wide layout.
+/// The same layout, ray by ray.
+class PaperScalarLayout : public PaperLayout {
+ public:
+  explicit PaperScalarLayout(const SvdagView& dag) : PaperLayout(dag), nodes_(dag) {}
+
+  TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
+    return runner_of(ScalarCaster<SvdagNodes>(nodes_), rays, casts);
+  }
+
+ private:
+  SvdagNodes nodes_;
+};
+
+/// Counts the bytes that a walk through the wide layout reads.
 class ByteCountingWideNodes : public WideNodes {
  public:
   ByteCountingWideNodes(const WideNodes& nodes, std::uint64_t& steps, std::uint64_t& bytes)
@@ -101,6 +115,7 @@ class ByteCountingWideNodes : public WideNodes {
   std::uint64_t *steps_, *bytes_;
 };
 
+/// 4³ cells to a node, ray by ray.
 class Wide : public TraceLayout {
  public:
   explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}
@@ -122,10 +137,11 @@ class Wide : public TraceLayout {
 
 }  // namespace
 
-std::vector<std::string> trace_layouts() { return {"paper", "wide"}; }
+std::vector<std::string> trace_layouts() { return {"paper", "paper_scalar", "wide"}; }
 
 std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const SvdagView& dag) {
   if (name == "paper") return std::make_unique<PaperLayout>(dag);
+  if (name == "paper_scalar") return std::make_unique<PaperScalarLayout>(dag);
   if (name == "wide") return std::make_unique<Wide>(dag);
   throw Error("there is no layout \"" + name + "\"");
 }

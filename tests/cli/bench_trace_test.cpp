@@ -51,6 +51,19 @@ TEST_F(BenchTrace, EmbreeMeetsTheSameWithTheSameRays) {
   }
 }
 
+TEST_F(BenchTrace, AllLayoutsMeetTheSame) {
+  const ProcessResult result =
+      bench({path("in.vdag"), "--layout", "paper,paper_scalar,wide", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  ASSERT_EQ(json.size(), 15u);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_EQ(json[i].at("layout"), i < 5 ? "paper" : i < 10 ? "paper_scalar" : "wide");
+    EXPECT_EQ(json[i].at("hit_part"), json[i % 5].at("hit_part"));
+    EXPECT_LE(json[i].at("cells_per_ray"), json[i % 5].at("cells_per_ray"));
+  }
+}
+
 TEST_F(BenchTrace, WritesTableJsonAndPlot) {
   const ProcessResult result =
       bench({path("in.vdag"), "-o", path("rays.json"), "--plot", path("rays.svg")});
