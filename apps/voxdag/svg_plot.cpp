@@ -77,7 +77,8 @@ class Scale {
   /// Calls body(position, text) for each tick.
   template <class Body>
   void for_each_tick(const Body& body) const {
-    for (double at = std::ceil(lo_ / step_ - 1e-9) * step_; at < hi_ + step_ * 1e-6; at += step_) {
+    for (double at = std::ceil(lo_ / step_ - 1e-9) * step_ + 0.0;  // no -0
+         at < hi_ + step_ * 1e-6; at += step_) {
       const double value = axis_.is_log ? std::exp(at) : at;
       body(position(value), axis_.tick(value));
     }
