@@ -131,7 +131,8 @@ void add_view_options(CLI::App& command, ViewRequest& view) {
                     "Where the camera is (default: where the scene shows well)");
   add_parsed_option(command, "--target", view.target, parse_vec3, "X,Y,Z",
                     "The point in the middle of the picture");
-  add_parsed_option(command, "--up", view.up, parse_vec3, "X,Y,Z", "What is up");
+  add_parsed_option(command, "--up", view.up, parse_vec3, "X,Y,Z",
+                    "What is up (default: y, or z where the scene rests on it)");
   add_parsed_option(command, "--fov", view.vertical_fov_degrees, parse_positive, "DEGREES",
                     "Vertical angle of view");
 }

@@ -77,7 +77,7 @@ ScenePreset sponge_preset(double size) {
   const double side = sponge_cell(sponge_cells(size)) * sponge_cells(size);
   ScenePreset preset;
   preset.eye = Vec3d{1.7, 1.35, 2.2} * side;
-  preset.target = Vec3d{0.5, 0.44, 0.5} * side;
+  preset.target = Vec3d{0.5, 0.36, 0.5} * side;
   preset.fov_degrees = 42;
   preset.sun_direction = normalize({-0.35, 0.9, 0.62});
   // In through the hole in front, and backwards out at the side.
