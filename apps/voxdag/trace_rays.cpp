@@ -16,34 +16,20 @@ namespace {
 
 constexpr int kTile = 4;
 
-/// A caster that keeps the rays; what it answers is right for closest() only.
+/// A caster that keeps rays and answers that they meet nothing.
 class RecordingCaster {
  public:
-  RecordingCaster(const SvdagNodes& nodes, std::vector<CastRay>& rays)
-      : caster_(nodes), rays_(rays) {}
+  explicit RecordingCaster(std::vector<CastRay>& rays) : rays_(rays) {}
 
-  int levels() const { return caster_.levels(); }
-
-  template <class MakeRay, class OnResult>
-  void closest(int count, const MakeRay& make_ray, const OnResult& on_result) const {
-    caster_.closest(
-        count, [&](int i) { return record(make_ray(i)); }, on_result);
-  }
   template <class MakeRay, class OnResult>
   void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     for (int i = 0; i < count; ++i) {
-      record(make_ray(i));
+      rays_.push_back(make_ray(i));
       on_result(i, false);
     }
   }
 
  private:
-  CastRay record(const CastRay& ray) const {
-    rays_.push_back(ray);
-    return ray;
-  }
-
-  ScalarCaster<SvdagNodes> caster_;
   std::vector<CastRay>& rays_;
 };
 
@@ -161,14 +147,14 @@ RecordedRays record_rays(const SvdagView& dag, const BeamPass& beams, const RayO
                                                : 1;
     const std::size_t wanted = pixels * static_cast<std::size_t>(per_pixel);
     const std::size_t step =
-        is_closest(c) ? 1 : std::max<std::size_t>(1, wanted / options.most_rays);
-    const RecordingCaster record(nodes, rays);
+        is_closest(c) ? 1 : (wanted + options.most_rays - 1) / options.most_rays;
+    const RecordingCaster record(rays);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       if (i / kGroup % step != step / 2) continue;
       const ViewTile& tile = tiles[i];
       if (is_closest(c)) {
-        trace_view_samples(nodes, record, c == RayClass::kPrimary ? plain : with_beams, tile,
-                           *scratch);
+        for (int pixel = 0; pixel < tile.pixels(); ++pixel)
+          rays.push_back(primary_ray(c == RayClass::kPrimary ? plain : with_beams, tile, pixel));
         continue;
       }
       trace_view_samples(nodes, ScalarCaster<SvdagNodes>(nodes), with_beams, tile, *scratch);

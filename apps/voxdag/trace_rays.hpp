@@ -38,7 +38,7 @@ struct RayOptions {
   float lod_pixels = 1;
   /// Of greater sets of any-hit rays a part is taken: whole 8×8 pixels, evenly spread over the
   /// picture.
-  std::size_t most_rays = 1'000'000;
+  std::size_t most_rays = 500'000;
 };
 
 /// What a camera's picture casts, in the order of 4×4 pixels along a Morton curve, all rays of a
