@@ -7,10 +7,10 @@
 #include <random>
 
 #include "support/brute_svdag.hpp"
+#include "support/voxel_sets.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "support/voxel_sets.hpp"
 
 namespace voxdag {
 namespace {
