@@ -402,8 +402,8 @@ HWY_INLINE void PacketWalk::intersect(const std::uint32_t corner[3], int level, 
   children.meet[7] = m7 & rays;
 }
 
-/// The planes of a block's 4³ voxels along one axis, by lane, for the two octants along it. Lane i
-/// of a vector of eight is child i of an octant; wider vectors hold two octants along x.
+/// Casts rays, one by one, at the 4³ voxels of the block at `corner`; lane i of a vector is voxel i
+/// of an octant. Sets the cells of those that meet one and returns them.
 inline PacketWalk::Rays PacketWalk::cast_in_block(std::uint64_t block,
                                                   const std::uint32_t corner[3], int levels,
                                                   Rays rays) {
