@@ -1,0 +1,44 @@
+#pragma once
+/// A part of an ESVO while it is being built: nodes, not yet in blocks.
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/core/vec.hpp"
+#include "voxdag/layout/contour.hpp"
+
+namespace voxdag {
+
+/// What is seen of a voxel.
+struct VoxelValue {
+  std::uint8_t color[3] = {};  ///< sRGB encoded.
+  Vec3f normal{};              ///< Unit length.
+};
+
+/// A non-leaf voxel: what its child descriptor will say. Lists are in the order of the children.
+struct EsvoNode {
+  /// The inner children are the nodes from here on, all greater than the node's own index; or, if
+  /// `is_packed`, they are in a block already: an index into EsvoTree::packed.
+  std::uint32_t first_child = 0;
+  std::uint32_t first_contour = 0;  ///< In EsvoTree::contours, one for each of contour_mask.
+  std::uint32_t first_value = 0;    ///< In EsvoTree::values, one for each of valid_mask.
+  std::uint8_t valid_mask = 0, leaf_mask = 0, contour_mask = 0;
+  bool is_packed = false;
+
+  std::uint32_t inner_mask() const { return valid_mask & ~std::uint32_t{leaf_mask}; }
+  std::uint32_t inner_count() const {
+    return static_cast<std::uint32_t>(std::popcount(inner_mask()));
+  }
+};
+
+/// Node 0 is the voxel that the part belongs to. Every other node is a child of exactly one.
+struct EsvoTree {
+  std::vector<EsvoNode> nodes;
+  std::vector<Contour> contours;
+  std::vector<VoxelValue> values;     ///< Empty in an octree without attributes.
+  std::vector<std::uint64_t> packed;  ///< Slots of the first descriptors of packed children.
+
+  bool has_values() const { return !values.empty(); }
+};
+
+}  // namespace voxdag
