@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "support/brute_svdag.hpp"
+#include "support/test_esvo.hpp"
 #include "support/voxel_sets.hpp"
 #include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
@@ -59,46 +62,68 @@ class RandomBeams {
   std::mt19937 rng_;
 };
 
-TEST(Beam, ItsBoundsShortenNoRayThatMeetsAnything) {
-  const Grid grid = unit_grid();
-  RandomBeams random(5);
+struct BeamCounts {
   int met = 0, hits = 0;
-  for (const NamedVoxels& set : voxel_sets(kLevels, 3)) {
-    const Svdag dag = brute_svdag(kLevels, set.voxels);
-    const SvdagNodes nodes(dag.view());
-    for (int i = 0; i < 1500; ++i) {
-      const Beam beam = random.beam();
-      const double size_per_t = random.number(0, 1) < 0.5 ? 0 : random.number(0, 0.2);
-      const double width = random.number(0, 1) < 0.3 ? 0 : random.number(0, 0.4);
-      const BeamStop stop{0, width, size_per_t * (1 + 1e-6)};
-      double first = 0, last = 0;
-      const bool is_met = first_met(nodes, beam, stop, first);
-      const bool is_met_at_all = last_met(nodes, beam, BeamStop{0, width, 0}, last);
-      met += is_met ? 1 : 0;
-      for (int j = 0; j < 12; ++j) {
-        const Vec3d direction = random.direction(beam);
-        const GridRay whole = make_grid_ray(grid, beam.apex, direction, 0, HUGE_VAL);
-        const StopBelowSize ray_stop = stop_below_size(grid, whole, size_per_t);
-        CellHit expected, found;
-        const bool is_hit = cast(nodes, whole, ray_stop, expected);
-        hits += is_hit ? 1 : 0;
-        if (!is_met) {
-          EXPECT_FALSE(is_hit) << set.name;
-          continue;
-        }
-        const GridRay shortened = make_grid_ray(grid, beam.apex, direction, first, HUGE_VAL);
-        ASSERT_EQ(cast(nodes, shortened, ray_stop, found), is_hit) << set.name;
-        EXPECT_EQ(found.t, expected.t) << set.name;
-        EXPECT_EQ(found.x, expected.x);
-        EXPECT_EQ(found.level, expected.level);
-        const double after = is_met_at_all ? last * (1 + 1e-6) : 0;
-        const GridRay beyond = make_grid_ray(grid, beam.apex, direction, after, HUGE_VAL);
-        EXPECT_FALSE(cast(nodes, beyond, StopAtVoxels{}, found)) << set.name;
+};
+
+/// Casts beams and rays within them; what the beams leave of a ray must meet what the ray does.
+template <class Nodes>
+void expect_bounds_hold(const Nodes& nodes, const std::string& name, RandomBeams& random,
+                        BeamCounts& counts) {
+  const Grid grid = unit_grid();
+  for (int i = 0; i < 1500; ++i) {
+    const Beam beam = random.beam();
+    const double size_per_t = random.number(0, 1) < 0.5 ? 0 : random.number(0, 0.2);
+    const double width = random.number(0, 1) < 0.3 ? 0 : random.number(0, 0.4);
+    const BeamStop stop{0, width, size_per_t * (1 + 1e-6)};
+    double first = 0, last = 0;
+    const bool is_met = first_met(nodes, beam, stop, first);
+    const bool is_met_at_all = last_met(nodes, beam, BeamStop{0, width, 0}, last);
+    counts.met += is_met ? 1 : 0;
+    for (int j = 0; j < 12; ++j) {
+      const Vec3d direction = random.direction(beam);
+      const GridRay whole = make_grid_ray(grid, beam.apex, direction, 0, HUGE_VAL);
+      const StopBelowSize ray_stop = stop_below_size(grid, whole, size_per_t);
+      CellHit expected, found;
+      const bool is_hit = cast(nodes, whole, ray_stop, expected);
+      counts.hits += is_hit ? 1 : 0;
+      if (!is_met) {
+        EXPECT_FALSE(is_hit) << name;
+        continue;
       }
+      const GridRay shortened = make_grid_ray(grid, beam.apex, direction, first, HUGE_VAL);
+      ASSERT_EQ(cast(nodes, shortened, ray_stop, found), is_hit) << name;
+      EXPECT_EQ(found.t, expected.t) << name;
+      EXPECT_EQ(found.x, expected.x);
+      EXPECT_EQ(found.level, expected.level);
+      const double after = is_met_at_all ? last * (1 + 1e-6) : 0;
+      const GridRay beyond = make_grid_ray(grid, beam.apex, direction, after, HUGE_VAL);
+      EXPECT_FALSE(cast(nodes, beyond, StopAtVoxels{}, found)) << name;
     }
   }
-  EXPECT_GT(met, 5000);
-  EXPECT_GT(hits, 30000);
+}
+
+TEST(Beam, ItsBoundsShortenNoRayThatMeetsAnything) {
+  RandomBeams random(5);
+  BeamCounts counts;
+  for (const NamedVoxels& set : voxel_sets(kLevels, 3)) {
+    const Svdag dag = brute_svdag(kLevels, set.voxels);
+    expect_bounds_hold(SvdagNodes(dag.view()), set.name, random, counts);
+  }
+  EXPECT_GT(counts.met, 5000);
+  EXPECT_GT(counts.hits, 30000);
+}
+
+TEST(Beam, ItsBoundsHoldForShapesAndCoarseLeaves) {
+  RandomBeams random(6);
+  BeamCounts counts;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    std::mt19937 rng(seed);
+    const Esvo esvo = TestEsvoAssembler(3, seed).assemble(*random_octree(rng, 0, kLevels), kLevels);
+    expect_bounds_hold(ContourNodes(esvo.view()), "contours", random, counts);
+  }
+  EXPECT_GT(counts.met, 2000);
+  EXPECT_GT(counts.hits, 5000);
 }
 
 TEST(Beam, OfOneRayEndsWhereTheRayDoes) {

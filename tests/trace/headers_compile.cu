@@ -1,5 +1,6 @@
 // The traversal instantiated in a kernel: that it compiles as device code is the test.
 #include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
@@ -12,6 +13,14 @@ __global__ void cast_kernel(SvdagView dag, Grid grid, const Ray* rays, Hit* hits
   hits[i] = closest_hit(nodes, grid, rays[i]);
   const auto stop = [](int level, float, float) { return level == 8; };
   occluded[i] = any_hit(nodes, grid, rays[i], stop);
+}
+
+__global__ void esvo_kernel(EsvoView esvo, Grid grid, const Ray* rays, Hit* hits, bool* occluded,
+                            std::size_t count) {
+  const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i >= count) return;
+  hits[i] = closest_hit(ContourNodes(esvo), grid, rays[i]);
+  occluded[i] = any_hit(EsvoNodes(esvo), grid, rays[i]);
 }
 
 }  // namespace voxdag

@@ -21,6 +21,7 @@
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/grid.hpp"
+#include "voxdag/trace/esvo_nodes.hpp"
 
 namespace voxdag {
 
@@ -93,7 +94,6 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
     if ((order & 4u) != 0) mask = (mask & 0x0Fu) << 4 | mask >> 4;
     return mask;
   };
-  const int levels = nodes.levels();
   bool is_met = false;
   double first = beam.t_min, last = beam.t_max;  // where a cell that matters is met
   int level = 0;
@@ -130,8 +130,8 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
         axes[axis].clip(lo - kBeamSlack, lo + side + kBeamSlack, unused, leave);
       }
     }
-    if (level + 1 == levels || side <= stop.at_start || side <= stop.per_enter * enter ||
-        side <= stop.per_exit * leave) {
+    if (is_leaf_child(nodes, top.node, level, static_cast<int>(index)) || side <= stop.at_start ||
+        side <= stop.per_enter * enter || side <= stop.per_exit * leave) {
       is_met = true;
       if (kFromEnd)
         first = exit;

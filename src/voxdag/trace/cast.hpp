@@ -122,26 +122,34 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   }
 }
 
-/// The cell of a cast as the caller of the library sees it. The face is that of the first axis
-/// whose plane the ray meets at just the hit's T; none where no plane does. t is within
-/// [t_min, t_max] as the caller gave them.
+/// The side of its cube through which the ray entered the cell: that of the first axis whose plane
+/// it meets at just the hit's T; none where no plane does.
+VOXDAG_HD inline Face entered_face(const GridRay& ray, const CellHit& cell) {
+  const std::uint32_t corner[3] = {cell.x, cell.y, cell.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float entry = float_from_bits(corner[axis] + (1u << (23 - cell.level)));
+    if ((ray.parallel >> axis & 1u) == 0 && ray.plane_t(axis, entry) == cell.t)
+      return static_cast<Face>(2 * axis + ((ray.mirrored >> axis & 1u) != 0 ? 0 : 1));
+  }
+  return Face::kNone;
+}
+
+/// The cell of a cast as the caller of the library sees it. t is within [t_min, t_max] as the
+/// caller gave them.
 VOXDAG_HD inline Hit to_hit(const GridRay& ray, const CellHit& cell, int levels, float t_min,
                             float t_max) {
   Hit hit;
   hit.hit = true;
   hit.level = static_cast<std::int8_t>(cell.level);
+  hit.face = entered_face(ray, cell);
   const float t = static_cast<float>(ray.to_world_t(static_cast<double>(cell.t)));
   hit.t = t < t_min ? t_min : t > t_max ? t_max : t;
 
   const std::uint32_t corner[3] = {cell.x, cell.y, cell.z};
   const std::int32_t cell_size = 1 << (levels - cell.level);
-  for (int axis = 2; axis >= 0; --axis) {
-    const std::uint32_t bits = corner[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int32_t low = static_cast<std::int32_t>((corner[axis] & 0x7FFFFFu) >> (23 - levels));
     const bool is_mirrored = (ray.mirrored >> axis & 1u) != 0;
-    const float entry = float_from_bits(bits + (1u << (23 - cell.level)));
-    if ((ray.parallel >> axis & 1u) == 0 && ray.plane_t(axis, entry) == cell.t)
-      hit.face = static_cast<Face>(2 * axis + (is_mirrored ? 0 : 1));
-    const std::int32_t low = static_cast<std::int32_t>((bits & 0x7FFFFFu) >> (23 - levels));
     hit.voxel[axis] = is_mirrored ? (1 << levels) - cell_size - low : low;
   }
   return hit;

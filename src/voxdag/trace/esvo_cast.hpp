@@ -1,0 +1,215 @@
+#pragma once
+/// The ray cast through an ESVO, with contours or, as cubes, without.
+///
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1 and Figure 8,
+/// whose variables these are: the active span of the ray is [t, t_max], and h is where it leaves
+/// the parent, or 0 where the parent is on the stack already.
+///
+/// The walk is that of cast.hpp, plane rule, voxel rule and all: without contours it meets just the
+/// cells that cast() meets in a DAG of the same voxels, at the same T, to the bit. Where a voxel
+/// has a contour the span of T in it is cut (contour_span.hpp); what is cut off of an ancestor
+/// stays cut off of its descendants. Two things are other than in Figure 8. A cell that `stop` ends
+/// the ray at, like a leaf, has its shape: the contour is looked at before. And once the ray has
+/// left the span of the parent it leaves the parent, without stepping through the rest of its
+/// cells.
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/contour_span.hpp"
+#include "voxdag/trace/esvo_nodes.hpp"
+
+namespace voxdag {
+
+/// Where a cast ended: t is where the ray enters the shape, later than the cube where a contour
+/// cuts that.
+struct EsvoHit : CellHit {
+  EsvoVoxel voxel;  ///< The leaf, or the coarser voxel at which `stop` ended the cast.
+  /// The contour through one of whose planes the ray enters the shape; no bits where it enters
+  /// through a side of its cube, or starts inside. May be that of an ancestor.
+  Contour plane;
+
+  VOXDAG_HD bool is_through_contour() const { return plane.bits != 0; }
+};
+
+/// Finds the first leaf along the ray, or voxel for which `stop(level, t_enter, t_exit)` is true,
+/// asked of the voxels of levels 1 to L-1 that are no leaves with the range of T in their cubes.
+/// True if there is one within the ray's range.
+template <EsvoLayout Nodes, class Stop>
+VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit& hit) {
+  constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
+  constexpr int kTopBit = 22;  // the position bit that the root's children differ in
+  constexpr bool kWithContours = Nodes::kWithContours;
+  if (ray.misses() || nodes.is_empty()) return false;
+
+  const EsvoView& esvo = nodes.view();
+  const float ox = ray.origin.x, oy = ray.origin.y, oz = ray.origin.z;
+  const float ix = ray.inverse.x, iy = ray.inverse.y, iz = ray.inverse.z;
+  const std::uint32_t mirrored = ray.mirrored;
+  const auto least = [](float a, float b) { return a < b ? a : b; };
+
+  // INITIALIZE
+  float t = ray.t_min, t_max = ray.t_max;
+  float h = least(least((ox - 1.0f) * ix, (oy - 1.0f) * iy), (oz - 1.0f) * iz);
+  if (h <= t) return false;
+  const ContourRay contour_ray(ray);
+  std::uint64_t slots[kMaxLevels];
+  float t_maxes[kMaxLevels];
+  std::uint64_t slot = esvo.root;
+  ChildDescriptor parent = esvo.descriptor(slot);
+  Contour plane;  // by which the ray came to t, if by one
+  std::uint32_t x = kOne, y = kOne,
+                z = kOne;   // lower corner of the current voxel's cube, a child of the parent
+  std::uint32_t child = 0;  // which child, mirrored
+  int bit = kTopBit;        // kTopBit - level of the parent
+
+  // The child of the voxel at (x,y,z) that the ray is in at t.
+  const auto select_child = [&] {
+    const std::uint32_t half = 1u << bit;
+    const std::uint32_t up_x = (ox - float_from_bits(x | half)) * ix > t ? 1u : 0u;
+    const std::uint32_t up_y = (oy - float_from_bits(y | half)) * iy > t ? 1u : 0u;
+    const std::uint32_t up_z = (oz - float_from_bits(z | half)) * iz > t ? 1u : 0u;
+    x |= up_x << bit;
+    y |= up_y << bit;
+    z |= up_z << bit;
+    child = up_x | up_y << 1 | up_z << 2;
+  };
+  select_child();
+
+  for (;;) {
+    if constexpr (requires { nodes.on_step(); }) nodes.on_step();
+    float tx = (ox - float_from_bits(x)) * ix;
+    float ty = (oy - float_from_bits(y)) * iy;
+    float tz = (oz - float_from_bits(z)) * iz;
+    float t_exit = least(least(tx, ty), tz);
+
+    const std::uint32_t index = child ^ mirrored;
+    if ((parent.valid_mask() >> index & 1u) != 0 && (!kWithContours || t <= t_max)) {
+      // INTERSECT
+      float tv_min = t, tv_max = least(t_exit, t_max);
+      Contour entered = plane;
+      if constexpr (kWithContours) {
+        if ((parent.contour_mask() >> index & 1u) != 0) {
+          const Contour contour = esvo.contour(slot, parent, static_cast<int>(index));
+          const ContourSpan span = contour_ray.span(contour, x, y, z, bit, t_exit);
+          if (span.t_enter > tv_min) {
+            tv_min = span.t_enter;
+            entered = contour;
+          }
+          tv_max = least(span.t_leave, tv_max);
+        }
+      }
+      if (!kWithContours || tv_min <= tv_max) {
+        const int level = kTopBit - bit + 1;
+        if ((parent.leaf_mask() >> index & 1u) != 0 || stop(level, t, t_exit)) {
+          static_cast<CellHit&>(hit) = {tv_min, x, y, z, level};
+          hit.voxel = {slot, static_cast<int>(index)};
+          hit.plane = entered;
+          return true;
+        }
+        // PUSH
+        if (t_exit < h) {
+          slots[kTopBit - bit] = slot;
+          if constexpr (kWithContours) t_maxes[kTopBit - bit] = t_max;
+        }
+        h = t_exit;
+        slot = esvo.child(slot, parent, static_cast<int>(index));
+        parent = esvo.descriptor(slot);
+        if constexpr (kWithContours) {
+          t = tv_min;
+          t_max = tv_max;
+          plane = entered;
+        }
+        --bit;
+        select_child();
+        continue;
+      }
+    }
+
+    // ADVANCE
+    if (t_exit > ray.t_max) return false;
+    bool leaves_parent = false;
+    if constexpr (kWithContours) {
+      plane = {};
+      leaves_parent = t_exit > t_max;  // never the root's: its span is the ray's range
+      if (leaves_parent) {
+        ++bit;
+        const std::uint32_t above = ~0u << bit;
+        x &= above;
+        y &= above;
+        z &= above;
+        tx = (ox - float_from_bits(x)) * ix;
+        ty = (oy - float_from_bits(y)) * iy;
+        tz = (oz - float_from_bits(z)) * iz;
+        t_exit = least(least(tx, ty), tz);
+        if (t_exit > ray.t_max) return false;
+      }
+    }
+    t = t_exit;
+    const std::uint32_t step_x = tx == t_exit ? 1u : 0u;
+    const std::uint32_t step_y = ty == t_exit ? 1u : 0u;
+    const std::uint32_t step_z = tz == t_exit ? 1u : 0u;
+    const std::uint32_t next_x = x - (step_x << bit);
+    const std::uint32_t next_y = y - (step_y << bit);
+    const std::uint32_t next_z = z - (step_z << bit);
+    const std::uint32_t changed = (x ^ next_x) | (y ^ next_y) | (z ^ next_z);
+    x = next_x;
+    y = next_y;
+    z = next_z;
+    child ^= step_x | step_y << 1 | step_z << 2;
+    if (changed >> bit == 1 && !leaves_parent) continue;
+
+    // POP
+    bit = highest_bit(changed);
+    if (bit > kTopBit) return false;
+    const std::uint32_t above = ~0u << bit;
+    x &= above;
+    y &= above;
+    z &= above;
+    child = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
+    slot = slots[kTopBit - bit];
+    if constexpr (kWithContours) t_max = t_maxes[kTopBit - bit];
+    parent = esvo.descriptor(slot);
+    h = 0;
+  }
+}
+
+/// The same for who needs the cell only.
+template <EsvoLayout Nodes, class Stop>
+VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
+  EsvoHit found;
+  if (!cast(nodes, ray, stop, found)) return false;
+  hit = found;
+  return true;
+}
+
+/// The outward normal, of unit length, of the plane through which the ray entered the shape: of a
+/// contour or of a side of the cube. Zero where the ray starts inside.
+VOXDAG_HD inline Vec3f entered_normal(const GridRay& ray, const EsvoHit& hit) {
+  if (!hit.is_through_contour()) return static_cast<Vec3f>(face_normal(entered_face(ray, hit)));
+  const auto n = static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane));
+  return n * (1.0f / std::sqrt(dot(n, n)));
+}
+
+/// As of any layout. The face of a ray that enters through a contour is the side that looks most
+/// the same way.
+VOXDAG_HD inline Hit to_hit(const GridRay& ray, const EsvoHit& found, int levels, float t_min,
+                            float t_max) {
+  Hit hit = to_hit(ray, static_cast<const CellHit&>(found), levels, t_min, t_max);
+  if (!found.is_through_contour()) return hit;
+  const Vec3i n = ContourRay(ray).entered_normal(found.plane);
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (n[i] * n[i] > n[axis] * n[axis]) axis = i;
+  hit.face = static_cast<Face>(2 * axis + (n[axis] > 0 ? 1 : 0));
+  return hit;
+}
+
+/// The first leaf, or voxel at which `stop` ends the cast, within the ray's range.
+template <EsvoLayout Nodes, class Stop = StopAtVoxels>
+VOXDAG_HD inline Hit closest_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
+                                 const Stop& stop = {}) {
+  const GridRay grid_ray = make_grid_ray(grid, ray);
+  EsvoHit found;
+  if (!cast(nodes, grid_ray, stop, found)) return {};
+  return to_hit(grid_ray, found, nodes.levels(), ray.t_min, ray.t_max);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,67 @@
+#pragma once
+/// How walks read an ESVO (layout/esvo.hpp): as cubes, whose leaves may be of any level.
+///
+/// A node layout as svdag_nodes.hpp describes it: to a walk that knows nothing of coarse leaves,
+/// such a leaf is full, with all its cells down to the voxels. A walk that does asks is_leaf().
+#include <concepts>
+
+#include "voxdag/layout/esvo.hpp"
+
+namespace voxdag {
+
+/// The voxels as cubes. Nodes are slots of descriptors.
+class EsvoNodes {
+ public:
+  using Node = std::uint64_t;
+  /// Whether cast() cuts cubes by their contours; other walks never do.
+  static constexpr bool kWithContours = false;
+
+  VOXDAG_HD explicit EsvoNodes(const EsvoView& esvo) : esvo_(esvo) {}
+
+  VOXDAG_HD bool is_empty() const { return esvo_.is_empty(); }
+  VOXDAG_HD int levels() const { return esvo_.levels; }
+  VOXDAG_HD Node root() const { return esvo_.root; }
+  VOXDAG_HD const EsvoView& view() const { return esvo_; }
+
+  VOXDAG_HD std::uint32_t child_mask(Node node, int /*level*/) const {
+    return node == kFull ? 0xFFu : esvo_.descriptor(node).valid_mask();
+  }
+  VOXDAG_HD Node child(Node node, int level, int index) const {
+    if (is_leaf(node, level, index)) return kFull;
+    return esvo_.child(node, esvo_.descriptor(node), index);
+  }
+  /// Whether child `index`, which is present, has no children of its own but is full.
+  VOXDAG_HD bool is_leaf(Node node, int /*level*/, int index) const {
+    return node == kFull || (esvo_.descriptor(node).leaf_mask() >> index & 1u) != 0;
+  }
+
+ private:
+  static constexpr Node kFull = ~std::uint64_t{0};  ///< Any node within a leaf.
+
+  EsvoView esvo_;
+};
+
+/// The voxels in their shapes: cubes cut by their own contours and all their ancestors'.
+class ContourNodes : public EsvoNodes {
+ public:
+  static constexpr bool kWithContours = true;
+  using EsvoNodes::EsvoNodes;
+};
+
+/// A layout whose leaves are of any level and may have contours.
+template <class Nodes>
+concept EsvoLayout = requires {
+  { Nodes::kWithContours } -> std::convertible_to<bool>;
+};
+
+/// Whether child `index`, present in `node` of `level`, is a voxel or a coarser leaf.
+template <class Nodes>
+VOXDAG_HD inline bool is_leaf_child(const Nodes& nodes, typename Nodes::Node node, int level,
+                                    int index) {
+  if constexpr (EsvoLayout<Nodes>)
+    return nodes.is_leaf(node, level, index);
+  else
+    return level + 1 == nodes.levels();
+}
+
+}  // namespace voxdag
