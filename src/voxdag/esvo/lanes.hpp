@@ -1,0 +1,35 @@
+#pragma once
+/// Four floats or integers at once, on every machine: what the block encoders compute does not
+/// depend on the width of its vectors. Of the compilers' vector extension: arithmetic, comparisons
+/// (-1 where true) and `mask ? a : b` are per lane.
+#include <cstdint>
+#include <cstring>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+using FloatLanes = float __attribute__((vector_size(16)));
+using IntLanes = std::int32_t __attribute__((vector_size(16)));
+inline constexpr int kLanes = 4;
+
+/// The four floats from `from` on, of any alignment.
+inline FloatLanes load_lanes(const float* from) {
+  FloatLanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+inline FloatLanes all_lanes(float value) { return FloatLanes{value, value, value, value}; }
+inline IntLanes all_lanes(std::int32_t value) { return IntLanes{value, value, value, value}; }
+/// x, y, z and 0.
+inline FloatLanes lanes_of(Vec3f v) { return FloatLanes{v.x, v.y, v.z, 0.0f}; }
+inline Vec3f vec_of(FloatLanes lanes) { return {lanes[0], lanes[1], lanes[2]}; }
+
+inline FloatLanes min(FloatLanes a, FloatLanes b) { return a < b ? a : b; }
+inline FloatLanes max(FloatLanes a, FloatLanes b) { return a < b ? b : a; }
+/// Toward zero; the values must be those of an int.
+inline FloatLanes truncated(FloatLanes v) {
+  return __builtin_convertvector(__builtin_convertvector(v, IntLanes), FloatLanes);
+}
+
+}  // namespace voxdag
