@@ -57,6 +57,31 @@ struct ImageF {
   }
 };
 
+/// 16 bits a channel as in the file: 8-bit values times 257, colours sRGB-encoded. `pixels` holds
+/// width * height * 4 values: R, G, B and straight alpha, which is 65535 where the file has none.
+struct ImageRgba16 {
+  int width = 0, height = 0;
+  bool has_alpha = false;  ///< The file has an alpha channel or transparent colours.
+  std::vector<std::uint16_t> pixels;
+
+  ImageRgba16() = default;
+  ImageRgba16(int w, int h)
+      : width(w),
+        height(h),
+        pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 4) {}
+
+  std::uint16_t* pixel(int x, int y) { return pixels.data() + offset(x, y); }
+  const std::uint16_t* pixel(int x, int y) const { return pixels.data() + offset(x, y); }
+  friend bool operator==(const ImageRgba16&, const ImageRgba16&) = default;
+
+ private:
+  std::size_t offset(int x, int y) const {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(x)) *
+           4;
+  }
+};
+
 /// Readers refuse images of more pixels: the size in a hostile header must not be allocated.
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 28;
 

@@ -41,7 +41,7 @@ struct JpegErrors : jpeg_error_mgr {
 
 /// Decodes into `image`. False: `errors.message` says why. Nothing with a destructor lives across
 /// the jump except what the caller owns.
-bool decode(const std::vector<std::uint8_t>& bytes, JpegErrors& errors, ImageRgb8& image) {
+bool decode(std::span<const std::uint8_t> bytes, JpegErrors& errors, ImageRgb8& image) {
   jpeg_decompress_struct info{};
   info.err = &errors;
   jpeg_create_decompress(&info);
@@ -72,13 +72,16 @@ bool decode(const std::vector<std::uint8_t>& bytes, JpegErrors& errors, ImageRgb
 }  // namespace
 
 ImageRgb8 read_jpeg(const std::filesystem::path& path) {
-  const std::vector<std::uint8_t> bytes = read_image_bytes(path);
+  return decode_jpeg(read_image_bytes(path), path.string());
+}
+
+ImageRgb8 decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name) {
   if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8)
-    throw Error(path.string(), "byte 0", "not a JPEG file");
+    throw Error(name, "byte 0", "not a JPEG file");
   JpegErrors errors;
   ImageRgb8 image;
   if (!decode(bytes, errors, image))
-    throw Error(path.string(), "", std::string("damaged JPEG file: ") + errors.message);
+    throw Error(name, "", std::string("damaged JPEG file: ") + errors.message);
   return image;
 }
 

@@ -1,6 +1,8 @@
 #include "voxdag/mesh/gltf_accessor.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -131,6 +133,27 @@ void check_backed(const GltfValue& accessor, std::size_t count) {
     throw accessor.error(std::to_string(count) + " elements without a buffer view");
 }
 
+/// Elements of `n` components as vectors of floats.
+template <class Vector, std::size_t n>
+std::vector<Vector> read_gltf_vectors(const GltfFile& file, const GltfValue& accessor) {
+  static_assert(sizeof(Vector) == n * sizeof(float));
+  const std::uint64_t type = accessor["componentType"].whole();
+  const std::size_t bytes = component_bytes(type, accessor);
+  const bool normalized = accessor["normalized"].boolean(false);
+  const std::size_t count = gltf_count(accessor);
+  check_backed(accessor, count);
+  // The first pass only checks, so that nothing is allocated for what is not there.
+  read_elements(file, accessor, count, n * bytes, true, [](std::size_t, const char*) {});
+  std::vector<Vector> vectors(count);
+  read_elements(file, accessor, count, n * bytes, true, [&](std::size_t i, const char* p) {
+    std::array<float, n> components;
+    for (std::size_t c = 0; c < n; ++c)
+      components[c] = load_component(type, normalized, p + c * bytes);
+    vectors[i] = std::bit_cast<Vector>(components);
+  });
+  return vectors;
+}
+
 }  // namespace
 
 std::uint32_t gltf_count(const GltfValue& accessor) {
@@ -143,8 +166,7 @@ std::uint32_t gltf_count(const GltfValue& accessor) {
 std::vector<Vec3f> read_gltf_positions(const GltfFile& file, const GltfValue& accessor) {
   if (accessor["type"].text() != "VEC3") throw accessor.error("positions that are not VEC3");
   const std::uint64_t type = accessor["componentType"].whole();
-  const std::size_t bytes = component_bytes(type, accessor);
-  const bool normalized = accessor["normalized"].boolean(false);
+  component_bytes(type, accessor);
   if (type != kFloat) {
     const auto used = file.root()["extensionsUsed"].items();
     const bool quantized = std::any_of(used.begin(), used.end(), [](const GltfValue& name) {
@@ -154,17 +176,28 @@ std::vector<Vec3f> read_gltf_positions(const GltfFile& file, const GltfValue& ac
       throw accessor.error("positions of component type " + std::to_string(type) +
                            ", which is not float");
   }
-  const std::size_t count = gltf_count(accessor);
-  check_backed(accessor, count);
-  // The first pass only checks, so that nothing is allocated for what is not there.
-  read_elements(file, accessor, count, 3 * bytes, true, [](std::size_t, const char*) {});
-  std::vector<Vec3f> positions(count);
-  read_elements(file, accessor, count, 3 * bytes, true, [&](std::size_t i, const char* p) {
-    positions[i] = {load_component(type, normalized, p),
-                    load_component(type, normalized, p + bytes),
-                    load_component(type, normalized, p + 2 * bytes)};
-  });
-  return positions;
+  return read_gltf_vectors<Vec3f, 3>(file, accessor);
+}
+
+std::vector<Vec2f> read_gltf_uvs(const GltfFile& file, const GltfValue& accessor) {
+  if (accessor["type"].text() != "VEC2") throw accessor.error("texture coordinates not VEC2");
+  return read_gltf_vectors<Vec2f, 2>(file, accessor);
+}
+
+std::vector<Vec3f> read_gltf_normals(const GltfFile& file, const GltfValue& accessor) {
+  if (accessor["type"].text() != "VEC3") throw accessor.error("normals that are not VEC3");
+  return read_gltf_vectors<Vec3f, 3>(file, accessor);
+}
+
+std::vector<std::array<float, 4>> read_gltf_colors(const GltfFile& file,
+                                                   const GltfValue& accessor) {
+  if (accessor["type"].text() == "VEC4")
+    return read_gltf_vectors<std::array<float, 4>, 4>(file, accessor);
+  if (accessor["type"].text() != "VEC3") throw accessor.error("colours neither VEC3 nor VEC4");
+  std::vector<std::array<float, 4>> colors;
+  for (const Vec3f& color : read_gltf_vectors<Vec3f, 3>(file, accessor))
+    colors.push_back({color.x, color.y, color.z, 1});
+  return colors;
 }
 
 std::vector<std::uint32_t> read_gltf_indices(const GltfFile& file, const GltfValue& accessor) {

@@ -139,6 +139,12 @@ std::vector<double> GltfValue::numbers(std::size_t count) const {
   return numbers;
 }
 
+double GltfValue::number(double absent) const {
+  if (!exists()) return absent;
+  if (!value_->is_number() || !std::isfinite(value_->get<double>())) throw error("is not a number");
+  return value_->get<double>();
+}
+
 GltfFile::GltfFile(const MeshBytes& source) : source_(source) {
   const std::string_view bytes = source.bytes;
   if (!bytes.starts_with("glTF")) {
@@ -187,6 +193,13 @@ void GltfFile::parse_json(std::string_view text) {
   for (const char* name :
        {"buffers", "bufferViews", "accessors", "meshes", "nodes", "scenes", "materials"})
     arrays_.emplace_back(name, root()[name].items());
+  for (const char* name : {"images", "textures", "samplers"}) {
+    arrays_.emplace_back(name, std::vector<GltfValue>());
+    try {
+      arrays_.back().second = root()[name].items();
+    } catch (const Error&) {  // They make no geometry: who looks for an item finds none.
+    }
+  }
 }
 
 void GltfFile::check_version() const {
@@ -207,12 +220,10 @@ void GltfFile::open_buffers(std::string_view binary_chunk, bool has_chunk) {
       if (!has_chunk || !buffers_.empty()) throw value.error("buffer without a URI");
       buffer.bytes = binary_chunk;
     } else if (uri.starts_with("data:")) {
-      const std::size_t comma = uri.find(',');
-      if (comma == uri.npos) throw value.error("malformed data URI");
-      const bool is_base64 = std::string_view(uri).substr(0, comma).ends_with(";base64");
-      auto decoded = is_base64 ? decode_base64(std::string_view(uri).substr(comma + 1))
-                               : decode_percent(std::string_view(uri).substr(comma + 1));
-      if (!decoded) throw value.error("data URI is not base64");
+      auto decoded = decode_data_uri(uri);
+      if (!decoded)
+        throw value.error(uri.find(',') == uri.npos ? "malformed data URI"
+                                                    : "data URI is not base64");
       buffer.decoded = std::move(*decoded);
       buffer.bytes = buffer.decoded;
     } else {
@@ -238,6 +249,16 @@ void GltfFile::open_buffers(std::string_view binary_chunk, bool has_chunk) {
     if (owned) buffers_.back().bytes = std::string_view(buffers_.back().decoded).substr(0, size);
   }
 }
+
+std::optional<std::string> GltfFile::decode_data_uri(std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (!uri.starts_with("data:") || comma == uri.npos) return std::nullopt;
+  const std::string_view data = uri.substr(comma + 1);
+  if (uri.substr(0, comma).ends_with(";base64")) return decode_base64(data);
+  return decode_percent(data);
+}
+
+std::string GltfFile::decode_uri(std::string_view uri) { return decode_percent(uri); }
 
 const std::vector<GltfValue>& GltfFile::array(const char* name) const {
   for (const auto& [known, values] : arrays_)

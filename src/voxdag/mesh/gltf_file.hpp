@@ -2,6 +2,7 @@
 /// The container of a glTF 2.0 asset: its JSON, and the bytes of its buffers.
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,8 @@ class GltfValue {
   std::string text(const std::string& absent = "") const;
   /// `count` finite numbers, or nothing if absent; throws Error for anything else.
   std::vector<double> numbers(std::size_t count) const;
+  /// A finite number, or the default if absent; throws Error for anything else.
+  double number(double absent) const;
 
   Error error(const std::string& reason) const { return {source_->name, path_, reason}; }
 
@@ -59,6 +62,11 @@ class GltfFile {
   const GltfValue& item(const char* array, std::uint64_t index, const GltfValue& user) const;
   /// All items of a top-level array.
   const std::vector<GltfValue>& array(const char* name) const;
+  /// The bytes of a `data:` URI; nothing if the URI is another or malformed.
+  static std::optional<std::string> decode_data_uri(std::string_view uri);
+  /// A relative URI as the path of a file.
+  static std::string decode_uri(std::string_view uri);
+
   const GltfBuffer& buffer(std::uint64_t index) const { return buffers_[index]; }
 
  private:

@@ -7,26 +7,16 @@
 #include <map>
 
 #include "voxdag/mesh/gltf_accessor.hpp"
+#include "voxdag/mesh/gltf_corners.hpp"
 #include "voxdag/mesh/gltf_file.hpp"
+#include "voxdag/mesh/gltf_materials.hpp"
 #include "voxdag/mesh/mesh_checks.hpp"
 
 namespace voxdag {
 namespace {
 
-/// An affine map: columns x, y, z and the translation.
-struct Transform {
-  std::array<Vec3d, 4> columns{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
-
-  Vec3d direction(Vec3d v) const { return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z; }
-  Vec3d point(Vec3d p) const { return direction(p) + columns[3]; }
-  friend Transform operator*(const Transform& a, const Transform& b) {
-    return {{a.direction(b.columns[0]), a.direction(b.columns[1]), a.direction(b.columns[2]),
-             a.point(b.columns[3])}};
-  }
-};
-
 /// Rotation by a quaternion (x, y, z, w) of any length but zero.
-Transform rotation(const std::vector<double>& q, const GltfValue& user) {
+GltfTransform rotation(const std::vector<double>& q, const GltfValue& user) {
   const double length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(length2 > 0) || !std::isfinite(length2)) throw user.error("rotation is not a quaternion");
   const double s = 2 / length2;
@@ -37,9 +27,9 @@ Transform rotation(const std::vector<double>& q, const GltfValue& user) {
             {0, 0, 0}}}};
 }
 
-Transform node_transform(const GltfValue& node) {
+GltfTransform node_transform(const GltfValue& node) {
   const std::vector<double> m = node["matrix"].numbers(16);
-  Transform transform;
+  GltfTransform transform;
   if (!m.empty()) {
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
       throw node.error("matrix whose last row is not 0 0 0 1");
@@ -75,6 +65,10 @@ class GltfReader {
  public:
   explicit GltfReader(const MeshBytes& source) : source_(source), file_(source) {}
 
+  /// Lets `corners` gather the attributes while the mesh is read.
+  void gather(GltfCorners& corners) { corners_ = &corners; }
+  const GltfFile& file() const { return file_; }
+
   Mesh read() {
     find_instances();
     reserve();
@@ -93,7 +87,7 @@ class GltfReader {
  private:
   struct Instance {
     const GltfValue* mesh;
-    Transform transform;
+    GltfTransform transform;
   };
 
   void find_instances() {
@@ -116,7 +110,7 @@ class GltfReader {
       else if (roots.empty())
         throw source_.error("nodes form a cycle");
     }
-    std::vector<std::pair<std::uint64_t, Transform>> stack;
+    std::vector<std::pair<std::uint64_t, GltfTransform>> stack;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
     std::vector<char> seen(nodes.size(), 0);
     while (!stack.empty()) {
@@ -125,7 +119,7 @@ class GltfReader {
       const GltfValue& node = file_.item("nodes", index, file_.root());
       if (seen[index]) throw node.error("node is reached twice: nodes must form trees");
       seen[index] = 1;
-      const Transform transform = parent * node_transform(node);
+      const GltfTransform transform = parent * node_transform(node);
       if (node["mesh"].exists())
         instances_.push_back({&file_.item("meshes", node["mesh"].whole(), node), transform});
       const auto children = node["children"].items();
@@ -198,7 +192,7 @@ class GltfReader {
     return indices_;
   }
 
-  void add_primitive(const GltfValue& primitive, const Transform& transform) {
+  void add_primitive(const GltfValue& primitive, const GltfTransform& transform) {
     const std::uint64_t mode = checked_mode(primitive);
     const GltfValue position = primitive["attributes"]["POSITION"];
     if (mode < kTriangles || !position.exists()) return;
@@ -213,6 +207,7 @@ class GltfReader {
     if (is_indexed) load_indices(primitive["indices"].whole(), primitive);
     const std::size_t corners = is_indexed ? indices_.size() : positions.size();
     const std::uint32_t material = material_of(primitive);
+    if (corners_ != nullptr) corners_->start(file_, primitive, transform, positions.size());
     for (std::size_t i = 0; i < triangle_count(mode, corners); ++i) {
       Triangle triangle{};
       const auto triangle_corner = triangle_corners(mode, i);
@@ -228,6 +223,7 @@ class GltfReader {
                                 " is not finite and a triangle uses it");
       }
       mesh_.triangles.push_back(triangle);
+      if (corners_ != nullptr) corners_->add(triangle, start->second);
       if (!file_.array("materials").empty()) mesh_.triangle_materials.push_back(material);
     }
   }
@@ -258,6 +254,7 @@ class GltfReader {
   std::vector<Vec3f> positions_;  ///< Of the accessor read last.
   std::vector<std::uint32_t> indices_;
   bool uses_default_material_ = false;
+  GltfCorners* corners_ = nullptr;
   Mesh mesh_;
 };
 
@@ -266,6 +263,17 @@ class GltfReader {
 Mesh read_gltf(const MeshBytes& source) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   return GltfReader(source).read();
+}
+
+MeshWithAppearance read_gltf_with_appearance(const MeshBytes& source) {
+  if (source.bytes.empty()) throw source.error("the file is empty");
+  MeshWithAppearance result;
+  GltfReader reader(source);
+  GltfCorners corners(result.appearance, result.warnings);
+  reader.gather(corners);
+  result.mesh = reader.read();
+  read_gltf_materials(source, reader.file(), result.mesh, result.appearance, result.warnings);
+  return result;
 }
 
 }  // namespace voxdag

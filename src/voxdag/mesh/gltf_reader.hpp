@@ -2,6 +2,7 @@
 /// glTF 2.0, as JSON text (.gltf) or binary (.glb).
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/mesh_bytes.hpp"
+#include "voxdag/mesh/read_appearance.hpp"
 
 namespace voxdag {
 
@@ -18,5 +19,9 @@ namespace voxdag {
 /// not form trees, missing buffers, required extensions that change geometry (Draco, meshopt).
 /// Throws Error if there are no triangles.
 Mesh read_gltf(const MeshBytes& source);
+
+/// As above, with NORMAL, TEXCOORD_n (the set that a material's colour texture uses), COLOR_0 and
+/// the materials.
+MeshWithAppearance read_gltf_with_appearance(const MeshBytes& source);
 
 }  // namespace voxdag

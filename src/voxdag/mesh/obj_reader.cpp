@@ -9,6 +9,7 @@
 
 #include "voxdag/mesh/chunks.hpp"
 #include "voxdag/mesh/mesh_checks.hpp"
+#include "voxdag/mesh/obj_lines.hpp"
 #include "voxdag/mesh/polygon.hpp"
 
 namespace voxdag {
@@ -42,18 +43,6 @@ Statement take_keyword(std::string_view& line) {
   return first == 'v' ? Statement::kVertex : first == 'f' ? Statement::kFace : Statement::kOther;
 }
 
-/// The next corner of a face line; empty at its end or at a comment.
-std::string_view next_corner(std::string_view& line) {
-  const std::string_view token = next_token(line);
-  return token.starts_with('#') ? std::string_view{} : token;
-}
-
-std::size_t count_fan_triangles(std::string_view corners) {
-  std::size_t count = 0;
-  while (!next_corner(corners).empty()) ++count;
-  return count < 3 ? 0 : count - 2;
-}
-
 /// Index of the vertex that a corner (`v`, `v/vt`, `v//vn` or `v/vt/vn`) names. `seen` vertices
 /// precede the line in the file; `total` are in the file.
 std::uint32_t parse_corner(std::string_view corner, std::size_t seen, std::size_t total,
@@ -81,30 +70,6 @@ Vec3f parse_vertex(std::string_view numbers, const char* position) {
       throw Fault{position, "coordinate " + in_quotes(token) + " is not a number"};
   }
   return vertex;
-}
-
-/// Calls line(text, position) for every line of a chunk, leading blanks removed and continued lines
-/// joined. `position` points to the line's place in the file.
-template <class Line>
-void for_each_line(std::string_view chunk, char line_end, const Line& body) {
-  std::string joined;
-  while (!chunk.empty()) {
-    std::string_view line = next_line(chunk, line_end);
-    const char* const position = line.data();
-    while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
-    if (line.empty() || line.front() == '#') continue;
-    if (line.back() == '\r') line.remove_suffix(1);
-    if (line.ends_with('\\')) {
-      joined.assign(line);
-      while (joined.ends_with('\\')) {
-        joined.back() = ' ';
-        joined += next_line(chunk, line_end);
-        if (joined.ends_with('\r')) joined.pop_back();
-      }
-      line = joined;
-    }
-    body(line, position);
-  }
 }
 
 class ObjReader {

@@ -75,7 +75,9 @@ class HeaderParser {
 
   void parse_comment(std::string_view text) {
     std::int64_t number = 0;
-    if (next_token(text) != "material" || !parse_int(next_token(text), number)) return;
+    const std::string_view keyword = next_token(text);
+    if (keyword == "TextureFile") header_.textures.emplace_back(trim(text));
+    if (keyword != "material" || !parse_int(next_token(text), number)) return;
     if (number == static_cast<std::int64_t>(header_.materials.size()))
       header_.materials.emplace_back(trim(text));
   }

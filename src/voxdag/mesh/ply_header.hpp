@@ -51,6 +51,7 @@ struct PlyHeader {
   char line_end = '\n';  ///< Of the header, and of the body if that is text.
   std::vector<PlyElement> elements;
   std::vector<std::string> materials;  ///< From comments `material NUMBER NAME`, numbered from 0.
+  std::vector<std::string> textures;   ///< From comments `TextureFile NAME`.
   std::size_t body = 0;                ///< Offset of the first byte after the header.
 
   int vertex = -1;  ///< Index of element `vertex`; after parse_ply_header always in range.

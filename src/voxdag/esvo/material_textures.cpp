@@ -1,0 +1,194 @@
+#include "voxdag/esvo/material_textures.hpp"
+
+#include <atomic>
+#include <compare>
+#include <map>
+
+#include "voxdag/image/decode.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+
+namespace voxdag {
+namespace {
+
+/// What a texture is made from: equal recipes share one.
+struct Recipe {
+  enum Kind { kColor, kTangentNormals, kHeights, kEither };
+  Kind kind = kColor;
+  int image = -1, alpha_image = -1;
+  float number = 0;  ///< The least visible alpha, or the scale of normals.
+  TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
+
+  friend auto operator<=>(const Recipe&, const Recipe&) = default;
+};
+
+struct Dish {
+  std::shared_ptr<const Texture> texture;
+  std::vector<std::string> warnings;
+};
+
+/// The alpha from which on a material is visible; 0 if it always is.
+float least_alpha(const Material& material) {
+  switch (material.alpha_mode) {
+    case AlphaMode::kMask:
+      return material.alpha_cutoff;
+    case AlphaMode::kBlend:
+      return kBlendCutoff;
+    default:
+      return 0;
+  }
+}
+
+bool has_cut_texels(const Texture& texture) { return texture.bounds({0, 0}, {1, 1}).lo[3] < 65535; }
+
+class Loader {
+ public:
+  Loader(const Appearance& appearance, bool has_uvs) : appearance_(appearance), has_uvs_(has_uvs) {}
+
+  std::vector<MaterialLook> load(std::vector<std::string>& warnings, Progress* progress) {
+    for (const Material& material : appearance_.materials) {
+      ask(color_recipe(material));
+      ask(normal_recipe(material));
+    }
+    std::vector<std::pair<const Recipe, Dish>*> orders;
+    for (auto& order : dishes_) orders.push_back(&order);
+    std::atomic<std::size_t> done{0};
+    parallel_for(orders.size(), [&](std::size_t i) {
+      if (progress != nullptr) progress->throw_if_cancelled();
+      make(orders[i]->first, orders[i]->second);
+      const std::size_t count = ++done;
+      if (progress != nullptr)
+        progress->report("textures",
+                         static_cast<double>(count) / static_cast<double>(orders.size()), count);
+    });
+    for (const auto& [recipe, dish] : dishes_)
+      warnings.insert(warnings.end(), dish.warnings.begin(), dish.warnings.end());
+    std::vector<MaterialLook> looks;
+    for (const Material& material : appearance_.materials) looks.push_back(look(material));
+    if (!has_uvs_ && asked_without_uvs_)
+      warnings.emplace_back(
+          "the mesh has textures but no texture coordinates: its materials' colours stand in");
+    return looks;
+  }
+
+ private:
+  static Recipe color_recipe(const Material& material) {
+    const TextureUse& use = material.color_map.exists() ? material.color_map : material.alpha_map;
+    Recipe recipe{Recipe::kColor, material.color_map.image, -1, 0, use.wrap_u, use.wrap_v};
+    const float least = least_alpha(material);
+    if (least > 0) {
+      // Where no texel passes, the threshold may be anything over 1.
+      recipe.number = material.alpha > 0 ? std::min(least / material.alpha, 2.0f) : 2.0f;
+      if (material.alpha_map.image != material.color_map.image)
+        recipe.alpha_image = material.alpha_map.image;
+    }
+    return recipe;
+  }
+
+  static Recipe normal_recipe(const Material& material) {
+    const TextureUse& use = material.normal_map;
+    const Recipe::Kind kind = material.normal_kind == NormalMapKind::kTangentSpace
+                                  ? Recipe::kTangentNormals
+                              : material.normal_kind == NormalMapKind::kHeights ? Recipe::kHeights
+                                                                                : Recipe::kEither;
+    return {kind, use.image, -1, material.normal_scale, use.wrap_u, use.wrap_v};
+  }
+
+  void ask(const Recipe& recipe) {
+    if (recipe.image < 0 && recipe.alpha_image < 0) return;
+    if (has_uvs_)
+      dishes_[recipe];
+    else
+      asked_without_uvs_ = true;
+  }
+
+  const TextureImage& image(int index) const {
+    return appearance_.images[static_cast<std::size_t>(index)];
+  }
+
+  void make(const Recipe& recipe, Dish& dish) const {
+    if (recipe.kind == Recipe::kColor) return make_color(recipe, dish);
+    const TextureWraps wraps{recipe.wrap_u, recipe.wrap_v};
+    try {
+      const ImageRgba16 pixels = decode_texture_image(image(recipe.image));
+      const bool is_heights = recipe.kind == Recipe::kHeights ||
+                              (recipe.kind == Recipe::kEither && !looks_like_normal_map(pixels));
+      dish.texture =
+          std::make_shared<Texture>(is_heights ? make_bump_texture(pixels, recipe.number, wraps)
+                                               : make_normal_texture(pixels, recipe.number, wraps));
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      dish.warnings.push_back(std::string(error.what()) +
+                              ": the mesh's own normals stand in for the normal map");
+    }
+  }
+
+  void make_color(const Recipe& recipe, Dish& dish) const {
+    ImageRgba16 pixels;
+    if (recipe.image >= 0) {
+      try {
+        pixels = decode_texture_image(image(recipe.image));
+      } catch (const Error& error) {
+        dish.warnings.push_back(std::string(error.what()) +
+                                ": the material's colour stands in for the texture");
+      }
+    }
+    if (recipe.alpha_image >= 0) {
+      try {
+        const ImageRgba16 alpha = decode_texture_image(image(recipe.alpha_image));
+        if (pixels.width == 0) {
+          pixels = ImageRgba16(1, 1);
+          std::fill(pixels.pixels.begin(), pixels.pixels.end(), std::uint16_t{65535});
+        }
+        pixels = with_alpha_of(pixels, alpha);
+      } catch (const Error& error) {
+        dish.warnings.push_back(std::string(error.what()) +
+                                ": the material is opaque without its alpha map");
+      }
+    }
+    if (pixels.width > 0)
+      dish.texture = std::make_shared<Texture>(
+          make_color_texture(pixels, recipe.number, {recipe.wrap_u, recipe.wrap_v}));
+  }
+
+  MaterialLook look(const Material& material) const {
+    MaterialLook look;
+    look.color = material.base_color;
+    const Recipe color = color_recipe(material);
+    if (const auto found = dishes_.find(color); found != dishes_.end())
+      look.color_texture = found->second.texture;
+    const float least = least_alpha(material);
+    if (look.color_texture) {
+      if (color.image >= 0) look.color = material.texture_tint;
+      look.color_uv = color.image >= 0 ? material.color_map.uv : material.alpha_map.uv;
+      look.is_alpha_textured = has_cut_texels(*look.color_texture);
+    }
+    // Texture and corners are tested one after the other, so that texels can be tested beforehand.
+    if (least > 0) look.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
+    if (const auto found = dishes_.find(normal_recipe(material)); found != dishes_.end()) {
+      look.normal_texture = found->second.texture;
+      look.normal_uv = material.normal_map.uv;
+    }
+    return look;
+  }
+
+  const Appearance& appearance_;
+  const bool has_uvs_;
+  bool asked_without_uvs_ = false;
+  std::map<Recipe, Dish> dishes_;
+};
+
+}  // namespace
+
+std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
+                                              std::vector<std::string>& warnings,
+                                              Progress* progress) {
+  return Loader(appearance, has_uvs).load(warnings, progress);
+}
+
+ImageRgba16 decode_texture_image(const TextureImage& image) {
+  if (!image.path.empty()) return read_image(image.path);
+  return decode_image(image.bytes, image.name);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,35 @@
+#pragma once
+/// The decoded textures of a mesh's materials.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "voxdag/image/texture.hpp"
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// What a material looks like, with its alpha test resolved.
+struct MaterialLook {
+  Vec3f color{1, 1, 1};  ///< Linear light; multiplies the texture if there is one.
+  std::shared_ptr<const Texture> color_texture;
+  UvTransform color_uv;
+  std::shared_ptr<const Texture> normal_texture;
+  UvTransform normal_uv;
+  /// Corners whose alpha is less are cut away, which is all of them if this is over 1.
+  float least_corner_alpha = 0;
+  bool is_alpha_textured = false;  ///< Some texels of the colour texture are cut away.
+};
+
+/// Decodes what the materials use, each texture once, in parallel. What cannot be read is left out,
+/// with a line in `warnings` that names the file, the reason and what stands in. Without texture
+/// coordinates (`has_uvs`) textures are left out too. Throws Cancelled.
+std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
+                                              std::vector<std::string>& warnings,
+                                              Progress* progress);
+
+/// The encoded bytes of an image, decoded. Throws Error.
+ImageRgba16 decode_texture_image(const TextureImage& image);
+
+}  // namespace voxdag

@@ -1,0 +1,50 @@
+#pragma once
+/// The directions in which the axes of tangent-space normal maps point.
+///
+/// After M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited" (2008): the tangents of the
+/// triangles around a vertex that agree in position, normal, texture coordinates and handedness are
+/// averaged, weighted by angle.
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "voxdag/core/vec.hpp"
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/mesh/mesh.hpp"
+
+namespace voxdag {
+
+/// Of one triangle; false if its texture coordinates span no area.
+struct TangentFrames {
+  const Vec3f* tangents = nullptr;  ///< Per corner, unit, along +u; null if there are none.
+  float handedness = 1;  ///< Times cross(normal, tangent): towards the image's upper edge.
+};
+
+class TangentTable {
+ public:
+  TangentTable() = default;
+  /// For the triangles for which `uv_transform(triangle)` is not null.
+  TangentTable(const Mesh& mesh, const Appearance& appearance,
+               const std::function<const UvTransform*(std::size_t triangle)>& uv_transform);
+
+  TangentFrames operator[](std::size_t triangle) const {
+    if (places_.empty() || places_[triangle] == kNone) return {};
+    const std::uint32_t place = places_[triangle];
+    return {tangents_.data() + 3 * std::size_t{place & ~kMirrored},
+            (place & kMirrored) != 0 ? -1.0f : 1.0f};
+  }
+  std::uint64_t bytes() const {
+    return places_.size() * sizeof(std::uint32_t) + tangents_.size() * sizeof(Vec3f);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u, kMirrored = 1u << 31;
+
+  std::vector<std::uint32_t> places_;  ///< Per triangle: into `tangents_`, with kMirrored.
+  std::vector<Vec3f> tangents_;
+};
+
+/// The unit normal of a triangle's plane; zero if it has no area.
+Vec3f face_normal(const Mesh& mesh, std::size_t triangle);
+
+}  // namespace voxdag

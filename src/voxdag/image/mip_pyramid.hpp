@@ -1,0 +1,283 @@
+#pragma once
+/// Images at all sizes: means and bounds of regions in constant time.
+///
+/// Mip maps after L. Williams, "Pyramidal Parametrics" (1983); elongated regions take several taps
+/// along their long axis. The taps of a region match its centre and its covariance: what the
+/// filter of a mip level spreads by itself is taken off the spread of the taps.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/core/vec2.hpp"
+#include "voxdag/image/wrap.hpp"
+
+namespace voxdag {
+
+/// Mean position and covariance of a region of texture space.
+struct UvRegion {
+  Vec2f center;
+  float uu = 0, uv = 0, vv = 0;
+};
+
+/// `channels` values of 16 bits per texel. Level 0 is the image, between whose texels values are
+/// bilinear; each level after it has half the width and height, rounded down, to 1 x 1. Texture
+/// coordinates run over the image from its upper left to its lower right corner.
+template <std::size_t channels>
+class MipPyramid {
+ public:
+  using Texel = std::array<std::uint16_t, channels>;
+  using Value = std::array<float, channels>;  ///< On the scale of texels, 0..65535.
+  struct Bounds {
+    Texel lo, hi;
+  };
+
+  /// Of an image by rows. There is at least one texel.
+  MipPyramid(int width, int height, std::vector<Texel> texels,
+             TextureWrap wrap_u = TextureWrap::kRepeat, TextureWrap wrap_v = TextureWrap::kRepeat)
+      : wrap_u_(wrap_u), wrap_v_(wrap_v) {
+    levels_.push_back({width, height, std::move(texels), {}});
+    while (levels_.back().width > 1 || levels_.back().height > 1)
+      levels_.push_back(halve(levels_.back()));
+  }
+
+  int width() const { return levels_[0].width; }
+  int height() const { return levels_[0].height; }
+  int level_count() const { return static_cast<int>(levels_.size()); }
+
+  /// Bilinear value of a level.
+  Value sample(int level, Vec2f uv) const {
+    const Level& l = levels_[static_cast<std::size_t>(level)];
+    const float x = reduced(uv.x, wrap_u_) * static_cast<float>(l.width) - 0.5f;
+    const float y = reduced(uv.y, wrap_v_) * static_cast<float>(l.height) - 0.5f;
+    const float fx = std::floor(x), fy = std::floor(y);
+    const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
+    const int x0 = wrapped(ix, l.width, wrap_u_), x1 = wrapped(ix + 1, l.width, wrap_u_);
+    const Texel* const row0 = l.row(wrapped(iy, l.height, wrap_v_));
+    const Texel* const row1 = l.row(wrapped(iy + 1, l.height, wrap_v_));
+    const float wx = x - fx, wy = y - fy;
+    const float w00 = (1 - wx) * (1 - wy), w10 = wx * (1 - wy), w01 = (1 - wx) * wy, w11 = wx * wy;
+    const Texel &t00 = row0[x0], &t10 = row0[x1], &t01 = row1[x0], &t11 = row1[x1];
+    Value value;
+    for (std::size_t c = 0; c < channels; ++c)
+      value[c] = static_cast<float>(t00[c]) * w00 + static_cast<float>(t10[c]) * w10 +
+                 static_cast<float>(t01[c]) * w01 + static_cast<float>(t11[c]) * w11;
+    return value;
+  }
+
+  /// Value between the two levels about `level`, which may be any number.
+  Value sample_between(float level, Vec2f uv) const {
+    const float clamped =
+        std::clamp(level, 0.0f, static_cast<float>(level_count() - 1));  // NaN fails both tests
+    const int lower = clamped > 0 ? static_cast<int>(clamped) : 0;
+    const float weight = clamped > 0 ? clamped - static_cast<float>(lower) : 0;
+    Value value = sample(lower, uv);
+    if (weight == 0) return value;
+    const Value upper = sample(lower + 1, uv);
+    for (std::size_t c = 0; c < channels; ++c) value[c] += (upper[c] - value[c]) * weight;
+    return value;
+  }
+
+  /// Mean over a region.
+  Value mean(const UvRegion& region) const {
+    constexpr float kMaxTaps = 16, kTapDistance = 1.2f;  // in texels of the level that is read
+    const auto w = static_cast<float>(width()), h = static_cast<float>(height());
+    const float a = region.uu * w * w, b = region.uv * w * h, c = region.vv * h * h;
+    const float middle = (a + c) / 2;
+    const float spread = std::sqrt((a - c) * (a - c) / 4 + b * b);
+    const float major = middle + spread, minor = std::max(middle - spread, 0.0f);
+    // A region of variance s^2 / 12 is s wide. The level's texels are s / 3.46 to s / 1.73, for
+    // then the filter alone is never wider than the region.
+    const float texel =
+        std::max(std::sqrt(4 * minor), std::sqrt(12 * major) / (kMaxTaps * kTapDistance));
+    if (major < 0.05f) return sample(0, region.center);
+    if (!(major < 1e18f)) return sample(level_count() - 1, region.center);
+    const int level = std::clamp(texel >= 1.0f ? std::ilogb(texel) : 0, 0, level_count() - 1);
+    const float size = std::ldexp(1.0f, level);
+    const float own = (size * size - 1) / 4;  // variance of the level's filter beyond level 0's
+    const auto taps = [&](float variance, float& distance) {
+      const float left = 12 * std::max(variance - own, 0.0f);
+      const float count = std::sqrt(left / (kTapDistance * kTapDistance * size * size) + 1);
+      const float n = std::clamp(std::ceil(count - 0.1f), 1.0f, kMaxTaps + 2);
+      distance = n > 1 ? std::sqrt(left / (n * n - 1)) : 0;
+      return static_cast<int>(n);
+    };
+    float step1 = 0, step2 = 0;
+    const int n1 = taps(major, step1), n2 = taps(minor, step2);
+    if (n1 * n2 == 1) return sample(level, region.center);
+    // The major axis, of the covariance's larger column: that of an axis-aligned one is exact.
+    Vec2f axis = a >= c ? Vec2f{major - c, b} : Vec2f{b, major - a};
+    const float length = std::sqrt(axis.x * axis.x + axis.y * axis.y);
+    axis = length > 0 ? axis * (1 / length) : Vec2f{1, 0};
+    const Vec2f along{axis.x * step1 / w, axis.y * step1 / h};
+    const Vec2f across{-axis.y * step2 / w, axis.x * step2 / h};
+    const Vec2f center{reduced(region.center.x, wrap_u_), reduced(region.center.y, wrap_v_)};
+    Value sum{};
+    for (int i = 0; i < n1; ++i)
+      for (int j = 0; j < n2; ++j) {
+        const float s = static_cast<float>(2 * i - n1 + 1) / 2;
+        const float t = static_cast<float>(2 * j - n2 + 1) / 2;
+        const Value tap = sample(level, center + along * s + across * t);
+        for (std::size_t k = 0; k < channels; ++k) sum[k] += tap[k];
+      }
+    for (float& value : sum) value /= static_cast<float>(n1 * n2);
+    return sum;
+  }
+
+  /// Bounds of the values of level 0 at all points of a box, not tight. Not finite: of everything.
+  Bounds bounds(Vec2f lo, Vec2f hi) const {
+    Range x = texels_between(lo.x, hi.x, width(), wrap_u_);
+    Range y = texels_between(lo.y, hi.y, height(), wrap_v_);
+    // At most three texels a side at the level that is read.
+    const auto extent = static_cast<unsigned>(std::max(x.last - x.first, y.last - y.first));
+    const int wanted = extent > 2 ? static_cast<int>(std::bit_width((extent - 1) / 2)) : 0;
+    const int level = std::min(wanted, level_count() - 1);
+    const Level& l = levels_[static_cast<std::size_t>(level)];
+    if (level > 0) {
+      x = at_level(x, width(), l.width);
+      y = at_level(y, height(), l.height);
+    }
+    Bounds bounds{filled(65535), filled(0)};
+    for (int j = y.first; j <= y.last; ++j) {
+      const int row = wrapped(j, l.height, wrap_v_) * l.width;
+      for (int i = x.first; i <= x.last; ++i)
+        include(bounds, l, static_cast<std::size_t>(row + wrapped(i, l.width, wrap_u_)));
+    }
+    return bounds;
+  }
+
+  std::uint64_t bytes() const {
+    std::uint64_t sum = 0;
+    for (const Level& level : levels_)
+      sum += level.texels.size() * sizeof(Texel) + level.bounds.size() * sizeof(Bounds);
+    return sum;
+  }
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<Texel> texels;
+    std::vector<Bounds> bounds;  ///< Of what of level 0 each texel covers; none at level 0.
+
+    const Texel* row(int y) const {
+      return texels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    }
+  };
+  /// Texels from first to last, before wrapping.
+  struct Range {
+    int first, last;
+  };
+  /// The texels of a finer level that a texel covers, and how much of each.
+  struct Cover {
+    int first = 0;
+    std::vector<float> weights;
+  };
+
+  static Texel filled(std::uint16_t value) {
+    Texel texel;
+    texel.fill(value);
+    return texel;
+  }
+
+  /// The same place within one period, small enough to become an index. Also of what is not finite.
+  static float reduced(float u, TextureWrap wrap) {
+    if (wrap == TextureWrap::kClamp) return u > -1 ? std::min(u, 2.0f) : -1.0f;
+    const float rest = wrap == TextureWrap::kRepeat ? u - std::floor(u) : u - 2 * std::floor(u / 2);
+    return rest >= 0 ? rest : 0;
+  }
+
+  static int wrapped(int i, int size, TextureWrap wrap) {
+    if (wrap == TextureWrap::kClamp) return std::clamp(i, 0, size - 1);
+    if (wrap == TextureWrap::kRepeat) {
+      if (static_cast<unsigned>(i) < static_cast<unsigned>(size)) return i;
+      const int rest = i % size;
+      return rest < 0 ? rest + size : rest;
+    }
+    const int rest = (i % (2 * size) + 2 * size) % (2 * size);
+    return rest < size ? rest : 2 * size - 1 - rest;
+  }
+
+  /// The texels of level 0 that values between lo and hi depend on: all of a period at most.
+  static Range texels_between(float lo, float hi, int size, TextureWrap wrap) {
+    const int period = wrap == TextureWrap::kMirror ? 2 * size : size;
+    const float start = reduced(lo, wrap);
+    const float end = wrap == TextureWrap::kClamp ? reduced(hi, wrap) : start + (hi - lo);
+    const float first = std::floor(start * static_cast<float>(size) - 0.51f);
+    const float last = std::floor(end * static_cast<float>(size) - 0.49f) + 1;
+    if (!(last - first < static_cast<float>(period)) && wrap != TextureWrap::kClamp)
+      return {0, period - 1};
+    if (!(last >= first)) return {0, size - 1};
+    if (wrap != TextureWrap::kClamp) return {static_cast<int>(first), static_cast<int>(last)};
+    return {wrapped(static_cast<int>(first), size, wrap),
+            wrapped(static_cast<int>(last), size, wrap)};
+  }
+
+  /// The texels of a level of `size` texels that cover those of level 0.
+  static Range at_level(Range range, int size0, int size) {
+    const auto floor_div = [](std::int64_t a, std::int64_t b) {
+      return a >= 0 ? a / b : -((b - 1 - a) / b);
+    };
+    return {static_cast<int>(floor_div(std::int64_t{range.first} * size, size0)),
+            static_cast<int>(floor_div((std::int64_t{range.last} + 1) * size - 1, size0))};
+  }
+
+  static void include(Bounds& bounds, const Level& level, std::size_t texel) {
+    const Texel& lo = level.bounds.empty() ? level.texels[texel] : level.bounds[texel].lo;
+    const Texel& hi = level.bounds.empty() ? level.texels[texel] : level.bounds[texel].hi;
+    for (std::size_t c = 0; c < channels; ++c) {
+      bounds.lo[c] = std::min(bounds.lo[c], lo[c]);
+      bounds.hi[c] = std::max(bounds.hi[c], hi[c]);
+    }
+  }
+
+  /// An odd size does not halve evenly: texels then cover parts of those before.
+  static std::vector<Cover> covers(int size, int half) {
+    std::vector<Cover> covers(static_cast<std::size_t>(half));
+    const double ratio = static_cast<double>(size) / half;
+    for (int i = 0; i < half; ++i) {
+      Cover& cover = covers[static_cast<std::size_t>(i)];
+      const double lo = i * ratio, hi = i + 1 == half ? size : (i + 1) * ratio;
+      cover.first = static_cast<int>(lo);
+      for (int k = cover.first; k < hi; ++k)
+        cover.weights.push_back(
+            static_cast<float>((std::min(hi, k + 1.0) - std::max(lo, double(k))) / (hi - lo)));
+    }
+    return covers;
+  }
+
+  static Level halve(const Level& fine) {
+    Level level{std::max(fine.width / 2, 1), std::max(fine.height / 2, 1), {}, {}};
+    const std::vector<Cover> columns = covers(fine.width, level.width);
+    const std::vector<Cover> rows = covers(fine.height, level.height);
+    level.texels.reserve(columns.size() * rows.size());
+    level.bounds.reserve(columns.size() * rows.size());
+    for (const Cover& row : rows)
+      for (const Cover& column : columns) {
+        Value sum{};
+        Bounds bounds{filled(65535), filled(0)};
+        for (std::size_t j = 0; j < row.weights.size(); ++j)
+          for (std::size_t i = 0; i < column.weights.size(); ++i) {
+            const std::size_t texel =
+                (static_cast<std::size_t>(row.first) + j) * static_cast<std::size_t>(fine.width) +
+                static_cast<std::size_t>(column.first) + i;
+            include(bounds, fine, texel);
+            const float weight = row.weights[j] * column.weights[i];
+            for (std::size_t c = 0; c < channels; ++c)
+              sum[c] += weight * static_cast<float>(fine.texels[texel][c]);
+          }
+        Texel mean;
+        for (std::size_t c = 0; c < channels; ++c)
+          mean[c] = static_cast<std::uint16_t>(std::min(sum[c] + 0.5f, 65535.0f));
+        level.texels.push_back(mean);
+        level.bounds.push_back(bounds);
+      }
+    return level;
+  }
+
+  TextureWrap wrap_u_, wrap_v_;
+  std::vector<Level> levels_;
+};
+
+}  // namespace voxdag

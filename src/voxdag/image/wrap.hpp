@@ -1,0 +1,9 @@
+#pragma once
+/// What an image shows outside of [0,1].
+#include <cstdint>
+
+namespace voxdag {
+
+enum class TextureWrap : std::uint8_t { kRepeat, kMirror, kClamp };
+
+}  // namespace voxdag
