@@ -1,0 +1,358 @@
+#include "voxdag/esvo/displaced_triangles.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "voxdag/esvo/tangent_frames.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::uint32_t next_corner(std::uint32_t corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+Vec3f unit_or_zero(Vec3f v) {
+  const float length2 = dot(v, v);
+  return length2 > 0 ? v * (1 / std::sqrt(length2)) : Vec3f{};
+}
+
+/// Near enough to count as equal where one then stands for both.
+bool is_near(Vec3f a, Vec3f b) { return dot(a - b, a - b) < 1e-6f; }
+bool is_near(Vec2f a, Vec2f b) {
+  return std::abs(a.x - b.x) < 1e-6f && std::abs(a.y - b.y) < 1e-6f;
+}
+
+/// How much a texture that is projected along each axis counts for a normal.
+Vec3f projection_weights(Vec3f n) {
+  const auto weight = [](float x) {
+    const float w = std::max(std::abs(x) - 0.4f, 0.0f);
+    return w * w;
+  };
+  const Vec3f w{weight(n.x), weight(n.y), weight(n.z)};
+  return w * (1 / (w.x + w.y + w.z));  // One component is 0.57 at least.
+}
+
+/// A position seen along an axis, in units of `size`.
+Vec2f projected(Vec3d p, int axis, double size) {
+  const double u = (axis == 0 ? p.z : p.x) / size, v = (axis == 1 ? p.z : -p.y) / size;
+  return {static_cast<float>(u - std::floor(u)), static_cast<float>(v - std::floor(v))};
+}
+
+struct Interval {
+  double lo, hi;
+};
+
+Interval operator*(Interval a, Interval b) {
+  const auto [lo, hi] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
+  return {lo, hi};
+}
+
+void extend(Box3d& box, Vec3d p, double margin) {
+  const Vec3d m{margin, margin, margin};
+  box.extend(p - m);
+  box.extend(p + m);
+}
+
+}  // namespace
+
+DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
+                                       std::vector<Displacement> displacements)
+    : mesh_(mesh), appearance_(appearance), displacements_(std::move(displacements)) {
+  for (const Displacement& d : displacements_)
+    if (d.moves()) radius_ = std::max({radius_, std::abs(d.base), std::abs(d.base + d.gain)});
+  if (radius_ == 0) return;
+
+  const auto hash = [](Vec3f p) {
+    std::uint64_t h = 0;
+    for (int axis = 0; axis < 3; ++axis)  // + 0: both zeros are one place.
+      h = (h ^ std::bit_cast<std::uint32_t>(p[axis] + 0.0f)) * 0x9E3779B97F4A7C15ull, h ^= h >> 31;
+    return static_cast<std::size_t>(h);
+  };
+  std::unordered_map<Vec3f, std::uint32_t, decltype(hash)> place_of(mesh.vertices.size(), hash);
+  places_.reserve(3 * mesh.triangles.size());
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      places_.push_back(
+          place_of.try_emplace(mesh.vertices[vertex], static_cast<std::uint32_t>(place_of.size()))
+              .first->second);
+  group_corners(place_of.size());
+  group_edges();
+}
+
+std::array<Vec3f, 3> DisplacedTriangles::normals(std::uint32_t t) const {
+  if (!appearance_.normals.empty()) {
+    const Vec3f* const n = appearance_.normals.data() + 3 * std::size_t{t};
+    if (n[0] != Vec3f{} && n[1] != Vec3f{} && n[2] != Vec3f{}) return {n[0], n[1], n[2]};
+  }
+  const Vec3f n = face_normal(mesh_, t);
+  return {n, n, n};
+}
+
+bool DisplacedTriangles::corners_agree(CornerIndex a, CornerIndex b) const {
+  const std::uint32_t s = a / 3, t = b / 3;
+  return Appearance::material_index(mesh_, s) == Appearance::material_index(mesh_, t) &&
+         is_near(normals(s)[a % 3], normals(t)[b % 3]) &&
+         (displacement(s).box_size > 0 || is_near(uv(a), uv(b)));
+}
+
+bool DisplacedTriangles::edges_agree(CornerIndex a, CornerIndex b) const {
+  const CornerIndex a_end = next_corner(a), b_end = next_corner(b);
+  return places_[a] == places_[b] ? corners_agree(a, b) && corners_agree(a_end, b_end)
+                                  : corners_agree(a, b_end) && corners_agree(a_end, b);
+}
+
+void DisplacedTriangles::group_corners(std::size_t place_count) {
+  std::vector<std::uint32_t> starts(place_count + 1);
+  for (const std::uint32_t place : places_) ++starts[place + 1];
+  for (std::size_t i = 0; i < place_count; ++i) starts[i + 1] += starts[i];
+  std::vector<CornerIndex> sorted(places_.size());
+  std::vector<std::uint32_t> ends(starts.begin(), starts.end() - 1);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    sorted[ends[places_[i]]++] = static_cast<CornerIndex>(i);
+  corner_groups_ = places_;
+  groups_.reserve(place_count + places_.size() / 2);
+  for (std::size_t place = 0; place < place_count; ++place)
+    add_group({sorted.data() + starts[place], sorted.data() + starts[place + 1]},
+              [this](CornerIndex a, CornerIndex b) { return corners_agree(a, b); });
+}
+
+void DisplacedTriangles::group_edges() {
+  const auto key = [this](CornerIndex edge) {
+    const auto [lo, hi] = std::minmax(places_[edge], places_[next_corner(edge)]);
+    return std::uint64_t{lo} << 32 | hi;
+  };
+  std::vector<std::pair<std::uint64_t, CornerIndex>> edges(places_.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto edge = static_cast<CornerIndex>(i);
+    edges[i] = {key(edge), edge};
+  }
+  std::sort(edges.begin(), edges.end());
+  edge_groups_.resize(edges.size());
+  std::vector<CornerIndex> sides;
+  for (std::size_t first = 0; first < edges.size();) {
+    sides.clear();
+    std::size_t last = first;
+    for (; last < edges.size() && edges[last].first == edges[first].first; ++last) {
+      edge_groups_[edges[last].second] = static_cast<std::uint32_t>(groups_.size());
+      sides.push_back(edges[last].second);
+    }
+    add_group(sides, [this](CornerIndex a, CornerIndex b) { return edges_agree(a, b); });
+    first = last;
+  }
+}
+
+double DisplacedTriangles::density(std::uint32_t t) const {
+  const Displacement& d = displacement(t);
+  if (!d.moves()) return 0;
+  const double w = d.heights->width(), h = d.heights->height();
+  if (d.box_size > 0) return std::max(w, h) / d.box_size;
+  const CornerIndex c = 3 * t;
+  const Vec2f p = d.uv.linear(uv(c + 1) - uv(c)), q = d.uv.linear(uv(c + 2) - uv(c));
+  const double texels = std::abs(double{p.x} * q.y - double{p.y} * q.x) * w * h;
+  const Vec3d a(position(c));
+  const Vec3d area = cross(Vec3d(position(c + 1)) - a, Vec3d(position(c + 2)) - a);
+  const double world = std::sqrt(dot(area, area));
+  return world > 0 ? std::sqrt(texels / world) : 0;
+}
+
+double DisplacedTriangles::edge_density(CornerIndex edge) const {
+  const Displacement& d = displacement(edge / 3);
+  if (!d.moves()) return 0;
+  const double w = d.heights->width(), h = d.heights->height();
+  if (d.box_size > 0) return std::max(w, h) / d.box_size;
+  const Vec2f along = d.uv.linear(uv(next_corner(edge)) - uv(edge));
+  const Vec3d length = Vec3d(position(next_corner(edge))) - Vec3d(position(edge));
+  const double texels = std::hypot(along.x * w, along.y * h);
+  const double world = std::sqrt(dot(length, length));
+  return world > 0 ? texels / world : 0;
+}
+
+float DisplacedTriangles::level_of(double density, double edge_limit) {
+  // Edges end up between half the limit and the limit.
+  return static_cast<float>(std::log2(density * edge_limit * 0.7));
+}
+
+float DisplacedTriangles::height(const Displacement& d, Vec3d position, Vec3f unit_normal, Vec2f uv,
+                                 float level) const {
+  if (!(d.box_size > 0)) return d.heights->sample_between(level, d.uv(uv))[0] * (1.0f / 65535);
+  const Vec3f weights = projection_weights(unit_normal);
+  float sum = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    if (weights[axis] > 0)
+      sum += weights[axis] *
+             d.heights->sample_between(level, projected(position, axis, d.box_size))[0];
+  return sum * (1.0f / 65535);
+}
+
+Vec3d DisplacedTriangles::offset(std::uint32_t t, Vec3d position, Vec3f normal, Vec2f uv,
+                                 float level) const {
+  const Displacement& d = displacement(t);
+  const Vec3f n = unit_or_zero(normal);
+  if (n == Vec3f{}) return {};
+  return Vec3d(n) * (d.base + d.gain * static_cast<double>(height(d, position, n, uv, level)));
+}
+
+Vec3d DisplacedTriangles::corner_offset(const Group& group, Vec3d position, double limit) const {
+  if (group.is_pinned) return {};
+  Vec3d sum;
+  for (std::uint32_t i = 0; i < group.count; ++i) {
+    const CornerIndex c = members_[group.first + i];
+    sum = sum +
+          offset(c / 3, position, normals(c / 3)[c % 3], uv(c), level_of(density(c / 3), limit));
+  }
+  return sum * (1.0 / group.count);
+}
+
+Vec3d DisplacedTriangles::edge_offset(const Group& group, Vec3d position, float along,
+                                      double limit) const {
+  if (group.is_pinned) return {};
+  double texels = 0;
+  for (std::uint32_t i = 0; i < group.count; ++i)
+    texels = std::max(texels, edge_density(members_[group.first + i]));
+  const float level = level_of(texels, limit);
+  Vec3d sum;
+  for (std::uint32_t i = 0; i < group.count; ++i) {
+    CornerIndex a = members_[group.first + i], b = next_corner(a);
+    if (places_[b] < places_[a]) std::swap(a, b);
+    const std::array<Vec3f, 3> n = normals(a / 3);
+    sum = sum + offset(a / 3, position, n[a % 3] + (n[b % 3] - n[a % 3]) * along,
+                       uv(a) + (uv(b) - uv(a)) * along, level);
+  }
+  return sum * (1.0 / group.count);
+}
+
+const Vec3d& DisplacedTriangles::displace(const Pass& pass, Vertex& v) const {
+  if (v.is_displaced) return v.displaced;
+  v.is_displaced = true;
+  const CornerIndex first = 3 * pass.triangle;
+  const std::array<float, 3> b{1 - v.b1 - v.b2, v.b1, v.b2};
+  if (v.edges == 0) {
+    const Vec2f at =
+        uv(first) + (uv(first + 1) - uv(first)) * v.b1 + (uv(first + 2) - uv(first)) * v.b2;
+    v.displaced = v.position + offset(pass.triangle, v.position, v.normal, at, pass.level);
+  } else if (std::has_single_bit(v.edges)) {
+    // What both neighbours know: how far from the end with the lesser place the point is.
+    const CornerIndex edge = first + static_cast<unsigned>(std::countr_zero(v.edges));
+    const CornerIndex end = next_corner(edge);
+    const float along = b[(places_[end] < places_[edge] ? edge : end) - first];
+    v.displaced =
+        v.position + edge_offset(groups_[edge_groups_[edge]], v.position, along, pass.limit);
+  } else {
+    const auto corner = static_cast<std::uint32_t>(v.edges == 0b101 ? 0 : v.edges == 0b011 ? 1 : 2);
+    v.displaced =
+        v.position + corner_offset(groups_[corner_groups_[first + corner]], v.position, pass.limit);
+  }
+  return v.displaced;
+}
+
+DisplacedTriangles::Pass::Pass(const DisplacedTriangles& all, std::uint32_t base, double edge_limit)
+    : triangle(base), limit(edge_limit) {
+  double densest = all.density(base);
+  level = level_of(densest, edge_limit);
+  const std::array<Vec3f, 3> n = all.normals(base);
+  constexpr std::uint8_t edges[3] = {0b101, 0b011, 0b110};
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    corners[c].position = Vec3d(all.position(3 * base + c));
+    corners[c].normal = n[c];
+    corners[c].b1 = c == 1 ? 1.0f : 0.0f;
+    corners[c].b2 = c == 2 ? 1.0f : 0.0f;
+    corners[c].edges = edges[c];
+    if (!all.is_displaced(base)) continue;
+    const Group& edge = all.groups_[all.edge_groups_[3 * base + c]];
+    const Group& corner = all.groups_[all.corner_groups_[3 * base + c]];
+    densest = std::max({densest, all.edge_density(all.members_[edge.first]),
+                        all.density(all.members_[corner.first] / 3)});
+  }
+  blurriest = level_of(densest, edge_limit);
+}
+
+bool DisplacedTriangles::is_seam(std::uint32_t t, std::uint8_t edges) const {
+  if (edges == 0) return false;
+  const auto differs = [](const Group& group) { return group.count > 1 || group.is_pinned; };
+  for (std::uint32_t k = 0; k < 3; ++k)
+    if ((edges >> k & 1) != 0 && differs(groups_[edge_groups_[3 * t + k]])) return true;
+  if (std::has_single_bit(edges)) return false;
+  const auto corner = static_cast<std::uint32_t>(edges == 0b101 ? 0 : edges == 0b011 ? 1 : 2);
+  return differs(groups_[corner_groups_[3 * t + corner]]);
+}
+
+Box3d DisplacedTriangles::piece_bounds(const Pass& pass, const Vertex& a, const Vertex& b,
+                                       const Vertex& c) const {
+  const Displacement& d = displacement(pass.triangle);
+  const std::array<const Vertex*, 3> corners{&a, &b, &c};
+  Box3d flat = Box3d::empty(), box = Box3d::empty();
+  for (const Vertex* v : corners) {
+    flat.extend(v->position);
+    if (is_seam(pass.triangle, v->edges)) extend(box, v->position, radius_);
+  }
+  const std::array<Vec3f, 3> n{unit_or_zero(a.normal), unit_or_zero(b.normal),
+                               unit_or_zero(c.normal)};
+  const Vec3f middle = unit_or_zero(n[0] + n[1] + n[2]);
+  // No mean of the three is shorter than this.
+  const float shortest = std::min({dot(n[0], middle), dot(n[1], middle), dot(n[2], middle)});
+  if (!(shortest > 0.3f)) {
+    extend(box, flat.lo, radius_);
+    extend(box, flat.hi, radius_);
+    return box;
+  }
+
+  HeightTexture::Bounds range{{65535}, {0}};
+  const auto include = [&](Vec2f lo, Vec2f hi) {
+    const HeightTexture& heights = *d.heights;
+    const float texel = pass.blurriest > 0 ? 1.5f * std::exp2(std::floor(pass.blurriest) + 1) : 0;
+    const Vec2f margin{texel / static_cast<float>(heights.width()),
+                       texel / static_cast<float>(heights.height())};
+    const HeightTexture::Bounds bounds = heights.bounds(lo - margin, hi + margin);
+    range.lo[0] = std::min(range.lo[0], bounds.lo[0]);
+    range.hi[0] = std::max(range.hi[0], bounds.hi[0]);
+  };
+  if (d.box_size > 0) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float most =
+          std::max({std::abs(n[0][axis]), std::abs(n[1][axis]), std::abs(n[2][axis])});
+      if (most / shortest < 0.4f) continue;
+      const Vec2f lo = projected(flat.lo, axis, d.box_size);
+      const Vec3d extent = (flat.hi - flat.lo) * (1 / d.box_size);
+      const Vec2f size{static_cast<float>(axis == 0 ? extent.z : extent.x),
+                       static_cast<float>(axis == 1 ? extent.z : extent.y)};
+      // Along y the texture runs down.
+      const Vec2f start = axis == 1 ? lo : Vec2f{lo.x, lo.y - size.y};
+      include(start, start + size);
+    }
+  } else {
+    const CornerIndex first = 3 * pass.triangle;
+    Vec2f lo{}, hi{};
+    for (const Vertex* v : corners) {
+      const Vec2f p = d.uv(uv(first) + (uv(first + 1) - uv(first)) * v->b1 +
+                           (uv(first + 2) - uv(first)) * v->b2);
+      lo = v == &a ? p : Vec2f{std::min(lo.x, p.x), std::min(lo.y, p.y)};
+      hi = v == &a ? p : Vec2f{std::max(hi.x, p.x), std::max(hi.y, p.y)};
+    }
+    include(lo, hi);
+  }
+  const double p = d.base + d.gain * range.lo[0] / 65535, q = d.base + d.gain * range.hi[0] / 65535;
+  const Interval height{std::min(p, q), std::max(p, q)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [lo, hi] = std::minmax({n[0][axis], n[1][axis], n[2][axis]});
+    const Interval component{lo < 0 ? lo / shortest : lo, hi > 0 ? hi / shortest : hi};
+    const Interval offset = component * height;
+    // Normals that are nearly equal count as equal.
+    const double slack = 2e-3 * radius_;
+    box.lo[axis] = std::min(box.lo[axis], flat.lo[axis] + offset.lo - slack);
+    box.hi[axis] = std::max(box.hi[axis], flat.hi[axis] + offset.hi + slack);
+  }
+  return box;
+}
+
+Box3d DisplacedTriangles::displaced_bounds(std::uint32_t t) const {
+  const Pass pass(*this, t, std::numeric_limits<double>::infinity());
+  if (is_displaced(t)) return piece_bounds(pass, pass.corners[0], pass.corners[1], pass.corners[2]);
+  Box3d box = Box3d::empty();
+  for (const Vertex& corner : pass.corners) box.extend(corner.position);
+  return box;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,210 @@
+#include "voxdag/esvo/displaced_triangles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "voxdag/image/stone_heights.hpp"
+
+namespace voxdag {
+namespace {
+
+const Box3d kEverywhere{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
+
+std::shared_ptr<const HeightTexture> stones() {
+  static const auto texture = std::make_shared<const HeightTexture>(make_stone_heights(1, 128));
+  return texture;
+}
+
+std::vector<MicroTriangle> tessellate(const DisplacedTriangles& triangles, const Mesh& mesh,
+                                      double limit, const Box3d& region = kEverywhere) {
+  std::vector<MicroTriangle> all;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    triangles.tessellate(t, region, limit, [&](const MicroTriangle& m) { all.push_back(m); });
+  return all;
+}
+
+/// Directed edges of micro triangles that no other has the other way around.
+std::size_t open_edges(const std::vector<MicroTriangle>& all) {
+  using Point = std::tuple<double, double, double>;
+  const auto key = [](Vec3d p) { return Point{p.x, p.y, p.z}; };
+  std::map<std::pair<Point, Point>, int> edges;
+  for (const MicroTriangle& m : all)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point a = key(m.positions[i]), b = key(m.positions[(i + 1) % 3]);
+      if (a < b)
+        ++edges[{a, b}];
+      else
+        --edges[{b, a}];
+    }
+  std::size_t open = 0;
+  for (const auto& [edge, balance] : edges) open += balance != 0 && edge.first != edge.second;
+  return open;
+}
+
+/// A closed box of 12 triangles with corners of its own for every face, and texture coordinates
+/// that do not agree along its edges.
+struct Crate {
+  Mesh mesh;
+  Appearance appearance;
+
+  Crate() {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const auto corner = [&](int u, int v) {
+          constexpr Vec3f kSize{2, 1.5f, 1.25f};
+          Vec3f p;
+          p[axis] = static_cast<float>(side);
+          p[(axis + 1) % 3] = static_cast<float>(side == 1 ? u : v);
+          p[(axis + 2) % 3] = static_cast<float>(side == 1 ? v : u);
+          return p * kSize;
+        };
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+          mesh.vertices.push_back(corner(u, v));
+        mesh.triangles.push_back({first, first + 1, first + 2});
+        mesh.triangles.push_back({first, first + 2, first + 3});
+        const float shift = 0.37f * static_cast<float>(first);
+        for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}})
+          appearance.uvs.push_back({static_cast<float>(u) + shift, static_cast<float>(v) * 0.8f});
+      }
+    appearance.materials.resize(2);
+    mesh.materials = {"a", "b"};
+    mesh.triangle_materials.assign(mesh.triangles.size(), 0);
+  }
+};
+
+TEST(DisplacedTriangles, NeighboursOfDifferentMappingLeaveNoCracks) {
+  const Crate crate;
+  for (const double box_size : {0.0, 0.7}) {
+    const DisplacedTriangles triangles(
+        crate.mesh, crate.appearance,
+        displace_all(crate.mesh, crate.appearance, stones(), 0.1, box_size));
+    const auto all = tessellate(triangles, crate.mesh, 0.07);
+    EXPECT_GT(all.size(), 5000u);
+    EXPECT_EQ(open_edges(all), 0u);
+  }
+}
+
+TEST(DisplacedTriangles, WhatMeetsASurfaceThatIsNotDisplacedStaysThere) {
+  Crate crate;
+  crate.mesh.triangle_materials[0] = crate.mesh.triangle_materials[1] = 1;
+  auto displacements = displace_all(crate.mesh, crate.appearance, stones(), 0.1);
+  displacements[1] = {};
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance, displacements);
+  EXPECT_FALSE(triangles.is_displaced(0));
+  std::size_t moved = 0, stayed = 0;
+  for (const MicroTriangle& m : tessellate(triangles, crate.mesh, 0.07))
+    for (const Vec3d p : m.positions) {
+      // The face x = 0 is the one that stays.
+      const bool is_on_its_rim = p.x == 0 && (p.y == 0 || p.y == 1.5 || p.z == 0 || p.z == 1.25);
+      stayed += is_on_its_rim;
+      moved += p.x < 0;
+    }
+  EXPECT_EQ(moved, 0u);
+  EXPECT_GT(stayed, 100u);
+}
+
+TEST(DisplacedTriangles, RegionsGiveTheSameMicroTrianglesAsTheWhole) {
+  const Crate crate;
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance,
+                                     displace_all(crate.mesh, crate.appearance, stones(), 0.15));
+  const auto key = [](const MicroTriangle& m) {
+    std::array<double, 9> k;
+    for (std::size_t i = 0; i < 9; ++i) k[i] = m.positions[i / 3][static_cast<int>(i % 3)];
+    return k;
+  };
+  std::set<std::array<double, 9>> whole, parts;
+  for (const MicroTriangle& m : tessellate(triangles, crate.mesh, 0.1)) whole.insert(key(m));
+  constexpr int kParts = 5;
+  for (int i = 0; i < kParts * kParts * kParts; ++i) {
+    const Vec3d lo{-1 + i % kParts * 0.8, -1 + i / kParts % kParts * 0.8,
+                   -1 + i / kParts / kParts * 0.8};
+    for (const MicroTriangle& m :
+         tessellate(triangles, crate.mesh, 0.1, {lo, lo + Vec3d{0.8, 0.8, 0.8}}))
+      parts.insert(key(m));
+  }
+  EXPECT_EQ(whole, parts);
+}
+
+TEST(DisplacedTriangles, BoundsHoldEveryMicroTriangle) {
+  Crate crate;
+  // Normals that turn over each face.
+  for (std::size_t t = 0; t < crate.mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : crate.mesh.triangles[t]) {
+      const Vec3f d = crate.mesh.vertices[v] - Vec3f{1, 0.75f, 0.625f};
+      crate.appearance.normals.push_back(d * (1 / std::sqrt(dot(d, d))));
+    }
+  for (const double box_size : {0.0, 0.5}) {
+    const DisplacedTriangles triangles(
+        crate.mesh, crate.appearance,
+        displace_all(crate.mesh, crate.appearance, stones(), -0.2, box_size));
+    for (std::uint32_t t = 0; t < crate.mesh.triangles.size(); ++t) {
+      const Box3d box = triangles.displaced_bounds(t);
+      triangles.tessellate(t, kEverywhere, 0.05, [&](const MicroTriangle& m) {
+        for (const Vec3d p : m.positions)
+          for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE(p[axis], box.lo[axis]);
+            EXPECT_LE(p[axis], box.hi[axis]);
+          }
+      });
+    }
+  }
+}
+
+TEST(DisplacedTriangles, PointsOfAPlaneMoveByTheirHeight) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Appearance appearance;
+  appearance.materials.resize(1);
+  appearance.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 1}, {1, 0}, {0, 0}};
+  const DisplacedTriangles triangles(mesh, appearance,
+                                     displace_all(mesh, appearance, stones(), 0.1));
+  // Spacing below half a texel: the texture itself.
+  for (const MicroTriangle& m : tessellate(triangles, mesh, 0.005))
+    for (const Vec3d p : m.positions) {
+      const Vec2f uv{static_cast<float>(p.x), static_cast<float>(1 - p.y)};
+      EXPECT_NEAR(p.z, 0.1 * static_cast<double>(stones()->sample(0, uv)[0]) / 65535, 1e-5);
+    }
+}
+
+TEST(DisplacedTriangles, EdgesAreNotLongerThanTheLimit) {
+  const Crate crate;
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance,
+                                     displace_all(crate.mesh, crate.appearance, stones(), 0));
+  for (std::uint32_t t = 0; t < crate.mesh.triangles.size(); ++t)
+    triangles.tessellate(t, kEverywhere, 0.3, [&](const MicroTriangle& m) {
+      EXPECT_EQ(m.barycentrics[1], (Vec2f{1, 0}));  // An amount of 0 displaces nothing.
+    });
+  const DisplacedTriangles little(crate.mesh, crate.appearance,
+                                  displace_all(crate.mesh, crate.appearance, stones(), 1e-9));
+  for (const MicroTriangle& m : tessellate(little, crate.mesh, 0.3))
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d d = m.positions[i] - m.positions[(i + 1) % 3];
+      EXPECT_LE(std::sqrt(dot(d, d)), 0.3 + 1e-8);
+    }
+}
+
+TEST(DisplacedTriangles, BarycentricsNameThePlaceInTheBaseTriangle) {
+  const Crate crate;
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance,
+                                     displace_all(crate.mesh, crate.appearance, stones(), 1e-9));
+  for (std::uint32_t t = 0; t < crate.mesh.triangles.size(); ++t)
+    triangles.tessellate(t, kEverywhere, 0.1, [&](const MicroTriangle& m) {
+      const Triangle& base = crate.mesh.triangles[t];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2f b = m.barycentrics[i];
+        const Vec3f p = crate.mesh.vertices[base[0]] * (1 - b.x - b.y) +
+                        crate.mesh.vertices[base[1]] * b.x + crate.mesh.vertices[base[2]] * b.y;
+        const Vec3d d = Vec3d(p) - m.positions[i];
+        EXPECT_LT(dot(d, d), 1e-12);
+      }
+    });
+}
+
+}  // namespace
+}  // namespace voxdag
