@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "voxdag/esvo/lanes.hpp"
+#include "voxdag/esvo/principal_axis.hpp"
 
 namespace voxdag {
 namespace {
@@ -126,29 +127,6 @@ void fit_selectors(const Values& values, Fit& fit) {
   fit.error = error[0] + error[1] + error[2] + error[3];
 }
 
-/// The direction in which the values vary most, of any length.
-Vec3f principal_axis(const Values& values) {
-  float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-  for (std::size_t i = 0; i < values.count; ++i) {
-    const Vec3f v = vec_of(values.color[i] - values.mean), wv = v * values.weight[i];
-    xx += wv.x * v.x, xy += wv.x * v.y, xz += wv.x * v.z;
-    yy += wv.y * v.y, yz += wv.y * v.z, zz += wv.z * v.z;
-  }
-  // The covariance matrix squared three times: its longest row then lies along the axis.
-  float norm = 1.0f / (xx + yy + zz);
-  for (int i = 0; i < 3; ++i) {
-    xx *= norm, xy *= norm, xz *= norm, yy *= norm, yz *= norm, zz *= norm;
-    const float nxx = xx * xx + xy * xy + xz * xz, nyy = xy * xy + yy * yy + yz * yz,
-                nzz = xz * xz + yz * yz + zz * zz, nxy = xx * xy + xy * yy + xz * yz,
-                nxz = xx * xz + xy * yz + xz * zz, nyz = xy * xz + yy * yz + yz * zz;
-    norm = 1.0f / (nxx + nyy + nzz);
-    xx = nxx, yy = nyy, zz = nzz, xy = nxy, xz = nxz, yz = nyz;
-  }
-  return xx >= yy && xx >= zz ? Vec3f{xx, xy, xz}
-         : yy >= zz           ? Vec3f{xy, yy, yz}
-                              : Vec3f{xz, yz, zz};
-}
-
 /// The values in order along their axis, and the sums of the first 0, 1, ... of them: weights, and
 /// weighted differences from the mean. Past the last the sums repeat.
 struct Sorted {
@@ -157,7 +135,10 @@ struct Sorted {
 };
 
 void sort_along_axis(const Values& values, Sorted& sorted) {
-  const Vec3f axis = principal_axis(values);
+  SymmetricMatrix spread;
+  for (std::size_t i = 0; i < values.count; ++i)
+    spread.add(vec_of(values.color[i] - values.mean), values.weight[i]);
+  const Vec3f axis = spread.principal_axis();
   float along[kValuesPerBlock];
   for (std::size_t i = 0; i < values.count; ++i) {
     const float position = dot(vec_of(values.color[i]), axis);

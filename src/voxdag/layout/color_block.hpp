@@ -17,11 +17,9 @@
 #include <type_traits>
 
 #include "voxdag/core/vec.hpp"
+#include "voxdag/layout/attribute_values.hpp"
 
 namespace voxdag {
-
-/// Values of an attribute block: eight child slots of each of two consecutive descriptors.
-inline constexpr int kValuesPerBlock = 16;
 
 /// A colour in steps of RGB-565.
 struct Rgb565 {

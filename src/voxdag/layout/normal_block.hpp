@@ -26,6 +26,7 @@
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/vec.hpp"
+#include "voxdag/layout/attribute_values.hpp"
 
 namespace voxdag {
 
@@ -127,7 +128,7 @@ struct NormalBlock {
 
  private:
   VOXDAG_HD static constexpr int step(std::uint32_t steps, int index) {
-    assert(index >= 0 && index < 16);
+    assert(index >= 0 && index < kValuesPerBlock);
     return static_cast<int>(steps >> (2 * index) & 3u);
   }
 };
