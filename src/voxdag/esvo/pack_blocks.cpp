@@ -252,6 +252,25 @@ NodeCell cell_of(const EsvoTree& tree, const std::vector<std::uint32_t>& parents
   return root;
 }
 
+EsvoCounts count_voxels(const EsvoTree& tree, const std::vector<std::uint32_t>& parents,
+                        int level) {
+  EsvoCounts counts;
+  std::vector<std::int8_t> levels(tree.nodes.size(), static_cast<std::int8_t>(level));
+  for (std::size_t node = 1; node < tree.nodes.size(); ++node) {
+    levels[node] = static_cast<std::int8_t>(levels[parents[node]] + 1);
+    const EsvoNode& n = tree.nodes[node];
+    const auto below = static_cast<std::size_t>(levels[node] + 1);
+    const auto count = [](std::uint32_t mask) {
+      return static_cast<std::uint64_t>(std::popcount(mask));
+    };
+    counts.voxels_per_level[below] += count(n.valid_mask);
+    counts.leaves_per_level[below] += count(n.leaf_mask);
+    counts.contours += count(n.contour_mask);
+    ++counts.descriptors;
+  }
+  return counts;
+}
+
 }  // namespace
 
 std::uint64_t packed_slots(const EsvoTree& tree) {
@@ -269,6 +288,7 @@ PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint6
   const std::vector<std::uint32_t> parents = find_parents(tree);
 
   PackedBlocks result;
+  result.counts = count_voxels(tree, parents, level);
   Placement placement(tree.nodes.size());
   // By node: where its children begin, among result.slots; and the block they begin.
   std::vector<std::uint64_t> first_child(tree.nodes.size());
@@ -296,6 +316,7 @@ PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint6
     entry.cell = where.cell;
     block_of[node] = static_cast<std::uint32_t>(result.blocks.size());
     writer.for_each_far([&](std::uint32_t to, std::uint32_t slot) {
+      ++result.counts.far_pointers;
       if (tree.nodes[to].is_packed)
         result.links.push_back({tree.packed[tree.nodes[to].first_child], begin + slot});
       else
@@ -305,6 +326,7 @@ PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint6
     result.slots.insert(result.slots.end(), slots.begin(), slots.end());
   }
   result.first_child = first_child[0];
+  result.counts.blocks = result.blocks.size();
   return result;
 }
 

@@ -14,6 +14,7 @@
 
 #include "voxdag/esvo/esvo_tree.hpp"
 #include "voxdag/layout/esvo.hpp"
+#include "voxdag/layout/esvo_counts.hpp"
 #include "voxdag/layout/esvo_directory.hpp"
 
 namespace voxdag {
@@ -38,6 +39,8 @@ struct PackedBlocks {
   std::vector<PackedLink> links;
   /// The first descriptor of the children of node 0, as a slot among these.
   std::uint64_t first_child = 0;
+  /// Of the descriptors in these blocks and the voxels that they describe.
+  EsvoCounts counts;
 };
 
 /// How many slots the descriptors below node 0 will take: an estimate, without page headers.

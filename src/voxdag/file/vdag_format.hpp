@@ -57,6 +57,9 @@ inline constexpr std::uint32_t kChunkMeta =
 inline constexpr std::uint32_t kChunkLevels = vdag_chunk_id("LEVL");  ///< u64 level_begin[0..L-2].
 inline constexpr std::uint32_t kChunkNodes = vdag_chunk_id("NODE");   ///< u32 SvdagView::nodes.
 inline constexpr std::uint32_t kChunkLeafBlocks = vdag_chunk_id("LEAF");  ///< u64 leaf_blocks.
+inline constexpr std::uint32_t kChunkEsvo = vdag_chunk_id("ESVO");  ///< u64 slots of all blocks.
+inline constexpr std::uint32_t kChunkEsvoBlocks =
+    vdag_chunk_id("EBLK");  ///< EsvoBlockEntry of each.
 
 /// "NODE"; other bytes than letters, digits and space as "?".
 inline std::string vdag_chunk_name(std::uint32_t id) {

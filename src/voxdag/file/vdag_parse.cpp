@@ -74,24 +74,12 @@ VdagChunk read_entry(std::span<const std::byte> file, const VdagChunkEntry& entr
       vdag_align(entry.length) > file.size() - expected_offset)
     fail(place, "reaches past the end of the file");
   const bool required = (entry.flags & kVdagChunkRequired) != 0;
-  constexpr std::uint32_t kKnown[] = {kChunkMeta, kChunkLevels, kChunkNodes, kChunkLeafBlocks};
+  constexpr std::uint32_t kKnown[] = {kChunkMeta,       kChunkLevels, kChunkNodes,
+                                      kChunkLeafBlocks, kChunkEsvo,   kChunkEsvoBlocks};
   if (required && std::find(std::begin(kKnown), std::end(kKnown), entry.id) == std::end(kKnown))
     fail(place, "needs a newer program");
   return {entry.id, required, entry.offset, entry.checksum,
           file.subspan(entry.offset, entry.length)};
-}
-
-const VdagChunk& find_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
-  for (const VdagChunk& chunk : chunks)
-    if (chunk.id == id) return chunk;
-  fail("chunk table", "chunk " + vdag_chunk_name(id) + " is missing");
-}
-
-template <class T>
-std::span<const T> values_of(const VdagChunk& chunk) {
-  if (chunk.bytes.size() % sizeof(T) != 0)
-    fail(chunk_place(chunk.id), "length is not a multiple of " + std::to_string(sizeof(T)));
-  return {reinterpret_cast<const T*>(chunk.bytes.data()), chunk.bytes.size() / sizeof(T)};
 }
 
 }  // namespace
@@ -126,22 +114,30 @@ void check_vdag_checksums(const std::vector<VdagChunk>& chunks) {
     if (xxh3_64(chunk.bytes) != chunk.checksum) fail(chunk_place(chunk.id), "checksum is wrong");
 }
 
+std::span<const std::byte> chunk_bytes(const std::vector<VdagChunk>& chunks, std::uint32_t id,
+                                       std::size_t multiple) {
+  const auto chunk = std::find_if(chunks.begin(), chunks.end(),
+                                  [id](const VdagChunk& other) { return other.id == id; });
+  if (chunk == chunks.end()) fail("chunk table", "chunk " + vdag_chunk_name(id) + " is missing");
+  if (chunk->bytes.size() % multiple != 0)
+    fail(chunk_place(id), "length is not a multiple of " + std::to_string(multiple));
+  return chunk->bytes;
+}
+
+std::string_view metadata_chunk_text(const std::vector<VdagChunk>& chunks) {
+  const std::span<const std::byte> bytes = chunk_bytes(chunks, kChunkMeta, 1);
+  if (bytes.size() > kVdagMostMetadataBytes) fail(chunk_place(kChunkMeta), "too long");
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 VdagMetadata read_vdag_metadata(const std::vector<VdagChunk>& chunks) {
-  const VdagChunk& chunk = find_chunk(chunks, kChunkMeta);
-  if (chunk.bytes.size() > kVdagMostMetadataBytes) fail(chunk_place(kChunkMeta), "too long");
-  try {
-    return parse_vdag_metadata(
-        {reinterpret_cast<const char*>(chunk.bytes.data()), chunk.bytes.size()});
-  } catch (const Error& error) {
-    fail(chunk_place(kChunkMeta) + (error.place().empty() ? "" : ", ") + error.place(),
-         error.reason());
-  }
+  return read_metadata_chunk(chunks, parse_vdag_metadata);
 }
 
 SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
-  const auto table = values_of<std::uint64_t>(find_chunk(chunks, kChunkLevels));
-  const auto nodes = values_of<std::uint32_t>(find_chunk(chunks, kChunkNodes));
-  const auto leaf_blocks = values_of<std::uint64_t>(find_chunk(chunks, kChunkLeafBlocks));
+  const auto table = chunk_values<std::uint64_t>(chunks, kChunkLevels);
+  const auto nodes = chunk_values<std::uint32_t>(chunks, kChunkNodes);
+  const auto leaf_blocks = chunk_values<std::uint64_t>(chunks, kChunkLeafBlocks);
   if (table.size() != static_cast<std::size_t>(levels - 1))
     fail(chunk_place(kChunkLevels), std::to_string(table.size()) + " values for a grid of " +
                                         std::to_string(levels) + " levels");

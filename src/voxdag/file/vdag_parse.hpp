@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/layout/svdag.hpp"
 
@@ -34,7 +35,32 @@ std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file);
 /// Throws where the bytes do not have the checksum of the table.
 void check_vdag_checksums(const std::vector<VdagChunk>& chunks);
 
+/// The chunk's bytes; throws where it is missing or its length is no multiple of `multiple`.
+std::span<const std::byte> chunk_bytes(const std::vector<VdagChunk>& chunks, std::uint32_t id,
+                                       std::size_t multiple);
+/// The JSON of META.
+std::string_view metadata_chunk_text(const std::vector<VdagChunk>& chunks);
+
 VdagMetadata read_vdag_metadata(const std::vector<VdagChunk>& chunks);
+
+/// What `parse` makes of the text of META, with the chunk named in its errors.
+template <class Parse>
+auto read_metadata_chunk(const std::vector<VdagChunk>& chunks, const Parse& parse) {
+  const std::string_view text = metadata_chunk_text(chunks);
+  try {
+    return parse(text);
+  } catch (const Error& error) {
+    throw Error("", "chunk META" + (error.place().empty() ? "" : ", " + error.place()),
+                error.reason());
+  }
+}
+
+/// The chunk as values; throws where it is missing or its length is no multiple of theirs.
+template <class T>
+std::span<const T> chunk_values(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
+  const std::span<const std::byte> bytes = chunk_bytes(chunks, id, sizeof(T));
+  return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
 
 /// The DAG of LEVL, NODE and LEAF for a grid of `levels`; lengths are checked, contents are not.
 SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels);

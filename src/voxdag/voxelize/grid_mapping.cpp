@@ -109,7 +109,7 @@ QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid)
   if (!any_out_of_range.load()) return;
   const std::size_t count = mesh.triangles.size();
   for (std::size_t i = 0; i < count; ++i)
-    if (!in_range(i)) clip(mesh, grid, mesh.triangles[i]);
+    if (!in_range(i)) clip(mesh, grid, static_cast<std::uint32_t>(i));
 }
 
 bool QuantizedMesh::in_range(std::size_t index) const {
@@ -127,14 +127,14 @@ QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
 }
 
 std::uint64_t QuantizedMesh::bytes() const {
-  return vertices_.size() * sizeof(Vec3i) + clipped_.size() * sizeof(QuantizedTriangle);
+  return vertices_.size() * sizeof(Vec3i) + clipped_.size() * (sizeof(QuantizedTriangle) + 4);
 }
 
 // Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
-void QuantizedMesh::clip(const Mesh& mesh, const Grid& grid, const Triangle& triangle) {
+void QuantizedMesh::clip(const Mesh& mesh, const Grid& grid, std::uint32_t index) {
   std::vector<Vec3d> polygon, kept;
-  for (std::uint32_t index : triangle)
-    polygon.push_back((static_cast<Vec3d>(mesh.vertices[index]) - grid.origin) *
+  for (const std::uint32_t vertex : mesh.triangles[index])
+    polygon.push_back((static_cast<Vec3d>(mesh.vertices[vertex]) - grid.origin) *
                       grid.quantization_scale);
   constexpr double kLimit = kMaxUnits;
   for (int plane = 0; plane < 6 && !polygon.empty(); ++plane) {
@@ -159,8 +159,10 @@ void QuantizedMesh::clip(const Mesh& mesh, const Grid& grid, const Triangle& tri
       q[axis] = static_cast<std::int32_t>(std::llround(std::clamp(p[axis], -kLimit, kLimit)));
     rounded.push_back(q);
   }
-  for (std::size_t i = 2; i < rounded.size(); ++i)
+  for (std::size_t i = 2; i < rounded.size(); ++i) {
     clipped_.push_back({rounded[0], rounded[i - 1], rounded[i]});
+    clipped_source_.push_back(index);
+  }
 }
 
 }  // namespace voxdag

@@ -46,14 +46,20 @@ class QuantizedMesh {
   /// False for a triangle that was clipped: its pieces stand at the end.
   bool in_range(std::size_t index) const;
   QuantizedTriangle triangle(std::size_t index) const;
+  /// The triangle of the mesh that triangle `index` is, or that it is a piece of.
+  std::uint32_t source(std::size_t index) const {
+    const std::size_t count = mesh_->triangles.size();
+    return index < count ? static_cast<std::uint32_t>(index) : clipped_source_[index - count];
+  }
   std::uint64_t bytes() const;
 
  private:
-  void clip(const Mesh& mesh, const Grid& grid, const Triangle& triangle);
+  void clip(const Mesh& mesh, const Grid& grid, std::uint32_t index);
 
   const Mesh* mesh_;
   std::vector<Vec3i> vertices_;
   std::vector<QuantizedTriangle> clipped_;
+  std::vector<std::uint32_t> clipped_source_;
 };
 
 }  // namespace voxdag

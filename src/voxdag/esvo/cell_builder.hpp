@@ -1,0 +1,131 @@
+#pragma once
+/// Builds the part of an ESVO below one cell, depth first, from the triangles in it.
+///
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.4: top-down and
+/// greedy. A voxel gets the contour that takes away most of what its shape, cut by its ancestors'
+/// contours, has beyond the surface; it is a leaf where the shape is near enough to the surface and
+/// colours and normals are uniform enough.
+///
+/// Which voxels there are is exact (design: exact cover); contours enclose the polygons that the
+/// triangles leave in a voxel. What is seen of a leaf is the mean over its polygons, what is seen
+/// of another voxel the mean over its leaves, by area.
+#include <optional>
+#include <vector>
+
+#include "voxdag/esvo/esvo_tree.hpp"
+#include "voxdag/esvo/surface_shading.hpp"
+#include "voxdag/esvo/surface_triangle.hpp"
+#include "voxdag/voxelize/cell_classify.hpp"
+
+namespace voxdag {
+
+/// What shapes the octree.
+struct EsvoSettings {
+  bool contours = true;  ///< False: cubes, all of the finest level.
+  /// How far a leaf's shape may reach beyond the surface, in voxels of the finest level.
+  float max_error = 0.5f;
+  /// How much a leaf's points may differ from its colour: greatest difference of a channel, sRGB
+  /// encoded, 0 to 1.
+  float color_error = 0.03f;
+  float normal_error = 0.05f;  ///< And from its normal, in radians.
+  bool attributes = true;      ///< Colours and normals.
+};
+
+/// Sums over surface: what a voxel looks like is their mean.
+struct SurfaceSum {
+  Vec3f color{};   ///< Linear light times area.
+  Vec3f normal{};  ///< Times area.
+  float area = 0;  ///< Visible area, in voxels² of the finest level.
+
+  void add(const SurfaceSum& other) {
+    color = color + other.color;
+    normal = normal + other.normal;
+    area += other.area;
+  }
+};
+
+/// The mean as it is stored. A voxel whose normals cancel gets an arbitrary one.
+VoxelValue voxel_value(const SurfaceSum& sum);
+
+/// A voxel with all that is below it.
+struct BuiltVoxel {
+  bool exists = false;  ///< False: no surface, or all of it cut away by its texture's alpha.
+  bool is_leaf = false;
+  std::optional<Contour> contour;
+  SurfaceSum sum;
+  EsvoTree tree;  ///< Node 0 is the voxel, unless it is a leaf.
+};
+
+/// What is decided of a voxel before its children are known.
+struct VoxelDecision {
+  bool is_leaf = false;
+  std::optional<Contour> contour;
+};
+
+class CellBuilder {
+ public:
+  /// `shading` is null where nothing is known but the shape: surfaces are grey then.
+  CellBuilder(const EsvoSettings& settings, const SurfaceShading* shading)
+      : settings_(settings), shading_(shading) {}
+
+  /// Begins a cell of 2^log2_size voxels without triangles. `shape` is what the ancestors' contours
+  /// leave of it.
+  void start(int log2_size, const ConvexPolyhedron& shape);
+  /// Adds a triangle; its origin is that of the cell. `id` is the caller's.
+  void add(const SurfaceTriangle& triangle, std::uint32_t id);
+
+  /// How much surface there is, in voxels², and at least one for each triangle.
+  double weight() const;
+
+  /// The contour of the cell and whether it is a leaf; cuts shape() by the contour.
+  VoxelDecision decide();
+  const ConvexPolyhedron& shape() const { return shape_; }
+  /// The sum over the cell's polygons.
+  SurfaceSum sum() const;
+  /// The ids of the triangles that meet each child.
+  void split(std::vector<std::uint32_t> (&children)[8]) const;
+
+  /// All below the cell, whose own contour is `decision.contour`.
+  BuiltVoxel build(const VoxelDecision& decision);
+
+ private:
+  struct Item {
+    std::uint32_t triangle;
+    std::uint32_t conditions;
+    SurfacePolygon polygon;
+  };
+  /// A voxel with its children known, and the node that says so.
+  struct Visited {
+    bool exists = false, is_leaf = false;
+    std::optional<Contour> contour;
+    SurfaceSum sum;
+    EsvoNode node;
+  };
+
+  void drop_cut_away(std::size_t begin, int log2_size, Vec3i cell);
+  VoxelDecision decide(std::size_t begin, int log2_size, Vec3i cell, ConvexPolyhedron& shape) const;
+  bool is_near(std::size_t begin, const ConvexPolyhedron& shape, double error) const;
+  bool is_uniform(std::size_t begin, int log2_size, Vec3i cell) const;
+  ContourCandidates candidates(std::size_t begin) const;
+  SurfaceSum sum_of(std::size_t begin, int log2_size, Vec3i cell) const;
+  SurfaceSample sample(const Item& item, int log2_size, Vec3i cell) const;
+  int barycentrics(const Item& item, int log2_size, Vec3i cell,
+                   Vec2f (&points)[SurfacePolygon::kMaxCorners]) const;
+  double area_of(const Item& item, int log2_size) const;
+  Visited visit(std::size_t begin, int log2_size, Vec3i cell, ConvexPolyhedron& shape);
+  Visited visit_children(std::size_t begin, int log2_size, Vec3i cell,
+                         const ConvexPolyhedron& shape);
+
+  EsvoSettings settings_;
+  const SurfaceShading* shading_;
+  int log2_size_ = 0;
+  ConvexPolyhedron shape_;
+  std::vector<SurfaceTriangle> triangles_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Item> items_;                  // stack of lists, one for each cell on the way
+  std::vector<ChildConditions> classified_;  // likewise
+  mutable std::vector<const SurfacePolygon*> polygons_;
+  EsvoTree tree_;  // nodes stand in reverse: children before parents, siblings from last to first
+};
+
+}  // namespace voxdag

@@ -1,0 +1,76 @@
+#pragma once
+/// What the JSON of all kinds of .vdag files has in common: reading with errors that say where, and
+/// the values that all have.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+
+namespace voxdag {
+
+using MetadataJson = nlohmann::ordered_json;
+
+/// One value of the document with the path to it, for errors that say where.
+struct MetadataField {
+  const MetadataJson& value;
+  std::string path;
+
+  [[noreturn]] void fail(const std::string& reason) const { throw Error("", path, reason); }
+
+  MetadataField at(const std::string& key) const {
+    const std::string child = path.empty() ? key : path + "." + key;
+    if (!value.is_object()) fail("not an object");
+    const auto it = value.find(key);
+    if (it == value.end()) throw Error("", child, "missing");
+    return {*it, child};
+  }
+  MetadataField at(std::size_t index) const {
+    return {value[index], path + "[" + std::to_string(index) + "]"};
+  }
+
+  void expect_array(std::size_t size) const {
+    if (!value.is_array() || value.size() != size)
+      fail("not an array of " + std::to_string(size) + " values");
+  }
+  std::uint64_t count() const {
+    if (!value.is_number_unsigned()) fail("not a count");
+    return value.get<std::uint64_t>();
+  }
+  double finite() const {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) fail("not a finite number");
+    return value.get<double>();
+  }
+  double positive() const {
+    if (!(finite() > 0)) fail("not positive");
+    return value.get<double>();
+  }
+  std::string text() const {
+    if (!value.is_string()) fail("not a string");
+    return value.get<std::string>();
+  }
+  /// An array of `size` counts.
+  std::vector<std::uint64_t> counts(std::size_t size) const {
+    expect_array(size);
+    std::vector<std::uint64_t> values(size);
+    for (std::size_t i = 0; i < size; ++i) values[i] = at(i).count();
+    return values;
+  }
+};
+
+/// Throws Error("", "byte N", "not valid JSON").
+MetadataJson parse_metadata_json(std::string_view text);
+
+std::string metadata_text(const MetadataJson& json);
+
+MetadataJson grid_json(const Grid& grid);
+Grid read_grid(const MetadataField& field);
+
+/// Adds "source", "program" and "build".
+void add_origin_json(MetadataJson& json, const VdagSource& source, const std::string& program,
+                     const std::map<std::string, std::string>& build);
+VdagSource read_source(const MetadataField& field);
+std::map<std::string, std::string> read_build(const MetadataField& field);
+
+}  // namespace voxdag
