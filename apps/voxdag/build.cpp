@@ -1,16 +1,16 @@
-/// `voxdag build`: from a mesh file to a .vdag file.
+/// `voxdag build`: from a mesh file to a .vdag or .esvo file.
 #include <fmt/core.h>
-#include <sys/resource.h>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "build_esvo.hpp"
 #include "commands.hpp"
 #include "dag_report.hpp"
 #include "human.hpp"
 #include "parse.hpp"
+#include "process_usage.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
@@ -27,6 +27,8 @@ struct BuildArguments {
   std::optional<Box3d> bounds;
   BuildOptions options;
   bool stats = false;
+  bool as_esvo = false;
+  EsvoArguments esvo;
 };
 
 /// Wall-clock seconds of what a build does, one after the other.
@@ -34,25 +36,6 @@ struct StageSeconds {
   double read = 0, build = 0, write = 0;
   double total() const { return read + build + write; }
 };
-
-class Stopwatch {
- public:
-  /// Seconds since the last lap, or since the beginning.
-  double lap() {
-    const Clock::time_point before = std::exchange(start_, Clock::now());
-    return std::chrono::duration<double>(start_ - before).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
-
-std::uint64_t peak_memory_bytes() {
-  struct rusage usage {};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
 
 Grid choose_grid(const Mesh& mesh, const BuildArguments& arguments) {
   if (arguments.bounds)
@@ -67,6 +50,17 @@ std::map<std::string, std::string> settings_of(const BuildArguments& arguments) 
   return {{"cover", "exact"},
           {"grid_from", arguments.bounds ? "bounds" : "mesh"},
           {"scale_from", arguments.levels ? "resolution" : "voxel_size"}};
+}
+
+void build_as_esvo(const BuildArguments& arguments, Session& session) {
+  check_writable(arguments.output);
+  EsvoBuild build;
+  build.output = arguments.output;
+  build.choose_grid = [&](const Mesh& mesh) { return choose_grid(mesh, arguments); };
+  build.settings = settings_of(arguments);
+  build.memory_limit = arguments.options.memory_limit;
+  build.stats = arguments.stats;
+  build_esvo_file(arguments.esvo, build, session);
 }
 
 nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
@@ -143,16 +137,24 @@ void build(const BuildArguments& arguments, Session& session) {
 
 void add_build_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<BuildArguments>();
-  CLI::App& command = add_command(app, "build", "Make the sparse voxel DAG of a triangle mesh",
-                                  "voxdag build sponza.obj -r 8192 -o sponza.vdag");
+  CLI::App& command =
+      add_command(app, "build", "Make the sparse voxel DAG, or the ESVO, of a triangle mesh",
+                  "voxdag build sponza.obj -r 8192 -o sponza.vdag");
   command
       .add_option("mesh", session.subject,
                   "The mesh: OBJ, PLY, STL, glTF/GLB, or what assimp reads where it is there")
       ->type_name("MESH")
       ->required();
   command.add_option("-o,--output", arguments->output, "The file to write")
-      ->type_name("FILE.vdag")
+      ->type_name("FILE")
       ->required();
+  CLI::Option* const as =
+      command
+          .add_option("--as", arguments->as_esvo,
+                      "dag: the minimal DAG; esvo: an octree with contours, colours and normals "
+                      "(default: esvo for FILE.esvo, else dag)")
+          ->transform(CLI::Transformer(std::map<std::string, bool>{{"dag", false}, {"esvo", true}}))
+          ->type_name("dag|esvo");
   add_parsed_option(command, "-r,--resolution", arguments->levels, parse_levels, "N",
                     "Voxels a side: a power of two from 4 to 1048576; 8K is 8192");
   add_parsed_option(command, "--voxel-size", arguments->voxel_size, parse_positive, "SIZE",
@@ -168,13 +170,17 @@ void add_build_command(CLI::App& app, Session& session) {
   add_parsed_option(command, "--memory", arguments->options.memory_limit, parse_memory, "LIMIT",
                     "Stop instead of using more memory: 512M, 16GiB");
   command.add_flag("--stats", arguments->stats, "Show the nodes of each level too");
+  add_esvo_options(command, arguments->esvo);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);
-  command.callback([arguments, &session] {
+  command.callback([arguments, as, &session] {
+    if (as->empty()) arguments->as_esvo = arguments->output.ends_with(".esvo");
     if (arguments->levels.has_value() == arguments->voxel_size.has_value())
       throw CLI::ValidationError("exactly one of -r/--resolution and --voxel-size is needed");
-    session.work = [arguments, &session] { build(*arguments, session); };
+    session.work = [arguments, &session] {
+      arguments->as_esvo ? build_as_esvo(*arguments, session) : build(*arguments, session);
+    };
   });
 }
 

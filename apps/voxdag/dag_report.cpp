@@ -49,30 +49,36 @@ Json dag_json(const DagReport& report) {
   json["bits_per_voxel"] = {{"svo_pointerless", bits_per_voxel(svo_bytes, counts)},
                             {"svdag_paper", bits_per_voxel(report.svdag_bytes, counts)},
                             {"file", bits_per_voxel(report.file_bytes, counts)}};
-  json["transform"] = {{"origin", vec_json(metadata.grid.origin)},
-                       {"voxel_size", metadata.grid.voxel_size},
-                       {"quantization_scale", metadata.grid.quantization_scale}};
-  json["source"] = {{"name", metadata.source.name},
-                    {"vertices", metadata.source.vertices},
-                    {"triangles", metadata.source.triangles}};
-  json["program"] = metadata.program;
-  json["build"] = metadata.build;
+  add_placement_json(json, metadata.grid, metadata.source, metadata.program, metadata.build);
   return json;
 }
 
-std::string dag_table(const DagReport& report) {
-  const Grid& grid = report.metadata.grid;
-  const SvdagCounts& counts = report.metadata.counts;
-  const VdagSource& source = report.metadata.source;
+void add_placement_json(Json& json, const Grid& grid, const VdagSource& source,
+                        const std::string& program,
+                        const std::map<std::string, std::string>& build) {
+  json["transform"] = {{"origin", vec_json(grid.origin)},
+                       {"voxel_size", grid.voxel_size},
+                       {"quantization_scale", grid.quantization_scale}};
+  json["source"] = {
+      {"name", source.name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
+  json["program"] = program;
+  json["build"] = build;
+}
+
+std::string placement_table(const Grid& grid, const VdagSource& source) {
   const Vec3d lo = grid.origin, hi = grid.bounds().hi;
-  const std::uint64_t svo_bytes = counts.svo_nodes();
-  std::string text;
-  text +=
-      fmt::format("  {:<14}{}, {} triangles\n", "mesh", source.name, with_commas(source.triangles));
-  text += fmt::format(
+  return fmt::format(
+      "  {:<14}{}, {} triangles\n"
       "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
-      "grid", with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x,
-      lo.y, lo.z, hi.x, hi.y, hi.z);
+      "mesh", source.name, with_commas(source.triangles), "grid",
+      with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x, lo.y, lo.z,
+      hi.x, hi.y, hi.z);
+}
+
+std::string dag_table(const DagReport& report) {
+  const SvdagCounts& counts = report.metadata.counts;
+  const std::uint64_t svo_bytes = counts.svo_nodes();
+  std::string text = placement_table(report.metadata.grid, report.metadata.source);
   text += fmt::format("  {:<14}{}\n\n", "voxels", with_commas(counts.voxels));
   text += row("", "SVO", "DAG", "ratio");
   text += row("nodes", with_commas(counts.svo_nodes()), with_commas(counts.dag_nodes()),

@@ -1,15 +1,26 @@
-/// `voxdag info`: what a .vdag file holds.
+/// `voxdag info`: what a .vdag or .esvo file holds.
 #include <fmt/core.h>
 
 #include "commands.hpp"
 #include "dag_report.hpp"
+#include "esvo_report.hpp"
 #include "human.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
 namespace voxdag {
 namespace {
 
+void esvo_info(const std::string& path, bool json) {
+  const EsvoReport report = report_of(EsvoFile(path));
+  if (json)
+    fmt::print("{}\n", esvo_json(report).dump(2));
+  else
+    fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
+               report.metadata.program, esvo_table(report), esvo_level_table(report));
+}
+
 void info(const std::string& path, bool json) {
+  if (is_esvo_file(path)) return esvo_info(path, json);
   const VdagFile file(path);
   const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes()};
   if (json) {
@@ -23,10 +34,12 @@ void info(const std::string& path, bool json) {
 }  // namespace
 
 void add_info_command(CLI::App& app, Session& session) {
-  CLI::App& command =
-      add_command(app, "info", "Show what a .vdag file holds: counts, sizes, placement, source",
-                  "voxdag info scene.vdag --json");
-  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  CLI::App& command = add_command(
+      app, "info", "Show what a .vdag or .esvo file holds: counts, sizes, placement, source",
+      "voxdag info scene.vdag --json");
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
   add_json_option(command, session);
   command.callback(
       [&session] { session.work = [&session] { info(session.subject, session.json); }; });

@@ -7,8 +7,11 @@
 #include "commands.hpp"
 #include "human.hpp"
 #include "voxdag/dag/check_cover.hpp"
+#include "voxdag/esvo/check_esvo.hpp"
+#include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
+#include "voxdag/mesh/read_appearance.hpp"
 #include "voxdag/mesh/read_mesh.hpp"
 
 namespace voxdag {
@@ -65,14 +68,38 @@ void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
   fmt::print("{}\n", nlohmann::ordered_json{{"passed", passed}, {"checks", list}}.dump(2));
 }
 
+/// Points of the mesh, looked for in the octree.
+VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
+  const EsvoFile file(session.subject);
+  const MeshWithAppearance source = read_mesh_with_appearance(arguments.mesh, &session.progress);
+  const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
+  const EnclosureCheck enclosure =
+      check_enclosure(file.view(), QuantizedMesh(source.mesh, file.grid()), &shading,
+                      arguments.samples, arguments.seed);
+  VerifyCheck check{"enclosure", Result::kPassed,
+                    fmt::format("{} points of the surface", with_commas(enclosure.points))};
+  if (!enclosure.outside) return check;
+  const Vec3d at = file.grid().to_world(enclosure.outside->point);
+  check.result = Result::kFailed;
+  check.detail = fmt::format("triangle {} of {} at ({:.9g}, {:.9g}, {:.9g}) is outside at level {}",
+                             enclosure.outside->triangle, arguments.mesh, at.x, at.y, at.z,
+                             enclosure.outside->level);
+  return check;
+}
+
+VerifyCheck mesh_check(const VerifyArguments& arguments, Session& session) {
+  return is_esvo_file(session.subject) ? enclosure_check(arguments, session)
+                                       : cover_check(arguments, session);
+}
+
 void verify(const VerifyArguments& arguments, Session& session) {
   VerifyReport report = verify_vdag(session.subject);
   session.progress.throw_if_cancelled();
   if (!arguments.mesh.empty()) {
     if (report.passed())
-      report.checks.push_back(cover_check(arguments, session));
+      report.checks.push_back(mesh_check(arguments, session));
     else
-      report.checks.push_back({"cover", Result::kSkipped, "the file itself is damaged"});
+      report.checks.push_back({"mesh", Result::kSkipped, "the file itself is damaged"});
   }
   session.bar.clear();
   if (session.json || !session.quiet) print_checks(report.checks, session.json);
@@ -86,12 +113,16 @@ void add_verify_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App& command = add_command(
       app, "verify",
-      "Check a .vdag file: checksums, structure, minimality; with --mesh its voxels too",
+      "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh its voxels too",
       "voxdag verify sponza.vdag --mesh sponza.obj");
-  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
-  command.add_option("--mesh", arguments->mesh, "Compare with this mesh, in a sample of cells")
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--mesh", arguments->mesh,
+                  "Compare with this mesh, in a sample of cells or of points")
       ->type_name("MESH");
-  command.add_option("--samples", arguments->samples, "Cells of the sample")
+  command.add_option("--samples", arguments->samples, "Cells or points of the sample")
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "Another seed takes another sample")

@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/mapped_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
@@ -53,6 +54,31 @@ void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted) {
   compare_levels("dag_nodes_per_level", stated.dag_nodes_per_level, counted.dag_nodes_per_level);
 }
 
+VerifyReport verify_esvo(std::span<const std::byte> file) {
+  VerifyReport report;
+  EsvoContents contents;
+  enum : std::size_t { kContainer, kChecksums, kMetadata };
+  run_check(report, "container", {}, [&] { contents.chunks = read_vdag_chunks(file); });
+  run_check(report, "checksums", {kContainer}, [&] { check_vdag_checksums(contents.chunks); });
+  run_check(report, "metadata", {kContainer},
+            [&] { contents.metadata = read_esvo_metadata(contents.chunks); });
+  run_check(report, "structure", {kContainer, kMetadata}, [&] {
+    contents.directory = read_esvo_directory(contents.chunks);
+    contents.view = read_esvo_view(contents.chunks, contents.metadata);
+    check_esvo_contents(contents);
+  });
+  return report;
+}
+
+/// False for what is not even a container.
+bool holds_esvo(std::span<const std::byte> file) {
+  try {
+    return is_esvo(read_vdag_chunks(file));
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 bool VerifyReport::passed() const {
@@ -62,6 +88,7 @@ bool VerifyReport::passed() const {
 
 VerifyReport verify_vdag(const std::filesystem::path& path) {
   const MappedFile file(path);
+  if (holds_esvo(file.bytes())) return verify_esvo(file.bytes());
   VerifyReport report;
   VdagContents contents;
   enum : std::size_t { kContainer, kChecksums, kMetadata, kStructure };
