@@ -1,5 +1,6 @@
 // The renderer instantiated in kernels: that it compiles as device code is the test.
 #include "voxdag/render/count_steps.hpp"
+#include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_tile.hpp"
 #include "voxdag/render/tone_map.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
@@ -26,6 +27,13 @@ __global__ void render_kernel(SvdagView dag, RenderSetup setup) {
   render_tile(nodes, caster, setup, tile, scratch, [&](const ViewTile& at, TileScratch<1>& out) {
     return trace_view_samples(nodes, caster, setup, at, out);
   });
+}
+
+__global__ void filter_kernel(FilterInput input, const FilterSample* samples, Vec3f* filtered) {
+  const int x = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int y = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y);
+  if (x < input.width && y < input.height)
+    filtered[y * input.width + x] = filtered_color(input, samples, x, y);
 }
 
 }  // namespace voxdag

@@ -1,0 +1,102 @@
+#include "voxdag/render/post_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace voxdag {
+namespace {
+
+constexpr int kReach = static_cast<int>(kFilterRadius);
+
+float length(float x, float y) { return std::sqrt(x * x + y * y); }
+
+/// Distances between samples at this distance from the centre, up to a factor.
+float spacing(float distance) { return std::sqrt(std::sqrt(std::max(distance, 0.25f))); }
+
+FilterSample sample_at(int x, int y) {
+  return {x, y, length(static_cast<float>(x), static_cast<float>(y)), 0.0f};
+}
+
+/// How far a pixel lies from all samples so far, for the spacing there.
+float room(const FilterTable& table, int count, const FilterSample& at) {
+  float least = INFINITY;
+  for (int i = 0; i < count; ++i) {
+    const FilterSample& other = table[static_cast<std::size_t>(i)];
+    const float apart =
+        length(static_cast<float>(at.x - other.x), static_cast<float>(at.y - other.y));
+    least = std::min(least, apart / spacing(0.5f * (at.distance + other.distance)));
+  }
+  return least;
+}
+
+/// Of the pixels about as far from the centre as `distance` the one with most room. Pixels of the
+/// upper half only: its opposite has as much.
+FilterSample roomiest(const FilterTable& table, int count, float distance) {
+  FilterSample best{};
+  float most = -1.0f;
+  for (int y = 0; y <= kReach; ++y)
+    for (int x = -kReach; x <= kReach; ++x) {
+      if (y == 0 && x <= 0) continue;
+      const FilterSample candidate = sample_at(x, y);
+      if (std::fabs(candidate.distance - distance) > 0.6f || candidate.distance >= kFilterRadius)
+        continue;
+      const float space =
+          std::min(room(table, count, candidate),
+                   2.0f * candidate.distance / spacing(candidate.distance));  // from its opposite
+      if (space <= most) continue;
+      most = space;
+      best = candidate;
+    }
+  return best;
+}
+
+/// Gives every quarter of the disc's pixels to the nearest sample.
+void weigh(FilterTable& table) {
+  constexpr int kPerPixel = 2;
+  constexpr int kSteps = kReach * kPerPixel;
+  for (int iy = -kSteps; iy < kSteps; ++iy)
+    for (int ix = -kSteps; ix < kSteps; ++ix) {
+      const float x = (static_cast<float>(ix) + 0.5f) / kPerPixel;
+      const float y = (static_cast<float>(iy) + 0.5f) / kPerPixel;
+      if (length(x, y) >= kFilterRadius) continue;
+      FilterSample* nearest = nullptr;
+      float least = INFINITY;
+      for (FilterSample& sample : table) {
+        const float apart =
+            length(x - static_cast<float>(sample.x), y - static_cast<float>(sample.y));
+        if (apart >= least) continue;
+        least = apart;
+        nearest = &sample;
+      }
+      nearest->weight += 1.0f / (kPerPixel * kPerPixel);
+    }
+}
+
+FilterTable make_filter_table() {
+  // A density that falls as the square root of the distance has distance^(3/2) samples within.
+  FilterTable table{};
+  table[0] = sample_at(0, 0);
+  for (int count = 1; count < kFilterSamples; count += 2) {
+    const float within = (static_cast<float>(count) + 1.0f) / kFilterSamples;
+    const FilterSample sample =
+        roomiest(table, count, kFilterRadius * std::pow(within, 2.0f / 3.0f) - 0.2f);
+    table[static_cast<std::size_t>(count)] = sample;
+    if (count + 1 < kFilterSamples)
+      table[static_cast<std::size_t>(count) + 1] = sample_at(-sample.x, -sample.y);
+  }
+  weigh(table);
+  std::stable_sort(table.begin(), table.end(), [](const FilterSample& a, const FilterSample& b) {
+    return a.distance < b.distance;
+  });
+  return table;
+}
+
+}  // namespace
+
+const FilterTable& filter_table() {
+  static const FilterTable kTable = make_filter_table();
+  return kTable;
+}
+
+}  // namespace voxdag
