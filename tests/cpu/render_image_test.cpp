@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/brute_svdag.hpp"
+#include "voxdag/cpu/post_filter.hpp"
 
 namespace voxdag {
 namespace {
@@ -69,6 +70,44 @@ TEST(RenderImage, DepthOfAFacingPlaneIsItsDistance) {
     EXPECT_NEAR(image.depth[i], 3 - 0.25, 1e-5);
     EXPECT_NEAR(image.normal[i].y, 1, 0.02);
   }
+}
+
+TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.view.eye = {0.1, 3, 0.2};
+  options.view.target = {0.1, 0, 0.2};
+  options.view.up = {0, 0, -1};
+  options.view.vertical_fov_degrees = 2;
+  const RenderedImage plain = render_image(dag.view(), test_grid(), options);
+  EXPECT_TRUE(plain.cell_pixels.empty());
+  options.filter = true;
+  const RenderedImage filtered = render_image(dag.view(), test_grid(), options);
+  // The voxels' side over a pixel's at their distance.
+  const double size = 2.0 / 64 / (2 * std::tan(3.14159265 / 180) / 61 * 2.75);
+  for (const std::uint8_t code : filtered.cell_pixels)
+    EXPECT_NEAR(unpack_cell_pixels(code), size, 0.02 * size);
+  EXPECT_EQ(filtered.radiance, filter_picture({plain.radiance.data(), filtered.cell_pixels.data(),
+                                               plain.width, plain.height}));
+  EXPECT_NE(filtered.radiance, plain.radiance);
+}
+
+TEST(RenderImage, TheFilterLeavesTheSkyAlone) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.filter = true;
+  options.view.eye = {0, 1, 6};
+  const RenderedImage filtered = render_image(dag.view(), test_grid(), options);
+  options.filter = false;
+  const RenderedImage plain = render_image(dag.view(), test_grid(), options);
+  int sky = 0;
+  for (std::size_t i = 0; i < plain.depth.size(); ++i) {
+    if (plain.depth[i] < HUGE_VALF) continue;
+    EXPECT_EQ(filtered.radiance[i], plain.radiance[i]);
+    EXPECT_EQ(filtered.cell_pixels[i], 0);
+    ++sky;
+  }
+  EXPECT_GT(sky, 100);
 }
 
 TEST(RenderImage, TheBlockShadowsTheFloorAndNothingElseIsDark) {

@@ -7,6 +7,7 @@
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/cpu/post_filter.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/primary_beams.hpp"
@@ -105,6 +106,11 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
   if (options.with_steps)
     for_each_block(setup.camera, [&](int x, int y) { count_steps(nodes, setup, x, y); });
   plan.image().rays = rays;
+  if (options.filter && source == nullptr) {
+    RenderedImage& image = plan.image();
+    image.radiance = filter_picture(
+        {image.radiance.data(), image.cell_pixels.data(), image.width, image.height});
+  }
   return plan.finish();
 }
 

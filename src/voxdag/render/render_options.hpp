@@ -33,7 +33,8 @@ struct RenderOptions {
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
-  float exposure = 0;  ///< Factor before tone mapping; 0: what suits the picture.
+  bool filter = false;  ///< Smooth voxels larger than pixels: see post_filter.hpp.
+  float exposure = 0;   ///< Factor before tone mapping; 0: what suits the picture.
 
   bool with_steps = false;  ///< Fill RenderedImage::steps.
   int tile_size = 32;       ///< Pixels, 1 to 32. Pictures do not depend on it.
@@ -45,13 +46,14 @@ struct RenderedImage {
   View view;                     ///< The view it shows.
   float exposure = 0;            ///< The factor that was applied.
   std::vector<Vec3f> rgb;        ///< Tone mapped, linear light in [0,1]: encode as sRGB to display.
-  std::vector<Vec3f> radiance;   ///< Linear, before exposure and tone mapping.
+  std::vector<Vec3f> radiance;   ///< Linear, before exposure and tone mapping; filtered.
   std::vector<float> depth;      ///< World units along the view axis; +infinity where nothing is.
   std::vector<Vec3f> normal;     ///< World space, unit length; zero where nothing is.
   std::vector<float> occlusion;  ///< The part of the sky's light that arrives, 0 to 1.
   std::vector<float> shadow;     ///< The part of the lights' light that arrives, 0 to 1.
   std::vector<float> steps;  ///< Steps of primary rays with their beams; empty unless asked for.
-  std::uint64_t rays = 0;    ///< Rays cast: primary, shadow, occlusion.
+  std::vector<std::uint8_t> cell_pixels;  ///< See pack_cell_pixels(); empty without filter.
+  std::uint64_t rays = 0;                 ///< Rays cast: primary, shadow, occlusion.
 };
 
 }  // namespace voxdag

@@ -89,14 +89,19 @@ RenderPlan::RenderPlan(const SvdagView& dag, const Grid& grid, const RenderOptio
   image_.occlusion.resize(pixels);
   image_.shadow.resize(pixels);
   if (options.with_steps) image_.steps.resize(pixels);
+  if (options.filter) image_.cell_pixels.resize(pixels);
 
   setup_.grid = grid;
   setup_.camera = make_camera(image_.view, options.width, options.height);
   setup_.sky = make_sky(setup_.camera, image_.view, options);
   setup_.tables = samples_.view();
-  setup_.image = {image_.radiance.data(),  image_.depth.data(),  image_.normal.data(),
-                  image_.occlusion.data(), image_.shadow.data(), nullptr};
-  if (options.with_steps) setup_.image.steps = image_.steps.data();
+  setup_.image = {image_.radiance.data(),
+                  image_.depth.data(),
+                  image_.normal.data(),
+                  image_.occlusion.data(),
+                  image_.shadow.data(),
+                  options.with_steps ? image_.steps.data() : nullptr,
+                  options.filter ? image_.cell_pixels.data() : nullptr};
 
   RenderSettings& settings = setup_.settings;
   settings.samples_per_pixel = options.samples_per_pixel;

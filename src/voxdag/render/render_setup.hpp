@@ -38,6 +38,8 @@ struct ImageBuffers {
   float* occlusion = nullptr;  ///< Mean part of the sky's light that arrives; 1 where nothing is.
   float* shadow = nullptr;  ///< Mean part of the lights' light that arrives; 1 where there is none.
   float* steps = nullptr;   ///< Steps of the first sample's primary ray and its part of its beams.
+  /// Size of the first sample's cell: see pack_cell_pixels(); 0 where nothing is.
+  std::uint8_t* cell_pixels = nullptr;
 };
 
 struct RenderSetup {

@@ -5,6 +5,7 @@
 /// Every value depends on its pixel alone and what is added up is added in a fixed order, so that
 /// pictures depend neither on the size of the tiles nor on who renders them.
 #include "voxdag/render/ambient_occlusion.hpp"
+#include "voxdag/render/cell_pixels.hpp"
 #include "voxdag/render/direct_light.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 
@@ -63,6 +64,11 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
     add(image.shadow, lit);
     if (is_first && image.depth != nullptr) image.depth[at] = sample.depth;
     if (is_first && image.normal != nullptr) image.normal[at] = sample.normal;
+    if (is_first && image.cell_pixels != nullptr) {
+      const double side = setup.camera.pixel_size() * static_cast<double>(sample.depth);
+      image.cell_pixels[at] = pack_cell_pixels(
+          is_hit ? static_cast<float>(static_cast<double>(sample.cell_size) / side) : 0.0f);
+    }
   }
 }
 
