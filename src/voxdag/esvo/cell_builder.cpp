@@ -182,7 +182,7 @@ bool CellBuilder::is_near(std::size_t begin, const ConvexPolyhedron& shape, doub
   if (items_.size() - begin > kMostInLeaf) return false;
   const auto is_near_point = [&](Vec3d p) {
     for (std::size_t i = begin; i < items_.size(); ++i)
-      if (distance_to(items_[i].polygon, triangles_[items_[i].triangle].normal, p) <= error)
+      if (is_within(items_[i].polygon, triangles_[items_[i].triangle].normal, p, error))
         return true;
     return false;
   };
@@ -193,6 +193,15 @@ bool CellBuilder::is_near(std::size_t begin, const ConvexPolyhedron& shape, doub
 
 bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell) const {
   if (!settings_.attributes) return true;
+  // Most that are not uniform are not by themselves: the mean need not be known.
+  for (std::size_t i = begin; shading_ != nullptr && i < items_.size(); ++i) {
+    Vec2f points[SurfacePolygon::kMaxCorners];
+    const int count = barycentrics(items_[i], log2_size, cell, points);
+    if (!shading_->may_be_uniform(triangles_[items_[i].triangle].source,
+                                  {points, static_cast<std::size_t>(count)}, settings_.color_error,
+                                  settings_.normal_error))
+      return false;
+  }
   const SurfaceSum sum = sum_of(begin, log2_size, cell);
   if (!(sum.area > 0)) return false;
   const SurfaceSample mean{sum.color * (1 / sum.area), 1, sum.normal * (1 / sum.area)};

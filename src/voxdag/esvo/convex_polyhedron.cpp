@@ -1,9 +1,19 @@
 #include "voxdag/esvo/convex_polyhedron.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <initializer_list>
 
 namespace voxdag {
+
+ConvexPolyhedron& ConvexPolyhedron::operator=(const ConvexPolyhedron& other) {
+  if (this == &other) return *this;
+  vertex_count_ = other.vertex_count_;
+  edge_count_ = other.edge_count_;
+  std::copy_n(other.vertices_, vertex_count_, vertices_);
+  std::copy_n(other.edges_, edge_count_, edges_);
+  return *this;
+}
 
 ConvexPolyhedron ConvexPolyhedron::cube() {
   ConvexPolyhedron p;
@@ -53,16 +63,15 @@ void ConvexPolyhedron::clip(const float* distances) {
     return;
   const auto cut_face = static_cast<std::uint8_t>(std::countr_one(faces));
 
-  Vec3f vertices[kMaxVertices];
+  // Kept vertices move down to their new places once no edge needs the old ones.
+  float ends[kMaxEdges][3];
   Edge edges[kMaxEdges];
-  int edge_count = 0;
-  for (int i = 0; i < vertex_count_; ++i)
-    if (kept[i] != kNone) vertices[kept[i]] = vertices_[i];
+  int edge_count = 0, end_count = 0;
   // The end of an edge across a face that has been found, where the other has not.
   std::uint8_t open_end[kMaxFaces];
   std::uint64_t open = 0;
   for (int i = 0; i < edge_count_; ++i) {
-    Edge e = edges_[i];
+    const Edge e = edges_[i];
     const std::uint8_t a = kept[e.a], b = kept[e.b];
     if (a == kNone && b == kNone) continue;
     if (a != kNone && b != kNone) {
@@ -70,9 +79,10 @@ void ConvexPolyhedron::clip(const float* distances) {
       continue;
     }
     const float da = distances[e.a], db = distances[e.b];
-    const float t = da / (da - db);
-    const auto end = static_cast<std::uint8_t>(count++);
-    vertices[end] = vertices_[e.a] + (vertices_[e.b] - vertices_[e.a]) * t;
+    const Vec3f at = vertices_[e.a] + (vertices_[e.b] - vertices_[e.a]) * (da / (da - db));
+    const auto end = static_cast<std::uint8_t>(count + end_count);
+    ends[end_count][0] = at.x, ends[end_count][1] = at.y, ends[end_count][2] = at.z;
+    ++end_count;
     edges[edge_count++] = {a != kNone ? a : end, a != kNone ? end : b, e.left, e.right};
     for (const std::uint8_t face : {e.left, e.right}) {
       const std::uint64_t bit = std::uint64_t{1} << face;
@@ -84,10 +94,12 @@ void ConvexPolyhedron::clip(const float* distances) {
       open ^= bit;
     }
   }
-  vertex_count_ = count;
+  for (int i = 0; i < vertex_count_; ++i)
+    if (kept[i] != kNone) vertices_[kept[i]] = vertices_[i];
+  for (int i = 0; i < end_count; ++i) vertices_[count + i] = {ends[i][0], ends[i][1], ends[i][2]};
+  vertex_count_ = count + end_count;
   edge_count_ = edge_count;
-  for (int i = 0; i < count; ++i) vertices_[i] = vertices[i];
-  for (int i = 0; i < edge_count; ++i) edges_[i] = edges[i];
+  std::copy_n(edges, edge_count, edges_);
 }
 
 ConvexPolyhedron ConvexPolyhedron::octant(int child) const {

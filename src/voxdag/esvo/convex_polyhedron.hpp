@@ -18,6 +18,11 @@ class ConvexPolyhedron {
  public:
   static constexpr int kMaxVertices = 64, kMaxEdges = 96, kMaxFaces = 64;
 
+  // Most have a few of the vertices and edges that there is room for: copies leave out the rest.
+  ConvexPolyhedron() {}
+  ConvexPolyhedron(const ConvexPolyhedron& other) { *this = other; }
+  ConvexPolyhedron& operator=(const ConvexPolyhedron& other);
+
   /// The cube [-1,1]³.
   static ConvexPolyhedron cube();
 
@@ -44,7 +49,9 @@ class ConvexPolyhedron {
   void clip(const float* distances);
 
   int vertex_count_ = 0, edge_count_ = 0;
-  Vec3f vertices_[kMaxVertices];
+  union {
+    Vec3f vertices_[kMaxVertices];  // uninitialised
+  };
   Edge edges_[kMaxEdges];
 };
 

@@ -18,8 +18,23 @@ struct SurfacePolygon {
   static constexpr int kMaxCorners = 12;
   static constexpr std::uint8_t kCutEdge = 3;
 
+  // Most have a few of the corners that there is room for: copies leave out the rest.
+  SurfacePolygon() {}
+  SurfacePolygon(const SurfacePolygon& other) { *this = other; }
+  SurfacePolygon& operator=(const SurfacePolygon& other) {
+    if (this == &other) return *this;
+    count = other.count;
+    for (int i = 0; i < count; ++i) {
+      corners[i] = other.corners[i];
+      edges[i] = other.edges[i];
+    }
+    return *this;
+  }
+
   int count = 0;
-  Vec3d corners[kMaxCorners];
+  union {
+    Vec3d corners[kMaxCorners];  // uninitialised
+  };
   /// What the edge from corner i to the next is: 0, 1, 2 the triangle's edge that begins at that
   /// corner of it, or kCutEdge.
   std::uint8_t edges[kMaxCorners];
@@ -76,7 +91,7 @@ struct SurfacePolygon {
 
   /// The part in the octant `child`, in the octant's coordinates.
   SurfacePolygon octant(int child) const {
-    SurfacePolygon p = *this;
+    SurfacePolygon p(*this);
     for (int axis = 0; axis < 3; ++axis) p.clip(axis, 0, (child >> axis & 1) != 0 ? 1.0 : -1.0);
     return p.in_octant(child);
   }
@@ -98,24 +113,23 @@ struct SurfacePolygon {
   }
 };
 
-/// The distance from a point to a polygon whose plane has the unit normal given (or zero, where the
-/// polygon is a segment or a point). Infinite for a polygon without corners.
-inline double distance_to(const SurfacePolygon& polygon, Vec3d normal, Vec3d point) {
+/// Whether a point is no farther from a polygon than `distance`. Its plane has the unit normal
+/// given (or zero, where the polygon is a segment or a point).
+inline bool is_within(const SurfacePolygon& polygon, Vec3d normal, Vec3d point, double distance) {
+  if (polygon.count == 0) return false;
+  const double height = dot(normal, point - polygon.corners[0]);
+  if (height > distance || height < -distance) return false;
   bool inside = polygon.count > 2 && dot(normal, normal) > 0;
-  double nearest2 = HUGE_VAL;
   for (int i = 0; i < polygon.count; ++i) {
     const Vec3d a = polygon.corners[i];
     const Vec3d edge = polygon.corners[i + 1 == polygon.count ? 0 : i + 1] - a;
     const Vec3d to = point - a;
     inside = inside && dot(cross(normal, edge), to) >= 0;
-    const double length2 = dot(edge, edge);
-    const double t = length2 > 0 ? dot(to, edge) / length2 : 0;
-    const Vec3d d = to - edge * (t < 0 ? 0 : t > 1 ? 1 : t);
-    const double d2 = dot(d, d);
-    nearest2 = d2 < nearest2 ? d2 : nearest2;
+    const double length2 = dot(edge, edge), along = dot(to, edge);
+    const Vec3d d = along <= 0 ? to : along >= length2 ? to - edge : to - edge * (along / length2);
+    if (dot(d, d) <= distance * distance) return true;
   }
-  if (inside) return std::fabs(dot(normal, point - polygon.corners[0]));
-  return std::sqrt(nearest2);
+  return inside;
 }
 
 }  // namespace voxdag

@@ -302,6 +302,28 @@ bool SurfaceShading::is_uniform(std::uint32_t t, std::span<const Vec2f> polygon,
          tables.is_direction_near(t, look, polygon, mean.normal, normal_error);
 }
 
+bool SurfaceShading::may_be_uniform(std::uint32_t t, std::span<const Vec2f> polygon,
+                                    float color_error, float normal_error) const {
+  const Tables& tables = *tables_;
+  const MaterialLook& look = tables.look(t);
+  if (look.color_texture || !tables.appearance.colors.empty()) {
+    const ColorBounds bounds = tables.color_bounds(t, look, polygon);
+    for (int c = 0; c < 3; ++c)
+      if (linear_to_srgb_fast(bounds.hi[c]) - linear_to_srgb_fast(bounds.lo[c]) > 2 * color_error)
+        return false;
+  }
+  if (!look.normal_texture || tables.tangents[t].tangents == nullptr || normal_error > 1.5f)
+    return true;
+  const Texture::Bounds texels =
+      bounds_of(*look.normal_texture, polygon, tables.uv(t), look.normal_uv);
+  Vec3f lo, hi;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    lo[static_cast<int>(axis)] = unpack_component(static_cast<float>(texels.lo[axis]));
+    hi[static_cast<int>(axis)] = unpack_component(static_cast<float>(texels.hi[axis]));
+  }
+  return dot(unit_or_zero(lo), unit_or_zero(hi)) >= std::cos(2 * normal_error) - 1e-5f;
+}
+
 bool SurfaceShading::is_cut_away(std::uint32_t t, std::span<const Vec2f> polygon) const {
   const Tables& tables = *tables_;
   const MaterialLook& look = tables.look(t);

@@ -44,6 +44,11 @@ class SurfaceShading {
   bool is_uniform(std::uint32_t triangle, std::span<const Vec2f> polygon, float color_error,
                   float normal_error, const SurfaceSample& mean) const;
 
+  /// False only if is_uniform is false with these errors, whatever the mean: a look at the bounds
+  /// of the textures, much faster than mean() and is_uniform().
+  bool may_be_uniform(std::uint32_t triangle, std::span<const Vec2f> polygon, float color_error,
+                      float normal_error) const;
+
   /// True only if no point of the polygon passes the alpha test. May be false all the same.
   bool is_cut_away(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
