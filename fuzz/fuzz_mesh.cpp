@@ -1,13 +1,37 @@
 /// Feeds bytes to each of the library's own mesh readers. The first byte chooses the reader; the
-/// result must be a sound mesh or an Error.
+/// result must be a sound mesh or an Error. What it
+/// says of its look must fit the mesh.
 #include <cmath>
 #include <cstdlib>
 
 #include "voxdag/mesh/gltf_reader.hpp"
+#include "voxdag/mesh/obj_appearance.hpp"
 #include "voxdag/mesh/obj_reader.hpp"
 #include "voxdag/mesh/off_reader.hpp"
+#include "voxdag/mesh/ply_appearance.hpp"
 #include "voxdag/mesh/ply_reader.hpp"
 #include "voxdag/mesh/stl_reader.hpp"
+
+namespace {
+
+/// Attributes of a mesh that is read have the mesh's size, whatever is wrong with them.
+void check_appearance(int reader, const voxdag::MeshBytes& source, const voxdag::Mesh& mesh) {
+  using namespace voxdag;
+  std::vector<std::string> warnings;
+  Appearance a;
+  if (reader == 0)
+    a = read_obj_appearance(source, mesh, warnings);
+  else if (reader == 1)
+    a = read_ply_appearance(source, mesh, warnings);
+  else if (reader == 3)
+    a = read_gltf_with_appearance(source).appearance;
+  else
+    return;
+  for (const std::size_t size : {a.normals.size(), a.uvs.size(), a.colors.size()})
+    if (size != 0 && size != 3 * mesh.triangles.size()) std::abort();
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace voxdag;
@@ -25,6 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     for (const std::uint32_t material : mesh.triangle_materials)
       if (material >= mesh.materials.size()) std::abort();
+    check_appearance(data[0] % 5, {bytes, "fuzz", {}, nullptr, nullptr}, mesh);
   } catch (const Error&) {
   }
   return 0;

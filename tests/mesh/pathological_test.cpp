@@ -10,6 +10,7 @@
 #include <set>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/mesh/read_appearance.hpp"
 #include "voxdag/mesh/read_mesh.hpp"
 
 namespace voxdag {
@@ -47,6 +48,23 @@ void expect_sound(const Mesh& mesh) {
     ASSERT_LT(material, mesh.materials.size());
 }
 
+/// Whatever is wrong with the attributes of a mesh that is read, they are read or left out.
+void expect_appearance(const Mesh& mesh, const fs::path& path) {
+  const MeshWithAppearance result = read_mesh_with_appearance(path);
+  // Compared as bits: a vertex that nothing uses may be NaN.
+  ASSERT_EQ(result.mesh.vertices.size(), mesh.vertices.size());
+  EXPECT_EQ(result.mesh.triangles, mesh.triangles);
+  EXPECT_EQ(result.mesh.triangle_materials, mesh.triangle_materials);
+  EXPECT_EQ(result.mesh.materials, mesh.materials);
+  const Appearance& a = result.appearance;
+  const std::size_t corners = 3 * mesh.triangles.size();
+  for (const std::size_t size : {a.normals.size(), a.uvs.size(), a.colors.size()})
+    EXPECT_TRUE(size == 0 || size == corners);
+  EXPECT_EQ(a.materials.size(), std::max<std::size_t>(mesh.materials.size(), 1));
+  for (const Vec2f uv : a.uvs) EXPECT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
+  for (const Vec3f n : a.normals) EXPECT_NEAR(dot(n, n), dot(n, n) > 0 ? 1 : 0, 1e-3f);
+}
+
 TEST(PathologicalMeshes, EachIsReadOrRefusedAsExpected) {
   const char* scenes = std::getenv("VOXDAG_SCENES");
   if (scenes == nullptr || !fs::is_directory(fs::path(scenes) / "pathological"))
@@ -60,7 +78,9 @@ TEST(PathologicalMeshes, EachIsReadOrRefusedAsExpected) {
     SCOPED_TRACE(name);
     std::string outcome = "accept", message;
     try {
-      expect_sound(read_mesh(entry.path()));
+      const Mesh mesh = read_mesh(entry.path());
+      expect_sound(mesh);
+      expect_appearance(mesh, entry.path());
     } catch (const Error& error) {
       outcome = "refuse";
       message = error.what();

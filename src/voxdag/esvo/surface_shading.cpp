@@ -268,8 +268,12 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
   if (look.color_texture) {
     const Texture::Value value =
         look.color_texture->mean(region_of(moments, tables.uv(t), look.color_uv));
-    sample.coverage = look.is_alpha_textured ? value[3] * kTexelScale : 1;
-    const float scale = look.is_alpha_textured ? (value[3] > 0 ? 1 / value[3] : 0) : kTexelScale;
+    float scale = kTexelScale;
+    if (look.is_alpha_textured) {
+      // All and nothing are exact, whatever the filter's rounding.
+      sample.coverage = value[3] > 65534.5f ? 1 : value[3] < 0.5f ? 0 : value[3] * kTexelScale;
+      scale = sample.coverage > 0 ? 1 / value[3] : 0;
+    }
     sample.color = sample.color * Vec3f{value[0] * scale, value[1] * scale, value[2] * scale};
   }
   if (!tables.is_visible(t, look, moments.center)) sample.coverage = 0;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "voxdag/core/vec2.hpp"
@@ -50,21 +51,8 @@ class MipPyramid {
   /// Bilinear value of a level.
   Value sample(int level, Vec2f uv) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
-    const float x = reduced(uv.x, wrap_u_) * static_cast<float>(l.width) - 0.5f;
-    const float y = reduced(uv.y, wrap_v_) * static_cast<float>(l.height) - 0.5f;
-    const float fx = std::floor(x), fy = std::floor(y);
-    const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
-    const int x0 = wrapped(ix, l.width, wrap_u_), x1 = wrapped(ix + 1, l.width, wrap_u_);
-    const Texel* const row0 = l.row(wrapped(iy, l.height, wrap_v_));
-    const Texel* const row1 = l.row(wrapped(iy + 1, l.height, wrap_v_));
-    const float wx = x - fx, wy = y - fy;
-    const float w00 = (1 - wx) * (1 - wy), w10 = wx * (1 - wy), w01 = (1 - wx) * wy, w11 = wx * wy;
-    const Texel &t00 = row0[x0], &t10 = row0[x1], &t01 = row1[x0], &t11 = row1[x1];
-    Value value;
-    for (std::size_t c = 0; c < channels; ++c)
-      value[c] = static_cast<float>(t00[c]) * w00 + static_cast<float>(t10[c]) * w10 +
-                 static_cast<float>(t01[c]) * w01 + static_cast<float>(t11[c]) * w11;
-    return value;
+    return bilinear(l, reduced(uv.x, wrap_u_) * static_cast<float>(l.width) - 0.5f,
+                    reduced(uv.y, wrap_v_) * static_cast<float>(l.height) - 0.5f);
   }
 
   /// Value between the two levels about `level`, which may be any number.
@@ -82,7 +70,7 @@ class MipPyramid {
 
   /// Mean over a region.
   Value mean(const UvRegion& region) const {
-    constexpr float kMaxTaps = 16, kTapDistance = 1.2f;  // in texels of the level that is read
+    constexpr float kMaxTaps = 8, kTapDistance = 1.2f;  // in texels of the level that is read
     const auto w = static_cast<float>(width()), h = static_cast<float>(height());
     const float a = region.uu * w * w, b = region.uv * w * h, c = region.vv * h * h;
     const float middle = (a + c) / 2;
@@ -100,7 +88,7 @@ class MipPyramid {
     const auto taps = [&](float variance, float& distance) {
       const float left = 12 * std::max(variance - own, 0.0f);
       const float count = std::sqrt(left / (kTapDistance * kTapDistance * size * size) + 1);
-      const float n = std::clamp(std::ceil(count - 0.1f), 1.0f, kMaxTaps + 2);
+      const float n = std::clamp(floor_of(count + 0.9f), 1.0f, kMaxTaps + 2);
       distance = n > 1 ? std::sqrt(left / (n * n - 1)) : 0;
       return static_cast<int>(n);
     };
@@ -111,18 +99,24 @@ class MipPyramid {
     Vec2f axis = a >= c ? Vec2f{major - c, b} : Vec2f{b, major - a};
     const float length = std::sqrt(axis.x * axis.x + axis.y * axis.y);
     axis = length > 0 ? axis * (1 / length) : Vec2f{1, 0};
-    const Vec2f along{axis.x * step1 / w, axis.y * step1 / h};
-    const Vec2f across{-axis.y * step2 / w, axis.x * step2 / h};
-    const Vec2f center{reduced(region.center.x, wrap_u_), reduced(region.center.y, wrap_v_)};
+    // From here on in texels of the level.
+    const Level& l = levels_[static_cast<std::size_t>(level)];
+    const auto lw = static_cast<float>(l.width), lh = static_cast<float>(l.height);
+    const Vec2f along{axis.x * step1 * (lw / w), axis.y * step1 * (lh / h)};
+    const Vec2f across{-axis.y * step2 * (lw / w), axis.x * step2 * (lh / h)};
+    const Vec2f first = Vec2f{reduced(region.center.x, wrap_u_) * lw - 0.5f,
+                              reduced(region.center.y, wrap_v_) * lh - 0.5f} -
+                        along * (static_cast<float>(n1 - 1) * 0.5f) -
+                        across * (static_cast<float>(n2 - 1) * 0.5f);
     Value sum{};
     for (int i = 0; i < n1; ++i)
       for (int j = 0; j < n2; ++j) {
-        const float s = static_cast<float>(2 * i - n1 + 1) / 2;
-        const float t = static_cast<float>(2 * j - n2 + 1) / 2;
-        const Value tap = sample(level, center + along * s + across * t);
+        const Vec2f p = first + along * static_cast<float>(i) + across * static_cast<float>(j);
+        const Value tap = bilinear(l, p.x, p.y);
         for (std::size_t k = 0; k < channels; ++k) sum[k] += tap[k];
       }
-    for (float& value : sum) value /= static_cast<float>(n1 * n2);
+    const float share = 1 / static_cast<float>(n1 * n2);
+    for (float& value : sum) value *= share;
     return sum;
   }
 
@@ -181,10 +175,51 @@ class MipPyramid {
     return texel;
   }
 
+  /// Value at a place in texels from the centre of the first one; both are small enough for int.
+  Value bilinear(const Level& l, float x, float y) const {
+    const int ix = floor_int(x), iy = floor_int(y);
+    const int x0 = wrapped(ix, l.width, wrap_u_), x1 = wrapped(ix + 1, l.width, wrap_u_);
+    const Texel* const row0 = l.row(wrapped(iy, l.height, wrap_v_));
+    const Texel* const row1 = l.row(wrapped(iy + 1, l.height, wrap_v_));
+    const float wx = x - static_cast<float>(ix), wy = y - static_cast<float>(iy);
+    const float w11 = wx * wy, w10 = wx - w11, w01 = wy - w11, w00 = 1 - wx - w01;
+    const Texel &t00 = row0[x0], &t10 = row0[x1], &t01 = row1[x0], &t11 = row1[x1];
+    Value value;
+    if constexpr (channels == 4) {
+      // Compilers do not find this by themselves.
+      const Lanes sum =
+          lanes_of(t00) * w00 + lanes_of(t10) * w10 + lanes_of(t01) * w01 + lanes_of(t11) * w11;
+      std::memcpy(value.data(), &sum, sizeof sum);
+    } else {
+      for (std::size_t c = 0; c < channels; ++c)
+        value[c] = static_cast<float>(t00[c]) * w00 + static_cast<float>(t10[c]) * w10 +
+                   static_cast<float>(t01[c]) * w01 + static_cast<float>(t11[c]) * w11;
+    }
+    return value;
+  }
+
+  /// Four floats, by the vector extension that g++ and clang share.
+  using Lanes [[gnu::vector_size(16)]] = float;
+  static Lanes lanes_of(const Texel& texel) {
+    using Words [[gnu::vector_size(8)]] = std::uint16_t;
+    Words words;
+    std::memcpy(&words, texel.data(), sizeof words);
+    return __builtin_convertvector(words, Lanes);
+  }
+
+  static int floor_int(float x) {
+    const int truncated = static_cast<int>(x);
+    return truncated - (x < static_cast<float>(truncated));
+  }
+  /// std::floor, which is a call on processors without SSE 4.1.
+  static float floor_of(float x) {
+    return std::abs(x) < 1e6f ? static_cast<float>(floor_int(x)) : std::floor(x);
+  }
+
   /// The same place within one period, small enough to become an index. Also of what is not finite.
   static float reduced(float u, TextureWrap wrap) {
     if (wrap == TextureWrap::kClamp) return u > -1 ? std::min(u, 2.0f) : -1.0f;
-    const float rest = wrap == TextureWrap::kRepeat ? u - std::floor(u) : u - 2 * std::floor(u / 2);
+    const float rest = wrap == TextureWrap::kRepeat ? u - floor_of(u) : u - 2 * floor_of(u / 2);
     return rest >= 0 ? rest : 0;
   }
 
@@ -204,8 +239,8 @@ class MipPyramid {
     const int period = wrap == TextureWrap::kMirror ? 2 * size : size;
     const float start = reduced(lo, wrap);
     const float end = wrap == TextureWrap::kClamp ? reduced(hi, wrap) : start + (hi - lo);
-    const float first = std::floor(start * static_cast<float>(size) - 0.51f);
-    const float last = std::floor(end * static_cast<float>(size) - 0.49f) + 1;
+    const float first = floor_of(start * static_cast<float>(size) - 0.51f);
+    const float last = floor_of(end * static_cast<float>(size) - 0.49f) + 1;
     if (!(last - first < static_cast<float>(period)) && wrap != TextureWrap::kClamp)
       return {0, period - 1};
     if (!(last >= first)) return {0, size - 1};

@@ -1,0 +1,89 @@
+#include "voxdag/image/decode.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/test_png.hpp"
+#include "temp_dir.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/image/jpeg.hpp"
+#include "voxdag/image/png.hpp"
+
+namespace voxdag {
+namespace {
+
+std::vector<std::uint16_t> ramp(std::size_t count, unsigned step) {
+  std::vector<std::uint16_t> samples;
+  for (std::size_t i = 0; i < count; ++i)
+    samples.push_back(static_cast<std::uint16_t>(i * step + 3));
+  return samples;
+}
+
+TEST(DecodeImage, SixteenBitsAndAlphaAreKept) {
+  const TempDir dir;
+  for (const bool interlaced : {false, true}) {
+    const auto samples = ramp(7 * 5 * 4, 997);
+    write_test_png(dir.path / "a.png", 7, 5, 4, 16, samples, interlaced);
+    const ImageRgba16 image = read_image(dir.path / "a.png");
+    EXPECT_EQ(image.width, 7);
+    EXPECT_EQ(image.height, 5);
+    EXPECT_TRUE(image.has_alpha);
+    EXPECT_EQ(image.pixels, samples);
+  }
+}
+
+TEST(DecodeImage, EightBitsAreSpreadOverSixteen) {
+  const TempDir dir;
+  write_test_png(dir.path / "a.png", 2, 1, 4, 8, {0, 1, 128, 7, 255, 254, 2, 0});
+  EXPECT_EQ(read_image(dir.path / "a.png").pixels,
+            (std::vector<std::uint16_t>{0, 257, 128 * 257, 7 * 257, 65535, 254 * 257, 514, 0}));
+}
+
+TEST(DecodeImage, GreyBecomesThreeChannelsAndAlphaIsFullWhereThereIsNone) {
+  const TempDir dir;
+  write_test_png(dir.path / "a.png", 2, 1, 1, 16, {1000, 50000});
+  const ImageRgba16 image = read_image(dir.path / "a.png");
+  EXPECT_FALSE(image.has_alpha);
+  EXPECT_EQ(image.pixels,
+            (std::vector<std::uint16_t>{1000, 1000, 1000, 65535, 50000, 50000, 50000, 65535}));
+}
+
+TEST(DecodeImage, TruncationAtEveryByteIsRefused) {
+  const TempDir dir;
+  write_test_png(dir.path / "a.png", 9, 5, 2, 16, ramp(90, 601));
+  const std::string bytes = slurp(dir.path / "a.png");
+  for (std::size_t n = 0; n < bytes.size(); ++n) {
+    const std::vector<std::uint8_t> cut(bytes.begin(),
+                                        bytes.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_THROW(decode_image(cut, "cut"), Error) << n << " of " << bytes.size();
+  }
+}
+
+TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
+  const TempDir dir;
+  write_test_png(dir.path / "a.png", 9, 5, 4, 8, ramp(180, 1));
+  const std::string bytes = slurp(dir.path / "a.png");
+  for (std::size_t n = 0; n < bytes.size(); ++n) {
+    std::vector<std::uint8_t> damaged(bytes.begin(), bytes.end());
+    damaged[n] ^= 0x55;
+    try {
+      EXPECT_FALSE(decode_image(damaged, "damaged").pixels.empty());
+    } catch (const Error& error) {
+      EXPECT_EQ(error.file(), "damaged");
+    }
+  }
+}
+
+TEST(DecodeImage, OtherFormatsAreRefusedByName) {
+  const TempDir dir;
+  spill(dir.path / "a.tga", "no picture");
+  try {
+    read_image(dir.path / "a.tga");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.file(), (dir.path / "a.tga").string());
+    EXPECT_EQ(error.reason(), "neither a PNG nor a JPEG image");
+  }
+}
+
+}  // namespace
+}  // namespace voxdag
