@@ -57,7 +57,7 @@ class DisplacedTriangles {
       if (meets(bounds_of(whole), region)) emit(whole);
       return;
     }
-    split(pass, pass.corners[0], pass.corners[1], pass.corners[2], region, emit);
+    split(pass, pass.corners[0], pass.corners[1], pass.corners[2], Search{region, false}, emit);
   }
 
  private:
@@ -81,6 +81,12 @@ class DisplacedTriangles {
     float level;      ///< Of the heights inside the triangle.
     float blurriest;  ///< No level of heights is over this, but on seams.
     std::array<Vertex, 3> corners;
+  };
+
+  /// Where to look for micro triangles, and whether the piece at hand lies in there.
+  struct Search {
+    const Box3d& region;
+    bool is_inside;
   };
 
   /// A corner of the mesh, 3 * triangle + corner, or the edge that starts there.
@@ -163,8 +169,7 @@ class DisplacedTriangles {
   }
 
   template <class Emit>
-  void split(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Box3d& region,
-             Emit&& emit) const {
+  void split(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, Search search, Emit&& emit) const {
     const double limit2 = pass.limit * pass.limit;
     const bool ab = distance2(a, b) > limit2, bc = distance2(b, c) > limit2,
                ca = distance2(c, a) > limit2;
@@ -172,53 +177,58 @@ class DisplacedTriangles {
     if (count == 0) {
       const MicroTriangle micro{{displace(pass, a), displace(pass, b), displace(pass, c)},
                                 {Vec2f{a.b1, a.b2}, Vec2f{b.b1, b.b2}, Vec2f{c.b1, c.b2}}};
-      if (meets(bounds_of(micro), region)) emit(micro);
+      if (search.is_inside || meets(bounds_of(micro), search.region)) emit(micro);
       return;
     }
-    if (!meets(piece_bounds(pass, a, b, c), region)) return;
+    if (!search.is_inside) {
+      const Box3d box = piece_bounds(pass, a, b, c);
+      if (!meets(box, search.region)) return;
+      search.is_inside =
+          box.lo == max(box.lo, search.region.lo) && box.hi == min(box.hi, search.region.hi);
+    }
     // Turned so that what is (one edge) or is not (two) split lies between the first two corners.
     if (count == 3) {
       Vertex d = between(a, b), e = between(b, c), f = between(c, a);
-      split(pass, a, d, f, region, emit);
-      split(pass, d, b, e, region, emit);
-      split(pass, f, e, c, region, emit);
-      split(pass, d, e, f, region, emit);
+      split(pass, a, d, f, search, emit);
+      split(pass, d, b, e, search, emit);
+      split(pass, f, e, c, search, emit);
+      split(pass, d, e, f, search, emit);
     } else if (count == 2) {
       if (!ab)
-        split_two(pass, a, b, c, region, emit);
+        split_two(pass, a, b, c, search, emit);
       else if (!bc)
-        split_two(pass, b, c, a, region, emit);
+        split_two(pass, b, c, a, search, emit);
       else
-        split_two(pass, c, a, b, region, emit);
+        split_two(pass, c, a, b, search, emit);
     } else {
       if (ab)
-        split_one(pass, a, b, c, region, emit);
+        split_one(pass, a, b, c, search, emit);
       else if (bc)
-        split_one(pass, b, c, a, region, emit);
+        split_one(pass, b, c, a, search, emit);
       else
-        split_one(pass, c, a, b, region, emit);
+        split_one(pass, c, a, b, search, emit);
     }
   }
 
   template <class Emit>
-  void split_one(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Box3d& region,
+  void split_one(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, Search search,
                  Emit&& emit) const {
     Vertex d = between(a, b);
-    split(pass, a, d, c, region, emit);
-    split(pass, d, b, c, region, emit);
+    split(pass, a, d, c, search, emit);
+    split(pass, d, b, c, search, emit);
   }
 
   template <class Emit>
-  void split_two(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Box3d& region,
+  void split_two(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, Search search,
                  Emit&& emit) const {
     Vertex e = between(b, c), f = between(c, a);
-    split(pass, f, e, c, region, emit);
+    split(pass, f, e, c, search, emit);
     if (distance2(a, e) <= distance2(b, f)) {
-      split(pass, a, b, e, region, emit);
-      split(pass, a, e, f, region, emit);
+      split(pass, a, b, e, search, emit);
+      split(pass, a, e, f, search, emit);
     } else {
-      split(pass, a, b, f, region, emit);
-      split(pass, b, e, f, region, emit);
+      split(pass, a, b, f, search, emit);
+      split(pass, b, e, f, search, emit);
     }
   }
 
