@@ -24,9 +24,9 @@ SortTree take_tree(TreeSink& sink, int root_level) {
   SortTree tree;
   for (std::size_t level = root_level; level < sink.nodes.size(); ++level)
     tree.levels.push_back(std::move(sink.nodes[level]));
-  tree.leaf_blocks = std::move(sink.leaves);
+  tree.leaf_blocks = std::move(sink.leaf_blocks);
   for (auto& level : sink.nodes) level.clear();
-  sink.leaves.clear();
+  sink.leaf_blocks.clear();
   return tree;
 }
 

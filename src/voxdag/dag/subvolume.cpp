@@ -8,12 +8,14 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/voxelize/block_bits.hpp"
 #include "voxdag/voxelize/block_raster-inl.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
+#include "voxdag/voxelize/cell_triangle-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -21,6 +23,16 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr std::uint64_t kUnbounded = ~std::uint64_t{0} >> 2;
+
+/// x + 4y + 16z of the block with a Morton code in a cell of 4³.
+constexpr std::array<std::uint8_t, 64> kMortonToLinear = [] {
+  std::array<std::uint8_t, 64> table{};
+  for (unsigned code = 0; code < 64; ++code) {
+    const Vec3i at = morton_decode(code);
+    table[code] = static_cast<std::uint8_t>(at.x + 4 * at.y + 16 * at.z);
+  }
+  return table;
+}();
 
 // A cell's node is interned by its parent, after all its siblings are known: by then the table's
 // memory, asked for as soon as the words were, has arrived.
@@ -119,6 +131,7 @@ class Recursion {
       }
       return block(mask);
     }
+    if (log2_size == 4) return cell_of_blocks(at, first, count);
     return log2_size % 2 == 0 ? cell_by_64(at, log2_size, first, count)
                               : cell_by_8(at, log2_size, first, count);
   }
@@ -141,6 +154,54 @@ class Recursion {
       context_.items.resize(list);
     }
     return {children.node(), kNoNode};
+  }
+
+  /// A cell of 16³ voxels: all leaf blocks that each triangle meets, then all leaf blocks' ids.
+  Cell cell_of_blocks(Vec3i at, std::size_t first, std::size_t count) {
+    std::uint64_t masks[64] = {};
+    std::uint64_t any = 0;
+    CellTriangle triangle;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Item item = context_.items[i];
+      const TriangleSetup& t = context_.setups[item.triangle];
+      const std::uint64_t met = enter_cell(t, item.conditions, at, triangle);
+      any |= met;
+      for (std::uint64_t left = met; left != 0; left &= left - 1) {
+        const int place = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+        const Vec3i block{place & 3, (place >> 2) & 3, place >> 4};
+        masks[place] |=
+            triangle.wide
+                ? triangle_children(t, item.conditions,
+                                    {at.x + 4 * block.x, at.y + 4 * block.y, at.z + 4 * block.z}, 0)
+                : block_voxels(triangle, block);
+      }
+    }
+    std::uint64_t blocks[64];
+    std::uint32_t codes[64];
+    NodeId ids[64];
+    int block_count = 0;
+    for (std::uint64_t left = linear_to_morton(any); left != 0; left &= left - 1) {
+      const auto code = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+      const std::uint64_t mask = masks[kMortonToLinear[code]];
+      if (mask == 0) continue;
+      blocks[block_count] = linear_to_morton(mask);
+      codes[block_count++] = code;
+    }
+    sink_.leaves(blocks, block_count, ids);
+    Children octants(*this, 3);
+    for (int i = 0; i < block_count;) {
+      const std::uint32_t octant = codes[i] >> 3;
+      Cell cell;
+      std::uint32_t* words = cell.pending.words;
+      words[0] = 0;
+      cell.pending.count = 1;
+      for (; i < block_count && codes[i] >> 3 == octant; ++i) {
+        words[0] |= 1u << (codes[i] & 7);
+        words[cell.pending.count++] = ids[i];
+      }
+      octants.add(static_cast<int>(octant), cell);
+    }
+    return {octants.node(), kNoNode};
   }
 
   /// Two levels down at once: each triangle's 4³ grandchildren as one mask.
@@ -167,10 +228,7 @@ class Recursion {
         const Vec3i step = morton_decode(static_cast<std::uint64_t>(code));
         const Vec3i child_at{at.x + (step.x << log2_child), at.y + (step.y << log2_child),
                              at.z + (step.z << log2_child)};
-        children.add(code & 7,
-                     log2_child == 2
-                         ? block_of(child_at, code, classified, classified_end)
-                         : cell_of(child_at, log2_child, code, classified, classified_end));
+        children.add(code & 7, cell_of(child_at, log2_child, code, classified, classified_end));
       }
       octants.add(octant, {children.node(), kNoNode});
     }
@@ -178,18 +236,7 @@ class Recursion {
     return {octants.node(), kNoNode};
   }
 
-  /// The leaf block with Morton code `code` in its cell, of the classified triangles that meet it.
-  Cell block_of(Vec3i at, int code, std::size_t first, std::size_t end) {
-    std::uint64_t mask = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      const Classified& c = context_.classified[i];
-      if ((c.met >> code) & 1)
-        mask |= triangle_children(context_.setups[c.triangle], c.conditions, at, 0);
-    }
-    return block(mask);
-  }
-
-  /// The same for a larger cell.
+  /// The cell with Morton code `code` in its parent, of the classified triangles that meet it.
   Cell cell_of(Vec3i at, int log2_size, int code, std::size_t first, std::size_t end) {
     const std::size_t list = context_.items.size();
     for (std::size_t i = first; i < end; ++i) {

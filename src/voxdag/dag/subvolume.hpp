@@ -44,6 +44,33 @@ class DagSink {
     stores_[level]->prefetch(pending.hash);
   }
 
+  /// The ids of `count` leaf blocks, at most 64, in Morton order, none of them 0.
+  void leaves(const std::uint64_t* blocks, int count, NodeId* ids) {
+    // Each step over all blocks at once, so that the waits for memory overlap.
+    NodeStore& store = *stores_.back();
+    std::uint64_t hashes[64];
+    int missing[64], missing_count = 0;
+    for (int i = 0; i < count; ++i) {
+      const std::uint32_t words[2] = {static_cast<std::uint32_t>(blocks[i]),
+                                      static_cast<std::uint32_t>(blocks[i] >> 32)};
+      hashes[i] = hash_words(words, 2);
+      const CachedLeaf& cached = leaf_cache_[hashes[i] >> (64 - kCacheBits)];
+      if (cached.mask == blocks[i]) {
+        ids[i] = cached.id;
+        continue;
+      }
+      store.prefetch(hashes[i]);
+      missing[missing_count++] = i;
+    }
+    for (int k = 0; k < missing_count; ++k) {
+      const int i = missing[k];
+      const std::uint32_t words[2] = {static_cast<std::uint32_t>(blocks[i]),
+                                      static_cast<std::uint32_t>(blocks[i] >> 32)};
+      ids[i] = store.intern(words, 2, hashes[i]);
+      leaf_cache_[hashes[i] >> (64 - kCacheBits)] = {blocks[i], ids[i]};
+    }
+  }
+
   /// The two words of a leaf block in Morton order, not 0.
   NodeId leaf(const PendingNode& pending) {
     const std::uint64_t mask = pending.words[0] | static_cast<std::uint64_t>(pending.words[1])
@@ -80,9 +107,15 @@ class TreeSink {
 
   void prefetch(int, const PendingNode&) const {}
 
+  void leaves(const std::uint64_t* blocks, int count, NodeId* ids) {
+    for (int i = 0; i < count; ++i) {
+      ids[i] = static_cast<NodeId>(leaf_blocks.size());
+      leaf_blocks.push_back(blocks[i]);
+    }
+  }
   NodeId leaf(const PendingNode& pending) {
-    leaves.push_back(pending.words[0] | static_cast<std::uint64_t>(pending.words[1]) << 32);
-    return static_cast<NodeId>(leaves.size() - 1);
+    leaf_blocks.push_back(pending.words[0] | static_cast<std::uint64_t>(pending.words[1]) << 32);
+    return static_cast<NodeId>(leaf_blocks.size() - 1);
   }
   NodeId node(int level, const PendingNode& pending) {
     SortNode& node = nodes[level].emplace_back();
@@ -93,7 +126,7 @@ class TreeSink {
     return static_cast<NodeId>(nodes[level].size() - 1);
   }
 
-  std::vector<std::uint64_t> leaves;         ///< Leaf blocks, in Morton order of the cells.
+  std::vector<std::uint64_t> leaf_blocks;    ///< Leaf blocks, in Morton order of the cells.
   std::vector<std::vector<SortNode>> nodes;  ///< By level.
 };
 

@@ -11,6 +11,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <bit>
+
 #include "voxdag/voxelize/block_bits.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
@@ -36,19 +39,24 @@ HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
   return bytes[0] | static_cast<std::uint64_t>(bytes[1]) << 8;
 }
 
+/// Lane u + 4v of a block's square.
+struct SquareLanes {
+  alignas(64) std::uint32_t u[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  alignas(64) std::uint32_t v[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+};
+inline constexpr SquareLanes kSquare;
+
 /// Sixteen bits u + 4v: is value + a*u + b*v >= 0? The sums fit in 32 bits.
 HWY_INLINE std::uint64_t edge_square(std::int32_t value, std::int32_t a, std::int32_t b) {
   const hn::CappedTag<std::int32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  alignas(64) static constexpr std::int32_t kU[16] = {0, 1, 2, 3, 0, 1, 2, 3,
-                                                      0, 1, 2, 3, 0, 1, 2, 3};
-  alignas(64) static constexpr std::int32_t kV[16] = {0, 0, 0, 0, 1, 1, 1, 1,
-                                                      2, 2, 2, 2, 3, 3, 3, 3};
+  const hn::RebindToUnsigned<decltype(d)> du;
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < 16; i += kLanes) {
     const auto lane =
-        hn::Add(hn::Set(d, value), hn::Add(hn::Mul(hn::Set(d, a), hn::Load(d, kU + i)),
-                                           hn::Mul(hn::Set(d, b), hn::Load(d, kV + i))));
+        hn::Add(hn::Set(d, value),
+                hn::Add(hn::Mul(hn::Set(d, a), hn::BitCast(d, hn::Load(du, kSquare.u + i))),
+                        hn::Mul(hn::Set(d, b), hn::BitCast(d, hn::Load(du, kSquare.v + i)))));
     bits |= mask_bits(d, hn::Gt(lane, hn::Set(d, -1))) << i;
   }
   return bits;
@@ -107,6 +115,51 @@ HWY_INLINE SlabBlock slab_block(const PlaneSlab& slab, std::int64_t lo) {
                                               : slab_block_in<std::int64_t>(slab, lo);
 }
 
+/// A slab with its numbers shifted right until sums over a block fit in 32 bits.
+struct ScaledSlab {
+  PlaneSlab exact;
+  int shift;
+  std::uint32_t x, y, z, thickness;
+};
+
+inline ScaledSlab scale_slab(const PlaneSlab& slab) {
+  using detail::absolute;
+  const Vec3l& n = slab.normal;
+  const auto length1 = static_cast<std::uint64_t>(absolute(n.x) + absolute(n.y) + absolute(n.z));
+  const int shift = std::max(0, static_cast<int>(std::bit_width(length1)) - 24);
+  const auto scaled = [&](std::int64_t v) { return static_cast<std::uint32_t>(v >> shift); };
+  return {slab, shift, scaled(n.x), scaled(n.y), scaled(n.z), scaled(slab.width + 1)};
+}
+
+/// The voxels of a slab in a block, linear order; `lo` is its least value seen from the block,
+/// |lo| <= 60 |n|1. What the shift drops moves a voxel's distance from the slab's near end by less
+/// than 9 down or 1 up, from its far end by less than 9 down or 2 up: where none is that close to
+/// 0 the scaled numbers decide as the exact ones do.
+HWY_INLINE std::uint64_t slab_mask(const ScaledSlab& slab, std::int64_t lo) {
+  const hn::CappedTag<std::uint32_t, 16> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const std::uint32_t margin = slab.shift == 0 ? 0 : 8;
+  const auto begin = hn::Set(d, margin - static_cast<std::uint32_t>(lo >> slab.shift));
+  const auto x = hn::Set(d, slab.x), y = hn::Set(d, slab.y), z = hn::Set(d, slab.z);
+  const auto thickness = hn::Set(d, slab.thickness);
+  const auto limit = hn::Set(d, slab.thickness + margin);
+  auto nearest = hn::Set(d, ~std::uint32_t{0});
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < 16; i += kLanes) {
+    // As unsigned numbers distances below -margin are huge.
+    auto distance = hn::Add(begin, hn::Add(hn::Mul(x, hn::Load(d, kSquare.u + i)),
+                                           hn::Mul(y, hn::Load(d, kSquare.v + i))));
+    for (std::size_t k = 0; k < 4; ++k) {
+      mask |= mask_bits(d, hn::Lt(distance, limit)) << (16 * k + i);
+      nearest = hn::Min(nearest, hn::Min(distance, hn::Sub(distance, thickness)));
+      distance = hn::Add(distance, z);
+    }
+  }
+  if (slab.shift != 0 && !hn::AllTrue(d, hn::Gt(nearest, hn::Set(d, 9))))
+    return slab_block_in<std::int64_t>(slab.exact, lo).mask;
+  return mask;
+}
+
 /// The children that a triangle meets, of those conditions, in a cell of 4³ children of
 /// 2^log2_child voxels a side each; linear order. With log2_child = 0: the voxels that it sets in a
 /// leaf block.
@@ -149,7 +202,7 @@ HWY_INLINE std::uint64_t triangle_children(const TriangleSetup& t, std::uint32_t
       const std::int64_t above = last * (positive(n.x) + positive(n.y) + positive(n.z));
       const std::int64_t below = last * (negative(n.x) + negative(n.y) + negative(n.z));
       const PlaneSlab children{n * size, t.plane.width + above - below};
-      mask &= slab_block(children, slab_lo_at(t, cell) - above).mask;
+      mask &= slab_mask(scale_slab(children), slab_lo_at(t, cell) - above);
     }
   }
   return mask;
