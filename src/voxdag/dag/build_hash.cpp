@@ -35,13 +35,9 @@ int subvolume_level(int levels, std::size_t triangles) {
 /// canonical_order's view of the stores.
 struct StoreSource {
   Stores& stores;
-  std::vector<std::vector<std::uint32_t>> forwards;  // by shard of the leaf level
+  std::vector<std::uint32_t> forwards;  // by half the leaf's id: all of them are even
 
-  explicit StoreSource(Stores& all) : stores(all), forwards(NodeStore::kShards) {
-    NodeStore& leaves = *stores.back();
-    for (int shard = 0; shard < NodeStore::kShards; ++shard)
-      forwards[shard].resize(leaves.used_words(shard) / 2);
-  }
+  explicit StoreSource(Stores& all) : stores(all), forwards(stores.back()->end_id() / 2) {}
   std::uint32_t* words(int level, NodeId id) { return stores[level]->words(id); }
   void prefetch(int level, NodeId id) const { stores[level]->prefetch_words(id); }
   void release(int level) { stores[level]->release(); }
@@ -51,9 +47,7 @@ struct StoreSource {
     return words;
   }
   std::uint64_t leaf_blocks() const { return stores.back()->node_count(); }
-  std::uint32_t& forward(NodeId leaf) {
-    return forwards[leaf >> NodeStore::kOffsetBits][(leaf & NodeStore::kOffsetMask) / 2];
-  }
+  std::uint32_t& forward(NodeId leaf) { return forwards[leaf / 2]; }
 };
 
 /// Joins the nodes of `level` (cells ascending, kNoNode left out) up to the root.
@@ -61,6 +55,7 @@ NodeId join_top(Stores& stores, int level, std::vector<std::uint32_t> cells,
                 std::vector<NodeId> ids) {
   for (; level > 0; --level) {
     std::size_t kept = 0;
+    NodeStore::Run run;
     for (std::size_t i = 0; i < cells.size();) {
       const std::uint32_t parent = cells[i] >> 3;
       std::uint32_t words[9] = {};
@@ -71,7 +66,9 @@ NodeId join_top(Stores& stores, int level, std::vector<std::uint32_t> cells,
         words[count++] = ids[i];
       }
       cells[kept] = parent;
-      ids[kept++] = count == 1 ? kNoNode : stores[level - 1]->intern(words, count);
+      ids[kept++] = count == 1
+                        ? kNoNode
+                        : stores[level - 1]->intern(words, count, hash_words(words, count), run);
     }
     cells.resize(kept);
     ids.resize(kept);

@@ -1,5 +1,6 @@
 #include "voxdag/dag/node_store.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <thread>
 
@@ -22,87 +23,135 @@ class SpinLock {
   std::atomic_flag& flag_;
 };
 
-constexpr std::size_t kFirstSlots = 64;
+constexpr int kFirstSlotsBits = 6;
+
+/// A table that is this many eighths full is to grow; one that is the other waits until it has.
+constexpr std::uint64_t kGrowEighths = 5, kFullEighths = 7;
+
+/// Has the pages of an array from the system now.
+void touch(PageArray<std::uint64_t>& array) {
+  constexpr std::size_t kPage = 4096 / sizeof(std::uint64_t);
+  for (std::size_t i = 0; i < array.size(); i += kPage)
+    *static_cast<volatile std::uint64_t*>(&array[i]) = 0;
+}
 
 }  // namespace
 
-std::uint64_t* NodeStore::find(Shard& shard, std::uint64_t* table, std::uint32_t tag,
-                               const std::uint32_t* words, int count, std::uint64_t& slot) {
-  const std::uint64_t last = table[0];
-  for (std::uint64_t i = tag & last;; i = (i + 1) & last) {
-    std::uint64_t& here = table[kTableHeader + i];
+std::uint64_t* NodeStore::find(const Table& table, std::uint32_t tag, const std::uint32_t* words,
+                               int count, std::uint64_t& slot) const {
+  for (std::uint64_t i = tag & table.last;; i = (i + 1) & table.last) {
+    std::uint64_t& here = table.slots[i];
     // Acquires the words that the slot's writer stored before.
     slot = std::atomic_ref(here).load(std::memory_order_acquire);
     if (slot == 0) return &here;
     if (slot >> 32 != tag) continue;
-    const std::uint32_t* stored = shard.at(static_cast<std::uint32_t>(slot) & kOffsetMask);
+    const std::uint32_t* stored = this->words(static_cast<std::uint32_t>(slot) - 1);
     // Equal first words mean equal lengths, so that the rest may be read.
-    if (stored[0] == words[0] &&
-        std::memcmp(stored, words, static_cast<std::size_t>(count) * 4) == 0)
-      return &here;
+    if (stored[0] == words[0] && std::equal(words + 1, words + count, stored + 1)) return &here;
   }
 }
 
-NodeId NodeStore::intern(const std::uint32_t* words, int count, std::uint64_t hash) {
+void NodeStore::prefetch_found(std::uint64_t hash) const {
+  const Table table = table_of(hash);
+  if (table.slots == nullptr) return;
+  constexpr std::uint64_t kProbes = 4;
+  for (std::uint64_t i = 0; i < kProbes; ++i) {
+    std::uint64_t& here = table.slots[(tag_of(hash) + i) & table.last];
+    const std::uint64_t slot = std::atomic_ref(here).load(std::memory_order_acquire);
+    if (slot == 0) return;
+    if (slot >> 32 != tag_of(hash)) continue;
+    __builtin_prefetch(words(static_cast<std::uint32_t>(slot) - 1));
+    return;
+  }
+}
+
+NodeId NodeStore::intern(const std::uint32_t* words, int count, std::uint64_t hash, Run& run) {
   const std::uint32_t shard_index = shard_of(hash), tag = tag_of(hash);
-  Shard& shard = shards_[shard_index];
-  const auto id_of = [&](std::uint64_t slot) {
-    return shard_index << kOffsetBits | (static_cast<std::uint32_t>(slot) & kOffsetMask);
-  };
+  const auto id_of = [](std::uint64_t slot) { return static_cast<NodeId>(slot) - 1; };
   std::uint64_t slot = 0;
-  std::uint64_t* table = shard.table.load(std::memory_order_acquire);
-  if (table != nullptr) {
-    find(shard, table, tag, words, count, slot);
+  const Table before = table_of(hash);
+  if (before.slots != nullptr) {
+    find(before, tag, words, count, slot);
     if (slot != 0) return id_of(slot);
+  } else {
+    grow(shard_index);
   }
-  const SpinLock guard(shard.lock);
-  table = shard.table.load(std::memory_order_relaxed);
-  // At most 3/4 full.
-  if (table == nullptr || shard.node_count * std::uint64_t{4} >= (table[0] + 1) * 3)
-    table = grow(shard);
-  std::uint64_t* free = find(shard, table, tag, words, count, slot);
-  if (slot != 0) return id_of(slot);
-  slot =
-      static_cast<std::uint64_t>(tag) << 32 | std::uint64_t{1} << 31 | append(shard, words, count);
-  std::atomic_ref(*free).store(slot, std::memory_order_release);
-  return id_of(slot);
+  if (run.end - run.next < static_cast<std::uint32_t>(count)) take_run(run);
+  std::memcpy(this->words(run.next), words, static_cast<std::size_t>(count) * 4);
+
+  Shard& shard = shards_[shard_index];
+  for (;;) {
+    bool added = false, to_grow = false;
+    {
+      const SpinLock guard(shard.lock);
+      const Table table = table_of(hash);
+      std::uint64_t* free = find(table, tag, words, count, slot);
+      if (slot != 0) return id_of(slot);
+      const std::uint64_t eighths = (shard.node_count + std::uint64_t{1}) * 8;
+      const std::uint64_t slots = table.last + 1;
+      added = eighths <= slots * kFullEighths;
+      if (added) {
+        slot = static_cast<std::uint64_t>(tag) << 32 | (run.next + 1);
+        std::atomic_ref(*free).store(slot, std::memory_order_release);
+        run.next += static_cast<std::uint32_t>(count);
+        shard.word_count += static_cast<std::uint32_t>(count);
+        ++shard.node_count;
+      }
+      if (eighths > slots * kGrowEighths && !shard.growing) shard.growing = to_grow = true;
+    }
+    if (to_grow) grow(shard_index);
+    if (added) return id_of(slot);
+    if (!to_grow) std::this_thread::yield();
+  }
 }
 
-std::uint32_t NodeStore::append(Shard& shard, const std::uint32_t* words, int count) {
-  std::uint32_t offset = shard.used_words;
-  int chunk = Shard::chunk_of(offset);
-  // A node does not straddle chunks.
-  if (Shard::chunk_of(offset + static_cast<std::uint32_t>(count) - 1) != chunk)
-    offset = Shard::chunk_begin(++chunk);
-  if (offset + static_cast<std::uint32_t>(count) > kOffsetMask)
+void NodeStore::take_run(Run& run) {
+  const std::lock_guard guard(runs_mutex_);
+  const int chunk = chunk_of(end_);
+  const int bits = std::min(kFirstChunkBits + chunk - kRunsBits, kMostRunBits);
+  const std::uint32_t words = 1u << bits;
+  // The last id plus one must fit in a slot.
+  if (end_ > kNoNode - words)
     throw Error("the DAG is too large: one level outgrew 32-bit pointers");
-  if (shard.chunks[chunk].size() == 0)
-    shard.chunks[chunk] = PageArray<std::uint32_t>(std::size_t{1} << (kFirstChunkBits + chunk));
-  std::memcpy(shard.at(offset), words, static_cast<std::size_t>(count) * 4);
-  shard.used_words = offset + static_cast<std::uint32_t>(count);
-  shard.stored_words += static_cast<std::uint32_t>(count);
-  ++shard.node_count;
-  budget_->add(static_cast<std::uint64_t>(count) * 4);
-  return offset;
+  if (chunks_[chunk].size() == 0)
+    chunks_[chunk] = PageArray<std::uint32_t>(std::size_t{1} << (kFirstChunkBits + chunk));
+  run = {end_, end_ + words};
+  end_ += words;
+  budget_->add(std::uint64_t{words} * 4);
 }
 
-std::uint64_t* NodeStore::grow(Shard& shard) {
-  const std::uint64_t* old = shard.table.load(std::memory_order_relaxed);
-  const std::uint64_t slots = old == nullptr ? kFirstSlots : (old[0] + 1) * 2;
-  PageArray<std::uint64_t> larger(kTableHeader + slots);
-  budget_->add(larger.bytes());
-  std::uint64_t* table = larger.data();
-  table[0] = slots - 1;
-  for (std::uint64_t i = 0; old != nullptr && i <= old[0]; ++i) {
-    const std::uint64_t slot = old[kTableHeader + i];
-    if (slot == 0) continue;
-    std::uint64_t to = (slot >> 32) & (slots - 1);
-    while (table[kTableHeader + to] != 0) to = (to + 1) & (slots - 1);
-    table[kTableHeader + to] = slot;
+/// Gives a shard its first table, or one twice as large; other threads may do the former as well.
+void NodeStore::grow(std::uint32_t shard_index) {
+  Shard& shard = shards_[shard_index];
+  const std::uint64_t packed = tables_[shard_index].load(std::memory_order_acquire);
+  const std::uint64_t bits = packed == 0 ? kFirstSlotsBits : (packed & 63) + 1;
+  PageArray<std::uint64_t> larger;
+  try {
+    larger = PageArray<std::uint64_t>(std::size_t{1} << bits);
+  } catch (...) {
+    const SpinLock guard(shard.lock);
+    shard.growing = false;
+    throw;
   }
+  touch(larger);
+
+  const SpinLock guard(shard.lock);
+  if (tables_[shard_index].load(std::memory_order_relaxed) != packed) return;
+  budget_->add(larger.bytes());
+  const std::uint64_t last = larger.size() - 1;
+  if (packed != 0) {
+    const auto* old = reinterpret_cast<const std::uint64_t*>(packed & ~std::uint64_t{63});
+    for (std::uint64_t i = 0; i <= last / 2; ++i) {
+      if (old[i] == 0) continue;
+      std::uint64_t to = (old[i] >> 32) & last;
+      while (larger[to] != 0) to = (to + 1) & last;
+      larger[to] = old[i];
+    }
+  }
+  tables_[shard_index].store(reinterpret_cast<std::uint64_t>(larger.data()) | bits,
+                             std::memory_order_release);
   shard.tables.push_back(std::move(larger));
-  shard.table.store(table, std::memory_order_release);
-  return table;
+  shard.growing = false;
 }
 
 std::uint64_t NodeStore::node_count() const {
@@ -113,7 +162,7 @@ std::uint64_t NodeStore::node_count() const {
 
 std::uint64_t NodeStore::word_count() const {
   std::uint64_t count = 0;
-  for (int i = 0; i < kShards; ++i) count += shards_[i].stored_words;
+  for (int i = 0; i < kShards; ++i) count += shards_[i].word_count;
   return count;
 }
 
@@ -121,18 +170,16 @@ void NodeStore::release_slots() {
   for (int i = 0; i < kShards; ++i) {
     for (const auto& table : shards_[i].tables) budget_->remove(table.bytes());
     shards_[i].tables.clear();
-    shards_[i].table.store(nullptr, std::memory_order_relaxed);
+    tables_[i].store(0, std::memory_order_relaxed);
   }
 }
 
 void NodeStore::release() {
   release_slots();
-  for (int i = 0; i < kShards; ++i) {
-    Shard& shard = shards_[i];
-    budget_->remove(std::uint64_t{shard.stored_words} * 4);
-    for (auto& chunk : shard.chunks) PageArray<std::uint32_t>().swap(chunk);
-    shard.used_words = shard.stored_words = shard.node_count = 0;
-  }
+  for (int i = 0; i < kShards; ++i) shards_[i].node_count = 0, shards_[i].word_count = 0;
+  for (auto& chunk : chunks_) PageArray<std::uint32_t>().swap(chunk);
+  budget_->remove(std::uint64_t{end_} * 4);
+  end_ = 0;
 }
 
 }  // namespace voxdag

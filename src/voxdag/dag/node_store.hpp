@@ -4,17 +4,19 @@
 /// A node is a run of 32-bit words (child mask and the ids of its children, or the two words of a
 /// leaf block). `intern` returns the same id for equal words, whichever thread asks. The table is
 /// split into shards by hash. A node that is there already, the common case, is found without a
-/// lock; only adding one takes its shard's. The ids depend on timing; canonical_order() makes the
-/// result independent of it.
+/// lock; only adding one takes its shard's. Words go into runs of memory that each thread has for
+/// itself, so that a lock is never held while memory is had from the system. The ids depend on
+/// timing; canonical_order() makes the result independent of it.
 ///
-///   id      | shard (4 bits) | word offset in the shard (28 bits) |
-///   slot    | 32 bits of hash | 1 | word offset (28 of 31 bits) |    0 = free; linear probing
-///   table   | index of the last slot | 7 words unused | slots ... |
+///   id      | word offset (32 bits) |
+///   slot    | 32 bits of hash | id + 1 |     0 = free; linear probing
+///   table   | address, log2 of the number of slots in its low 6 bits |
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -41,40 +43,45 @@ inline std::uint64_t hash_words(const std::uint32_t* words, int count) {
 
 class NodeStore {
  public:
+  /// A run of a store's words that one thread fills.
+  struct Run {
+    std::uint32_t next = 0, end = 0;
+  };
+
   explicit NodeStore(MemoryBudget& budget) : budget_(&budget) {}
   ~NodeStore() { release(); }
   NodeStore(const NodeStore&) = delete;
   NodeStore& operator=(const NodeStore&) = delete;
 
-  /// The id of the node with these words; copies them if they are new. 1 <= count <= 9. Throws
-  /// Error if the level outgrows 32-bit ids.
-  NodeId intern(const std::uint32_t* words, int count) {
-    return intern(words, count, hash_words(words, count));
-  }
-  /// The same for words whose hash the caller has.
-  NodeId intern(const std::uint32_t* words, int count, std::uint64_t hash);
+  /// The id of the node with these words; copies them to `run` if they are new. 1 <= count <= 9;
+  /// `hash` is hash_words(words, count); `run` is of this store and thread. Throws Error if the
+  /// level outgrows 32-bit ids.
+  NodeId intern(const std::uint32_t* words, int count, std::uint64_t hash, Run& run);
 
   /// Starts loading what intern() of a node with this hash will look at first.
   void prefetch(std::uint64_t hash) const {
-    const Shard& shard = shards_[shard_of(hash)];
-    const std::uint64_t* table = shard.table.load(std::memory_order_acquire);
-    if (table != nullptr) __builtin_prefetch(table + kTableHeader + (tag_of(hash) & table[0]));
+    const Table table = table_of(hash);
+    if (table.slots != nullptr) __builtin_prefetch(table.slots + (tag_of(hash) & table.last));
   }
+  /// Starts loading what it will look at next; best called when the first has arrived.
+  void prefetch_found(std::uint64_t hash) const;
 
   /// The words of a node; they stay where they are until release().
-  std::uint32_t* words(NodeId id) { return shards_[id >> kOffsetBits].at(id & kOffsetMask); }
+  std::uint32_t* words(NodeId id) {
+    const int chunk = chunk_of(id);
+    return chunks_[chunk].data() + (id - chunk_begin(chunk));
+  }
+  const std::uint32_t* words(NodeId id) const { return const_cast<NodeStore*>(this)->words(id); }
 
-  /// Starts loading words(id); harmless for any number.
+  /// Starts loading words(id); harmless for any number. Not while nodes are added.
   void prefetch_words(NodeId id) const {
-    const Shard& shard = shards_[id >> kOffsetBits];
-    const std::uint32_t offset = id & kOffsetMask;
-    const int chunk = Shard::chunk_of(offset);
-    const auto address = reinterpret_cast<std::uintptr_t>(shard.chunks[chunk].data()) +
-                         std::uintptr_t{4} * (offset - Shard::chunk_begin(chunk));
+    const int chunk = chunk_of(id);
+    const auto address = reinterpret_cast<std::uintptr_t>(chunks_[chunk].data()) +
+                         std::uintptr_t{4} * (id - chunk_begin(chunk));
     __builtin_prefetch(reinterpret_cast<const void*>(address));
   }
-  /// Offset after the last word of a shard.
-  std::uint32_t used_words(int shard) const { return shards_[shard].used_words; }
+  /// Every id is less.
+  std::uint32_t end_id() const { return end_; }
   std::uint64_t node_count() const;
   std::uint64_t word_count() const;
 
@@ -83,50 +90,57 @@ class NodeStore {
   /// Frees everything. Not thread-safe.
   void release();
 
-  static constexpr int kOffsetBits = 28;
-  static constexpr std::uint32_t kOffsetMask = (1u << kOffsetBits) - 1;
-  static constexpr int kShards = 1 << (32 - kOffsetBits);
-
  private:
   // Chunk i has kFirstChunk << i words, so that small levels take little and addresses stay fixed.
-  static constexpr int kFirstChunkBits = 9;
-  static constexpr int kChunks = kOffsetBits - kFirstChunkBits + 1;
+  // It is shared out in eight runs or in runs of 2^kMostRunBits words.
+  static constexpr int kFirstChunkBits = 9, kRunsBits = 3, kMostRunBits = 17;
+  static constexpr int kChunks = 32 - kFirstChunkBits + 1;
+  static constexpr int kShardBits = 4, kShards = 1 << kShardBits;
 
-  static constexpr std::size_t kTableHeader = 8;
-
-  struct alignas(64) Shard {
-    std::atomic<std::uint64_t*> table{nullptr};  // the last of `tables`
-    std::atomic_flag lock = ATOMIC_FLAG_INIT;
-    std::uint32_t used_words = 0;    // offset of the next word
-    std::uint32_t stored_words = 0;  // words of nodes, without what chunk ends waste
-    std::uint32_t node_count = 0;
-    // Outgrown tables stay until release_slots(): another thread may be reading them.
-    std::vector<PageArray<std::uint64_t>> tables;
-    std::array<PageArray<std::uint32_t>, kChunks> chunks;
-
-    static int chunk_of(std::uint32_t offset) {
-      return std::bit_width((offset >> kFirstChunkBits) + 1) - 1;
-    }
-    static std::uint32_t chunk_begin(int chunk) { return ((1u << chunk) - 1) << kFirstChunkBits; }
-    std::uint32_t* at(std::uint32_t offset) {
-      const int chunk = chunk_of(offset);
-      return chunks[chunk].data() + (offset - chunk_begin(chunk));
-    }
+  struct Table {
+    std::uint64_t* slots;
+    std::uint64_t last;
   };
 
+  struct alignas(64) Shard {
+    std::atomic_flag lock = ATOMIC_FLAG_INIT;
+    bool growing = false;
+    std::uint32_t node_count = 0;
+    std::uint64_t word_count = 0;
+    // Outgrown tables stay until release_slots(): another thread may be reading them.
+    std::vector<PageArray<std::uint64_t>> tables;
+  };
+
+  static int chunk_of(std::uint32_t offset) {
+    return std::bit_width((offset >> kFirstChunkBits) + 1) - 1;
+  }
+  static std::uint32_t chunk_begin(int chunk) { return ((1u << chunk) - 1) << kFirstChunkBits; }
+
   static std::uint32_t shard_of(std::uint64_t hash) {
-    return static_cast<std::uint32_t>(hash >> (64 - (32 - kOffsetBits)));
+    return static_cast<std::uint32_t>(hash >> (64 - kShardBits));
   }
   static std::uint32_t tag_of(std::uint64_t hash) { return static_cast<std::uint32_t>(hash); }
 
+  /// The table of the hash's shard; no slots before its first node.
+  Table table_of(std::uint64_t hash) const {
+    const std::uint64_t packed = tables_[shard_of(hash)].load(std::memory_order_acquire);
+    return {reinterpret_cast<std::uint64_t*>(packed & ~std::uint64_t{63}),
+            (std::uint64_t{1} << (packed & 63)) - 1};
+  }
+
   /// The slot where the words are or would be.
-  std::uint64_t* find(Shard& shard, std::uint64_t* table, std::uint32_t tag,
-                      const std::uint32_t* words, int count, std::uint64_t& slot);
-  std::uint32_t append(Shard& shard, const std::uint32_t* words, int count);
-  std::uint64_t* grow(Shard& shard);
+  std::uint64_t* find(const Table& table, std::uint32_t tag, const std::uint32_t* words, int count,
+                      std::uint64_t& slot) const;
+  void take_run(Run& run);
+  void grow(std::uint32_t shard_index);
 
   MemoryBudget* budget_;
-  std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
+  // Read by every lookup and seldom written, so apart from what adding a node writes.
+  alignas(64) std::array<std::atomic<std::uint64_t>, kShards> tables_{};
+  std::array<PageArray<std::uint32_t>, kChunks> chunks_;
+  alignas(64) std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
+  std::mutex runs_mutex_;
+  std::uint32_t end_ = 0;
 };
 
 }  // namespace voxdag

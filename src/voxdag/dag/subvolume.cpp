@@ -79,6 +79,8 @@ class Recursion {
       PendingNode parent;
       if (count_ == 0) return parent;
       parent.words[0] = mask_;
+      for (int i = 0; i < count_; ++i)
+        if (cells_[i].pending.count != 0) sink_.prefetch_found(level_, cells_[i].pending);
       for (int i = 0; i < count_; ++i) {
         const Cell& cell = cells_[i];
         parent.words[1 + i] = cell.pending.count == 0 ? cell.id

@@ -36,12 +36,20 @@ class DagSink {
   static constexpr bool kMemo = true;
 
   DagSink(std::span<const std::unique_ptr<NodeStore>> stores, int log2_memo_sets)
-      : memo(log2_memo_sets), stores_(stores), leaf_cache_(std::size_t{1} << kCacheBits) {}
+      : memo(log2_memo_sets),
+        stores_(stores),
+        runs_(stores.size()),
+        leaf_cache_(std::size_t{1} << kCacheBits) {}
 
   /// A node on its way to its store: `prefetch` early, `leaf` or `node` some time later.
   void prefetch(int level, PendingNode& pending) const {
     pending.hash = hash_words(pending.words, pending.count);
     stores_[level]->prefetch(pending.hash);
+  }
+
+  /// In between, when what was asked for first has arrived.
+  void prefetch_found(int level, const PendingNode& pending) const {
+    stores_[level]->prefetch_found(pending.hash);
   }
 
   /// The ids of `count` leaf blocks, at most 64, in Morton order, none of them 0.
@@ -62,11 +70,12 @@ class DagSink {
       store.prefetch(hashes[i]);
       missing[missing_count++] = i;
     }
+    for (int k = 0; k < missing_count; ++k) store.prefetch_found(hashes[missing[k]]);
     for (int k = 0; k < missing_count; ++k) {
       const int i = missing[k];
       const std::uint32_t words[2] = {static_cast<std::uint32_t>(blocks[i]),
                                       static_cast<std::uint32_t>(blocks[i] >> 32)};
-      ids[i] = store.intern(words, 2, hashes[i]);
+      ids[i] = store.intern(words, 2, hashes[i], runs_.back());
       leaf_cache_[hashes[i] >> (64 - kCacheBits)] = {blocks[i], ids[i]};
     }
   }
@@ -77,12 +86,12 @@ class DagSink {
                                                       << 32;
     CachedLeaf& cached = leaf_cache_[pending.hash >> (64 - kCacheBits)];
     if (cached.mask == mask) return cached.id;
-    cached = {mask, stores_.back()->intern(pending.words, 2, pending.hash)};
+    cached = {mask, stores_.back()->intern(pending.words, 2, pending.hash, runs_.back())};
     return cached.id;
   }
   /// Child mask and the ids of the children, which are of level + 1.
   NodeId node(int level, const PendingNode& pending) {
-    return stores_[level]->intern(pending.words, pending.count, pending.hash);
+    return stores_[level]->intern(pending.words, pending.count, pending.hash, runs_[level]);
   }
 
   PlaneMemo memo;
@@ -95,6 +104,7 @@ class DagSink {
   };
 
   std::span<const std::unique_ptr<NodeStore>> stores_;
+  std::vector<NodeStore::Run> runs_;  // by level
   PageArray<CachedLeaf> leaf_cache_;
 };
 
@@ -106,6 +116,7 @@ class TreeSink {
   explicit TreeSink(int levels) : nodes(levels - 2) {}
 
   void prefetch(int, const PendingNode&) const {}
+  void prefetch_found(int, const PendingNode&) const {}
 
   void leaves(const std::uint64_t* blocks, int count, NodeId* ids) {
     for (int i = 0; i < count; ++i) {
