@@ -39,7 +39,11 @@ struct StoreSource {
 
   explicit StoreSource(Stores& all) : stores(all), forwards(stores.back()->end_id() / 2) {}
   std::uint32_t* words(int level, NodeId id) { return stores[level]->words(id); }
-  void prefetch(int level, NodeId id) const { stores[level]->prefetch_words(id); }
+  void prefetch(int level, NodeId id) const {
+    stores[level]->prefetch_words(id);
+    if (level + 1 == static_cast<int>(stores.size()) && id / 2 < forwards.size())
+      __builtin_prefetch(&forwards[id / 2], 1);
+  }
   void release(int level) { stores[level]->release(); }
   std::uint64_t node_words() const {
     std::uint64_t words = 0;

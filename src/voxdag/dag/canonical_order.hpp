@@ -12,10 +12,11 @@
 namespace voxdag {
 
 /// `source` has
-///   std::uint32_t* words(int level, std::uint32_t id)  the words of a node, which may be
-///   overwritten void release(int level)                            called when a level is not
-///   needed any more std::uint64_t node_words(), leaf_blocks()          upper bounds for what is
-///   reachable std::uint32_t& forward(std::uint32_t leaf_id)      a word per leaf block, 0 at first
+///   std::uint32_t* words(level, id)          the words of a node, which may be overwritten
+///   std::uint32_t& forward(leaf_id)          a word for each leaf block, 0 at first
+///   void prefetch(level, id)                 starts loading both; ids may be any numbers
+///   void release(level)                      called when a level is not needed any more
+///   std::uint64_t node_words(), leaf_blocks()  upper bounds for what is reachable
 /// The children of level l-1 are ids of level l. `root` is of level 0.
 template <class Source>
 Svdag canonical_order(Source& source, int levels, std::uint32_t root) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <numeric>
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/voxelize/block_bits.hpp"
@@ -219,7 +220,23 @@ class Recursion {
       any |= met;
       if (met != 0) context_.classified.push_back({item.triangle, open, met});
     }
-    const std::size_t classified_end = context_.classified.size();
+    // The children's lists, one after the other on the stack.
+    std::array<std::uint32_t, 65> begin{};
+    for (std::size_t i = classified; i < context_.classified.size(); ++i)
+      for (std::uint64_t left = context_.classified[i].met; left != 0; left &= left - 1)
+        ++begin[hwy::Num0BitsBelowLS1Bit_Nonzero64(left) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    const std::size_t lists = context_.items.size();
+    context_.items.resize(lists + begin[64]);
+    std::array<std::uint32_t, 65> next = begin;
+    for (std::size_t i = classified; i < context_.classified.size(); ++i) {
+      const Classified& c = context_.classified[i];
+      for (std::uint64_t left = c.met; left != 0; left &= left - 1)
+        context_.items[lists + next[hwy::Num0BitsBelowLS1Bit_Nonzero64(left)]++] = {c.triangle,
+                                                                                    c.conditions};
+    }
+    context_.classified.resize(classified);
+
     Children octants(*this, log2_size - 1);
     for (int octant = 0; octant < 8; ++octant) {
       std::uint64_t left = any & (std::uint64_t{0xFF} << (8 * octant));
@@ -230,26 +247,25 @@ class Recursion {
         const Vec3i step = morton_decode(static_cast<std::uint64_t>(code));
         const Vec3i child_at{at.x + (step.x << log2_child), at.y + (step.y << log2_child),
                              at.z + (step.z << log2_child)};
-        children.add(code & 7, cell_of(child_at, log2_child, code, classified, classified_end));
+        children.add(code & 7, listed_cell(child_at, log2_child, lists + begin[code],
+                                           begin[code + 1] - begin[code]));
       }
       octants.add(octant, {children.node(), kNoNode});
     }
-    context_.classified.resize(classified);
+    context_.items.resize(lists);
     return {octants.node(), kNoNode};
   }
 
-  /// The cell with Morton code `code` in its parent, of the classified triangles that meet it.
-  Cell cell_of(Vec3i at, int log2_size, int code, std::size_t first, std::size_t end) {
-    const std::size_t list = context_.items.size();
-    for (std::size_t i = first; i < end; ++i) {
-      const Classified& c = context_.classified[i];
-      if (((c.met >> code) & 1) == 0) continue;
-      context_.items.push_back({c.triangle, open_conditions(context_.setups[c.triangle],
-                                                            c.conditions, at, 1 << log2_size)});
+  /// A cell whose items have the conditions of its parent.
+  Cell listed_cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
+    // enter_cell() sees for itself which conditions are open.
+    if (log2_size == 4 && count > 1) return cell_of_blocks(at, first, count);
+    for (std::size_t i = first; i < first + count; ++i) {
+      Item& item = context_.items[i];
+      item.conditions =
+          open_conditions(context_.setups[item.triangle], item.conditions, at, 1 << log2_size);
     }
-    const Cell result = cell(at, log2_size, list, context_.items.size() - list);
-    context_.items.resize(list);
-    return result;
+    return cell(at, log2_size, first, count);
   }
 
   Cell single(Vec3i at, int log2_size, const Item item) {

@@ -21,22 +21,25 @@ SvdagCounts count_svdag(const SvdagView& dag) {
   if (dag.is_empty()) return counts;
 
   constexpr std::uint64_t kAhead = 24;
-  // paths[p]: how many octree nodes the DAG node at p (of the level in hand) stands for.
+  // paths[p / 2]: how many octree nodes the DAG node at p (of the level in hand) stands for; a node
+  // has at least two words. Leaf blocks: paths[p].
   std::vector<std::uint64_t> paths{1}, below;
   for (int level = 0; level < levels - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     const bool above_leaf_blocks = level + 1 == levels - 2;
     const std::uint64_t below_begin = above_leaf_blocks ? 0 : end;
-    below.assign(above_leaf_blocks ? dag.leaf_block_count : dag.level_begin[level + 2] - end, 0);
+    const int shift = above_leaf_blocks ? 0 : 1;
+    below.assign(above_leaf_blocks ? dag.leaf_block_count : (dag.level_begin[level + 2] - end) / 2,
+                 0);
     for (std::uint64_t at = begin; at < end;) {
       const std::uint32_t* node = dag.nodes + at;
-      const std::uint64_t paths_here = paths[at - begin];
+      const std::uint64_t paths_here = paths[(at - begin) / 2];
       const int children = popcount(child_mask(node));
-      for (int i = 1; i <= children; ++i) below[node[i] - below_begin] += paths_here;
+      for (int i = 1; i <= children; ++i) below[(node[i] - below_begin) >> shift] += paths_here;
       // The sums are all over the level below: ask for them early. Masks among the words do no
       // harm.
       for (int i = 1; i <= children && at + i + kAhead < end; ++i)
-        if (const std::uint64_t sum = node[i + kAhead] - below_begin; sum < below.size())
+        if (const std::uint64_t sum = (node[i + kAhead] - below_begin) >> shift; sum < below.size())
           __builtin_prefetch(&below[sum], 1);
       counts.svo_nodes_per_level[level] += paths_here;
       ++counts.dag_nodes_per_level[level];
