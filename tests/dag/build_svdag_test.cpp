@@ -39,9 +39,9 @@ Svdag brute_force(const std::vector<QuantizedTriangle>& triangles, int levels) {
   const std::int32_t last = (1 << levels) - 1;
   for (const QuantizedTriangle& t : triangles) {
     const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
-    for (std::int32_t z = lo.z >> 8; z <= std::min(last, hi.z >> 8); ++z)
-      for (std::int32_t y = lo.y >> 8; y <= std::min(last, hi.y >> 8); ++y)
-        for (std::int32_t x = lo.x >> 8; x <= std::min(last, hi.x >> 8); ++x)
+    for (std::int32_t z = std::max(0, lo.z >> 8); z <= std::min(last, hi.z >> 8); ++z)
+      for (std::int32_t y = std::max(0, lo.y >> 8); y <= std::min(last, hi.y >> 8); ++y)
+        for (std::int32_t x = std::max(0, lo.x >> 8); x <= std::min(last, hi.x >> 8); ++x)
           if (triangle_overlaps_cube(t.x, t.y, t.z, Vec3l{x, y, z} * std::int64_t{kSubvoxels},
                                      kSubvoxels))
             voxels.push_back({x, y, z});
@@ -90,6 +90,37 @@ TEST(BuildSvdag, LargePlanarTrianglesGoThroughTheMemoUnchanged) {
     const Svdag expected = brute_force(triangles, levels);
     ASSERT_EQ(build_svdag(mesh_of(triangles), unit_grid(levels)).dag, expected);
     ASSERT_EQ(build_svdag(mesh_of(triangles), unit_grid(levels), kBySorting).dag, expected);
+  }
+}
+
+TEST(BuildSvdag, TrianglesManyTimesLargerThanTheGridAreExactInIt) {
+  std::mt19937_64 random(7);
+  for (int round = 0; round < 120; ++round) {
+    const int levels = 5;
+    // From edges that 32-bit sums hold to edges that only 64-bit sums do.
+    const int log2_size = 14 + round % 15;
+    const auto coordinate = [&](int log2_below) {
+      const auto value = static_cast<std::int32_t>(random() & ((1u << log2_below) - 1));
+      return value & ~0x3F;  // exact as a float
+    };
+    std::vector<QuantizedTriangle> triangles;
+    for (int i = 0; i < 3; ++i) {
+      QuantizedTriangle t;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t half = 1 << (log2_size - 1);
+        std::int32_t inside = coordinate(levels + 8);
+        // Through a corner of voxels: the ties that no rounded number decides.
+        if (round % 2 == 1) inside &= -kSubvoxels;
+        t.x[axis] = inside + coordinate(log2_size) - half;
+        t.y[axis] = inside + coordinate(log2_size) - half;
+        t.z[axis] = 3 * inside - t.x[axis] - t.y[axis];
+      }
+      triangles.push_back(t);
+    }
+    const Svdag expected = brute_force(triangles, levels);
+    const Mesh mesh = mesh_of(triangles);
+    ASSERT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << "round " << round;
+    ASSERT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, expected) << "round " << round;
   }
 }
 

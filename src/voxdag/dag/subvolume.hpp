@@ -97,7 +97,7 @@ class DagSink {
   PlaneMemo memo;
 
  private:
-  static constexpr int kCacheBits = 13;
+  static constexpr int kCacheBits = 15;
   struct CachedLeaf {
     std::uint64_t mask;  // 0: free
     NodeId id;
