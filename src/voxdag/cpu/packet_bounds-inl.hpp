@@ -1,0 +1,183 @@
+// What is known of all rays of a packet together: the ranges that they are in, the children that
+// any of them can meet, the cells that hold all of them.
+#if defined(VOXDAG_PACKET_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_PACKET_BOUNDS_INL
+#undef VOXDAG_PACKET_BOUNDS_INL
+#else
+#define VOXDAG_PACKET_BOUNDS_INL
+#endif
+
+#include "voxdag/cpu/packet_walk-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+#if VOXDAG_PACKET_LANES
+
+/// Fills the last vector with copies of the last ray.
+inline void PacketWalk::pad() {
+  for (std::size_t i = packet_.size; i % kWidth != 0; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      packet_.origin[axis][i] = packet_.origin[axis][packet_.size - 1];
+      packet_.inverse[axis][i] = packet_.inverse[axis][packet_.size - 1];
+    }
+    packet_.t_min[i] = packet_.t_min[packet_.size - 1];
+    packet_.t_end[i] = packet_.t_end[packet_.size - 1];
+    packet_.stop_start[i] = packet_.stop_per_t[i] = 0;
+  }
+}
+
+/// Finds the ranges that the rays are in.
+inline void PacketWalk::bound() {
+  const DF d;
+  const auto range = [&](const float* values, float out[2]) HWY_ATTR {
+    auto low = hn::Load(d, values), high = low;
+    for (std::size_t i = kWidth; i < packet_.size; i += kWidth) {
+      low = hn::Min(low, hn::Load(d, values + i));
+      high = hn::Max(high, hn::Load(d, values + i));
+    }
+    out[0] = hn::GetLane(hn::MinOfLanes(d, low));
+    out[1] = hn::GetLane(hn::MaxOfLanes(d, high));
+  };
+  width_at_start_ = width_per_t_ = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    range(packet_.origin[axis], origin_range_[axis]);
+    range(packet_.inverse[axis], inverse_range_[axis]);
+    const float apart = origin_range_[axis][1] - origin_range_[axis][0];
+    const float spread = 1 / inverse_range_[axis][0] - 1 / inverse_range_[axis][1];
+    width_at_start_ = apart > width_at_start_ ? apart : width_at_start_;
+    width_per_t_ = spread > width_per_t_ ? spread : width_per_t_;
+  }
+  float least[2], most[2];
+  range(packet_.t_min, least);
+  range(packet_.t_end, most);
+  t_range_[0] = least[0];
+  t_range_[1] = most[1];
+  last_t_min_ = least[1];
+  if (!packet_.has_stop) return;
+  range(packet_.stop_start, least);
+  range(packet_.stop_per_t, most);
+  stop_range_[0] = least[1];
+  stop_range_[1] = most[1];
+  // T is at most 1 in the grid.
+  const float limit = (stop_range_[0] + stop_range_[1]) * (1 + 0x1p-10f);
+  for (stop_level_ = packet_.coarsest; stop_level_ < nodes_.levels(); ++stop_level_)
+    if (float_from_bits(static_cast<std::uint32_t>(127 - stop_level_) << 23) <= limit) break;
+}
+
+/// Whether the rays are close together for the children of this node: not worth telling apart.
+inline bool PacketWalk::is_narrow(const std::uint32_t corner[3], int level) const {
+  const std::uint32_t size = 1u << (23 - level);
+  float enter = t_range_[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float t =
+        (origin_range_[axis][0] - float_from_bits(corner[axis] + size)) * inverse_range_[axis][0];
+    enter = t > enter ? t : enter;
+  }
+  const float side = float_from_bits(static_cast<std::uint32_t>(126 - level) << 23);
+  return width_at_start_ + width_per_t_ * enter < kNarrow * side;
+}
+
+/// The children of the node of `level` at `corner` that any ray can meet. The bounds of T hold in
+/// float arithmetic too, since rounding is monotone.
+inline std::uint32_t PacketWalk::children_met_by_hull(const std::uint32_t corner[3],
+                                                      int level) const {
+  const hn::CappedTag<float, 8> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  static_assert(hn::MaxLanes(d) == 8);
+  alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
+                                                             {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
+                                                             {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
+  const auto half = hn::Set(du, 1u << (22 - level));
+  auto enter = hn::Set(d, t_range_[0]), exit = hn::Set(d, t_range_[1]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto low = hn::Or(hn::Set(du, corner[axis]), hn::And(hn::Load(du, kUpper[axis]), half));
+    const auto high = hn::Add(low, half);
+    const auto slow = hn::Set(d, inverse_range_[axis][1]),
+               fast = hn::Set(d, inverse_range_[axis][0]);
+    const auto to_high = hn::Sub(hn::Set(d, origin_range_[axis][0]), hn::BitCast(d, high));
+    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), hn::BitCast(d, low));
+    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
+    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
+  }
+  std::uint8_t bits[8];
+  hn::StoreMaskBits(d, hn::Lt(enter, exit), bits);
+  return bits[0];
+}
+
+/// The lowest cells, of level `finest` at most, that hold the starts of all rays, and starts and
+/// ends. A position p here is in the cell with lower < p <= upper, as the voxel rule has it.
+inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int finest) const {
+  const DF d;
+  const hn::RebindToUnsigned<DF> du;
+  // More than the rounding of T, of the quotient and of the difference here.
+  const auto slack = hn::Set(d, 0x1p-21f);
+  const auto zero = hn::Zero(d), least = hn::Set(d, 1 + 0x1p-23f), two = hn::Set(d, 2);
+  std::uint32_t start_differs = 0, reach_differs = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto start_or = hn::Zero(du), start_and = hn::Set(du, ~0u);
+    auto end_or = start_or, end_and = start_and;
+    for (std::size_t i = 0; i < packet_.size; i += kWidth) {
+      const auto origin = hn::Load(d, packet_.origin[axis] + i),
+                 inverse = hn::Load(d, packet_.inverse[axis] + i);
+      const auto t_min = hn::Load(d, packet_.t_min + i);
+      const auto is_later = hn::Gt(t_min, zero);
+      const auto start = hn::Sub(origin, hn::Div(t_min, inverse));
+      const auto start_slack = hn::IfThenElseZero(is_later, slack);
+      const auto end = hn::Sub(origin, hn::Div(hn::Load(d, packet_.t_end + i), inverse));
+      const auto bits = [&](VF p) HWY_ATTR {
+        const auto inside = hn::Min(hn::Max(p, least), two);
+        return hn::Sub(hn::BitCast(du, inside), hn::Set(du, 1));
+      };
+      const auto low = bits(hn::Sub(start, start_slack)), high = bits(hn::Add(start, start_slack));
+      const auto last = bits(hn::Sub(end, slack));
+      start_or = hn::Or(start_or, hn::Or(low, high));
+      start_and = hn::And(start_and, hn::And(low, high));
+      end_or = hn::Or(end_or, last);
+      end_and = hn::And(end_and, last);
+    }
+    alignas(64) std::uint32_t lanes[4][kWidth];
+    hn::Store(start_or, du, lanes[0]);
+    hn::Store(start_and, du, lanes[1]);
+    hn::Store(end_or, du, lanes[2]);
+    hn::Store(end_and, du, lanes[3]);
+    std::uint32_t any = 0, every = ~0u, any_end = 0, every_end = ~0u;
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      any |= lanes[0][i];
+      every &= lanes[1][i];
+      any_end |= lanes[2][i];
+      every_end &= lanes[3][i];
+    }
+    start_differs |= any ^ every;
+    reach_differs |= (any | any_end) ^ (every & every_end);
+    starts.corner[axis] = reach.corner[axis] = every;
+  }
+  const auto finish = [&](CommonCell& cell, std::uint32_t differs) {
+    cell.level = differs == 0 ? finest : 22 - highest_bit(differs);
+    cell.level = cell.level > finest ? finest : cell.level < 0 ? 0 : cell.level;
+  };
+  finish(starts, start_differs);
+  finish(reach, reach_differs);
+}
+
+/// The finest level above the blocks down to which no ray may end at the cell where it starts: it
+/// leaves a cell of this side no later than at t_min + side, as T grows by 1 across the grid.
+inline int PacketWalk::finest_without_stop() const {
+  int level = 0;
+  for (; level < nodes_.levels() - 2; ++level) {
+    if (level + 1 < stop_level_) continue;
+    const float side = float_from_bits(static_cast<std::uint32_t>(126 - level) << 23);
+    const float leaves = last_t_min_ + side;
+    if (side <= (stop_range_[0] + stop_range_[1] * leaves) * (1 + 0x1p-10f)) break;
+  }
+  return level;
+}
+
+#endif  // VOXDAG_PACKET_LANES
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#endif
