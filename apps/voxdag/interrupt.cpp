@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <csignal>
 
+#include "voxdag/core/atomic_file.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -13,6 +15,12 @@ Progress* progress_to_cancel = nullptr;
 volatile std::sig_atomic_t caught_signal = 0;
 
 extern "C" void on_signal(int number) {
+  if (caught_signal != 0) {
+    remove_unfinished_files();
+    std::signal(number, SIG_DFL);
+    raise(number);  // Takes effect when this handler returns.
+    return;
+  }
   caught_signal = number;
   progress_to_cancel->cancel();
 }
@@ -31,7 +39,7 @@ void cancel_on_signals(Progress& progress) {
   progress_to_cancel = &progress;
   struct sigaction action {};
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+  action.sa_flags = SA_RESTART;
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
     // What the caller had ignored (nohup) stays ignored.

@@ -10,7 +10,7 @@ namespace voxdag {
 void make_writes_fail_plainly();
 
 /// From now on SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the
-/// process. A second signal of the kind ends the process at once.
+/// process. A second signal removes unfinished output and ends the process at once.
 void cancel_on_signals(Progress& progress);
 
 /// The signal that cancelled, or 0.

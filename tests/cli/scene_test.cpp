@@ -53,6 +53,15 @@ TEST_F(Sponge, AStoppedSceneLeavesNothing) {
   EXPECT_EQ(files_like("x.ply"), 0);
 }
 
+TEST_F(Sponge, ASecondSignalLeavesNothingEither) {
+  Process process(voxdag_command({"scene", "hairball", "--size", "8000", "-o", path("x.ply")}));
+  process.wait_until_it_catches(SIGTERM);
+  process.send_signal(SIGTERM);
+  process.send_signal(SIGINT);
+  EXPECT_GT(process.wait().status, 128);
+  EXPECT_EQ(files_like("x.ply"), 0);
+}
+
 TEST_F(Sponge, TraceWritesOneHitForEachRay) {
   // Down the middle of the sponge there is a hole; beside it there is a wall.
   const float up = std::numeric_limits<float>::infinity();

@@ -47,6 +47,18 @@ TEST(AtomicFile, AnExceptionLeavesNothingAndKeepsTheOldFile) {
   EXPECT_EQ(dir.count(), 1);
 }
 
+TEST(AtomicFile, UnfinishedOnesAreRemovedBeforeASignalEndsTheProcess) {
+  const TempDir dir;
+  AtomicFile complete(dir / "complete"), partial(dir / "partial");
+  complete.write("whole");
+  complete.commit();
+  partial.write("half");
+  remove_unfinished_files();
+  EXPECT_EQ(read_text(dir / "complete"), "whole");
+  EXPECT_EQ(dir.count(), 1);
+  EXPECT_NE(error_of([&] { partial.commit(); }).find("partial"), std::string::npos);
+}
+
 TEST(AtomicFile, ReplacesTheOldFileAndKeepsItsMode) {
   const TempDir dir;
   write_text(dir / "out", "old");

@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cassert>
 #include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -30,7 +32,35 @@ fs::path temporary_name(const fs::path& target) {
          (stem + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(serial++));
 }
 
+/// Names of temporary files; who takes one out owns it.
+std::atomic<char*> unfinished[64];
+
+/// A copy of the name that a signal handler can find, or null where there is no room for it.
+char* note(const fs::path& name) {
+  char* copy = ::strdup(name.c_str());
+  if (copy == nullptr) return nullptr;
+  for (auto& slot : unfinished) {
+    char* free_slot = nullptr;
+    if (slot.compare_exchange_strong(free_slot, copy)) return copy;
+  }
+  std::free(copy);
+  return nullptr;
+}
+
+void forget(char* name) noexcept {
+  if (name == nullptr) return;
+  for (auto& slot : unfinished) {
+    char* expected = name;
+    if (slot.compare_exchange_strong(expected, nullptr)) return std::free(name);
+  }
+}
+
 }  // namespace
+
+void remove_unfinished_files() noexcept {
+  for (auto& slot : unfinished)
+    if (const char* name = slot.exchange(nullptr)) ::unlink(name);
+}
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
   struct stat existing {};
@@ -52,6 +82,7 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) fail(0, errno);
+  noted_ = note(temporary_);
   if (exists) fchmod(descriptor_, existing.st_mode & 07777);
 }
 
@@ -59,6 +90,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : path_(std::move(other.path_)),
       target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
+      noted_(std::exchange(other.noted_, nullptr)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       flushed_(other.flushed_),
       buffer_(std::move(other.buffer_)) {}
@@ -104,6 +136,7 @@ void AtomicFile::commit() {
   if (close(std::exchange(descriptor_, -1)) != 0) fail(position(), errno);
   if (temporary_.empty()) return;
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(position(), errno);
+  forget(std::exchange(noted_, nullptr));
   temporary_.clear();
 }
 
@@ -128,6 +161,7 @@ void AtomicFile::write_through(const std::byte* data, std::size_t bytes) {
 void AtomicFile::discard() noexcept {
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
   if (!temporary_.empty()) unlink(temporary_.c_str());
+  forget(std::exchange(noted_, nullptr));
   temporary_.clear();
 }
 

@@ -56,9 +56,15 @@ class AtomicFile {
   std::filesystem::path path_;       ///< As given: what errors name.
   std::filesystem::path target_;     ///< With symbolic links resolved.
   std::filesystem::path temporary_;  ///< Empty where the target is written directly.
+  char* noted_ = nullptr;            ///< Its name, for remove_unfinished_files().
   int descriptor_ = -1;
   std::uint64_t flushed_ = 0;
   std::vector<std::byte> buffer_;
 };
+
+/// Removes the temporary files of every AtomicFile that was not committed, for a signal handler
+/// about to end the process: async-signal-safe. A commit() after it fails. With more than 64 files
+/// open at a time the others are left.
+void remove_unfinished_files() noexcept;
 
 }  // namespace voxdag
