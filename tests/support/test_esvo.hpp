@@ -3,7 +3,6 @@
 /// reads them. Shares with the library only the stored words.
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <random>
@@ -37,7 +36,7 @@ class TestEsvoAssembler {
     esvo.levels = levels;
     const std::uint64_t at = place({&root});
     esvo.root = at;
-    fill(root, at);
+    fill(root, at, place_far_pointer());
     pad(kEsvoPageSlots);
     const std::uint64_t descriptor_slots = slots_.size();
     for (std::uint64_t page = 0; page < descriptor_slots; page += kEsvoPageSlots)
@@ -95,8 +94,15 @@ class TestEsvoAssembler {
     return inner;
   }
 
+  /// Makes room for a far pointer, away from page headers.
+  std::uint64_t place_far_pointer() {
+    if (slots_.size() % kEsvoPageSlots == 0) slots_.push_back(0);
+    slots_.push_back(0);
+    return slots_.size() - 1;
+  }
+
   /// Writes the descriptor of `voxel` and all below it.
-  void fill(const TestVoxel& voxel, std::uint64_t slot) {
+  void fill(const TestVoxel& voxel, std::uint64_t slot, std::uint64_t far_slot) {
     std::uint32_t valid = 0, leaf = 0, with_contour = 0;
     const std::uint64_t first_contour = contours_.size();
     for (std::uint32_t i = 0; i < 8; ++i) {
@@ -112,20 +118,14 @@ class TestEsvoAssembler {
     if (with_contour != 0) references_.push_back({slot, first_contour});
     const auto inner = inner_children(voxel);
     if (!inner.empty()) {
-      // A far pointer's own slot comes right before the children, away from page headers.
-      if (slots_.size() % kEsvoPageSlots == 0) slots_.push_back(0);
-      const std::uint64_t far_slot = slots_.size();
-      slots_.push_back(0);
       const std::uint64_t first = place(inner);
       const bool is_far = rng_() % far_in_ == 0 || first - slot > ChildDescriptor::kMaxChildPointer;
-      if (is_far) {
-        if (far_slot - slot > ChildDescriptor::kMaxChildPointer) std::abort();
-        slots_[far_slot] = static_cast<std::uint32_t>(first - slot);
-      }
+      if (is_far) slots_[far_slot] = static_cast<std::uint32_t>(first - slot);
       descriptor.set_child_pointer(static_cast<std::uint32_t>((is_far ? far_slot : first) - slot),
                                    is_far);
-      std::uint64_t at = first;
-      for (const TestVoxel* child : inner) fill(*child, at++);
+      std::vector<std::uint64_t> far_slots;
+      for (std::size_t i = 0; i < inner.size(); ++i) far_slots.push_back(place_far_pointer());
+      for (std::size_t i = 0; i < inner.size(); ++i) fill(*inner[i], first + i, far_slots[i]);
     }
     slots_[slot] = descriptor.to_slot();
   }

@@ -10,11 +10,11 @@
 #include "voxdag/cpu/post_filter.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/count_steps.hpp"
+#include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/render_tile.hpp"
 #include "voxdag/render/source_view_samples.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -54,7 +54,8 @@ void for_each_block(const Camera& camera, const Body& body) {
   });
 }
 
-std::vector<float> cast_beams(const SvdagNodes& nodes, const RenderSetup& setup) {
+template <class Nodes>
+std::vector<float> cast_beams(const Nodes& nodes, const RenderSetup& setup) {
   const Camera& camera = setup.camera;
   std::vector<float> starts(static_cast<std::size_t>(beams_across(camera.width)) *
                             static_cast<std::size_t>(beams_across(camera.height)));
@@ -62,14 +63,15 @@ std::vector<float> cast_beams(const SvdagNodes& nodes, const RenderSetup& setup)
   return starts;
 }
 
-}  // namespace
+/// The fastest caster of each layout.
+PacketCaster caster_of(const SvdagNodes& nodes) { return PacketCaster(nodes); }
+ScalarCaster<ContourNodes> caster_of(const ContourNodes& nodes) { return ScalarCaster(nodes); }
 
-RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderOptions& options,
-                           Progress* progress, const ViewSource* source) {
-  RenderPlan plan(dag, grid, options);
-  RenderSetup setup = plan.setup();
-  const SvdagNodes nodes(dag);
-  const PacketCaster caster(nodes);
+/// Fills the picture of `setup`; returns the number of rays.
+template <class Nodes>
+std::uint64_t render_voxels(const Nodes& nodes, RenderSetup setup, const RenderOptions& options,
+                            Progress* progress, const ViewSource* source) {
+  const auto caster = caster_of(nodes);
   std::vector<float> beam_starts;
   if (options.beams && source == nullptr) {
     beam_starts = cast_beams(nodes, setup);
@@ -105,7 +107,17 @@ RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderO
   if (progress != nullptr) progress->throw_if_cancelled();
   if (options.with_steps)
     for_each_block(setup.camera, [&](int x, int y) { count_steps(nodes, setup, x, y); });
-  plan.image().rays = rays;
+  return rays;
+}
+
+}  // namespace
+
+RenderedImage render_image(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
+                           Progress* progress, const ViewSource* source) {
+  RenderPlan plan(scene, grid, options);
+  plan.image().rays = scene.visit_nodes([&](const auto& nodes) {
+    return render_voxels(nodes, plan.setup(), options, progress, source);
+  });
   if (options.filter && source == nullptr) {
     RenderedImage& image = plan.image();
     image.radiance = filter_picture(

@@ -1,17 +1,17 @@
 #pragma once
-/// A picture of a DAG, on the CPU.
-#include "voxdag/layout/svdag.hpp"
+/// A picture of voxels, on the CPU.
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/view_source.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
 /// Renders on the threads of the current TBB arena, tile by tile; the picture does not depend on
 /// their number. The surface points are those of `source`, or the voxels where it is null. Depth
-/// and normal are those of a pixel's first sample. The DAG must be valid (see validate_svdag) and
-/// have the grid's levels. Throws Error for options out of range, Cancelled.
-RenderedImage render_image(const SvdagView& dag, const Grid& grid, const RenderOptions& options,
+/// and normal are those of a pixel's first sample. The scene must be valid and have the grid's
+/// levels. Throws Error for options out of range, Cancelled.
+RenderedImage render_image(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress = nullptr, const ViewSource* source = nullptr);
 
 }  // namespace voxdag

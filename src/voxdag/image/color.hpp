@@ -1,21 +1,10 @@
 #pragma once
-/// The sRGB transfer function (IEC 61966-2-1), exact piecewise form, both ways.
-#include <cmath>
+/// Colours in the 8-bit codes of image files.
 #include <cstdint>
 
-#include "voxdag/core/host_device.hpp"
+#include "voxdag/core/srgb.hpp"
 
 namespace voxdag {
-
-/// Encoded value in [0,1] to linear light in [0,1].
-VOXDAG_HD inline float srgb_to_linear(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-/// Linear light in [0,1] to the encoded value in [0,1].
-VOXDAG_HD inline float linear_to_srgb(float linear) {
-  return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
 
 /// Linear light to the nearest 8-bit sRGB code. What lies outside [0,1] is clamped, NaN becomes 0.
 VOXDAG_HD inline std::uint8_t linear_to_srgb8(float linear) {

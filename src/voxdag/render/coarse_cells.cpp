@@ -4,12 +4,11 @@
 #include <set>
 #include <utility>
 
-#include "voxdag/trace/svdag_nodes.hpp"
-
 namespace voxdag {
 namespace {
 
-void collect(const SvdagNodes& nodes, SvdagNodes::Node node, int level, int last, Vec3i cell,
+template <class Nodes>
+void collect(const Nodes& nodes, typename Nodes::Node node, int level, int last, Vec3i cell,
              std::vector<Vec3i>& cells) {
   if (level == last) {
     cells.push_back(cell);
@@ -26,10 +25,11 @@ void collect(const SvdagNodes& nodes, SvdagNodes::Node node, int level, int last
 
 }  // namespace
 
-CoarseCells::CoarseCells(const SvdagView& dag, int max_level)
-    : level_(std::min(dag.levels, max_level)), is_set_(std::size_t{1} << (3 * level_)) {
-  const SvdagNodes nodes(dag);
-  if (!nodes.is_empty()) collect(nodes, nodes.root(), 0, level_, {}, cells_);
+CoarseCells::CoarseCells(const VoxelScene& scene, int max_level)
+    : level_(std::min(scene.levels(), max_level)), is_set_(std::size_t{1} << (3 * level_)) {
+  scene.visit_nodes([&](const auto& nodes) {
+    if (!nodes.is_empty()) collect(nodes, nodes.root(), 0, level_, {}, cells_);
+  });
   for (const Vec3i cell : cells_) {
     is_set_[index(cell)] = true;
     bounds_.extend(cell);

@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "voxdag/core/box.hpp"
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
-/// The non-empty cells of one level of a DAG.
+/// The non-empty cells of one level of a scene.
 class CoarseCells {
  public:
   /// The cells of level min(L, max_level), in Morton order.
-  CoarseCells(const SvdagView& dag, int max_level);
+  CoarseCells(const VoxelScene& scene, int max_level);
 
   int level() const { return level_; }
   std::int32_t side() const { return 1 << level_; }

@@ -6,9 +6,7 @@
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/render/view.hpp"
-#include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -49,19 +47,20 @@ struct Compass {
 /// Casts rays into a scene at the detail that matters for choosing a view.
 class Explorer {
  public:
-  Explorer(const SvdagView& dag, const Grid& grid)
-      : nodes_(dag), grid_(grid), stop_{std::ldexp(1.0f, -9), 0, 2} {}
+  Explorer(const VoxelScene& voxels, const Grid& grid)
+      : voxels_(voxels), grid_(grid), stop_{std::ldexp(1.0f, -9), 0, 2} {}
 
   /// Distance in world units to what a unit direction meets; +infinity if nothing.
   double distance(Vec3d from, Vec3d direction) const {
     const GridRay ray = make_grid_ray(grid_, from, direction, 0, HUGE_VAL);
     CellHit cell;
-    if (!cast(nodes_, ray, stop_, cell)) return HUGE_VAL;
+    if (!voxels_.visit_nodes([&](const auto& nodes) { return cast(nodes, ray, stop_, cell); }))
+      return HUGE_VAL;
     return ray.to_world_t(static_cast<double>(cell.t));
   }
 
  private:
-  SvdagNodes nodes_;
+  VoxelScene voxels_;
   Grid grid_;
   StopBelowSize stop_;
 };
@@ -242,13 +241,13 @@ void check(const View& view) {
 
 }  // namespace
 
-View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
+View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request) {
   View view;
   view.up = request.up.value_or(view.up);
   view.vertical_fov_degrees = request.vertical_fov_degrees.value_or(kInsideFov);
   if (request.eye && request.target) {
-    if (!request.up) view.up = guess_up(CoarseCells(dag, 6));
+    if (!request.up) view.up = guess_up(CoarseCells(voxels, 6));
     view.eye = *request.eye;
     view.target = *request.target;
     check(view);
@@ -256,7 +255,7 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
   }
 
   constexpr int kCoarseLevel = 7;
-  const CoarseCells scene(dag, kCoarseLevel);
+  const CoarseCells scene(voxels, kCoarseLevel);
   if (!request.up) view.up = guess_up(scene);
   view.eye = request.eye.value_or(Vec3d{});
   view.target = view.eye + Vec3d{0.6, 0.5, 0.4};
@@ -272,7 +271,7 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
     return view;
   }
 
-  const Explorer explorer(dag, grid);
+  const Explorer explorer(voxels, grid);
 
   if (!request.target && fills_its_box(scene) &&
       openness(scene, explorer, grid, compass) < kInsideOpenness) {
@@ -291,12 +290,13 @@ View frame_scene(const SvdagView& dag, const Grid& grid, double aspect,
   return outside;
 }
 
-std::vector<View> scene_views(const SvdagView& dag, const Grid& grid, double aspect, int count) {
+std::vector<View> scene_views(const VoxelScene& voxels, const Grid& grid, double aspect,
+                              int count) {
   constexpr int kCoarseLevel = 7;
   constexpr double kApart = 0.12;    // of the scene's size, for views that look much the same way
   constexpr double kOtherWay = 0.3;  // cosine
-  const CoarseCells scene(dag, kCoarseLevel);
-  const Explorer explorer(dag, grid);
+  const CoarseCells scene(voxels, kCoarseLevel);
+  const Explorer explorer(voxels, grid);
   const Vec3d up = guess_up(scene);
   const Compass compass(up);
   const double side = grid.voxel_size * static_cast<double>(grid.resolution());

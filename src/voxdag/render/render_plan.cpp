@@ -73,15 +73,15 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
 
 }  // namespace
 
-RenderPlan::RenderPlan(const SvdagView& dag, const Grid& grid, const RenderOptions& options)
+RenderPlan::RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderOptions& options)
     : samples_(make_samples(options)), exposure_(options.exposure) {
-  assert(grid.levels == dag.levels);
+  assert(grid.levels == voxels.levels());
   const std::size_t pixels =
       static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
   image_.width = options.width;
   image_.height = options.height;
   image_.view =
-      frame_scene(dag, grid, static_cast<double>(options.width) / options.height, options.view);
+      frame_scene(voxels, grid, static_cast<double>(options.width) / options.height, options.view);
   image_.rgb.resize(pixels);
   image_.radiance.resize(pixels);
   image_.depth.resize(pixels);

@@ -1,6 +1,5 @@
 #pragma once
 /// From what is asked of a picture to what kernels take, and from what they make to the picture.
-#include "voxdag/layout/svdag.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/sample_tables.hpp"
 
@@ -9,9 +8,9 @@ namespace voxdag {
 /// Owns what a RenderSetup points to, all in the memory of the host.
 class RenderPlan {
  public:
-  /// Finds the view, the sun and the sample tables, and makes an empty image. The DAG is the
-  /// grid's. Throws Error for options out of range.
-  RenderPlan(const SvdagView& dag, const Grid& grid, const RenderOptions& options);
+  /// Finds the view, the sun and the sample tables, and makes an empty image. The voxels
+  /// are the grid's. Throws Error for options out of range.
+  RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderOptions& options);
   RenderPlan(const RenderPlan&) = delete;
   RenderPlan& operator=(const RenderPlan&) = delete;
 

@@ -59,8 +59,10 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   point.face = sample.face;
   const double cell_size = static_cast<double>(sample.cell_size);
   point.cell_side = static_cast<float>(cell_size / setup.side());
-  const double lift = static_cast<double>(cube_height(sample.face) + kSlack);
-  const Vec3d lifted = sample.point + static_cast<Vec3d>(sample.face) * (lift * cell_size);
+  const double lift = sample.lift > 0
+                          ? static_cast<double>(sample.lift)
+                          : static_cast<double>(cube_height(sample.face) + kSlack) * cell_size;
+  const Vec3d lifted = sample.point + static_cast<Vec3d>(sample.face) * lift;
   point.start = make_grid_point(setup.grid, lifted);
   const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
   if (!is_hidden(nodes, point, to_viewer)) return point;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -26,12 +26,13 @@ struct ViewRequest {
 /// `aspect` = width / height. Without an up vector: y, or z where the scene lies or stands on that
 /// axis. Without an eye: from above one corner with all voxels in the picture, or from inside where
 /// it is a closed box, as buildings are, with room to look around. A valid view even for
-/// an empty DAG. Deterministic; some ten milliseconds. Throws Error for a request that names no
+/// an empty scene. Deterministic; some ten milliseconds. Throws Error for a request that names no
 /// view: numbers that are not finite, eye = target, an angle not in (0,180), up along the view.
-View frame_scene(const SvdagView& dag, const Grid& grid, double aspect, const ViewRequest& request);
+View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
+                 const ViewRequest& request);
 
 /// `count` views that differ from each other: from inside, from roomy places with far to see, where
 /// the scene has such, then from outside around it. Deterministic; some ten milliseconds.
-std::vector<View> scene_views(const SvdagView& dag, const Grid& grid, double aspect, int count);
+std::vector<View> scene_views(const VoxelScene& voxels, const Grid& grid, double aspect, int count);
 
 }  // namespace voxdag

@@ -14,6 +14,9 @@ struct ViewSample {
   Vec3f albedo{};  ///< Linear, in [0,1].
   float depth = HUGE_VALF;  ///< World units along the camera's axis.
   float cell_size = 0;      ///< Side of the cell met, world units: how far the voxels are off.
+  /// How far above the point, along `face`, rays start, world units; 0: above the cubes of
+  /// cell_size that may stand for the surface.
+  float lift = 0;
 
   VOXDAG_HD bool is_hit() const { return depth < HUGE_VALF; }
 };

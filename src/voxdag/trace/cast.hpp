@@ -24,6 +24,17 @@ struct CellHit {
   int level = 0;
 };
 
+/// What a cast at a layout finds: a CellHit, or the layout's own type made from that.
+template <class Nodes>
+struct FoundBy {
+  using Type = CellHit;
+};
+template <class Nodes>
+requires requires { typename Nodes::Found; }
+struct FoundBy<Nodes> {
+  using Type = typename Nodes::Found;
+};
+
 /// The termination hook that never ends a cast above the voxels.
 struct StopAtVoxels {
   VOXDAG_HD constexpr bool operator()(int /*level*/, float /*t_enter*/, float /*t_exit*/) const {
@@ -38,6 +49,8 @@ template <class Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
   constexpr int kTopBit = 22;  // the position bit that the root's children differ in
+  static_assert(
+      !requires { typename Nodes::Found; }, "the layout has a cast of its own");
   if (ray.misses() || nodes.is_empty()) return false;
 
   const float ox = ray.origin.x, oy = ray.origin.y, oz = ray.origin.z;

@@ -18,15 +18,21 @@
 
 namespace voxdag {
 
+/// A contour among those of a ray's voxels.
+struct ContourPlane {
+  Contour contour;  ///< No bits: none.
+  int level = 0;    ///< Of the voxel that it is of.
+};
+
 /// Where a cast ended: t is where the ray enters the shape, later than the cube where a contour
 /// cuts that.
 struct EsvoHit : CellHit {
   EsvoVoxel voxel;  ///< The leaf, or the coarser voxel at which `stop` ended the cast.
-  /// The contour through one of whose planes the ray enters the shape; no bits where it enters
-  /// through a side of its cube, or starts inside. May be that of an ancestor.
-  Contour plane;
+  /// The contour, of the voxel or an ancestor, through one of whose planes the ray enters the
+  /// shape; none where it enters through a side of its cube, or starts inside.
+  ContourPlane plane;
 
-  VOXDAG_HD bool is_through_contour() const { return plane.bits != 0; }
+  VOXDAG_HD bool is_through_contour() const { return plane.contour.bits != 0; }
 };
 
 /// Finds the first leaf along the ray, or voxel for which `stop(level, t_enter, t_exit)` is true,
@@ -54,7 +60,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   float t_maxes[kMaxLevels];
   std::uint64_t slot = esvo.root;
   ChildDescriptor parent = esvo.descriptor(slot);
-  Contour plane;  // by which the ray came to t, if by one
+  ContourPlane plane;  // by which the ray came to t, if by one
   std::uint32_t x = kOne, y = kOne,
                 z = kOne;   // lower corner of the current voxel's cube, a child of the parent
   std::uint32_t child = 0;  // which child, mirrored
@@ -84,14 +90,14 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     if ((parent.valid_mask() >> index & 1u) != 0 && (!kWithContours || t <= t_max)) {
       // INTERSECT
       float tv_min = t, tv_max = least(t_exit, t_max);
-      Contour entered = plane;
+      ContourPlane entered = plane;
       if constexpr (kWithContours) {
         if ((parent.contour_mask() >> index & 1u) != 0) {
           const Contour contour = esvo.contour(slot, parent, static_cast<int>(index));
           const ContourSpan span = contour_ray.span(contour, x, y, z, bit, t_exit);
           if (span.t_enter > tv_min) {
             tv_min = span.t_enter;
-            entered = contour;
+            entered = {contour, kTopBit - bit + 1};
           }
           tv_max = least(span.t_leave, tv_max);
         }
@@ -184,8 +190,17 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
 /// contour or of a side of the cube. Zero where the ray starts inside.
 VOXDAG_HD inline Vec3f entered_normal(const GridRay& ray, const EsvoHit& hit) {
   if (!hit.is_through_contour()) return static_cast<Vec3f>(face_normal(entered_face(ray, hit)));
-  const auto n = static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane));
+  const auto n = static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane.contour));
   return n * (1.0f / std::sqrt(dot(n, n)));
+}
+
+/// How far apart the planes of a contour are, in units of the grid's side.
+VOXDAG_HD inline float thickness(const ContourPlane& plane) {
+  const auto n = static_cast<Vec3f>(plane.contour.normal());
+  const auto steps = static_cast<float>(length1(plane.contour.normal()) *
+                                        (plane.contour.high() - plane.contour.low()));
+  const float side = float_from_bits(static_cast<std::uint32_t>(127 - plane.level) << 23);
+  return side * steps / (std::sqrt(dot(n, n)) * Contour::kMaxPosition);
 }
 
 /// As of any layout. The face of a ray that enters through a contour is the side that looks most
@@ -194,7 +209,7 @@ VOXDAG_HD inline Hit to_hit(const GridRay& ray, const EsvoHit& found, int levels
                             float t_max) {
   Hit hit = to_hit(ray, static_cast<const CellHit&>(found), levels, t_min, t_max);
   if (!found.is_through_contour()) return hit;
-  const Vec3i n = ContourRay(ray).entered_normal(found.plane);
+  const Vec3i n = ContourRay(ray).entered_normal(found.plane.contour);
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (n[i] * n[i] > n[axis] * n[axis]) axis = i;

@@ -9,10 +9,13 @@
 
 namespace voxdag {
 
+struct EsvoHit;  // trace/esvo_cast.hpp
+
 /// The voxels as cubes. Nodes are slots of descriptors.
 class EsvoNodes {
  public:
   using Node = std::uint64_t;
+  using Found = EsvoHit;
   /// Whether cast() cuts cubes by their contours; other walks never do.
   static constexpr bool kWithContours = false;
 

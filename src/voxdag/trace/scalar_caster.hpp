@@ -8,8 +8,8 @@
 ///   levels()                              L
 /// make_ray(i) gives the CastRay i, 0 <= i < count; it may be called in any order, once each.
 /// on_result(i, ray, cell, is_hit) receives what closest() found, on_result(i, is_hit) what any()
-/// did, in any order: what is added up must not depend on it. All casters give the same results to
-/// the bit.
+/// did, in any order: what is added up must not depend on it. A cell is a FoundBy<Nodes>::Type. All
+/// casters give the same results to the bit.
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 
@@ -32,7 +32,7 @@ class ScalarCaster {
   VOXDAG_HD void closest(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     for (int i = 0; i < count; ++i) {
       const CastRay ray = make_ray(i);
-      CellHit cell;
+      typename FoundBy<Nodes>::Type cell;
       const bool is_hit = cast(nodes_, ray.ray, ray.stop, cell);
       on_result(i, ray.ray, cell, is_hit);
     }
@@ -42,7 +42,7 @@ class ScalarCaster {
   VOXDAG_HD void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     for (int i = 0; i < count; ++i) {
       const CastRay ray = make_ray(i);
-      CellHit cell;
+      typename FoundBy<Nodes>::Type cell;
       on_result(i, cast(nodes_, ray.ray, ray.stop, cell));
     }
   }

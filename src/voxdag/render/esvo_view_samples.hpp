@@ -1,0 +1,98 @@
+#pragma once
+/// The primary rays of a tile through an ESVO: shapes cut by contours, colours and normals.
+#include "voxdag/render/esvo_shading.hpp"
+#include "voxdag/render/surface_point.hpp"
+#include "voxdag/render/voxel_view_samples.hpp"
+#include "voxdag/trace/esvo_cast.hpp"
+
+namespace voxdag {
+
+/// The deepest contour of the voxel that was met and its ancestors; none if there is none.
+VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRay& ray,
+                                              const EsvoHit& hit) {
+  ContourPlane deepest;
+  std::uint64_t slot = esvo.root;
+  for (int level = 1;; ++level) {
+    const int bit = 23 - level;
+    const std::uint32_t mirrored =
+        (hit.x >> bit & 1u) | (hit.y >> bit & 1u) << 1 | (hit.z >> bit & 1u) << 2;
+    const auto child = static_cast<int>(mirrored ^ ray.mirrored);
+    const ChildDescriptor parent = esvo.descriptor(slot);
+    if ((parent.contour_mask() >> child & 1u) != 0)
+      deepest = {esvo.contour(slot, parent, child), level};
+    if (level == hit.level) return deepest;
+    slot = esvo.child(slot, parent, child);
+  }
+}
+
+/// The surface where a primary ray met a shape. `direction` is the ray's, in world units.
+template <EsvoLayout Nodes>
+VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSetup& setup,
+                                             Vec3d direction, const GridRay& ray,
+                                             const EsvoHit& hit) {
+  // How far the shapes of neighbours may stand out above the plane that is seen, in units of how
+  // thick its slab is and of the cells that stand for a surface at this depth.
+  constexpr float kSlabs = 1.0f, kCells = 0.25f;
+  constexpr float kLeaning = 0.2f;  // cosine
+  const EsvoView& esvo = nodes.view();
+  const double depth = ray.to_world_t(static_cast<double>(hit.t));
+  const auto side = static_cast<float>(setup.side());
+  const float voxel_size =
+      side * float_from_bits(static_cast<std::uint32_t>(127 - hit.level) << 23);
+  const float visible_size = cell_size_at(setup, depth);
+  const Vec3f view = -static_cast<Vec3f>(normalized(direction));
+  const Vec3f entered = entered_normal(ray, hit);
+  const Vec3f plane = dot(entered, entered) > 0 ? entered : view;
+  ContourPlane contour = hit.plane;
+  if (Nodes::kWithContours && !hit.is_through_contour()) contour = deepest_contour(esvo, ray, hit);
+
+  ViewSample sample;
+  sample.albedo = setup.settings.albedo;
+  stored_color(esvo, hit.voxel, sample.albedo);
+  sample.normal = plane;
+  if (stored_normal(esvo, hit.voxel, sample.normal)) {
+    // Surfaces are seen from both sides. A side of a cube does not tell which one this is, and at
+    // an outline, where most sides are seen, the normal may lean away from the viewer a little.
+    const bool is_back = hit.is_through_contour() ? dot(sample.normal, plane) < 0
+                                                  : dot(sample.normal, view) < -kLeaning;
+    if (is_back) sample.normal = -sample.normal;
+  }
+  sample.depth = static_cast<float>(depth);
+  sample.cell_size = visible_size < voxel_size ? visible_size : voxel_size;
+  sample.point = setup.camera.eye + direction * depth;
+  if (hit.is_through_contour()) {
+    sample.face = plane;
+  } else {
+    const float pixels = voxel_size / static_cast<float>(setup.camera.pixel_size() * depth);
+    const float cube =
+        smooth_step(setup.settings.cube_pixels / 2, setup.settings.cube_pixels, pixels);
+    const bool is_cube = contour.contour.bits == 0;
+    sample.face = is_cube ? normalized(mix(sample.normal, plane, cube)) : sample.normal;
+  }
+  if (contour.contour.bits != 0) {
+    sample.lift = kSlabs * thickness(contour) * side + kCells * sample.cell_size;
+  } else {
+    // As for the cubes of a DAG: this side of the cube may lie below the surface's plane.
+    const float below = cube_height(sample.face) - dot(sample.face, plane);
+    sample.lift = (cube_height(sample.face) + (below > 0 ? below : 0.0f) + kCells) * voxel_size;
+  }
+  return sample;
+}
+
+/// See trace_view_samples() in voxel_view_samples.hpp.
+template <EsvoLayout Nodes, class Caster, class Scratch>
+VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
+                                        const RenderSetup& setup, const ViewTile& tile,
+                                        Scratch& scratch) {
+  caster.closest(
+      tile.width * tile.height, [&](int pixel) { return primary_ray(setup, tile, pixel); },
+      [&](int pixel, const GridRay& ray, const EsvoHit& hit, bool is_hit) {
+        ViewSample& sample = scratch.samples[pixel];
+        sample = ViewSample{};
+        if (!is_hit) return;
+        sample = esvo_view_sample(nodes, setup, pixel_direction(setup, tile, pixel), ray, hit);
+      });
+  return tile.width * tile.height;
+}
+
+}  // namespace voxdag
