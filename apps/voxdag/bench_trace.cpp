@@ -156,7 +156,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   std::vector<std::unique_ptr<TraceLayout>> layouts;
   for (const std::string& name : plan.layouts)
     layouts.push_back(make_trace_layout(name, scene.dag));
-  std::vector<std::optional<DeviceSvdag>> device_dags;
+  std::vector<std::optional<DeviceScene>> device_dags;
   for (const auto& layout : layouts) {
     device_dags.push_back(load_on_device(plan.device, scene.dag, layout->device_layout()));
     if (device_dags.back()) results.cuda_device = device_dags.back()->device().name;

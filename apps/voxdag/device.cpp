@@ -29,18 +29,18 @@ void add_device_option(CLI::App& command, DeviceChoice& choice) {
                     "Where rays are cast; auto: on a CUDA device where there is one (default cpu)");
 }
 
-std::optional<DeviceSvdag> load_on_device(const DeviceChoice& choice, const SvdagView& dag,
+std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelScene& scene,
                                           DeviceLayout layout) {
   if (choice.kind == DeviceChoice::Kind::kCpu) return std::nullopt;
   try {
-    return DeviceSvdag(choose_cuda_device(choice.index), dag, layout);
+    return DeviceScene(choose_cuda_device(choice.index), scene, layout);
   } catch (const Error& error) {
     if (choice.kind == DeviceChoice::Kind::kAuto) return std::nullopt;
     throw Error("--device cuda", "", error.what());
   }
 }
 
-std::string device_name(const std::optional<DeviceSvdag>& dag) {
+std::string device_name(const std::optional<DeviceScene>& dag) {
   return dag ? dag->device().name : "the CPU";
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "session.hpp"
-#include "voxdag/cuda/device_svdag.hpp"
+#include "voxdag/cuda/device_scene.hpp"
 
 namespace voxdag {
 
@@ -20,13 +20,13 @@ DeviceChoice parse_device(const std::string& text);
 
 void add_device_option(CLI::App& command, DeviceChoice& choice);
 
-/// The DAG in the memory of the CUDA device that was asked for; nothing where the CPU is to work:
-/// with "auto" also where there is no device, or not enough memory on it. `dag` must outlive it.
-/// Throws Error where CUDA was asked for and cannot be.
-std::optional<DeviceSvdag> load_on_device(const DeviceChoice& choice, const SvdagView& dag,
+/// The voxels in the memory of the CUDA device that was asked for; nothing where the CPU is to
+/// work: with "auto" also where there is no device, or not enough memory on it. `scene` must
+/// outlive it. Throws Error where CUDA was asked for and cannot be.
+std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelScene& scene,
                                           DeviceLayout layout = DeviceLayout::kPaper);
 
 /// "the CPU" or the device's name, for people.
-std::string device_name(const std::optional<DeviceSvdag>& dag);
+std::string device_name(const std::optional<DeviceScene>& dag);
 
 }  // namespace voxdag

@@ -68,7 +68,7 @@ void render(RenderArguments& arguments, Session& session) {
   const VdagFile file(session.subject);
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
-  const std::optional<DeviceSvdag> device_dag = load_on_device(arguments.device, file.view());
+  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, file.view());
   const std::unique_ptr<ViewSource> source =
       open_view_source(arguments.mesh, arguments.options.albedo, file.view(), file.grid(), session);
   const auto render_frame = [&](const RenderOptions& options, Progress* progress) {

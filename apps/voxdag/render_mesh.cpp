@@ -25,12 +25,12 @@ void check_mesh_options(const MeshArguments& arguments) {
 }
 
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
-                                             const SvdagView& dag, const Grid& grid,
+                                             const VoxelScene& scene, const Grid& grid,
                                              Session& session) {
   if (arguments.file.empty() || arguments.primary == "voxels") return nullptr;
   Mesh mesh = read_mesh(arguments.file, &session.progress);
   try {
-    check_mesh_in_grid(mesh, dag, grid);
+    check_mesh_in_grid(mesh, scene, grid);
     MeshViewOptions options;
     options.albedo = albedo;
     return std::make_unique<MeshViewSource>(std::move(mesh), options);

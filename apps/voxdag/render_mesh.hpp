@@ -6,8 +6,8 @@
 
 #include "session.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/svdag.hpp"
 #include "voxdag/render/view_source.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -24,7 +24,7 @@ void check_mesh_options(const MeshArguments& arguments);
 /// The mesh as a source of view samples, or null where the voxels are to be seen. Throws Error for
 /// a mesh that is not that of the voxels.
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
-                                             const SvdagView& dag, const Grid& grid,
+                                             const VoxelScene& scene, const Grid& grid,
                                              Session& session);
 
 }  // namespace voxdag

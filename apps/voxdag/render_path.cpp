@@ -26,7 +26,7 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 /// The camera path of a file. What its first key leaves out, frame_scene finds.
-CameraPath camera_path(const PathFile& path, const std::string& file, const SvdagView& dag,
+CameraPath camera_path(const PathFile& path, const std::string& file, const VoxelScene& scene,
                        const Grid& grid, const RenderOptions& options) {
   std::vector<CameraKey> keys;
   try {
@@ -38,7 +38,7 @@ CameraPath camera_path(const PathFile& path, const std::string& file, const Svda
             key.eye, key.target, key.up ? key.up : options.view.up,
             key.fov_degrees ? key.fov_degrees : options.view.vertical_fov_degrees};
         next.view =
-            frame_scene(dag, grid, static_cast<double>(options.width) / options.height, request);
+            frame_scene(scene, grid, static_cast<double>(options.width) / options.height, request);
       } else {
         next.view = keys.back().view;
         next.view.eye = key.eye;
@@ -125,12 +125,12 @@ void check_frame_pattern(const std::string& path) {
                                fmt::format("\"{}\" has no place for a number, such as %04d", path));
 }
 
-void render_path(const SvdagView& dag, const Grid& grid, const RenderOptions& given,
+void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions& given,
                  const PathArguments& arguments, const FrameMaker& maker, Session& session) {
   constexpr double kMostFrames = 1e6;
   const PathFile file = read_path_file(arguments.file);
   RenderOptions options = given;
-  const CameraPath path = camera_path(file, arguments.file, dag, grid, options);
+  const CameraPath path = camera_path(file, arguments.file, scene, grid, options);
   const double count = std::floor((path.end() - path.start()) * arguments.fps + 1e-6) + 1;
   if (!(count <= kMostFrames)) throw Error(arguments.file, "", "a million frames are too many");
   for (const std::string& out : {arguments.timings, plot_beside(arguments.timings)})
@@ -139,7 +139,7 @@ void render_path(const SvdagView& dag, const Grid& grid, const RenderOptions& gi
   if (!options.sun) {
     RenderOptions first = options;
     set_view(first, path.at(path.start()));
-    options.sun = static_cast<Vec3d>(RenderPlan(dag, grid, first).setup().sky.sun);
+    options.sun = static_cast<Vec3d>(RenderPlan(scene, grid, first).setup().sky.sun);
   }
 
   std::vector<double> times;

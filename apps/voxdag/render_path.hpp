@@ -6,8 +6,8 @@
 
 #include "session.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/svdag.hpp"
 #include "voxdag/render/render_options.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -32,7 +32,7 @@ struct FrameMaker {
 /// Renders the path's frames, from its first key to its last one. The sun stands still: where
 /// neither options nor path place it, it is where the first frame would have it. Exposure follows
 /// the frames smoothly. Throws Error for a path that is none.
-void render_path(const SvdagView& dag, const Grid& grid, const RenderOptions& options,
+void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
                  const PathArguments& arguments, const FrameMaker& maker, Session& session);
 
 }  // namespace voxdag

@@ -42,7 +42,7 @@ void pack_hit(const Hit& hit, std::byte* row) {
 
 void trace(const TraceArguments& arguments, Session& session) {
   const VdagFile file(session.subject);
-  const std::optional<DeviceSvdag> device_dag = load_on_device(arguments.device, file.view());
+  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, file.view());
   std::optional<CudaTracer> cuda;
   if (device_dag) cuda.emplace(*device_dag, file.grid());
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trace_rivals.hpp"
-#include "voxdag/cuda/device_dag.hpp"
+#include "voxdag/cuda/device_voxels.hpp"
 
 namespace voxdag {
 

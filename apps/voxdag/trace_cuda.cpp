@@ -6,7 +6,7 @@
 
 namespace voxdag {
 
-TraceRunner cuda_runner(const DeviceSvdag& dag, RayClass rays, std::span<const CastRay> casts,
+TraceRunner cuda_runner(const DeviceScene& dag, RayClass rays, std::span<const CastRay> casts,
                         const RenderSetup* beams) {
   std::optional<TimedBeams> pass;
   if (beams != nullptr) pass.emplace(dag, *beams);

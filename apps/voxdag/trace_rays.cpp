@@ -6,10 +6,10 @@
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/render_tile.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,7 +34,8 @@ class RecordingCaster {
 };
 
 /// A lamp in free space ahead of the camera, above and to the right.
-LightSpec lamp_near(const SvdagNodes& nodes, const Grid& grid, const Camera& camera) {
+template <class Nodes>
+LightSpec lamp_near(const Nodes& nodes, const Grid& grid, const Camera& camera) {
   const Vec3d way =
       normalized(camera.forward + normalized(camera.up) * 0.7 + normalized(camera.right) * 0.3);
   const double side = grid.voxel_size * static_cast<double>(grid.resolution());
@@ -85,16 +86,16 @@ std::string_view name_of(RayClass rays) {
 }
 
 struct BeamPass::State {
-  State(const SvdagView& dag, const Grid& grid, const RenderOptions& options)
-      : nodes(dag), plan(dag, grid, options) {}
+  State(const VoxelScene& scene_in, const Grid& grid, const RenderOptions& options)
+      : scene(scene_in), plan(scene_in, grid, options) {}
 
-  SvdagNodes nodes;
+  VoxelScene scene;
   RenderPlan plan;
   std::vector<float> starts;
 };
 
-BeamPass::BeamPass(const SvdagView& dag, const Grid& grid, const RenderOptions& options)
-    : state_(std::make_unique<State>(dag, grid, options)) {
+BeamPass::BeamPass(const VoxelScene& scene, const Grid& grid, const RenderOptions& options)
+    : state_(std::make_unique<State>(scene, grid, options)) {
   state_->starts.resize(static_cast<std::size_t>(beams_across(options.width)) *
                         static_cast<std::size_t>(beams_across(options.height)));
 }
@@ -104,17 +105,19 @@ BeamPass::~BeamPass() = default;
 void BeamPass::run() {
   const RenderSetup& setup = state_->plan.setup();
   const int rows = (setup.camera.height + kCoarseBeamPixels - 1) / kCoarseBeamPixels;
-  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
-    for (int x = 0; x < setup.camera.width; x += kCoarseBeamPixels)
-      set_beam_starts(state_->nodes, setup, x, static_cast<int>(row) * kCoarseBeamPixels,
-                      state_->starts.data());
+  state_->scene.visit_nodes([&](const auto& nodes) {
+    parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
+      for (int x = 0; x < setup.camera.width; x += kCoarseBeamPixels)
+        set_beam_starts(nodes, setup, x, static_cast<int>(row) * kCoarseBeamPixels,
+                        state_->starts.data());
+    });
   });
 }
 
 const float* BeamPass::starts() const { return state_->starts.data(); }
 const RenderSetup& BeamPass::setup() const { return state_->plan.setup(); }
 
-RenderOptions picture_options(const SvdagView& dag, const Grid& grid, const View& view,
+RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const View& view,
                               const RayOptions& ray_options) {
   RenderOptions options;
   options.width = ray_options.width;
@@ -125,15 +128,18 @@ RenderOptions picture_options(const SvdagView& dag, const Grid& grid, const View
   options.lod_pixels = ray_options.lod_pixels;
   options.sun_degrees = 0;
   options.beams = false;  // those towards lamps, which rivals do not have
+  const Camera camera = make_camera(view, options.width, options.height);
   options.lights = {
-      lamp_near(SvdagNodes(dag), grid, make_camera(view, options.width, options.height))};
+      scene.visit_nodes([&](const auto& nodes) { return lamp_near(nodes, grid, camera); })};
   return options;
 }
 
-RecordedRays record_rays(const SvdagView& dag, const BeamPass& beams, const RayOptions& options) {
+namespace {
+
+template <class Nodes>
+RecordedRays record_rays_at(const Nodes& nodes, const BeamPass& beams, const RayOptions& options) {
   constexpr std::size_t kGroup = 4;  // tiles that make 8x8 pixels
   RecordedRays recorded;
-  const SvdagNodes nodes(dag);
   const RenderSetup& plain = beams.setup();
   RenderSetup with_beams = plain;
   with_beams.beam_starts = beams.starts();
@@ -157,7 +163,7 @@ RecordedRays record_rays(const SvdagView& dag, const BeamPass& beams, const RayO
           rays.push_back(primary_ray(c == RayClass::kPrimary ? plain : with_beams, tile, pixel));
         continue;
       }
-      trace_view_samples(nodes, ScalarCaster<SvdagNodes>(nodes), with_beams, tile, *scratch);
+      trace_view_samples(nodes, ScalarCaster<Nodes>(nodes), with_beams, tile, *scratch);
       for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
         const ViewSample& sample = scratch->samples[pixel];
         scratch->points[pixel] = {};
@@ -177,10 +183,18 @@ RecordedRays record_rays(const SvdagView& dag, const BeamPass& beams, const RayO
   return recorded;
 }
 
-std::vector<View> bench_views(const SvdagView& dag, const Grid& grid, double aspect, int count) {
-  const View usual = frame_scene(dag, grid, aspect, {});
+}  // namespace
+
+RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams,
+                         const RayOptions& options) {
+  return scene.visit_nodes(
+      [&](const auto& nodes) { return record_rays_at(nodes, beams, options); });
+}
+
+std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double aspect, int count) {
+  const View usual = frame_scene(scene, grid, aspect, {});
   std::vector<View> views{usual};
-  for (const View& view : scene_views(dag, grid, aspect, count))
+  for (const View& view : scene_views(scene, grid, aspect, count))
     if (static_cast<int>(views.size()) < count && view.eye != usual.eye) views.push_back(view);
   return views;
 }

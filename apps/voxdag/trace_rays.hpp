@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/layout/svdag.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -54,7 +54,7 @@ struct RecordedRays {
 /// Casts the beams of a whole picture on all threads.
 class BeamPass {
  public:
-  BeamPass(const SvdagView& dag, const Grid& grid, const RenderOptions& options);
+  BeamPass(const VoxelScene& scene, const Grid& grid, const RenderOptions& options);
   ~BeamPass();
   BeamPass(const BeamPass&) = delete;
   BeamPass& operator=(const BeamPass&) = delete;
@@ -71,15 +71,15 @@ class BeamPass {
 };
 
 /// The picture that a view's rays are of.
-RenderOptions picture_options(const SvdagView& dag, const Grid& grid, const View& view,
+RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const View& view,
                               const RayOptions& options);
 
 /// `beams` is of a picture of picture_options(), and has run.
-RecordedRays record_rays(const SvdagView& dag, const BeamPass& beams, const RayOptions& options);
+RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams, const RayOptions& options);
 
 /// The views that are measured: inside views, or views around an object, and the one that `render`
 /// would take.
-std::vector<View> bench_views(const SvdagView& dag, const Grid& grid, double aspect, int count);
+std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double aspect, int count);
 
 /// A cast ray in world units: the same points at the same t.
 struct WorldRay {

@@ -4,7 +4,7 @@
 
 #include "cuda/cuda_device.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/cuda/device_svdag.hpp"
+#include "voxdag/cuda/device_scene.hpp"
 
 namespace voxdag {
 namespace {
@@ -43,7 +43,7 @@ TEST_F(OnCuda, ADagThatDoesNotFitIsRefusedBeforeItIsRead) {
   SvdagView dag;
   dag.leaf_block_count = std::uint64_t{1} << 45;
   try {
-    const DeviceSvdag copy(device_, dag);
+    const DeviceScene copy(device_, dag);
     FAIL();
   } catch (const Error& error) {
     const std::string text = error.what();

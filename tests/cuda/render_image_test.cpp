@@ -6,6 +6,7 @@
 
 #include "cuda/cuda_device.hpp"
 #include "cuda/pictures.hpp"
+#include "support/test_esvo.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/image/color.hpp"
 
@@ -36,12 +37,23 @@ void expect_like(const RenderedImage& image, const RenderedImage& expected) {
 
 TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForEveryEffect) {
   const Svdag dag = picture_scene();
-  const DeviceSvdag paper(device_, dag.view()), wide(device_, dag.view(), DeviceLayout::kWide);
+  const DeviceScene paper(device_, dag.view()), wide(device_, dag.view(), DeviceLayout::kWide);
   for (const Picture& picture : pictures(4)) {
     SCOPED_TRACE(picture.name);
     const RenderedImage expected = render_image(dag.view(), picture_grid(), picture.options);
     expect_like(render_image(paper, picture_grid(), picture.options), expected);
     expect_like(render_image(wide, picture_grid(), picture.options), expected);
+  }
+}
+
+TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForAnEsvo) {
+  std::mt19937 rng(4);
+  const Esvo esvo = TestEsvoAssembler(3, 4).assemble(*random_octree(rng, 0, 6), 6);
+  const DeviceScene scene(device_, esvo.view());
+  for (const Picture& picture : pictures(4)) {
+    SCOPED_TRACE(picture.name);
+    expect_like(render_image(scene, picture_grid(), picture.options),
+                render_image(esvo.view(), picture_grid(), picture.options));
   }
 }
 
@@ -51,7 +63,7 @@ TEST_F(CudaRender, TakesPointsFromASource) {
   options.samples_per_pixel = 2;
   const PlaneSource source;
   expect_like(
-      render_image(DeviceSvdag(device_, dag.view()), picture_grid(), options, nullptr, &source),
+      render_image(DeviceScene(device_, dag.view()), picture_grid(), options, nullptr, &source),
       render_image(dag.view(), picture_grid(), options, nullptr, &source));
 }
 
@@ -59,7 +71,7 @@ TEST_F(CudaRender, AnEmptySceneIsSky) {
   const Svdag dag;
   RenderOptions options;
   options.width = options.height = 33;
-  expect_like(render_image(DeviceSvdag(device_, dag.view()), Grid{}, options),
+  expect_like(render_image(DeviceScene(device_, dag.view()), Grid{}, options),
               render_image(dag.view(), Grid{}, options));
 }
 
@@ -67,7 +79,7 @@ TEST_F(CudaRender, StopsWhenCancelled) {
   const Svdag dag = picture_scene();
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(render_image(DeviceSvdag(device_, dag.view()), picture_grid(),
+  EXPECT_THROW(render_image(DeviceScene(device_, dag.view()), picture_grid(),
                             pictures(1)[0].options, &progress),
                Cancelled);
 }

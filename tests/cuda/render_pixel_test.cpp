@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "cuda/pictures.hpp"
+#include "support/test_esvo.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/beam_start.hpp"
 #include "voxdag/render/render_plan.hpp"
@@ -30,13 +32,12 @@ std::vector<ViewSample> samples_of(const ViewSource& source, const RenderSetup& 
 }
 
 /// As the device does it, in launches of a few blocks.
-template <class Caster>
-RenderedImage render_as_device(const SvdagView& dag, const Caster& caster,
+template <class Nodes, class Caster>
+RenderedImage render_as_device(const VoxelScene& scene, const Nodes& nodes, const Caster& caster,
                                const RenderOptions& options, const ViewSource* source) {
   const Grid grid = picture_grid();
-  RenderPlan plan(dag, grid, options);
+  RenderPlan plan(scene, grid, options);
   RenderSetup setup = plan.setup();
-  const SvdagNodes nodes(dag);
   std::vector<float> starts;
   if (options.beams && source == nullptr) {
     starts.resize(static_cast<std::size_t>(beams_across(options.width)) *
@@ -108,8 +109,12 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
     SCOPED_TRACE(picture.name);
     picture.options.with_steps = false;  // another kernel's
     const RenderedImage expected = render_image(dag.view(), picture_grid(), picture.options);
-    expect_equal(render_as_device(dag.view(), paper, picture.options, nullptr), expected);
-    expect_equal(render_as_device(dag.view(), wide, picture.options, nullptr), expected);
+    expect_equal(
+        render_as_device(dag.view(), SvdagNodes(dag.view()), paper, picture.options, nullptr),
+        expected);
+    expect_equal(
+        render_as_device(dag.view(), SvdagNodes(dag.view()), wide, picture.options, nullptr),
+        expected);
   }
 }
 
@@ -119,8 +124,21 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForPointsFromASource) {
   options.samples_per_pixel = 2;
   const PlaneSource source;
   const ScalarCaster caster(SvdagNodes(dag.view()));
-  expect_equal(render_as_device(dag.view(), caster, options, &source),
+  expect_equal(render_as_device(dag.view(), SvdagNodes(dag.view()), caster, options, &source),
                render_image(dag.view(), picture_grid(), options, nullptr, &source));
+}
+
+TEST(RenderPixel, EqualsTheTilesOfTheCpuForAnEsvo) {
+  std::mt19937 rng(4);
+  const Esvo esvo = TestEsvoAssembler(3, 4).assemble(*random_octree(rng, 0, 6), 6);
+  const ContourNodes nodes(esvo.view());
+  for (Picture& picture : pictures(1)) {
+    SCOPED_TRACE(picture.name);
+    picture.options.with_steps = false;  // another kernel's
+    expect_equal(
+        render_as_device(esvo.view(), nodes, ScalarCaster(nodes), picture.options, nullptr),
+        render_image(esvo.view(), picture_grid(), picture.options));
+  }
 }
 
 }  // namespace

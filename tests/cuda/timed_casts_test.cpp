@@ -15,7 +15,7 @@ using CudaTimedCasts = OnCudaDevice;
 
 TEST_F(CudaTimedCasts, FindWhatTheCpuFinds) {
   const Svdag dag = picture_scene();
-  const DeviceSvdag device_dag(device_, dag.view());
+  const DeviceScene device_dag(device_, dag.view());
   const RenderPlan plan(dag.view(), picture_grid(), pictures(4)[0].options);
   ViewTile tile;
   tile.width = plan.setup().camera.width;

@@ -4,6 +4,7 @@
 
 #include "cuda/cuda_device.hpp"
 #include "support/brute_svdag.hpp"
+#include "support/test_esvo.hpp"
 #include "support/test_rays.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 
@@ -35,7 +36,7 @@ void expect_hits_of_the_cpu(const CudaDevice& device, int levels, int voxels, st
   std::vector<Hit> expected(count), hits(count);
   trace_batch(dag.view(), grid, rays, expected);
   for (const DeviceLayout layout : {DeviceLayout::kPaper, DeviceLayout::kWide}) {
-    CudaTracer(DeviceSvdag(device, dag.view(), layout), grid).trace(rays, hits);
+    CudaTracer(DeviceScene(device, dag.view(), layout), grid).trace(rays, hits);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < count; ++i) wrong += hits[i] == expected[i] ? 0 : 1;
     EXPECT_EQ(wrong, 0u) << "of " << count << " rays in " << levels << " levels";
@@ -47,13 +48,26 @@ TEST_F(CudaTrace, EqualsTheCpuForEveryRay) {
     expect_hits_of_the_cpu(device_, levels, levels == 2 ? 5 : 4000, 200'000);
 }
 
+TEST_F(CudaTrace, EqualsTheCpuForEveryRayAtAnEsvo) {
+  for (const int levels : {2, 4, 6}) {
+    std::mt19937 rng(static_cast<unsigned>(levels));
+    const Esvo esvo = TestEsvoAssembler(3, 1).assemble(*random_octree(rng, 0, levels), levels);
+    const Grid grid = test_grid(levels);
+    const std::vector<Ray> rays = rays_of_every_kind(grid, 100'000, 8);
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    trace_batch(esvo.view(), grid, rays, expected);
+    CudaTracer(DeviceScene(device_, esvo.view()), grid).trace(rays, hits);
+    EXPECT_EQ(hits, expected);
+  }
+}
+
 TEST_F(CudaTrace, EqualsTheCpuOverManyBlocks) {
   expect_hits_of_the_cpu(device_, 7, 20'000, 1'500'001);
 }
 
 TEST_F(CudaTrace, EmptyDagsAndNoRays) {
   const Svdag dag;
-  const CudaTracer tracer(DeviceSvdag(device_, dag.view()), Grid{});
+  const CudaTracer tracer(DeviceScene(device_, dag.view()), Grid{});
   tracer.trace({}, {});
   const std::vector<Ray> rays = rays_of_every_kind(Grid{}, 100, 1);
   std::vector<Hit> hits(rays.size());
@@ -66,7 +80,7 @@ TEST_F(CudaTrace, StopsWhenCancelledAndWorksAgain) {
   const Grid grid = test_grid(4);
   const std::vector<Ray> rays = rays_of_every_kind(grid, 1000, 1);
   std::vector<Hit> expected(rays.size()), hits(rays.size());
-  const CudaTracer tracer(DeviceSvdag(device_, dag.view()), grid);
+  const CudaTracer tracer(DeviceScene(device_, dag.view()), grid);
   Progress progress;
   progress.cancel();
   EXPECT_THROW(tracer.trace(rays, hits, &progress), Cancelled);

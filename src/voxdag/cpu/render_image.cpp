@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/cpu/post_filter.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/count_steps.hpp"
@@ -63,15 +63,11 @@ std::vector<float> cast_beams(const Nodes& nodes, const RenderSetup& setup) {
   return starts;
 }
 
-/// The fastest caster of each layout.
-PacketCaster caster_of(const SvdagNodes& nodes) { return PacketCaster(nodes); }
-ScalarCaster<ContourNodes> caster_of(const ContourNodes& nodes) { return ScalarCaster(nodes); }
-
 /// Fills the picture of `setup`; returns the number of rays.
 template <class Nodes>
 std::uint64_t render_voxels(const Nodes& nodes, RenderSetup setup, const RenderOptions& options,
                             Progress* progress, const ViewSource* source) {
-  const auto caster = caster_of(nodes);
+  const auto caster = fast_caster(nodes);
   std::vector<float> beam_starts;
   if (options.beams && source == nullptr) {
     beam_starts = cast_beams(nodes, setup);

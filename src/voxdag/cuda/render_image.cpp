@@ -63,7 +63,7 @@ void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& s
   });
 }
 
-void render_pixels(const DeviceDag& dag, const DeviceFrame& frame, const CudaStream& stream,
+void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, const CudaStream& stream,
                    Progress* progress, const ViewSource* source) {
   const RenderSetup& setup = frame.setup();
   const bool has_source = source != nullptr;
@@ -105,23 +105,23 @@ void render_pixels(const DeviceDag& dag, const DeviceFrame& frame, const CudaStr
 
 }  // namespace
 
-RenderedImage render_image(const DeviceSvdag& dag, const Grid& grid, const RenderOptions& options,
+RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress, const ViewSource* source) {
-  assert(grid.levels == dag.host().levels);
-  dag.make_current();
-  RenderPlan plan(dag.host(), grid, options);
+  assert(grid.levels == scene.host().levels());
+  scene.make_current();
+  RenderPlan plan(scene.host(), grid, options);
   const bool with_beams = options.beams && source == nullptr;
   const DeviceFrame frame(plan, with_beams, options.with_steps);
   const RenderSetup& setup = frame.setup();
   const CudaStream stream;
   if (with_beams)
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
-      launch_beams(dag.view().paper, setup, first, last, frame.beam_starts(), stream.get());
+      launch_beams(scene.view(), setup, first, last, frame.beam_starts(), stream.get());
     });
-  render_pixels(dag.view(), frame, stream, progress, source);
+  render_pixels(scene.view(), frame, stream, progress, source);
   if (options.with_steps)
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
-      launch_steps(dag.view().paper, setup, first, last, stream.get());
+      launch_steps(scene.view(), setup, first, last, stream.get());
     });
   frame.copy_to(plan.image());
   return plan.finish();

@@ -47,25 +47,28 @@ std::uint32_t beam_blocks(std::uint32_t threads) {
 
 }  // namespace
 
-void launch_beams(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
+void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, float* starts, cudaStream_t stream) {
-  beams_kernel<<<beam_blocks(4 * (last - first)), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup,
-                                                                             first, last, starts);
+  with_beam_nodes(voxels, [&](const auto& nodes) {
+    beams_kernel<<<beam_blocks(4 * (last - first)), kBeamThreads, 0, stream>>>(nodes, setup, first,
+                                                                               last, starts);
+  });
   check_cuda(cudaGetLastError(), "casting beams");
 }
 
-void launch_steps(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
+void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream) {
-  steps_kernel<<<beam_blocks(last - first), kBeamThreads, 0, stream>>>(SvdagNodes(dag), setup,
-                                                                       first, last);
+  with_beam_nodes(voxels, [&](const auto& nodes) {
+    steps_kernel<<<beam_blocks(last - first), kBeamThreads, 0, stream>>>(nodes, setup, first, last);
+  });
   check_cuda(cudaGetLastError(), "counting steps");
 }
 
-void launch_render(const DeviceDag& dag, const RenderSetup& setup, const LaunchRange& range,
+void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
-  with_nodes(dag, [&](const auto& nodes) {
+  with_all_nodes(voxels, [&](const auto& beam_nodes, const auto& nodes) {
     render_kernel<<<range.last_block - range.first_block, kBlockPixels, 0, stream>>>(
-        SvdagNodes(dag.paper), ScalarCaster(nodes), setup, range, view_samples, rays);
+        beam_nodes, ScalarCaster(nodes), setup, range, view_samples, rays);
   });
   check_cuda(cudaGetLastError(), "rendering");
 }

@@ -2,7 +2,7 @@
 /// The kernels of render_image. All pointers are the device's; `setup` has such ones only.
 #include <cuda_runtime_api.h>
 
-#include "voxdag/cuda/device_dag.hpp"
+#include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/view_sample.hpp"
@@ -10,15 +10,15 @@
 namespace voxdag {
 
 /// Sets `starts` for the coarse beams [first, last), which are counted row by row.
-void launch_beams(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
+void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, float* starts, cudaStream_t stream);
 
 /// Sets the image's steps for the 8×8 pixels of the same range.
-void launch_steps(const SvdagView& dag, const RenderSetup& setup, std::uint32_t first,
+void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream);
 
 /// render_pixel() for all pixels of the range; adds the number of rays to `*rays`.
-void launch_render(const DeviceDag& dag, const RenderSetup& setup, const LaunchRange& range,
+void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
 
 }  // namespace voxdag

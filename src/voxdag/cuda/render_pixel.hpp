@@ -1,6 +1,7 @@
 #pragma once
 /// What one thread of the render kernels does, for host and device: the tests run it on the host.
 #include "voxdag/cuda/launch_plan.hpp"
+#include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/render_tile.hpp"
 
 namespace voxdag {

@@ -26,13 +26,13 @@ double seconds_of(const char* doing, const Launch& launch) {
 }  // namespace
 
 struct TimedCasts::State {
-  DeviceSvdag dag;
+  DeviceScene dag;
   DeviceBuffer<CastRay> rays;
   DeviceBuffer<CellHit> cells;
   DeviceBuffer<std::uint8_t> hits;
 };
 
-TimedCasts::TimedCasts(const DeviceSvdag& dag, std::span<const CastRay> rays) {
+TimedCasts::TimedCasts(const DeviceScene& dag, std::span<const CastRay> rays) {
   dag.make_current();
   require_device_memory(rays.size() * (sizeof(CastRay) + sizeof(CellHit) + 1), "the set of rays");
   state_ = std::make_shared<State>(State{dag, upload(rays, "rays"),
@@ -63,12 +63,12 @@ void TimedCasts::copy_hits(std::span<std::uint8_t> hits) const {
 }
 
 struct TimedBeams::State {
-  DeviceSvdag dag;
+  DeviceScene dag;
   RenderSetup setup;
   DeviceBuffer<float> starts;
 };
 
-TimedBeams::TimedBeams(const DeviceSvdag& dag, const RenderSetup& setup) {
+TimedBeams::TimedBeams(const DeviceScene& dag, const RenderSetup& setup) {
   dag.make_current();
   const std::size_t beams = static_cast<std::size_t>(beams_across(setup.camera.width)) *
                             static_cast<std::size_t>(beams_across(setup.camera.height));
@@ -79,7 +79,7 @@ TimedBeams::TimedBeams(const DeviceSvdag& dag, const RenderSetup& setup) {
 double TimedBeams::run() const {
   state_->dag.make_current();
   return seconds_of("casting beams", [&](cudaStream_t stream) {
-    launch_beams(state_->dag.view().paper, state_->setup, 0,
+    launch_beams(state_->dag.view(), state_->setup, 0,
                  static_cast<std::uint32_t>(state_->starts.size() / 4), state_->starts.data(),
                  stream);
   });

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "voxdag/cuda/device_svdag.hpp"
+#include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 
@@ -14,7 +14,7 @@ namespace voxdag {
 class TimedCasts {
  public:
   /// Throws Error where memory is short.
-  TimedCasts(const DeviceSvdag& dag, std::span<const CastRay> rays);
+  TimedCasts(const DeviceScene& dag, std::span<const CastRay> rays);
 
   /// Finds the first cell along each ray, or whether there is one. Returns the seconds from the
   /// start of the kernel to its end.
@@ -32,7 +32,7 @@ class TimedCasts {
 class TimedBeams {
  public:
   /// Of `setup` camera, grid and settings count.
-  TimedBeams(const DeviceSvdag& dag, const RenderSetup& setup);
+  TimedBeams(const DeviceScene& dag, const RenderSetup& setup);
 
   /// Casts them; returns the device's seconds.
   double run() const;

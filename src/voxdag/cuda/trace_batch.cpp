@@ -32,7 +32,7 @@ struct Block {
 }  // namespace
 
 struct CudaTracer::State {
-  State(const DeviceSvdag& dag_in, const Grid& grid_in) : dag(dag_in), grid(grid_in) {}
+  State(const DeviceScene& dag_in, const Grid& grid_in) : dag(dag_in), grid(grid_in) {}
 
   void send(Block& block, std::span<const Ray> rays) const {
     std::copy(rays.begin(), rays.end(), block.rays.data());
@@ -53,13 +53,13 @@ struct CudaTracer::State {
     block.count = 0;
   }
 
-  DeviceSvdag dag;
+  DeviceScene dag;
   Grid grid;
   std::array<Block, 2> blocks;
 };
 
-CudaTracer::CudaTracer(const DeviceSvdag& dag, const Grid& grid) {
-  assert(grid.levels == dag.host().levels);
+CudaTracer::CudaTracer(const DeviceScene& dag, const Grid& grid) {
+  assert(grid.levels == dag.host().levels());
   dag.make_current();
   state_ = std::make_shared<State>(dag, grid);
 }

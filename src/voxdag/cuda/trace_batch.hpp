@@ -4,7 +4,7 @@
 #include <span>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/cuda/device_svdag.hpp"
+#include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
@@ -16,7 +16,7 @@ namespace voxdag {
 class CudaTracer {
  public:
   /// `grid.levels` is the DAG's. Throws Error where memory is short.
-  CudaTracer(const DeviceSvdag& dag, const Grid& grid);
+  CudaTracer(const DeviceScene& dag, const Grid& grid);
 
   /// hits[i] becomes the first voxel of the DAG along rays[i], which is in world units: to the bit
   /// what trace_batch() finds on the CPU. The spans have equal length. Throws Cancelled, and Error

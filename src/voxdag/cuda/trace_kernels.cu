@@ -40,7 +40,7 @@ std::uint32_t blocks_of(std::uint32_t count) { return (count + kThreads - 1) / k
 
 }  // namespace
 
-void launch_closest_hits(const DeviceDag& dag, const Grid& grid, const Ray* rays, Hit* hits,
+void launch_closest_hits(const DeviceVoxels& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
   with_nodes(dag, [&](const auto& nodes) {
@@ -49,7 +49,7 @@ void launch_closest_hits(const DeviceDag& dag, const Grid& grid, const Ray* rays
   check_cuda(cudaGetLastError(), "casting rays");
 }
 
-void launch_closest_cells(const DeviceDag& dag, const CastRay* rays, CellHit* cells,
+void launch_closest_cells(const DeviceVoxels& dag, const CastRay* rays, CellHit* cells,
                           std::uint8_t* hits, std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
   with_nodes(dag, [&](const auto& nodes) {
@@ -59,7 +59,7 @@ void launch_closest_cells(const DeviceDag& dag, const CastRay* rays, CellHit* ce
   check_cuda(cudaGetLastError(), "casting rays");
 }
 
-void launch_any_hits(const DeviceDag& dag, const CastRay* rays, std::uint8_t* hits,
+void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t* hits,
                      std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
   with_nodes(dag, [&](const auto& nodes) {

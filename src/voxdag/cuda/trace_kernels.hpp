@@ -3,7 +3,7 @@
 #include <cuda_runtime_api.h>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/cuda/device_dag.hpp"
+#include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
@@ -11,14 +11,14 @@
 namespace voxdag {
 
 /// hits[i] becomes the first voxel along rays[i], i < count.
-void launch_closest_hits(const DeviceDag& dag, const Grid& grid, const Ray* rays, Hit* hits,
+void launch_closest_hits(const DeviceVoxels& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream);
 
 /// hits[i] tells whether rays[i] met anything, cells[i] what it met first.
-void launch_closest_cells(const DeviceDag& dag, const CastRay* rays, CellHit* cells,
+void launch_closest_cells(const DeviceVoxels& dag, const CastRay* rays, CellHit* cells,
                           std::uint8_t* hits, std::uint32_t count, cudaStream_t stream);
 /// Without what it met.
-void launch_any_hits(const DeviceDag& dag, const CastRay* rays, std::uint8_t* hits,
+void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t* hits,
                      std::uint32_t count, cudaStream_t stream);
 
 }  // namespace voxdag

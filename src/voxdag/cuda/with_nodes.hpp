@@ -1,6 +1,7 @@
 #pragma once
-/// From the layout that a DAG has at run time to the type that kernels are compiled for.
-#include "voxdag/cuda/device_dag.hpp"
+/// From the layout that voxels have at run time to the types that kernels are compiled for.
+#include "voxdag/cuda/device_voxels.hpp"
+#include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
 
@@ -8,11 +9,33 @@ namespace voxdag {
 
 /// Calls body(nodes) with what rays are cast at.
 template <class Body>
-void with_nodes(const DeviceDag& dag, const Body& body) {
-  if (dag.layout == DeviceLayout::kWide)
-    body(WideNodes(dag.wide));
+void with_nodes(const DeviceVoxels& voxels, const Body& body) {
+  if (voxels.layout == DeviceLayout::kEsvo)
+    body(ContourNodes(voxels.esvo));
+  else if (voxels.layout == DeviceLayout::kWide)
+    body(WideNodes(voxels.wide));
   else
-    body(SvdagNodes(dag.paper));
+    body(SvdagNodes(voxels.paper));
+}
+
+/// Calls body(nodes) with what beams are cast at and steps are counted on.
+template <class Body>
+void with_beam_nodes(const DeviceVoxels& voxels, const Body& body) {
+  if (voxels.layout == DeviceLayout::kEsvo)
+    body(ContourNodes(voxels.esvo));
+  else
+    body(SvdagNodes(voxels.paper));
+}
+
+/// Calls body(beam_nodes, nodes) with both.
+template <class Body>
+void with_all_nodes(const DeviceVoxels& voxels, const Body& body) {
+  with_nodes(voxels, [&]<class Nodes>(const Nodes& nodes) {
+    if constexpr (EsvoLayout<Nodes>)
+      body(nodes, nodes);
+    else
+      body(SvdagNodes(voxels.paper), nodes);
+  });
 }
 
 }  // namespace voxdag

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/layout/svdag_lookup.hpp"
+#include "voxdag/trace/cell_blocks.hpp"
 
 namespace voxdag {
 namespace {
@@ -22,17 +22,26 @@ std::string text(const Box3d& box) {
   return out;
 }
 
-bool has_voxel_near(const SvdagView& dag, Vec3i voxel) {
-  for (int z = -1; z <= 1; ++z)
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x)
-        if (svdag_contains(dag, voxel + Vec3i{x, y, z}, dag.levels)) return true;
+template <class Nodes>
+bool has_voxel_near(const Nodes& nodes, Vec3i voxel) {
+  if (nodes.is_empty()) return false;
+  const int last = nodes.levels() - 1;
+  const std::int32_t most = (1 << nodes.levels()) - 1;
+  for (int i = 0; i < 27; ++i) {
+    const Vec3i at = voxel + Vec3i{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    const Vec3i inside = min(max(at, Vec3i{}), Vec3i{most, most, most});
+    if (!(at == inside)) continue;
+    typename Nodes::Node node = nodes.root();
+    if (!descend(nodes, node, 0, last, {at.x >> 1, at.y >> 1, at.z >> 1})) continue;
+    const int child = (at.x & 1) | (at.y & 1) << 1 | (at.z & 1) << 2;
+    if ((nodes.child_mask(node, last) >> child & 1u) != 0) return true;
+  }
   return false;
 }
 
 }  // namespace
 
-void check_mesh_in_grid(const Mesh& mesh, const SvdagView& dag, const Grid& grid) {
+void check_mesh_in_grid(const Mesh& mesh, const VoxelScene& scene, const Grid& grid) {
   constexpr std::size_t kSamples = 4096;
   const double side = static_cast<double>(grid.resolution());
   const std::size_t step = std::max<std::size_t>(1, mesh.triangles.size() / kSamples);
@@ -47,7 +56,10 @@ void check_mesh_in_grid(const Mesh& mesh, const SvdagView& dag, const Grid& grid
     const Vec3d off = at - q;
     if (!(std::fabs(off.x) <= 1 && std::fabs(off.y) <= 1 && std::fabs(off.z) <= 1)) continue;
     ++inside;
-    covered += has_voxel_near(dag, static_cast<Vec3i>(q)) ? 1 : 0;
+    const auto is_covered = [&](const auto& nodes) {
+      return has_voxel_near(nodes, static_cast<Vec3i>(q));
+    };
+    covered += scene.visit_nodes(is_covered) ? 1 : 0;
   }
   if (inside == 0)
     throw Error("the mesh lies elsewhere: around " + text(bounds) + ", the grid is " +

@@ -4,6 +4,7 @@
 #include "voxdag/render/surface_normal.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
+#include "voxdag/trace/esvo_nodes.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 
 namespace voxdag {
@@ -67,6 +68,7 @@ template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
                                         const RenderSetup& setup, const ViewTile& tile,
                                         Scratch& scratch) {
+  static_assert(!EsvoLayout<Nodes>, "see esvo_view_samples.hpp");
   caster.closest(
       tile.width * tile.height, [&](int pixel) { return primary_ray(setup, tile, pixel); },
       [&](int pixel, const GridRay& ray, const CellHit& cell, bool is_hit) {
