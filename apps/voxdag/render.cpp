@@ -1,4 +1,4 @@
-/// `voxdag render`: a picture of a .vdag file.
+/// `voxdag render`: a picture of a .vdag or .esvo file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 #include "render_mesh.hpp"
 #include "render_passes.hpp"
 #include "render_path.hpp"
+#include "scene_file.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
-#include "voxdag/file/vdag_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -65,22 +65,23 @@ void render(RenderArguments& arguments, Session& session) {
     check_writable(frame_name(pass.path, 0));
     if (pass.name == "steps") arguments.options.with_steps = true;
   }
-  const VdagFile file(session.subject);
+  const SceneFile file(session.subject);
+  const VoxelScene scene = file.scene();
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
-  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, file.view());
+  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
   const std::unique_ptr<ViewSource> source =
-      open_view_source(arguments.mesh, arguments.options.albedo, file.view(), file.grid(), session);
+      open_view_source(arguments.mesh, arguments.options.albedo, scene, file.grid(), session);
   const auto render_frame = [&](const RenderOptions& options, Progress* progress) {
     if (device_dag) return render_image(*device_dag, file.grid(), options, progress, source.get());
-    return render_image(file.view(), file.grid(), options, progress, source.get());
+    return render_image(scene, file.grid(), options, progress, source.get());
   };
   if (!arguments.path.file.empty()) {
     const auto write_frame = [&](const RenderedImage& image, int frame) {
       for (const RenderPass& pass : passes)
         write_pass({pass.name, frame_name(pass.path, frame)}, image);
     };
-    return render_path(file.view(), file.grid(), arguments.options, arguments.path,
+    return render_path(scene, file.grid(), arguments.options, arguments.path,
                        {render_frame, write_frame}, session);
   }
   const auto start = std::chrono::steady_clock::now();
@@ -203,7 +204,9 @@ void add_render_command(CLI::App& app, Session& session) {
   CLI::App& command =
       add_command(app, "render", "Make a picture: sun, sky, shadows and ambient occlusion",
                   "voxdag render scene.vdag -o scene.png --size 1920x1080");
-  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
   command
       .add_option("-o,--output", arguments->output, "The picture: .png, or .exr for linear light")
       ->type_name("OUT")

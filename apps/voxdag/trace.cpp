@@ -10,10 +10,10 @@
 #include "commands.hpp"
 #include "device.hpp"
 #include "human.hpp"
+#include "scene_file.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/file/vdag_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,8 +41,9 @@ void pack_hit(const Hit& hit, std::byte* row) {
 }
 
 void trace(const TraceArguments& arguments, Session& session) {
-  const VdagFile file(session.subject);
-  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, file.view());
+  const SceneFile file(session.subject);
+  const VoxelScene scene = file.scene();
+  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
   std::optional<CudaTracer> cuda;
   if (device_dag) cuda.emplace(*device_dag, file.grid());
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
@@ -61,7 +62,7 @@ void trace(const TraceArguments& arguments, Session& session) {
     if (cuda)
       cuda->trace(batch_rays, batch_hits);
     else
-      trace_batch(file.view(), file.grid(), batch_rays, batch_hits);
+      trace_batch(scene, file.grid(), batch_rays, batch_hits);
     for (std::size_t i = 0; i < count; ++i) pack_hit(hits[i], &rows[i * kHitBytes]);
     hit_count += static_cast<std::uint64_t>(
         std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),
@@ -85,7 +86,9 @@ void add_trace_command(CLI::App& app, Session& session) {
   CLI::App& command =
       add_command(app, "trace", "Cast rays from a NumPy file and write what they hit",
                   "voxdag trace scene.vdag --rays rays.npy -o hits.npy");
-  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
   command
       .add_option("--rays", arguments->rays,
                   "float32 array N x 8: origin, t_min, direction, t_max, in world units")

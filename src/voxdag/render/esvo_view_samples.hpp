@@ -58,7 +58,9 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     if (is_back) sample.normal = -sample.normal;
   }
   sample.depth = static_cast<float>(depth);
-  sample.cell_size = visible_size < voxel_size ? visible_size : voxel_size;
+  // A leaf may be much coarser than what casts shadows on it.
+  sample.cell_size = voxel_size;
+  sample.detail_size = visible_size < voxel_size ? visible_size : voxel_size;
   sample.point = setup.camera.eye + direction * depth;
   if (hit.is_through_contour()) {
     sample.face = plane;
@@ -70,7 +72,7 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     sample.face = is_cube ? normalized(mix(sample.normal, plane, cube)) : sample.normal;
   }
   if (contour.contour.bits != 0) {
-    sample.lift = kSlabs * thickness(contour) * side + kCells * sample.cell_size;
+    sample.lift = kSlabs * thickness(contour) * side + kCells * sample.detail_size;
   } else {
     // As for the cubes of a DAG: this side of the cube may lie below the surface's plane.
     const float below = cube_height(sample.face) - dot(sample.face, plane);

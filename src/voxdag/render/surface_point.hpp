@@ -57,7 +57,8 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   SurfacePoint point;
   point.normal = sample.normal;
   point.face = sample.face;
-  const double cell_size = static_cast<double>(sample.cell_size);
+  const double cell_size =
+      static_cast<double>(sample.detail_size > 0 ? sample.detail_size : sample.cell_size);
   point.cell_side = static_cast<float>(cell_size / setup.side());
   const double lift = sample.lift > 0
                           ? static_cast<double>(sample.lift)

@@ -14,6 +14,9 @@ struct ViewSample {
   Vec3f albedo{};  ///< Linear, in [0,1].
   float depth = HUGE_VALF;  ///< World units along the camera's axis.
   float cell_size = 0;      ///< Side of the cell met, world units: how far the voxels are off.
+  /// Side of the cells that stand for a surface at this depth, at which rays from here may end; 0:
+  /// cell_size.
+  float detail_size = 0;
   /// How far above the point, along `face`, rays start, world units; 0: above the cubes of
   /// cell_size that may stand for the surface.
   float lift = 0;
