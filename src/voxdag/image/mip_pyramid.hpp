@@ -135,9 +135,10 @@ class MipPyramid {
     }
     Bounds bounds{filled(65535), filled(0)};
     for (int j = y.first; j <= y.last; ++j) {
-      const int row = wrapped(j, l.height, wrap_v_) * l.width;
+      const std::size_t row = static_cast<std::size_t>(wrapped(j, l.height, wrap_v_)) *
+                              static_cast<std::size_t>(l.width);
       for (int i = x.first; i <= x.last; ++i)
-        include(bounds, l, static_cast<std::size_t>(row + wrapped(i, l.width, wrap_u_)));
+        include(bounds, l, row + static_cast<std::size_t>(wrapped(i, l.width, wrap_u_)));
     }
     return bounds;
   }
