@@ -32,8 +32,8 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
                                              const EsvoHit& hit) {
   // How far the shapes of neighbours may stand out above the plane that is seen, in units of how
   // thick its slab is and of the cells that stand for a surface at this depth.
-  constexpr float kSlabs = 1.0f, kCells = 0.25f;
-  constexpr float kLeaning = 0.2f;  // cosine
+  constexpr float kSlabs = 1.0f, kCells = 0.5f;
+  constexpr float kLeaning = 0.2f, kTrusted = 0.5f;  // cosines
   const EsvoView& esvo = nodes.view();
   const double depth = ray.to_world_t(static_cast<double>(hit.t));
   const auto side = static_cast<float>(setup.side());
@@ -56,6 +56,12 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     const bool is_back = hit.is_through_contour() ? dot(sample.normal, plane) < 0
                                                   : dot(sample.normal, view) < -kLeaning;
     if (is_back) sample.normal = -sample.normal;
+    // The mean of both sides of a cloth is no side's: the less it agrees with the plane that is
+    // seen, the less it counts.
+    if (hit.is_through_contour()) {
+      const float trust = smooth_step(0, kTrusted, dot(sample.normal, plane));
+      sample.normal = normalized(mix(plane, sample.normal, trust));
+    }
   }
   sample.depth = static_cast<float>(depth);
   // A leaf may be much coarser than what casts shadows on it.
