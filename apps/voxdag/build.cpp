@@ -37,10 +37,14 @@ struct StageSeconds {
   double total() const { return read + build + write; }
 };
 
-Grid choose_grid(const Mesh& mesh, const BuildArguments& arguments) {
-  if (arguments.bounds)
-    return arguments.levels ? grid_from_bounds(*arguments.bounds, *arguments.levels)
-                            : grid_from_bounds(*arguments.bounds, *arguments.voxel_size);
+/// `surface` is where the mesh's surface is, if it is not where its triangles are.
+Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
+                 const BuildArguments& arguments) {
+  if (arguments.bounds || surface) {
+    const Box3d& bounds = arguments.bounds ? *arguments.bounds : *surface;
+    return arguments.levels ? grid_from_bounds(bounds, *arguments.levels)
+                            : grid_from_bounds(bounds, *arguments.voxel_size);
+  }
   return arguments.levels ? fit_grid(mesh, *arguments.levels)
                           : grid_from_voxel_size(mesh, *arguments.voxel_size);
 }
@@ -56,7 +60,9 @@ void build_as_esvo(const BuildArguments& arguments, Session& session) {
   check_writable(arguments.output);
   EsvoBuild build;
   build.output = arguments.output;
-  build.choose_grid = [&](const Mesh& mesh) { return choose_grid(mesh, arguments); };
+  build.choose_grid = [&](const Mesh& mesh, const std::optional<Box3d>& surface) {
+    return choose_grid(mesh, surface, arguments);
+  };
   build.settings = settings_of(arguments);
   build.memory_limit = arguments.options.memory_limit;
   build.stats = arguments.stats;
@@ -103,7 +109,7 @@ void build(const BuildArguments& arguments, Session& session) {
   seconds.read = watch.lap();
 
   DagReport report;
-  report.metadata.grid = choose_grid(mesh, arguments);
+  report.metadata.grid = choose_grid(mesh, std::nullopt, arguments);
   report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
                             mesh.vertices.size(), mesh.triangles.size()};
   report.metadata.program = "voxdag " VOXDAG_VERSION;

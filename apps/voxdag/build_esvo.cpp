@@ -44,6 +44,8 @@ std::map<std::string, std::string> settings_of(const EsvoArguments& arguments,
   std::map<std::string, std::string> all = build.settings;
   all["contours"] = settings.contours ? "yes" : "no";
   all["attributes"] = settings.attributes ? "yes" : "no";
+  const std::string displace = displace_text(arguments.displace);
+  if (!displace.empty()) all["displace"] = displace;
   if (!settings.contours) return all;
   all["max_error"] = fmt::format("{}", settings.max_error);
   all["color_error"] = fmt::format("{}", settings.color_error);
@@ -100,6 +102,7 @@ void add_esvo_options(CLI::App& command, EsvoArguments& arguments) {
       "How much colours may differ in a leaf: greatest difference of a channel, 0 to 1 (sRGB)");
   add("--normal-error", arguments.normal_degrees, 180.0, "DEGREES",
       "How much normals may differ in a leaf");
+  add_displace_options(command, arguments.displace);
   command
       .add_flag_callback(
           "--no-contours", [&settings] { settings.contours = false; },
@@ -121,6 +124,8 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
   const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress);
+  const std::optional<DisplacedTriangles> displaced =
+      open_displaced(arguments.displace, source.mesh, source.appearance, warnings, progress);
   print_warnings(warnings, session);
   seconds.textures = watch.lap();
 
@@ -128,7 +133,9 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   options.settings.normal_error =
       static_cast<float>(arguments.normal_degrees * 3.14159265358979 / 180);
   EsvoMetadata metadata;
-  metadata.grid = build.choose_grid(source.mesh);
+  const std::optional<Box3d> bounds =
+      displaced ? std::optional(displaced_bounds(*displaced, source.mesh)) : std::nullopt;
+  metadata.grid = build.choose_grid(source.mesh, bounds);
   metadata.source = {std::filesystem::path(session.subject).filename().string(),
                      source.mesh.vertices.size(), source.mesh.triangles.size()};
   metadata.program = "voxdag " VOXDAG_VERSION;
@@ -136,7 +143,8 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   {
     EsvoFileWriter writer(build.output);
     FileSink sink(writer, build.memory_limit);
-    EsvoResult result = build_esvo(source.mesh, metadata.grid, options, &shading, sink, &progress);
+    EsvoResult result = build_esvo(source.mesh, metadata.grid, options, &shading,
+                                   displaced ? &*displaced : nullptr, sink, &progress);
     metadata.root = result.root;
     metadata.counts = result.counts;
     progress.throw_if_cancelled();

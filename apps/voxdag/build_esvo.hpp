@@ -2,8 +2,10 @@
 /// `voxdag build --as esvo`.
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "displace_option.hpp"
 #include "session.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/esvo/build_esvo.hpp"
@@ -13,6 +15,7 @@ namespace voxdag {
 struct EsvoArguments {
   EsvoOptions options;
   double normal_degrees = 3;  ///< EsvoSettings::normal_error as people say it.
+  DisplaceArguments displace;
 };
 
 void add_esvo_options(CLI::App& command, EsvoArguments& arguments);
@@ -20,7 +23,9 @@ void add_esvo_options(CLI::App& command, EsvoArguments& arguments);
 /// What all kinds of builds share.
 struct EsvoBuild {
   std::string output;
-  std::function<Grid(const Mesh&)> choose_grid;
+  /// The second is what the grid has to hold: the bounds of the mesh, or of what it is displaced
+  /// to.
+  std::function<Grid(const Mesh&, const std::optional<Box3d>&)> choose_grid;
   std::map<std::string, std::string> settings;  ///< Of the grid, for the metadata.
   std::uint64_t memory_limit = 0;               ///< Bytes; 0: none.
   bool stats = false;

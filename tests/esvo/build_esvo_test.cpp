@@ -169,7 +169,7 @@ TEST(BuildEsvo, TheDirectoryListsTheBlocksAndTheirParents) {
   EsvoOptions options;
   options.pack.max_slots = 300;
   EsvoMemory memory;
-  const EsvoResult result = build_esvo(mesh, unit_grid(9), options, nullptr, memory);
+  const EsvoResult result = build_esvo(mesh, unit_grid(9), options, nullptr, nullptr, memory);
   const std::vector<std::uint64_t> slots = memory.take();
   const EsvoView view{slots.data(), slots.size(), result.root, 9};
   ASSERT_GT(result.directory.size(), 10u);

@@ -171,12 +171,12 @@ class Assembler {
 }  // namespace
 
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
-                      const SurfaceShading* shading, EsvoSink& sink, Progress* progress) {
+                      const SurfaceShading* shading, const DisplacedTriangles* displaced,
+                      EsvoSink& sink, Progress* progress) {
   const QuantizedMesh quantized(mesh, grid);
   const std::vector<std::uint8_t> open_edges = find_open_edges(quantized);
-  const TriangleSource source{quantized, open_edges};
-  std::vector<TopCell> cells =
-      find_top_cells(source, grid.levels, options.settings, shading, progress);
+  const TriangleSource source{grid, quantized, open_edges, displaced};
+  std::vector<TopCell> cells = find_top_cells(source, options.settings, shading, progress);
   const std::vector<std::size_t> tasks = task_order(cells);
   double total_weight = 0, weight_so_far = 0;
   for (const std::size_t task : tasks) total_weight += cells[task].weight;
@@ -188,7 +188,7 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
     auto finished = std::make_unique<Finished>();
     TopCell& cell = cells[task];
     CellBuilder& builder = builders.local();
-    load(builder, source, cell, grid.levels);
+    load(builder, source, cell);
     cell.triangles = {};
     finished->task = task;
     finished->voxel = builder.build(cell.decision);
@@ -229,7 +229,7 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
 Esvo build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                 const SurfaceShading* shading, Progress* progress) {
   EsvoMemory memory;
-  const EsvoResult result = build_esvo(mesh, grid, options, shading, memory, progress);
+  const EsvoResult result = build_esvo(mesh, grid, options, shading, nullptr, memory, progress);
   return {memory.take(), result.root, grid.levels};
 }
 

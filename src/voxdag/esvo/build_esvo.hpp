@@ -14,6 +14,7 @@
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/esvo/cell_builder.hpp"
+#include "voxdag/esvo/displaced_triangles.hpp"
 #include "voxdag/esvo/pack_blocks.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -49,12 +50,14 @@ struct EsvoResult {
   EsvoCounts counts;
 };
 
-/// Builds the octree of the mesh's surface in `grid`. `shading` is that of the mesh, or null.
+/// Builds the octree of the mesh's surface in `grid`. `shading` is that of the mesh, or null;
+/// `displaced` moves its surface, if it is not null.
 /// An octree without voxels (a mesh outside of the grid, or cut away wholly) has no blocks. The
 /// blocks depend on the arguments alone: not on threads or machine. Runs on the current TBB arena.
 /// Throws Error if far pointers do not reach (16 GiB), Cancelled, and what the sink throws.
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
-                      const SurfaceShading* shading, EsvoSink& sink, Progress* progress = nullptr);
+                      const SurfaceShading* shading, const DisplacedTriangles* displaced,
+                      EsvoSink& sink, Progress* progress = nullptr);
 
 /// The same, in memory.
 Esvo build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options = {},

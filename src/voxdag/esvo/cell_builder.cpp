@@ -117,7 +117,9 @@ SurfaceSample CellBuilder::sample(const Item& item, int log2_size, Vec3i cell) c
   if (shading_ == nullptr) return {kGrey, 1, static_cast<Vec3f>(triangle.normal)};
   Vec2f points[SurfacePolygon::kMaxCorners];
   const int count = barycentrics(item, log2_size, cell, points);
-  return shading_->mean(triangle.source, {points, static_cast<std::size_t>(count)});
+  SurfaceSample sample = shading_->mean(triangle.source, {points, static_cast<std::size_t>(count)});
+  if (triangle.is_displaced) sample.normal = static_cast<Vec3f>(triangle.normal);
+  return sample;
 }
 
 SurfaceSum CellBuilder::sum_of(std::size_t begin, int log2_size, Vec3i cell) const {
@@ -193,33 +195,37 @@ bool CellBuilder::is_near(std::size_t begin, const ConvexPolyhedron& shape, doub
 
 bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell) const {
   if (!settings_.attributes) return true;
+  // The normals of what is grey or displaced are its own; of the rest `shading_` knows.
+  constexpr float kAnyNormal = 4;
+  const auto own_normal = [&](const Item& item) {
+    return shading_ == nullptr || triangles_[item.triangle].is_displaced;
+  };
+  const auto normal_error = [&](const Item& item) {
+    return own_normal(item) ? kAnyNormal : settings_.normal_error;
+  };
+  Vec2f points[SurfacePolygon::kMaxCorners];
+  const auto polygon_of = [&](const Item& item) {
+    const int count = barycentrics(item, log2_size, cell, points);
+    return std::span<const Vec2f>(points, static_cast<std::size_t>(count));
+  };
   // Most that are not uniform are not by themselves: the mean need not be known.
-  for (std::size_t i = begin; shading_ != nullptr && i < items_.size(); ++i) {
-    Vec2f points[SurfacePolygon::kMaxCorners];
-    const int count = barycentrics(items_[i], log2_size, cell, points);
-    if (!shading_->may_be_uniform(triangles_[items_[i].triangle].source,
-                                  {points, static_cast<std::size_t>(count)}, settings_.color_error,
-                                  settings_.normal_error))
+  for (std::size_t i = begin; shading_ != nullptr && i < items_.size(); ++i)
+    if (!shading_->may_be_uniform(triangles_[items_[i].triangle].source, polygon_of(items_[i]),
+                                  settings_.color_error, normal_error(items_[i])))
       return false;
-  }
   const SurfaceSum sum = sum_of(begin, log2_size, cell);
   if (!(sum.area > 0)) return false;
   const SurfaceSample mean{sum.color * (1 / sum.area), 1, sum.normal * (1 / sum.area)};
-  if (shading_ == nullptr) {
-    const float cosine = std::cos(settings_.normal_error),
-                length = std::sqrt(dot(mean.normal, mean.normal));
-    for (std::size_t i = begin; i < items_.size(); ++i)
-      if (dot(static_cast<Vec3f>(triangles_[items_[i].triangle].normal), mean.normal) <
-          cosine * length)
-        return false;
-    return true;
-  }
+  const float least = std::cos(std::min(settings_.normal_error, 3.14159265f)) *
+                      std::sqrt(dot(mean.normal, mean.normal));
   for (std::size_t i = begin; i < items_.size(); ++i) {
-    Vec2f points[SurfacePolygon::kMaxCorners];
-    const int count = barycentrics(items_[i], log2_size, cell, points);
-    if (!shading_->is_uniform(triangles_[items_[i].triangle].source,
-                              {points, static_cast<std::size_t>(count)}, settings_.color_error,
-                              settings_.normal_error, mean))
+    const SurfaceTriangle& triangle = triangles_[items_[i].triangle];
+    if (own_normal(items_[i]) && triangle.normal != Vec3d{} &&
+        dot(static_cast<Vec3f>(triangle.normal), mean.normal) < least)
+      return false;
+    if (shading_ != nullptr &&
+        !shading_->is_uniform(triangle.source, polygon_of(items_[i]), settings_.color_error,
+                              normal_error(items_[i]), mean))
       return false;
   }
   return true;

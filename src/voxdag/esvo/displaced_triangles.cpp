@@ -355,4 +355,27 @@ Box3d DisplacedTriangles::displaced_bounds(std::uint32_t t) const {
   return box;
 }
 
+bool DisplacedTriangles::may_meet(std::uint32_t t, const Box3d& region, double edge_limit,
+                                  double small) const {
+  Pass pass(*this, t, edge_limit);
+  if (is_displaced(t))
+    return piece_may_meet(pass, pass.corners[0], pass.corners[1], pass.corners[2], region, small);
+  return meets(displaced_bounds(t), region);
+}
+
+bool DisplacedTriangles::piece_may_meet(const Pass& pass, Vertex& a, Vertex& b, Vertex& c,
+                                        const Box3d& region, double small) const {
+  const Box3d box = piece_bounds(pass, a, b, c);
+  if (!meets(box, region)) return false;
+  const Vec3d size = box.hi - box.lo;
+  const bool is_inside = min(box.lo, region.lo) == region.lo && max(box.hi, region.hi) == region.hi;
+  if (is_inside || std::max({size.x, size.y, size.z}) < small || is_small(pass, a, b, c))
+    return true;
+  bool found = false;
+  for_each_part(pass, a, b, c, [&](Vertex& p, Vertex& q, Vertex& r) {
+    found = found || piece_may_meet(pass, p, q, r, region, small);
+  });
+  return found;
+}
+
 }  // namespace voxdag

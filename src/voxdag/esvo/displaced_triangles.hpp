@@ -40,6 +40,10 @@ class DisplacedTriangles {
   /// Holds all that tessellate() emits for the triangle, whatever the region and limit.
   Box3d displaced_bounds(std::uint32_t triangle) const;
 
+  /// False only if tessellate() with this region and limit would emit nothing. May be true all the
+  /// same: pieces smaller than `small` world units are not looked into.
+  bool may_meet(std::uint32_t triangle, const Box3d& region, double edge_limit, double small) const;
+
   /// Calls emit(const MicroTriangle&) for those micro triangles whose bounds meet `region`
   /// (closed). Their edges were `edge_limit` world units at most before displacement, which must be
   /// positive; a limit gives the same micro triangles for all regions. Heights are filtered to the
@@ -170,11 +174,7 @@ class DisplacedTriangles {
 
   template <class Emit>
   void split(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, Search search, Emit&& emit) const {
-    const double limit2 = pass.limit * pass.limit;
-    const bool ab = distance2(a, b) > limit2, bc = distance2(b, c) > limit2,
-               ca = distance2(c, a) > limit2;
-    const int count = ab + bc + ca;
-    if (count == 0) {
+    if (is_small(pass, a, b, c)) {
       const MicroTriangle micro{{displace(pass, a), displace(pass, b), displace(pass, c)},
                                 {Vec2f{a.b1, a.b2}, Vec2f{b.b1, b.b2}, Vec2f{c.b1, c.b2}}};
       if (search.is_inside || meets(bounds_of(micro), search.region)) emit(micro);
@@ -186,51 +186,68 @@ class DisplacedTriangles {
       search.is_inside =
           box.lo == max(box.lo, search.region.lo) && box.hi == min(box.hi, search.region.hi);
     }
+    for_each_part(pass, a, b, c,
+                  [&](Vertex& p, Vertex& q, Vertex& r) { split(pass, p, q, r, search, emit); });
+  }
+
+  static bool is_small(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c) {
+    const double limit2 = pass.limit * pass.limit;
+    return distance2(a, b) <= limit2 && distance2(b, c) <= limit2 && distance2(c, a) <= limit2;
+  }
+
+  /// Calls body(a, b, c) for the two to four parts of a piece that is not small.
+  template <class Body>
+  static void for_each_part(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Body& body) {
+    const double limit2 = pass.limit * pass.limit;
+    const bool ab = distance2(a, b) > limit2, bc = distance2(b, c) > limit2,
+               ca = distance2(c, a) > limit2;
+    const int count = ab + bc + ca;
     // Turned so that what is (one edge) or is not (two) split lies between the first two corners.
     if (count == 3) {
       Vertex d = between(a, b), e = between(b, c), f = between(c, a);
-      split(pass, a, d, f, search, emit);
-      split(pass, d, b, e, search, emit);
-      split(pass, f, e, c, search, emit);
-      split(pass, d, e, f, search, emit);
+      body(a, d, f);
+      body(d, b, e);
+      body(f, e, c);
+      body(d, e, f);
     } else if (count == 2) {
       if (!ab)
-        split_two(pass, a, b, c, search, emit);
+        split_two(a, b, c, body);
       else if (!bc)
-        split_two(pass, b, c, a, search, emit);
+        split_two(b, c, a, body);
       else
-        split_two(pass, c, a, b, search, emit);
+        split_two(c, a, b, body);
     } else {
       if (ab)
-        split_one(pass, a, b, c, search, emit);
+        split_one(a, b, c, body);
       else if (bc)
-        split_one(pass, b, c, a, search, emit);
+        split_one(b, c, a, body);
       else
-        split_one(pass, c, a, b, search, emit);
+        split_one(c, a, b, body);
     }
   }
 
-  template <class Emit>
-  void split_one(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, Search search,
-                 Emit&& emit) const {
+  template <class Body>
+  static void split_one(Vertex& a, Vertex& b, Vertex& c, const Body& body) {
     Vertex d = between(a, b);
-    split(pass, a, d, c, search, emit);
-    split(pass, d, b, c, search, emit);
+    body(a, d, c);
+    body(d, b, c);
   }
 
-  template <class Emit>
-  void split_two(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, Search search,
-                 Emit&& emit) const {
+  template <class Body>
+  static void split_two(Vertex& a, Vertex& b, Vertex& c, const Body& body) {
     Vertex e = between(b, c), f = between(c, a);
-    split(pass, f, e, c, search, emit);
+    body(f, e, c);
     if (distance2(a, e) <= distance2(b, f)) {
-      split(pass, a, b, e, search, emit);
-      split(pass, a, e, f, search, emit);
+      body(a, b, e);
+      body(a, e, f);
     } else {
-      split(pass, a, b, f, search, emit);
-      split(pass, b, e, f, search, emit);
+      body(a, b, f);
+      body(b, e, f);
     }
   }
+
+  bool piece_may_meet(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Box3d& region,
+                      double small) const;
 
   const Mesh& mesh_;
   const Appearance& appearance_;

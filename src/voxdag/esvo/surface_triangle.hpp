@@ -18,6 +18,7 @@ struct SurfaceTriangle {
   Vec3d normal{};               ///< Unit length; zero for a triangle without area.
   Vec3i contour_normal{};       ///< `normal` as a contour stores it; zero likewise.
   std::uint32_t source = 0;     ///< Triangle of the mesh.
+  bool is_displaced = false;    ///< Its normal is its own, not that of the source.
   std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
   /// The barycentric coordinates of a point p of corners 1 and 2 of the source triangle:
   /// base + (dot(u, p), dot(v, p)).
@@ -44,6 +45,23 @@ struct SurfaceTriangle {
     }
     t.source = source;
     t.open_edges = open_edges;
+    return t;
+  }
+
+  /// A piece of a displaced triangle. `barycentrics` are those of its corners in the source.
+  static SurfaceTriangle make_displaced(const QuantizedTriangle& triangle, Vec3i origin,
+                                        std::uint32_t source, const Vec2f (&barycentrics)[3]) {
+    SurfaceTriangle t = make(triangle, origin, source, 0);
+    t.is_displaced = true;
+    const auto corner = [&](int i) {
+      return Vec2d{static_cast<double>(barycentrics[i].x), static_cast<double>(barycentrics[i].y)};
+    };
+    const Vec2d at = corner(0), b = corner(1) - at, c = corner(2) - at;
+    const Vec2d own = t.base;
+    const Vec3d u = t.u, v = t.v;
+    t.base = at + b * own.x + c * own.y;
+    t.u = u * b.x + v * c.x;
+    t.v = u * b.y + v * c.y;
     return t;
   }
 

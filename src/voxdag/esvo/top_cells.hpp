@@ -4,14 +4,22 @@
 #include <vector>
 
 #include "voxdag/esvo/cell_builder.hpp"
+#include "voxdag/esvo/displaced_triangles.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
 /// Where a cell's triangles come from.
 struct TriangleSource {
+  const Grid& grid;
   const QuantizedMesh& mesh;
   const std::vector<std::uint8_t>& open_edges;  ///< By triangle of the quantised mesh.
+  const DisplacedTriangles* displaced;          ///< Null where nothing is.
+
+  bool is_displaced(std::uint32_t triangle) const {
+    return displaced != nullptr && triangle < mesh.mesh_triangle_count() &&
+           displaced->is_displaced(triangle);
+  }
 };
 
 struct TopCell {
@@ -31,15 +39,15 @@ struct TopCell {
 };
 
 /// Decides the cells down to tasks, parents before children. The first is the root, which is no
-/// leaf. Throws Cancelled.
-std::vector<TopCell> find_top_cells(const TriangleSource& source, int levels,
-                                    const EsvoSettings& settings, const SurfaceShading* shading,
-                                    Progress* progress);
+/// leaf. Cells with displaced triangles become tasks when they are small, and have no contours
+/// above that: what they hold is not known before. Throws Cancelled.
+std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
+                                    const SurfaceShading* shading, Progress* progress);
 
 /// The tasks in Morton order.
 std::vector<std::size_t> task_order(const std::vector<TopCell>& cells);
 
-/// Starts the cell with its triangles.
-void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cell, int levels);
+/// Starts the cell with its triangles; displaced ones are tessellated to the size of a voxel.
+void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cell);
 
 }  // namespace voxdag

@@ -22,6 +22,19 @@ std::span<const EsvoBlockEntry> read_esvo_directory(const std::vector<VdagChunk>
   return chunk_values<EsvoBlockEntry>(chunks, kChunkEsvoBlocks);
 }
 
+std::uint64_t esvo_chunk_offset(const std::vector<VdagChunk>& chunks) {
+  for (const VdagChunk& chunk : chunks)
+    if (chunk.id == kChunkEsvo) return chunk.offset;
+  throw Error("", "chunk table", "chunk ESVO is missing");
+}
+
+std::vector<VdagChunk> chunks_but_blocks(const std::vector<VdagChunk>& chunks) {
+  std::vector<VdagChunk> others;
+  for (const VdagChunk& chunk : chunks)
+    if (chunk.id != kChunkEsvo) others.push_back(chunk);
+  return others;
+}
+
 EsvoView read_esvo_view(const std::vector<VdagChunk>& chunks, const EsvoMetadata& metadata) {
   const auto slots = chunk_values<std::uint64_t>(chunks, kChunkEsvo);
   return {slots.data(), slots.size(), metadata.root, metadata.grid.levels};

@@ -23,6 +23,10 @@ struct EsvoContents {
 
 EsvoMetadata read_esvo_metadata(const std::vector<VdagChunk>& chunks);
 std::span<const EsvoBlockEntry> read_esvo_directory(const std::vector<VdagChunk>& chunks);
+/// Where the blocks begin in the file.
+std::uint64_t esvo_chunk_offset(const std::vector<VdagChunk>& chunks);
+/// All but the blocks themselves, which have checksums of their own.
+std::vector<VdagChunk> chunks_but_blocks(const std::vector<VdagChunk>& chunks);
 /// Contents are not checked.
 EsvoView read_esvo_view(const std::vector<VdagChunk>& chunks, const EsvoMetadata& metadata);
 /// validate_esvo, with the chunk named in the error, and the counts against those of `metadata`.

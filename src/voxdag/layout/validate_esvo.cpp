@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
-#include <vector>
 
 #include "voxdag/core/error.hpp"
 
@@ -20,129 +19,8 @@ std::uint32_t slots_per_pair(EsvoAttachmentKind kind) {
   return kind == EsvoAttachmentKind::kColors ? 1 : kind == EsvoAttachmentKind::kNormals ? 2 : 0;
 }
 
-/// Walks from the root and remembers which slots it has seen.
-class Walk {
- public:
-  Walk(const EsvoView& view, std::span<const EsvoBlockEntry> directory)
-      : view_(view), directory_(directory), seen_(view.slot_count) {}
-
-  EsvoCounts run() {
-    counts_.voxels_per_level[0] = 1;
-    counts_.blocks = directory_.size();
-    check_group(view_.root, 1);
-    std::vector<Step> stack{{view_.root, {0, {}}}};
-    if (block_of(view_.root).parent != EsvoBlockEntry::kNoParent)
-      fail(slot_place(view_.root), "the root is in a block that has a parent");
-    while (!stack.empty()) {
-      const Step step = stack.back();
-      stack.pop_back();
-      visit(step, stack);
-    }
-    return counts_;
-  }
-
- private:
-  struct Where {
-    int level;
-    Vec3i cell;
-  };
-  struct Step {
-    std::uint64_t slot;
-    Where where;  // of the voxel of this descriptor
-  };
-
-  const EsvoBlockEntry& block_of(std::uint64_t slot) const {
-    const auto after =
-        std::upper_bound(directory_.begin(), directory_.end(), slot,
-                         [](std::uint64_t s, const EsvoBlockEntry& b) { return s < b.begin; });
-    return *std::prev(after);
-  }
-  const EsvoBlockInfo& info_of(const EsvoBlockEntry& block) const {
-    return view_.info(block.begin);
-  }
-
-  /// Siblings may stand there, and have not been seen before.
-  void check_group(std::uint64_t first, std::uint32_t count) {
-    if (first >= view_.slot_count) fail(slot_place(first), "a pointer out of the octree");
-    const EsvoBlockEntry& block = block_of(first);
-    const std::uint64_t end = first + count;
-    if (end - block.begin > info_of(block).descriptor_slots)
-      fail(slot_place(first), "a pointer to something else than descriptors");
-    if (first % kEsvoPageSlots == 0 || first / kEsvoPageSlots != (end - 1) / kEsvoPageSlots)
-      fail(slot_place(first), "siblings lie across a page header");
-    for (std::uint64_t slot = first; slot < end; ++slot) {
-      if (seen_[slot]) fail(slot_place(slot), "reached twice");
-      seen_[slot] = true;
-    }
-  }
-
-  void visit(const Step& step, std::vector<Step>& stack) {
-    const std::uint64_t slot = step.slot;
-    const ChildDescriptor d = view_.descriptor(slot);
-    const EsvoBlockEntry& block = block_of(slot);
-    const int level = step.where.level + 1;
-    ++counts_.descriptors;
-    if (d.valid_mask() == 0) fail(slot_place(slot), "a descriptor without children");
-    if ((d.leaf_mask() & ~d.valid_mask()) != 0) fail(slot_place(slot), "a leaf that is no child");
-    if ((d.contour_mask() & ~d.valid_mask()) != 0) fail(slot_place(slot), "a contour of no child");
-    counts_.voxels_per_level[static_cast<std::size_t>(level)] +=
-        static_cast<std::uint64_t>(popcount8(d.valid_mask()));
-    counts_.leaves_per_level[static_cast<std::size_t>(level)] +=
-        static_cast<std::uint64_t>(popcount8(d.leaf_mask()));
-    check_contours(slot, d, block);
-    if (d.inner_mask() == 0) return;
-    if (level == view_.levels) fail(slot_place(slot), "children below the finest level");
-
-    const std::uint64_t pointer = slot + d.child_pointer();
-    if (d.child_pointer() == 0 || pointer - block.begin >= info_of(block).descriptor_slots)
-      fail(slot_place(slot), "a child pointer out of its block");
-    if (d.is_far()) {
-      if (pointer % kEsvoPageSlots == 0 || seen_[pointer])
-        fail(slot_place(slot), "no far pointer where one should be");
-      seen_[pointer] = true;
-      ++counts_.far_pointers;
-    }
-    const std::uint64_t first = view_.first_child(slot, d);
-    const auto count = static_cast<std::uint32_t>(popcount8(d.inner_mask()));
-    check_group(first, count);
-    const EsvoBlockEntry& below = block_of(first);
-    if (below.begin != block.begin &&
-        (below.parent != slot || below.level != step.where.level || below.cell != step.where.cell ||
-         first - below.begin != info_of(below).first_descriptor))
-      fail(slot_place(slot), "the directory tells otherwise of the block of its children");
-    std::uint64_t at = first;
-    for (int child = 0; child < 8; ++child)
-      if ((d.inner_mask() >> child & 1) != 0)
-        stack.push_back(
-            {at++, {level, step.where.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2}}});
-  }
-
-  void check_contours(std::uint64_t slot, ChildDescriptor d, const EsvoBlockEntry& block) {
-    const auto count = static_cast<std::uint64_t>(popcount8(d.contour_mask()));
-    if (count == 0) return;
-    counts_.contours += count;
-    const EsvoBlockInfo& info = info_of(block);
-    const std::uint64_t begin = 2 * (block.begin + info.contour_begin);
-    const std::uint64_t first = 2 * slot + d.contour_pointer();
-    if (first < begin || first + count > begin + info.contour_count)
-      fail(slot_place(slot), "a contour pointer to something else than contours");
-    for (int child = 0; child < 8; ++child) {
-      if ((d.contour_mask() >> child & 1) == 0) continue;
-      const Contour contour = view_.contour(slot, d, child);
-      if (contour.normal() == Vec3i{}) fail(slot_place(slot), "a contour without a normal");
-      if (contour.low() > contour.high()) fail(slot_place(slot), "a contour inside out");
-    }
-  }
-
-  const EsvoView& view_;
-  std::span<const EsvoBlockEntry> directory_;
-  std::vector<bool> seen_;
-  EsvoCounts counts_;
-};
-
-}  // namespace
-
-void check_esvo_block(std::span<const std::uint64_t> slots) {
+/// The info section, which holds together with the page headers.
+EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
   constexpr std::size_t kInfoSlots = sizeof(EsvoBlockInfo) / 8;
   if (slots.size() < kEsvoPageSlots || slots.size() % kEsvoPageSlots != 0 ||
       slots.size() > 0xFFFFFFFFu)
@@ -170,27 +48,192 @@ void check_esvo_block(std::span<const std::uint64_t> slots) {
         !fits(attachment.begin, std::uint64_t{attachment.count} * expected))
       fail("", "attachment " + std::to_string(i) + " is not what it should be");
   }
+  return info;
+}
+
+/// Walks a block from its first group and remembers which slots it has seen.
+class BlockWalk {
+ public:
+  BlockWalk(std::span<const std::uint64_t> slots, const EsvoBlockInfo& info, int levels)
+      : view_{slots.data(), slots.size(), 0, levels}, info_(info), seen_(info.descriptor_slots) {}
+
+  EsvoBlockCheck run(const EsvoBlockEntry& entry, std::span<const Vec3i> siblings) {
+    const std::uint64_t first = info_.first_descriptor;
+    check_group(first, siblings.size());
+    const int level = entry.parent == EsvoBlockEntry::kNoParent ? 0 : entry.level + 1;
+    for (std::size_t i = 0; i < siblings.size(); ++i)
+      stack_.push_back({first + i, level, siblings[i]});
+    while (!stack_.empty()) {
+      const Step step = stack_.back();
+      stack_.pop_back();
+      visit(step);
+    }
+    return std::move(check_);
+  }
+
+ private:
+  struct Step {
+    std::uint64_t slot;
+    int level;  // of the voxel of this descriptor
+    Vec3i cell;
+  };
+
+  /// Siblings may stand there, and have not been seen before.
+  void check_group(std::uint64_t first, std::uint64_t count) {
+    const std::uint64_t end = first + count;
+    if (end > info_.descriptor_slots)
+      fail(slot_place(first), "a pointer to something else than descriptors");
+    if (first % kEsvoPageSlots == 0 || first / kEsvoPageSlots != (end - 1) / kEsvoPageSlots)
+      fail(slot_place(first), "siblings lie across a page header");
+    for (std::uint64_t slot = first; slot < end; ++slot) {
+      if (seen_[slot]) fail(slot_place(slot), "reached twice");
+      seen_[slot] = true;
+    }
+  }
+
+  void visit(const Step& step) {
+    const std::uint64_t slot = step.slot;
+    const ChildDescriptor d = view_.descriptor(slot);
+    const int level = step.level + 1;
+    if (d.valid_mask() == 0) fail(slot_place(slot), "a descriptor without children");
+    if ((d.leaf_mask() & ~d.valid_mask()) != 0) fail(slot_place(slot), "a leaf that is no child");
+    if ((d.contour_mask() & ~d.valid_mask()) != 0) fail(slot_place(slot), "a contour of no child");
+    EsvoCounts& counts = check_.counts;
+    ++counts.descriptors;
+    counts.voxels_per_level[static_cast<std::size_t>(level)] +=
+        static_cast<std::uint64_t>(popcount8(d.valid_mask()));
+    counts.leaves_per_level[static_cast<std::size_t>(level)] +=
+        static_cast<std::uint64_t>(popcount8(d.leaf_mask()));
+    check_contours(slot, d);
+    if (d.inner_mask() == 0) return;
+    if (level == view_.levels) fail(slot_place(slot), "children below the finest level");
+
+    const std::uint64_t pointer = slot + d.child_pointer();
+    if (d.child_pointer() == 0 || pointer >= info_.descriptor_slots)
+      fail(slot_place(slot), "a child pointer out of its block");
+    Vec3i cells[8];
+    std::size_t count = 0;
+    for (int child = 0; child < 8; ++child)
+      if ((d.inner_mask() >> child & 1) != 0)
+        cells[count++] = step.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2};
+    if (d.is_far()) {
+      if (pointer % kEsvoPageSlots == 0 || seen_[pointer])
+        fail(slot_place(slot), "no far pointer where one should be");
+      seen_[pointer] = true;
+      ++counts.far_pointers;
+      check_.links.push_back({static_cast<std::uint32_t>(slot),
+                              static_cast<std::int64_t>(view_.first_child(slot, d)), step.level,
+                              step.cell, {cells, cells + count}});
+      return;
+    }
+    check_group(pointer, count);
+    for (std::size_t i = 0; i < count; ++i) stack_.push_back({pointer + i, level, cells[i]});
+  }
+
+  void check_contours(std::uint64_t slot, ChildDescriptor d) {
+    const auto count = static_cast<std::uint64_t>(popcount8(d.contour_mask()));
+    if (count == 0) return;
+    check_.counts.contours += count;
+    const std::uint64_t begin = 2 * std::uint64_t{info_.contour_begin};
+    const std::uint64_t first = 2 * slot + d.contour_pointer();
+    if (first < begin || first + count > begin + info_.contour_count)
+      fail(slot_place(slot), "a contour pointer to something else than contours");
+    for (int child = 0; child < 8; ++child) {
+      if ((d.contour_mask() >> child & 1) == 0) continue;
+      const Contour contour = view_.contour(slot, d, child);
+      if (contour.normal() == Vec3i{}) fail(slot_place(slot), "a contour without a normal");
+      if (contour.low() > contour.high()) fail(slot_place(slot), "a contour inside out");
+    }
+  }
+
+  EsvoView view_;  // of the block alone
+  const EsvoBlockInfo& info_;
+  std::vector<bool> seen_;
+  std::vector<Step> stack_;
+  EsvoBlockCheck check_;
+};
+
+}  // namespace
+
+EsvoBlockCheck check_esvo_block(std::span<const std::uint64_t> slots, const EsvoBlockEntry& entry,
+                                std::span<const Vec3i> siblings, int levels) {
+  const EsvoBlockInfo info = check_info(slots);
+  EsvoBlockCheck check = BlockWalk(slots, info, levels).run(entry, siblings);
+  if (check.counts.descriptors != info.descriptors ||
+      check.counts.far_pointers != info.far_pointers || check.counts.contours != info.contour_count)
+    fail("", "its info section counts otherwise");
+  check.counts.blocks = 1;
+  return check;
 }
 
 EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> directory) {
   std::uint64_t end = 0;
   for (std::size_t i = 0; i < directory.size(); ++i) {
     const EsvoBlockEntry& block = directory[i];
-    const std::string place = "block " + std::to_string(i);
-    if (block.begin != end || block.slots > view.slot_count - end)
-      fail(place, "not where the directory says");
-    if (block.reserved != 0) fail(place, "reserved bytes are not zero");
+    if (block.begin != end || block.slots > view.slot_count - end || block.slots == 0)
+      fail("block " + std::to_string(i), "not where the directory says");
+    if (block.reserved != 0) fail("block " + std::to_string(i), "reserved bytes are not zero");
     end += block.slots;
-    try {
-      check_esvo_block({view.slots + block.begin, block.slots});
-    } catch (const Error& error) {
-      fail(place, error.reason());
-    }
   }
   if (end != view.slot_count) fail("directory", "slots that belong to no block");
   if (view.is_empty()) return {};
   if (view.root >= view.slot_count) fail("root", "out of the octree");
-  return Walk(view, directory).run();
+
+  const auto block_at = [&](std::uint64_t slot) {
+    const auto after =
+        std::upper_bound(directory.begin(), directory.end(), slot,
+                         [](std::uint64_t s, const EsvoBlockEntry& b) { return s < b.begin; });
+    return static_cast<std::size_t>(after - directory.begin()) - 1;
+  };
+  struct Open {
+    std::size_t block;
+    std::vector<Vec3i> siblings;
+  };
+  const std::size_t root_block = block_at(view.root);
+  if (directory[root_block].parent != EsvoBlockEntry::kNoParent)
+    fail("root", "its block has a parent");
+  std::vector<Open> stack{{root_block, {Vec3i{}}}};
+  std::vector<bool> seen(directory.size());
+  seen[root_block] = true;
+  EsvoCounts counts;
+  counts.voxels_per_level[0] = 1;
+  while (!stack.empty()) {
+    const Open open = std::move(stack.back());
+    stack.pop_back();
+    const EsvoBlockEntry& entry = directory[open.block];
+    const std::string place = "block " + std::to_string(open.block);
+    EsvoBlockCheck check;
+    try {
+      check = check_esvo_block({view.slots + entry.begin, entry.slots}, entry, open.siblings,
+                               view.levels);
+    } catch (const Error& error) {
+      fail(place + (error.place().empty() ? "" : ", " + error.place()), error.reason());
+    }
+    if (open.block == root_block &&
+        view.root - entry.begin != view.info(entry.begin).first_descriptor)
+      fail("root", "not the first descriptor of its block");
+    counts += check.counts;
+    for (EsvoFarLink& link : check.links) {
+      const std::int64_t target = static_cast<std::int64_t>(entry.begin) + link.target;
+      const std::string from = place + ", " + slot_place(link.slot);
+      if (target < 0 || static_cast<std::uint64_t>(target) >= view.slot_count)
+        fail(from, "a far pointer out of the octree");
+      const std::size_t below = block_at(static_cast<std::uint64_t>(target));
+      const EsvoBlockEntry& child = directory[below];
+      if (seen[below]) fail(from, "its children's block is reached twice");
+      seen[below] = true;
+      if (child.parent != entry.begin + link.slot || child.level != link.level ||
+          child.cell != link.cell)
+        fail(from, "the directory tells otherwise of the block of its children");
+      // The info section is looked at again, and for good, when the block's turn comes.
+      const std::span<const std::uint64_t> slots(view.slots + child.begin, child.slots);
+      if (check_info(slots).first_descriptor != static_cast<std::uint64_t>(target) - child.begin)
+        fail(from, "a far pointer to something else than the first descriptor of a block");
+      stack.push_back({below, std::move(link.siblings)});
+    }
+  }
+  if (counts.blocks != directory.size()) fail("directory", "a block that nothing leads to");
+  return counts;
 }
 
 }  // namespace voxdag

@@ -39,17 +39,6 @@ int levels_for(double voxels) {
   return levels;
 }
 
-Vec3i quantize(const Grid& grid, Vec3f vertex) {
-  Vec3i q;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double units =
-        (static_cast<double>(vertex[axis]) - grid.origin[axis]) * grid.quantization_scale;
-    if (!(std::fabs(units) <= kMaxUnits)) return {kOutOfRange, kOutOfRange, kOutOfRange};
-    q[axis] = static_cast<std::int32_t>(std::llround(units));
-  }
-  return q;
-}
-
 }  // namespace
 
 Box3d referenced_bounds(const Mesh& mesh) {
@@ -99,11 +88,22 @@ Grid grid_from_bounds(const Box3d& bounds, double voxel_size) {
   return {levels_for(std::ceil(side / voxel_size)), bounds.lo, voxel_size, kSubvoxels / voxel_size};
 }
 
+std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
+  Vec3i q;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double units = (world[axis] - grid.origin[axis]) * grid.quantization_scale;
+    if (!(std::fabs(units) <= kMaxUnits)) return std::nullopt;
+    q[axis] = static_cast<std::int32_t>(std::llround(units));
+  }
+  return q;
+}
+
 QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid)
     : mesh_(&mesh), vertices_(mesh.vertices.size()) {
   std::atomic<bool> any_out_of_range{false};
   parallel_for(vertices_.size(), 4096, [&](std::size_t i) {
-    vertices_[i] = quantize(grid, mesh.vertices[i]);
+    vertices_[i] = quantize(grid, static_cast<Vec3d>(mesh.vertices[i]))
+                       .value_or(Vec3i{kOutOfRange, kOutOfRange, kOutOfRange});
     if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
   });
   if (!any_out_of_range.load()) return;

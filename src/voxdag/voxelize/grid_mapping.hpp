@@ -4,6 +4,7 @@
 /// design: "Exact cover". A vertex v becomes q = llround((double(v) - origin) *
 /// quantization_scale), component by component; everything after that is integer.
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
@@ -33,6 +34,9 @@ Grid grid_from_bounds(const Box3d& bounds, double voxel_size);
 /// Coordinates of vertices in units of 1/256 voxel lie within ±kMaxUnits.
 inline constexpr std::int32_t kMaxUnits = (1 << 29) - 1;
 
+/// A point in units of 1/256 voxel, or nothing if it lies beyond ±kMaxUnits.
+std::optional<Vec3i> quantize(const Grid& grid, Vec3d world);
+
 using QuantizedTriangle = Vec3<Vec3i>;  ///< Three vertices in units of 1/256 voxel.
 
 /// A mesh's triangles on the grid's integers. Refers to the mesh, which must outlive it.
@@ -43,6 +47,8 @@ class QuantizedMesh {
   QuantizedMesh(const Mesh& mesh, const Grid& grid);
 
   std::size_t triangle_count() const { return mesh_->triangles.size() + clipped_.size(); }
+  /// Those of the mesh come first, then the pieces of clipped ones.
+  std::size_t mesh_triangle_count() const { return mesh_->triangles.size(); }
   /// False for a triangle that was clipped: its pieces stand at the end.
   bool in_range(std::size_t index) const;
   QuantizedTriangle triangle(std::size_t index) const;
