@@ -55,6 +55,8 @@ class EsvoStream {
   }
 
   bool is_loaded(std::size_t block) const { return blocks_[block].position != kNowhere; }
+  /// The block above, or -1.
+  std::int64_t parent(std::size_t block) const { return blocks_[block].parent; }
   /// Whether the block above it is loaded, so that it can be.
   bool can_load(std::size_t block) const;
   /// Whether it fits beside what is loaded.

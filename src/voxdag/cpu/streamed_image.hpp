@@ -1,0 +1,40 @@
+#pragma once
+/// A picture of an ESVO whose blocks are loaded while it is made.
+#include <functional>
+
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/trace/streamed_nodes.hpp"
+
+namespace voxdag {
+
+/// Where blocks come from. Nothing is called while rays are cast.
+class BlockSource {
+ public:
+  virtual ~BlockSource() = default;
+
+  virtual const LeafListener& listener() const = 0;
+  /// What is loaded; stays valid while blocks come and go.
+  virtual EsvoView view() const = 0;
+
+  struct Loaded {
+    std::size_t missed = 0;  ///< Blocks that rays have missed since the last call.
+    std::size_t loaded = 0;  ///< Of these, those that are loaded now; the rest had no room.
+  };
+  /// Loads what rays missed, the blocks that look largest from `eye` first. With `may_evict`,
+  /// blocks that were loaded before the last begin_part() make room.
+  virtual Loaded load_missing(Vec3d eye, bool may_evict) = 0;
+  /// From here on, what is loaded is for a part of the picture.
+  virtual void begin_part() = 0;
+};
+
+/// The picture that render_image makes of the whole octree, as long as the blocks that the rays of
+/// 32×32 pixels need fit into memory together. The whole picture is rendered again and again, each
+/// time with what the rays missed before: the first one, of what is loaded at the start, is there
+/// at once. When no more fits, each 32×32 pixels by themselves load what they need, and stay coarse
+/// where even that does not fit. `on_pass` gets each whole picture but the last. Throws as
+/// render_image does, and what the source throws.
+RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
+                              const std::function<void(const RenderedImage&)>& on_pass = {},
+                              Progress* progress = nullptr);
+
+}  // namespace voxdag

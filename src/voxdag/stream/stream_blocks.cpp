@@ -1,0 +1,63 @@
+#include "voxdag/stream/stream_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace voxdag {
+
+StreamBlocks::StreamBlocks(const std::filesystem::path& path, std::uint64_t memory)
+    : stream_(path, memory), listener_(stream_), loaded_in_(stream_.directory().size()) {}
+
+std::vector<std::size_t> StreamBlocks::Listener::take() {
+  std::vector<std::size_t> blocks;
+  for (std::size_t i = 0; i < stream_.directory().size(); ++i)
+    if (wanted_[i].exchange(false, std::memory_order_relaxed)) blocks.push_back(i);
+  return blocks;
+}
+
+double StreamBlocks::apparent_size(std::size_t block, Vec3d eye) const {
+  const EsvoBlockEntry& entry = stream_.directory()[block];
+  const Grid& grid = stream_.grid();
+  const double size =
+      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - entry.level));
+  const Vec3d lo = grid.origin + static_cast<Vec3d>(entry.cell) * size;
+  const Vec3d nearest = max(lo, min(eye, lo + Vec3d{size, size, size})) - eye;
+  return size / (std::sqrt(dot(nearest, nearest)) + 1e-9 * size);
+}
+
+bool StreamBlocks::make_room(std::size_t block) {
+  while (!stream_.has_room(block)) {
+    std::size_t oldest = loaded_in_.size();
+    for (std::size_t i = 0; i < loaded_in_.size(); ++i)
+      if (loaded_in_[i] < part_ && stream_.can_evict(i) &&
+          (oldest == loaded_in_.size() || loaded_in_[i] < loaded_in_[oldest]))
+        oldest = i;
+    if (oldest == loaded_in_.size()) return false;
+    stream_.evict(oldest);
+  }
+  return true;
+}
+
+BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye, bool may_evict) {
+  std::vector<std::size_t> wanted = listener_.take();
+  Loaded result{wanted.size(), 0};
+  std::vector<double> sizes(stream_.directory().size());
+  for (const std::size_t block : wanted) sizes[block] = apparent_size(block, eye);
+  std::stable_sort(wanted.begin(), wanted.end(),
+                   [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+  for (const std::size_t block : wanted) {
+    // What is above a block of this part is of this part, too.
+    for (std::int64_t above = stream_.parent(block); above >= 0;
+         above = stream_.parent(static_cast<std::size_t>(above)))
+      loaded_in_[static_cast<std::size_t>(above)] = part_;
+    // Making room for one may have taken what is above another.
+    if (!stream_.can_load(block)) continue;
+    if (!stream_.has_room(block) && !(may_evict && make_room(block))) continue;
+    stream_.load(block);
+    loaded_in_[block] = part_;
+    ++result.loaded;
+  }
+  return result;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,57 @@
+#pragma once
+/// The blocks of an ESVO file as a source for pictures: loaded where rays miss them.
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "voxdag/cpu/streamed_image.hpp"
+#include "voxdag/file/esvo_stream.hpp"
+
+namespace voxdag {
+
+class StreamBlocks : public BlockSource {
+ public:
+  /// `memory` is what blocks may take, in bytes. Throws Error as EsvoStream does.
+  StreamBlocks(const std::filesystem::path& path, std::uint64_t memory);
+
+  const EsvoStream& stream() const { return stream_; }
+
+  const LeafListener& listener() const override { return listener_; }
+  EsvoView view() const override { return stream_.view(); }
+  Loaded load_missing(Vec3d eye, bool may_evict) override;
+  void begin_part() override { ++part_; }
+
+ private:
+  /// Notes which missing blocks were wanted.
+  class Listener : public LeafListener {
+   public:
+    explicit Listener(const EsvoStream& stream)
+        : stream_(stream),
+          wanted_(std::make_unique<std::atomic<bool>[]>(stream.directory().size())) {}
+
+    void on_leaf(std::uint64_t slot) const override {
+      const std::int64_t block = stream_.missing_block(slot);
+      if (block >= 0)
+        wanted_[static_cast<std::size_t>(block)].store(true, std::memory_order_relaxed);
+    }
+    /// The blocks wanted since the last call, in order.
+    std::vector<std::size_t> take();
+
+   private:
+    const EsvoStream& stream_;
+    std::unique_ptr<std::atomic<bool>[]> wanted_;
+  };
+
+  /// How large the voxels of the block look from `eye`, more or less.
+  double apparent_size(std::size_t block, Vec3d eye) const;
+  /// Evicts blocks of earlier parts until `block` has room; false if that is not enough.
+  bool make_room(std::size_t block);
+
+  EsvoStream stream_;
+  Listener listener_;
+  std::vector<std::uint64_t> loaded_in_;  ///< By block: the part that it was loaded for.
+  std::uint64_t part_ = 1;
+};
+
+}  // namespace voxdag

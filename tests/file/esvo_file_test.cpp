@@ -1,0 +1,87 @@
+#include "voxdag/file/esvo_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/esvo_bytes.hpp"
+#include "support/temp_dir.hpp"
+#include "support/vdag_bytes.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_file.hpp"
+#include "voxdag/file/verify_vdag.hpp"
+
+namespace voxdag {
+namespace {
+
+using test::packed_esvo;
+using test::PackedEsvo;
+
+std::string error_of(const std::string& bytes) {
+  try {
+    parse_esvo(AlignedBytes(bytes).span());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string small_file() {
+  const TempDir dir;
+  write_esvo(dir / "a.esvo", packed_esvo(3, 64, 5));
+  return read_text(dir / "a.esvo");
+}
+
+TEST(EsvoFile, HoldsWhatWasWritten) {
+  const TempDir dir;
+  const PackedEsvo esvo = packed_esvo(6, 200, 1);
+  write_esvo(dir / "a.esvo", esvo);
+  const EsvoFile file(dir / "a.esvo");
+  EXPECT_EQ(file.metadata(), metadata_of(esvo));
+  ASSERT_EQ(file.view().slot_count, esvo.packed.slots.size());
+  EXPECT_TRUE(std::equal(esvo.packed.slots.begin(), esvo.packed.slots.end(), file.view().slots));
+  ASSERT_EQ(file.directory().size(), esvo.packed.blocks.size());
+  EXPECT_GT(file.directory().size(), 5u);
+  for (std::size_t i = 0; i < file.directory().size(); ++i) {
+    EsvoBlockEntry entry = file.directory()[i];
+    entry.checksum = 0;
+    EXPECT_EQ(entry, esvo.packed.blocks[i]);
+  }
+  EXPECT_TRUE(is_esvo_file(dir / "a.esvo"));
+  EXPECT_TRUE(verify_vdag(dir / "a.esvo").passed());
+  EXPECT_EQ(dir.count(), 1) << "no temporary file is left";
+}
+
+TEST(EsvoFile, AWriterThatIsNotFinishedLeavesNothing) {
+  const TempDir dir;
+  {
+    EsvoFileWriter writer(dir / "a.esvo");
+    writer.append(packed_esvo(3, 64, 5).packed.slots);
+  }
+  EXPECT_EQ(dir.count(), 0);
+}
+
+TEST(EsvoFile, IsNoDagAndADagIsNoEsvo) {
+  const TempDir dir;
+  write_esvo(dir / "a.esvo", packed_esvo(3, 64, 5));
+  EXPECT_THROW(VdagFile(dir / "a.esvo"), Error);
+  write_text(dir / "b.vdag", vdag_file_bytes(brute_svdag(4, {{0, 0, 0}})));
+  EXPECT_FALSE(is_esvo_file(dir / "b.vdag"));
+  EXPECT_THROW(EsvoFile(dir / "b.vdag"), Error);
+}
+
+TEST(EsvoFile, EveryTruncationIsRefused) {
+  const std::string bytes = small_file();
+  for (std::size_t size = 0; size < bytes.size(); size += size < 512 ? 1 : 61)
+    EXPECT_NE(error_of(bytes.substr(0, size)), "no error") << size << " bytes";
+}
+
+TEST(EsvoFile, EveryBitFlipIsRefused) {
+  const std::string bytes = small_file();
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += bit < 8 * 512 ? 1 : 13) {
+    std::string changed = bytes;
+    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
+    EXPECT_NE(error_of(changed), "no error") << "byte " << bit / 8;
+  }
+}
+
+}  // namespace
+}  // namespace voxdag
