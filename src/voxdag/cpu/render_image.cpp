@@ -1,109 +1,22 @@
 #include "voxdag/cpu/render_image.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <memory>
-#include <vector>
+#include <tbb/task_arena.h>
 
-#include "voxdag/core/morton.hpp"
-#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/cpu/post_filter.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
-#include "voxdag/render/count_steps.hpp"
-#include "voxdag/render/esvo_view_samples.hpp"
-#include "voxdag/render/primary_beams.hpp"
+#include "voxdag/cpu/streamed_image.hpp"
+#include "voxdag/cpu/tile_renderer.hpp"
 #include "voxdag/render/render_plan.hpp"
-#include "voxdag/render/render_tile.hpp"
-#include "voxdag/render/source_view_samples.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr int kMaxTileSize = 32;
-using Scratch = TileScratch<kMaxTileSize * kMaxTileSize>;
-
-/// Tiles that cover the picture, in Morton order: what one thread does next is near what it did.
-std::vector<ViewTile> make_tiles(int width, int height, int size) {
-  const int across = (width + size - 1) / size, down = (height + size - 1) / size;
-  std::vector<ViewTile> tiles;
-  tiles.reserve(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
-  for (int y = 0; y < down; ++y)
-    for (int x = 0; x < across; ++x) {
-      ViewTile tile;
-      tile.x = x * size;
-      tile.y = y * size;
-      tile.width = std::min(size, width - tile.x);
-      tile.height = std::min(size, height - tile.y);
-      tiles.push_back(tile);
-    }
-  const auto code = [size](const ViewTile& tile) {
-    return morton_encode({tile.x / size, tile.y / size, 0});
-  };
-  std::sort(tiles.begin(), tiles.end(),
-            [&](const ViewTile& a, const ViewTile& b) { return code(a) < code(b); });
-  return tiles;
-}
-
-/// Calls body(x, y) for the top left pixel of each 8×8 pixels of the picture.
-template <class Body>
-void for_each_block(const Camera& camera, const Body& body) {
-  const int rows = (camera.height + kCoarseBeamPixels - 1) / kCoarseBeamPixels;
-  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
-    for (int x = 0; x < camera.width; x += kCoarseBeamPixels)
-      body(x, static_cast<int>(row) * kCoarseBeamPixels);
-  });
-}
-
-template <class Nodes>
-std::vector<float> cast_beams(const Nodes& nodes, const RenderSetup& setup) {
-  const Camera& camera = setup.camera;
-  std::vector<float> starts(static_cast<std::size_t>(beams_across(camera.width)) *
-                            static_cast<std::size_t>(beams_across(camera.height)));
-  for_each_block(camera, [&](int x, int y) { set_beam_starts(nodes, setup, x, y, starts.data()); });
-  return starts;
-}
-
-/// Fills the picture of `setup`; returns the number of rays.
-template <class Nodes>
-std::uint64_t render_voxels(const Nodes& nodes, RenderSetup setup, const RenderOptions& options,
-                            Progress* progress, const ViewSource* source) {
-  const auto caster = fast_caster(nodes);
-  std::vector<float> beam_starts;
-  if (options.beams && source == nullptr) {
-    beam_starts = cast_beams(nodes, setup);
-    setup.beam_starts = beam_starts.data();
+RenderedImage finish(RenderPlan& plan, const RenderOptions& options, const ViewSource* source) {
+  if (options.filter && source == nullptr) {
+    RenderedImage& image = plan.image();
+    image.radiance = filter_picture(
+        {image.radiance.data(), image.cell_pixels.data(), image.width, image.height});
   }
-
-  const auto find = [&](const ViewTile& tile, Scratch& scratch) {
-    if (source == nullptr) return trace_view_samples(nodes, caster, setup, tile, scratch);
-    const auto pixels = static_cast<std::size_t>(tile.pixels());
-    std::vector<ViewSample> rows(pixels);
-    find_source_samples(*source, setup, tile, rows);
-    for (int pixel = 0; pixel < tile.pixels(); ++pixel)
-      scratch.samples[pixel] =
-          rows[static_cast<std::size_t>(tile.row(pixel) * tile.width + tile.column(pixel))];
-    return static_cast<int>(pixels);
-  };
-
-  const std::vector<ViewTile> tiles = make_tiles(options.width, options.height, options.tile_size);
-  std::atomic<std::uint64_t> rays{0};
-  std::atomic<std::size_t> done{0};
-  parallel_for(tiles.size(), [&](std::size_t at) {
-    if (progress != nullptr && progress->cancelled()) return;
-    const auto scratch = std::make_unique<Scratch>();
-    const auto tile_rays =
-        static_cast<std::uint64_t>(render_tile(nodes, caster, setup, tiles[at], *scratch, find));
-    const std::uint64_t rays_so_far = rays.fetch_add(tile_rays) + tile_rays;
-    const std::size_t tiles_so_far = done.fetch_add(1) + 1;
-    if (progress != nullptr)
-      progress->report("render",
-                       static_cast<double>(tiles_so_far) / static_cast<double>(tiles.size()),
-                       rays_so_far);
-  });
-  if (progress != nullptr) progress->throw_if_cancelled();
-  if (options.with_steps)
-    for_each_block(setup.camera, [&](int x, int y) { count_steps(nodes, setup, x, y); });
-  return rays;
+  return plan.finish();
 }
 
 }  // namespace
@@ -111,15 +24,55 @@ std::uint64_t render_voxels(const Nodes& nodes, RenderSetup setup, const RenderO
 RenderedImage render_image(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress, const ViewSource* source) {
   RenderPlan plan(scene, grid, options);
+  const std::vector<ViewTile> tiles = make_tiles(options.width, options.height, options.tile_size);
   plan.image().rays = scene.visit_nodes([&](const auto& nodes) {
-    return render_voxels(nodes, plan.setup(), options, progress, source);
+    const TileRenderer renderer(nodes, plan.setup(), options.beams, source);
+    const std::uint64_t rays = renderer.render(tiles, progress);
+    if (options.with_steps) renderer.count();
+    return rays;
   });
-  if (options.filter && source == nullptr) {
-    RenderedImage& image = plan.image();
-    image.radiance = filter_picture(
-        {image.radiance.data(), image.cell_pixels.data(), image.width, image.height});
+  return finish(plan, options, source);
+}
+
+RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
+                              const std::function<void(const RenderedImage&)>& on_pass,
+                              Progress* progress) {
+  RenderOptions pass_options = options;
+  const std::vector<ViewTile> tiles = make_tiles(options.width, options.height, options.tile_size);
+  std::uint64_t rays = 0;
+  for (;;) {
+    RenderPlan plan(source.view(), grid, pass_options);
+    // What is not said of the view is found once, so that all passes show the same.
+    pass_options.view = {plan.image().view.eye, plan.image().view.target, plan.image().view.up,
+                         plan.image().view.vertical_fov_degrees};
+    const Vec3d eye = plan.image().view.eye;
+    const TileRenderer renderer(StreamedNodes(source.view(), source.listener()), plan.setup(),
+                                options.beams, nullptr);
+    rays += renderer.render(tiles, progress);
+    const BlockSource::Loaded loaded = source.load_missing(eye, false);
+    if (loaded.missed > 0 && loaded.loaded > 0) {
+      if (on_pass) on_pass(finish(plan, options, nullptr));
+      continue;
+    }
+    if (loaded.missed > 0) {
+      const auto at_once = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+      for (std::size_t begin = 0; begin < tiles.size(); begin += at_once) {
+        const std::span<const ViewTile> part =
+            std::span(tiles).subspan(begin, std::min(at_once, tiles.size() - begin));
+        source.begin_part();
+        do {
+          rays += renderer.render(part, nullptr);
+        } while (source.load_missing(eye, true).loaded > 0);
+        if (progress == nullptr) continue;
+        progress->throw_if_cancelled();
+        progress->report("stream", static_cast<double>(begin) / static_cast<double>(tiles.size()),
+                         rays);
+      }
+    }
+    if (options.with_steps) renderer.count();
+    plan.image().rays = rays;
+    return finish(plan, options, nullptr);
   }
-  return plan.finish();
 }
 
 }  // namespace voxdag

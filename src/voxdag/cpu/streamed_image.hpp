@@ -28,11 +28,11 @@ class BlockSource {
 };
 
 /// The picture that render_image makes of the whole octree, as long as the blocks that the rays of
-/// 32×32 pixels need fit into memory together. The whole picture is rendered again and again, each
-/// time with what the rays missed before: the first one, of what is loaded at the start, is there
-/// at once. When no more fits, each 32×32 pixels by themselves load what they need, and stay coarse
-/// where even that does not fit. `on_pass` gets each whole picture but the last. Throws as
-/// render_image does, and what the source throws.
+/// one tile for each thread need fit into memory together. The whole picture is rendered again and
+/// again, each time with what the rays missed before: the first one, of what is loaded at the
+/// start, is there at once. When no more fits, each 32×32 pixels by themselves load what they need,
+/// and stay coarse where even that does not fit. `on_pass` gets each whole picture but the last.
+/// Throws as render_image does, and what the source throws.
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
                               Progress* progress = nullptr);

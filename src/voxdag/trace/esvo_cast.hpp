@@ -104,7 +104,10 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
       }
       if (!kWithContours || tv_min <= tv_max) {
         const int level = kTopBit - bit + 1;
-        if ((parent.leaf_mask() >> index & 1u) != 0 || stop(level, t, t_exit)) {
+        const bool is_leaf = (parent.leaf_mask() >> index & 1u) != 0;
+        if (is_leaf || stop(level, t, t_exit)) {
+          if constexpr (requires { nodes.on_leaf(slot); })
+            if (is_leaf && !stop(level, t, t_exit)) nodes.on_leaf(slot);
           static_cast<CellHit&>(hit) = {tv_min, x, y, z, level};
           hit.voxel = {slot, static_cast<int>(index)};
           hit.plane = entered;

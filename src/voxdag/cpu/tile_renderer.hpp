@@ -1,0 +1,127 @@
+#pragma once
+/// Renders tiles of a picture on the CPU's threads.
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "voxdag/core/morton.hpp"
+#include "voxdag/cpu/fast_caster.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/progress.hpp"
+#include "voxdag/render/count_steps.hpp"
+#include "voxdag/render/esvo_view_samples.hpp"
+#include "voxdag/render/primary_beams.hpp"
+#include "voxdag/render/render_tile.hpp"
+#include "voxdag/render/source_view_samples.hpp"
+
+namespace voxdag {
+
+/// Tiles that cover the picture, in Morton order: what one thread does next is near what it did.
+inline std::vector<ViewTile> make_tiles(int width, int height, int size) {
+  const int across = (width + size - 1) / size, down = (height + size - 1) / size;
+  std::vector<ViewTile> tiles;
+  tiles.reserve(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+  for (int y = 0; y < down; ++y)
+    for (int x = 0; x < across; ++x) {
+      ViewTile tile;
+      tile.x = x * size;
+      tile.y = y * size;
+      tile.width = std::min(size, width - tile.x);
+      tile.height = std::min(size, height - tile.y);
+      tiles.push_back(tile);
+    }
+  const auto code = [size](const ViewTile& tile) {
+    return morton_encode({tile.x / size, tile.y / size, 0});
+  };
+  std::sort(tiles.begin(), tiles.end(),
+            [&](const ViewTile& a, const ViewTile& b) { return code(a) < code(b); });
+  return tiles;
+}
+
+/// Calls body(x, y) for the top left pixel of each 8×8 pixels of the picture.
+template <class Body>
+void for_each_block(const Camera& camera, const Body& body) {
+  const int rows = (camera.height + kCoarseBeamPixels - 1) / kCoarseBeamPixels;
+  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
+    for (int x = 0; x < camera.width; x += kCoarseBeamPixels)
+      body(x, static_cast<int>(row) * kCoarseBeamPixels);
+  });
+}
+
+template <class Nodes>
+std::vector<float> cast_beams(const Nodes& nodes, const RenderSetup& setup) {
+  const Camera& camera = setup.camera;
+  std::vector<float> starts(static_cast<std::size_t>(beams_across(camera.width)) *
+                            static_cast<std::size_t>(beams_across(camera.height)));
+  for_each_block(camera, [&](int x, int y) { set_beam_starts(nodes, setup, x, y, starts.data()); });
+  return starts;
+}
+
+/// Renders the picture of a setup, of which it changes the start of primary rays only.
+template <class Nodes>
+class TileRenderer {
+ public:
+  static constexpr int kMaxTileSize = 32;
+
+  /// `source` is null where the surface points are those of the voxels.
+  TileRenderer(const Nodes& nodes, const RenderSetup& setup, bool beams, const ViewSource* source)
+      : nodes_(nodes), caster_(fast_caster(nodes_)), setup_(setup), source_(source) {
+    if (!beams || source != nullptr) return;
+    beam_starts_ = cast_beams(nodes_, setup_);
+    setup_.beam_starts = beam_starts_.data();
+  }
+  TileRenderer(const TileRenderer&) = delete;
+  TileRenderer& operator=(const TileRenderer&) = delete;
+
+  /// Returns the number of rays. Throws Cancelled.
+  std::uint64_t render(std::span<const ViewTile> tiles, Progress* progress) const {
+    std::atomic<std::uint64_t> rays{0};
+    std::atomic<std::size_t> done{0};
+    parallel_for(tiles.size(), [&](std::size_t at) {
+      if (progress != nullptr && progress->cancelled()) return;
+      const auto scratch = std::make_unique<Scratch>();
+      const auto find = [&](const ViewTile& tile, Scratch& tile_scratch) {
+        return find_samples(tile, tile_scratch);
+      };
+      const auto tile_rays = static_cast<std::uint64_t>(
+          render_tile(nodes_, caster_, setup_, tiles[at], *scratch, find));
+      const std::uint64_t rays_so_far = rays.fetch_add(tile_rays) + tile_rays;
+      const std::size_t tiles_so_far = done.fetch_add(1) + 1;
+      if (progress != nullptr)
+        progress->report("render",
+                         static_cast<double>(tiles_so_far) / static_cast<double>(tiles.size()),
+                         rays_so_far);
+    });
+    if (progress != nullptr) progress->throw_if_cancelled();
+    return rays;
+  }
+
+  /// Fills the steps of primary rays.
+  void count() const {
+    for_each_block(setup_.camera, [&](int x, int y) { count_steps(nodes_, setup_, x, y); });
+  }
+
+ private:
+  using Scratch = TileScratch<kMaxTileSize * kMaxTileSize>;
+
+  int find_samples(const ViewTile& tile, Scratch& scratch) const {
+    if (source_ == nullptr) return trace_view_samples(nodes_, caster_, setup_, tile, scratch);
+    const auto pixels = static_cast<std::size_t>(tile.pixels());
+    std::vector<ViewSample> rows(pixels);
+    find_source_samples(*source_, setup_, tile, rows);
+    for (int pixel = 0; pixel < tile.pixels(); ++pixel)
+      scratch.samples[pixel] =
+          rows[static_cast<std::size_t>(tile.row(pixel) * tile.width + tile.column(pixel))];
+    return static_cast<int>(pixels);
+  }
+
+  Nodes nodes_;
+  decltype(fast_caster(std::declval<const Nodes&>())) caster_;
+  RenderSetup setup_;
+  const ViewSource* source_;
+  std::vector<float> beam_starts_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,110 @@
+// Pictures of an ESVO that is loaded while they are made.
+#include <gtest/gtest.h>
+
+#include "support/temp_dir.hpp"
+#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/esvo_writer.hpp"
+#include "voxdag/stream/stream_blocks.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Waves of some thousand triangles.
+Mesh waves(int n) {
+  Mesh mesh;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) {
+      const float x = static_cast<float>(i) / static_cast<float>(n);
+      const float z = static_cast<float>(j) / static_cast<float>(n);
+      mesh.vertices.push_back({x, 0.2f + 0.1f * std::sin(20 * x) * std::cos(17 * z), z});
+    }
+  const auto at = [n](int i, int j) { return static_cast<std::uint32_t>(i * (n + 1) + j); };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
+      mesh.triangles.push_back({at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
+    }
+  return mesh;
+}
+
+class StreamImage : public testing::Test {
+ protected:
+  StreamImage() {
+    const Mesh mesh = waves(60);
+    EsvoOptions build;
+    build.settings.max_error = 0.1f;
+    build.settings.normal_error = 0.001f;
+    build.pack.max_slots = 200;
+    EsvoMemory memory;
+    EsvoMetadata metadata;
+    metadata.grid = fit_grid(mesh, 9);
+    EsvoResult result = build_esvo(mesh, metadata.grid, build, nullptr, nullptr, memory);
+    metadata.root = result.root;
+    metadata.counts = result.counts;
+    EsvoFileWriter writer(path());
+    const std::vector<std::uint64_t> slots = memory.take();
+    bytes = slots.size() * 8;
+    writer.append(slots);
+    writer.finish(std::move(result.directory), metadata);
+    options.width = 96;
+    options.height = 64;
+    options.occlusion_samples = 4;
+    options.shadow_samples = 2;
+    options.view.eye = Vec3d{0.5, 0.5, -0.2};
+    options.view.target = Vec3d{0.5, 0.15, 0.4};
+  }
+  std::filesystem::path path() const { return dir / "waves.esvo"; }
+  RenderedImage whole() const {
+    const EsvoFile file(path());
+    return render_image(file.view(), file.grid(), options);
+  }
+  void expect_same(const RenderedImage& a, const RenderedImage& b) const {
+    EXPECT_EQ(a.rgb, b.rgb);
+    EXPECT_EQ(a.depth, b.depth);
+    EXPECT_EQ(a.normal, b.normal);
+    EXPECT_EQ(a.occlusion, b.occlusion);
+  }
+
+  TempDir dir;
+  std::uint64_t bytes = 0;
+  RenderOptions options;
+};
+
+TEST_F(StreamImage, IsThePictureOfTheWholeOctree) {
+  StreamBlocks blocks(path(), bytes);
+  ASSERT_GT(blocks.stream().directory().size(), 20u);
+  int passes = 0;
+  const RenderedImage image =
+      render_streamed(blocks, blocks.stream().grid(), options, [&](const RenderedImage& pass) {
+        ++passes;
+        EXPECT_EQ(pass.rgb.size(), 96u * 64u);
+      });
+  EXPECT_GT(passes, 0) << "something coarse is there first";
+  expect_same(image, whole());
+  EXPECT_LT(blocks.stream().counts().bytes_loaded, bytes) << "what nobody sees is not loaded";
+}
+
+TEST_F(StreamImage, IsTheSameWithLessMemoryThanItsBlocksTake) {
+  StreamBlocks all(path(), bytes);
+  render_streamed(all, all.stream().grid(), options);
+  const std::uint64_t needed = all.stream().counts().bytes_loaded;
+
+  StreamBlocks blocks(path(), needed / 2);
+  const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
+  EXPECT_GT(blocks.stream().counts().blocks_evicted, 0u);
+  EXPECT_LE(blocks.stream().counts().bytes_loaded, needed / 2);
+  expect_same(image, whole());
+}
+
+TEST_F(StreamImage, WithHardlyAnyMemoryItIsCoarseButThere) {
+  const EsvoStream probe(path(), bytes);
+  StreamBlocks blocks(path(), probe.counts().bytes_loaded);  // the root's block
+  const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
+  int hits = 0;
+  for (const float depth : image.depth) hits += depth < HUGE_VALF ? 1 : 0;
+  EXPECT_GT(hits, 1000);
+}
+
+}  // namespace
+}  // namespace voxdag
