@@ -15,6 +15,10 @@ class Stopwatch {
     const Clock::time_point before = std::exchange(start_, Clock::now());
     return std::chrono::duration<double>(start_ - before).count();
   }
+  /// Without a lap.
+  double since_start() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

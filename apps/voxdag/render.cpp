@@ -11,6 +11,7 @@
 #include "frame_names.hpp"
 #include "human.hpp"
 #include "parse.hpp"
+#include "process_usage.hpp"
 #include "render_light.hpp"
 #include "render_mesh.hpp"
 #include "render_passes.hpp"
@@ -18,6 +19,7 @@
 #include "scene_file.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
+#include "voxdag/stream/stream_blocks.hpp"
 
 namespace voxdag {
 namespace {
@@ -30,6 +32,7 @@ struct RenderArguments {
   MeshArguments mesh;
   PathArguments path;
   DeviceChoice device;
+  std::uint64_t stream_memory = 0;  ///< Of an ESVO's blocks, bytes; 0: all are loaded.
 };
 
 /// Every file to write.
@@ -59,11 +62,46 @@ void print_summary(const RenderArguments& arguments, const RenderedImage& image,
              static_cast<double>(*std::max_element(image.steps.begin(), image.steps.end())));
 }
 
+/// `--memory`: the picture of an ESVO whose blocks are loaded while it is made. The outputs are
+/// there from the first pass on and become finer.
+void render_streamed(const RenderArguments& arguments, const std::vector<RenderPass>& passes,
+                     Session& session) {
+  StreamBlocks blocks(session.subject, arguments.stream_memory);
+  const auto write = [&](const RenderedImage& image) {
+    for (const RenderPass& pass : passes) write_pass(pass, image);
+  };
+  Stopwatch watch;
+  double first_seconds = 0;
+  const auto on_pass = [&](const RenderedImage& image) {
+    write(image);
+    if (first_seconds == 0) first_seconds = watch.since_start();
+  };
+  const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), arguments.options,
+                                              on_pass, &session.progress);
+  const double seconds = watch.since_start();
+  write(image);
+  session.bar.clear();
+  if (session.quiet) return;
+  print_summary(arguments, image, seconds, "cpu");
+  const EsvoStreamCounts& counts = blocks.stream().counts();
+  std::uint64_t all = 0;
+  for (const EsvoBlockEntry& entry : blocks.stream().directory()) all += entry.slots * 8ull;
+  fmt::print("  first picture after {}; {} of {} loaded, {} read, {} of {} blocks\n",
+             human_seconds(first_seconds > 0 ? first_seconds : seconds),
+             human_bytes(counts.bytes_loaded), human_bytes(all), human_bytes(counts.bytes_read),
+             with_commas(counts.blocks_read), with_commas(blocks.stream().directory().size()));
+}
+
 void render(RenderArguments& arguments, Session& session) {
   const std::vector<RenderPass> passes = all_passes(arguments);
   for (const RenderPass& pass : passes) {
     check_writable(frame_name(pass.path, 0));
     if (pass.name == "steps") arguments.options.with_steps = true;
+  }
+  if (arguments.stream_memory != 0) {
+    arguments.options.width = arguments.size.width;
+    arguments.options.height = arguments.size.height;
+    return render_streamed(arguments, passes, session);
   }
   const SceneFile file(session.subject);
   const VoxelScene scene = file.scene();
@@ -227,10 +265,17 @@ void add_render_command(CLI::App& app, Session& session) {
   add_mesh_options(command, arguments->mesh);
   add_path_options(command, arguments->path);
   add_device_option(command, arguments->device);
+  add_parsed_option(
+      command, "--memory", arguments->stream_memory, parse_memory, "LIMIT",
+      "Load only what is seen of an ESVO, into this much memory: 512M. The picture is "
+      "there at once, coarse, and is written again as it becomes finer");
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {
     check_mesh_options(arguments->mesh);
+    if (arguments->stream_memory != 0 &&
+        (!arguments->path.file.empty() || !arguments->mesh.file.empty()))
+      throw CLI::ValidationError("--memory", "not with --path or --mesh");
     if (!arguments->path.file.empty())
       for (const RenderPass& pass : all_passes(*arguments)) check_frame_pattern(pass.path);
     check_output("--output", arguments->output);
