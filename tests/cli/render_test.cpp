@@ -1,3 +1,6 @@
+#include <fstream>
+
+#include "npy_rays.hpp"
 #include "sponge.hpp"
 #include "voxdag/image/exr.hpp"
 #include "voxdag/image/png.hpp"
@@ -116,6 +119,34 @@ TEST_F(RenderCommand, SeesTheTrianglesOfAMesh) {
     return;
   }
   EXPECT_NE(read_text(path("mesh.png")), voxels);
+}
+
+TEST_F(RenderCommand, TakesEsvoFiles) {
+  ASSERT_EQ(
+      run_voxdag({"build", path("sponge.ply"), "-r", "32", "--as", "esvo", "-o", path("in.esvo")})
+          .status,
+      0);
+  const auto render = [](const std::string& option, const std::string& name) {
+    std::vector<std::string> words = {"render", path("in.esvo"), "-o",   path(name),
+                                      "--size", "64x36",         "--ao", "4"};
+    if (!option.empty()) words.push_back(option);
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(path(name));
+  };
+  const std::string picture = render("", "esvo.png");
+  EXPECT_EQ(render("--no-beams", "esvo_whole.png"), picture);
+  EXPECT_NE(render("--no-sun", "esvo_night.png"), picture);
+
+  // Two rays at a corner of the sponge, whose side is 0.56, and one that goes away.
+  std::ofstream(path("rays.npy"), std::ios::binary)
+      << rays_npy({{0.03f, 0.03f, 9, 0, 0, 0, -1, 1e9f},
+                   {0.03f, 9, 0.03f, 0, 0, -1, 0, 1e9f},
+                   {9, 9, 9, 0, 1, 0, 0, 1e9f}});
+  const ProcessResult traced =
+      run_voxdag({"trace", path("in.esvo"), "--rays", path("rays.npy"), "-o", path("hits.npy")});
+  EXPECT_EQ(traced.status, 0) << traced.err;
+  EXPECT_NE(traced.out.find("3 rays, 2 hits"), std::string::npos) << traced.out;
 }
 
 }  // namespace
