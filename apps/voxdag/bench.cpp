@@ -135,6 +135,7 @@ void add_bench_command(CLI::App& app, Session& session) {
   command.require_subcommand(1);
   add_build(command, session);
   add_bench_trace_command(command, session);
+  add_bench_esvo_command(command, session);
 }
 
 }  // namespace voxdag

@@ -2,59 +2,20 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "bench_machine.hpp"
+#include "bench_mesh.hpp"
 #include "scratch_folder.hpp"
-#include "voxdag/mesh/scenes.hpp"
 
 namespace voxdag {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// "hairball:100" into name and size; the size is empty where none is given.
-std::array<std::string, 2> split_scene(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) return {text, ""};
-  return {text.substr(0, colon), text.substr(colon + 1)};
-}
-
-bool is_procedural(const std::string& mesh) {
-  const std::string name = split_scene(mesh)[0];
-  const auto scenes = scene_list();
-  return !fs::exists(mesh) && std::any_of(scenes.begin(), scenes.end(),
-                                          [&](const SceneInfo& s) { return s.name == name; });
-}
-
-std::string this_program() { return fs::read_symlink("/proc/self/exe"); }
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-/// "voxdag: a.obj: line 3: ..." or how it ended.
-std::string failure_of(const ChildResult& result, double seconds_limit) {
-  if (result.timed_out) return fmt::format("ended after {} s", seconds_limit);
-  if (result.status == 0) return "";
-  const std::string line = first_line(result.err);
-  if (!line.empty()) return line.starts_with("voxdag: ") ? line.substr(8) : line;
-  return result.status > 128 ? fmt::format("ended by signal {}", result.status - 128)
-                             : fmt::format("exit status {}", result.status);
-}
-
-/// Reads all of a file, so that the next reader finds it in memory.
-void warm_up(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> part(1 << 20);
-  while (file.read(part.data(), static_cast<std::streamsize>(part.size()))) {
-  }
-  if (!file.eof()) throw Error(path, "", "cannot be read");
-}
 
 std::uint64_t bytes_in(const fs::path& folder) {
   std::uint64_t bytes = 0;
@@ -90,7 +51,7 @@ class Bench {
 
   BenchResults run() {
     for (const std::string& mesh : plan_.meshes) {
-      const fs::path path = prepare(mesh);
+      const fs::path path = prepare_mesh(mesh, folder_.path(), progress_);
       const std::string scene = is_procedural(mesh) ? mesh : fs::path(mesh).filename().string();
       for (const std::string& method : plan_.methods) run_builds(scene, path, method);
       for (const Rival& rival : plan_.rivals) run_rival(scene, path, rival);
@@ -99,22 +60,6 @@ class Bench {
   }
 
  private:
-  /// The file of the mesh, made where it is procedural, and in memory.
-  fs::path prepare(const std::string& mesh) {
-    fs::path path = fs::absolute(mesh);
-    if (is_procedural(mesh)) {
-      progress_.report("making " + mesh, 0);
-      path = folder_.path() / (mesh + ".ply");
-      const auto [name, size] = split_scene(mesh);
-      std::vector<std::string> command{this_program(), "scene", name, "-o", path};
-      if (!size.empty()) command.insert(command.end(), {"--size", size});
-      const ChildResult made = run_child(command, folder_.path(), 0, progress_);
-      if (made.status != 0) throw Error(mesh, "", failure_of(made, 0));
-    }
-    warm_up(path);
-    return path;
-  }
-
   void run_builds(const std::string& scene, const fs::path& path, const std::string& method) {
     for (const int levels : plan_.levels) {
       step(fmt::format("{} {}", scene, 1 << levels));

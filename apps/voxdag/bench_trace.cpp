@@ -3,57 +3,19 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
 
 #include "trace_casters.hpp"
 #include "trace_cuda.hpp"
+#include "trace_measure.hpp"
 #include "trace_rival_openvdb.hpp"
 #include "trace_rivals.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
-
-/// What a runner took for a set, and found.
-struct Measured {
-  double seconds = HUGE_VAL;
-  std::vector<std::uint8_t> hits;
-};
-
-double cast_all(const TraceRunner& runner, std::size_t count, std::uint8_t* hits) {
-  constexpr std::size_t kBlock = 2048;  // a multiple of a packet's 16
-  if (runner.cast_set) return runner.cast_set(hits);
-  const auto start = std::chrono::steady_clock::now();
-  if (runner.before) runner.before();
-  parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block) {
-    runner.cast(block * kBlock, std::min((block + 1) * kBlock, count), hits);
-  });
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// All runners take turns, so that what disturbs the machine disturbs all of them; the first turn
-/// warms up.
-std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size_t count,
-                              int repeat) {
-  std::vector<Measured> measured(runners.size());
-  for (Measured& m : measured) m.hits.resize(count);
-  for (int turn = 0; turn <= repeat; ++turn)
-    for (std::size_t i = 0; i < runners.size(); ++i) {
-      const double seconds = cast_all(runners[i], count, measured[i].hits.data());
-      if (turn > 0) measured[i].seconds = std::min(measured[i].seconds, seconds);
-    }
-  return measured;
-}
-
-std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] == b[i] ? 1 : 0;
-  return count;
-}
 
 /// Adds up views.
 struct Sums {

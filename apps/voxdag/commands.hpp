@@ -13,6 +13,7 @@ void add_export_command(CLI::App& app, Session& session);
 void add_scene_command(CLI::App& app, Session& session);
 void add_bench_command(CLI::App& app, Session& session);
 void add_bench_trace_command(CLI::App& parent, Session& session);  ///< Below `bench`.
+void add_bench_esvo_command(CLI::App& parent, Session& session);   ///< Likewise.
 void add_completion_command(CLI::App& app, Session& session);
 
 }  // namespace voxdag

@@ -29,6 +29,7 @@ struct RenderArguments {
   std::vector<RenderPass> passes;
   ImageSize size{1920, 1080};
   RenderOptions options;
+  std::optional<bool> filter;  ///< Without: for ESVOs.
   MeshArguments mesh;
   PathArguments path;
   DeviceChoice device;
@@ -101,12 +102,14 @@ void render(RenderArguments& arguments, Session& session) {
   if (arguments.stream_memory != 0) {
     arguments.options.width = arguments.size.width;
     arguments.options.height = arguments.size.height;
+    arguments.options.filter = arguments.filter.value_or(true);
     return render_streamed(arguments, passes, session);
   }
   const SceneFile file(session.subject);
   const VoxelScene scene = file.scene();
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
+  arguments.options.filter = arguments.filter.value_or(scene.esvo() != nullptr);
   const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
   const std::unique_ptr<ViewSource> source =
       open_view_source(arguments.mesh, arguments.options.albedo, scene, file.grid(), session);
@@ -214,6 +217,14 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
       ->capture_default_str();
 }
 
+void add_filter_options(CLI::App& command, std::optional<bool>& filter) {
+  command.add_flag_callback(
+      "--filter", [&filter] { filter = true; },
+      "Smooth what voxels larger than pixels show (default: for an ESVO)");
+  command.add_flag_callback(
+      "--no-filter", [&filter] { filter = false; }, "Show every voxel as it is");
+}
+
 void add_quality_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--spp,--samples", options.samples_per_pixel, "Samples per pixel")
       ->check(CLI::Range(1, 4096))
@@ -254,6 +265,7 @@ void add_render_command(CLI::App& app, Session& session) {
   add_view_options(command, options.view);
   add_light_options(command, options);
   add_quality_options(command, options);
+  add_filter_options(command, arguments->filter);
   command
       .add_option("--depth", arguments->depth, "Write the depth along the view: --pass depth=OUT")
       ->type_name("OUT");

@@ -1,5 +1,6 @@
 #include "trace_casters.hpp"
 
+#include "caster_runner.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
@@ -8,27 +9,6 @@
 
 namespace voxdag {
 namespace {
-
-/// A runner for any caster (see trace/scalar_caster.hpp).
-template <class Caster>
-TraceRunner runner_of(const Caster& caster, RayClass rays, std::span<const CastRay> casts) {
-  TraceRunner runner;
-  runner.name = "voxdag";
-  runner.cast = [caster, casts, closest = is_closest(rays)](std::size_t first, std::size_t last,
-                                                            std::uint8_t* hits) {
-    const auto count = static_cast<int>(last - first);
-    const auto make_ray = [&](int i) { return casts[first + static_cast<std::size_t>(i)]; };
-    const auto set = [&](int i, bool is_hit) {
-      hits[first + static_cast<std::size_t>(i)] = is_hit ? 1 : 0;
-    };
-    if (closest)
-      caster.closest(count, make_ray,
-                     [&](int i, const GridRay&, const CellHit&, bool is_hit) { set(i, is_hit); });
-    else
-      caster.any(count, make_ray, set);
-  };
-  return runner;
-}
 
 /// Counts the bytes that a walk through the paper's layout reads.
 class ByteCountingNodes : public SvdagNodes {

@@ -67,6 +67,23 @@ TEST_F(RenderCommand, BeamsChangeNothingAndLightsDo) {
   }
 }
 
+TEST_F(RenderCommand, TheFilterIsForOctreesUnlessAskedFor) {
+  ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "16", "-o", path("in.esvo")}).status, 0);
+  const auto render = [](const std::string& file, std::vector<std::string> options) {
+    options.insert(options.begin(),
+                   {"render", path(file), "-o", path("f.png"), "--size", "64x36", "--ao", "4"});
+    EXPECT_EQ(run_voxdag(options).status, 0);
+    return read_text(path("f.png"));
+  };
+  for (const char* file : {"in.vdag", "in.esvo"}) {
+    const bool is_esvo = std::string(file) == "in.esvo";
+    const std::string usual = render(file, {});
+    const std::string with = render(file, {"--filter"}), without = render(file, {"--no-filter"});
+    EXPECT_NE(with, without) << file;
+    EXPECT_EQ(usual, is_esvo ? with : without) << file;
+  }
+}
+
 TEST_F(RenderCommand, TakesTheViewThatItPrints) {
   const auto render = [](std::vector<std::string> options, const std::string& name) {
     options.insert(options.begin(),

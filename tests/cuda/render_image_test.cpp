@@ -57,6 +57,17 @@ TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForAnEsvo) {
   }
 }
 
+TEST_F(CudaRender, FiltersAsTheCpuDoes) {
+  const Svdag dag = picture_scene();
+  RenderOptions options = pictures(4)[0].options;
+  options.filter = true;
+  const RenderedImage expected = render_image(dag.view(), picture_grid(), options);
+  const RenderedImage image =
+      render_image(DeviceScene(device_, dag.view()), picture_grid(), options);
+  expect_like(image, expected);
+  EXPECT_EQ(image.cell_pixels, expected.cell_pixels);
+}
+
 TEST_F(CudaRender, TakesPointsFromASource) {
   const Svdag dag = picture_scene();
   RenderOptions options = pictures(8)[0].options;  // several launches

@@ -26,7 +26,9 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
                             static_cast<std::size_t>(beams_across(camera.height));
   const char* what = "the picture";
   constexpr std::size_t kBytesPerPixel = 2 * sizeof(Vec3f) + 3 * sizeof(float);
-  require_device_memory(pixels * (kBytesPerPixel + (with_steps ? sizeof(float) : 0)) +
+  const bool with_filter = setup_.image.cell_pixels != nullptr;
+  require_device_memory(pixels * (kBytesPerPixel + (with_steps ? sizeof(float) : 0) +
+                                  (with_filter ? sizeof(Vec3f) + 1 : 0)) +
                             (with_beams ? beams * sizeof(float) : 0),
                         what);
   radiance_ = make_device_buffer<Vec3f>(pixels, what);
@@ -36,6 +38,12 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
   shadow_ = make_device_buffer<float>(pixels, what);
   if (with_steps) steps_ = make_device_buffer<float>(pixels, what);
   if (with_beams) beam_starts_ = make_device_buffer<float>(beams, what);
+  if (with_filter) {
+    filtered_ = make_device_buffer<Vec3f>(pixels, what);
+    cell_pixels_ = make_device_buffer<std::uint8_t>(pixels, what);
+    filter_samples_ = upload(std::span<const FilterSample>(filter_table()), what);
+    filter_input_ = {radiance_.data(), cell_pixels_.data(), camera.width, camera.height};
+  }
   const unsigned long long none = 0;
   rays_ = upload(std::span(&none, 1), what);
 
@@ -47,13 +55,14 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
   setup_.tables.disc = disc_.data();
   setup_.tables.rotations = rotations_.data();
   setup_.tables.hemisphere = hemisphere_.data();
-  setup_.image = {radiance_.data(),  depth_.data(),  normal_.data(),
-                  occlusion_.data(), shadow_.data(), steps_.data()};
+  setup_.image = {radiance_.data(), depth_.data(), normal_.data(),     occlusion_.data(),
+                  shadow_.data(),   steps_.data(), cell_pixels_.data()};
   setup_.beam_starts = beam_starts_.data();
 }
 
-void DeviceFrame::copy_to(RenderedImage& image) const {
-  fetch(image.radiance, radiance_);
+void DeviceFrame::copy_to(RenderedImage& image, bool is_filtered) const {
+  fetch(image.radiance, is_filtered ? filtered_ : radiance_);
+  fetch(image.cell_pixels, cell_pixels_);
   fetch(image.depth, depth_);
   fetch(image.normal, normal_);
   fetch(image.occlusion, occlusion_);

@@ -123,7 +123,11 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
       launch_steps(scene.view(), setup, first, last, stream.get());
     });
-  frame.copy_to(plan.image());
+  if (options.filter && source == nullptr) {
+    launch_filter(frame.filter_input(), frame.filter_samples(), frame.filtered(), stream.get());
+    stream.wait("filtering");
+  }
+  frame.copy_to(plan.image(), options.filter && source == nullptr);
   return plan.finish();
 }
 

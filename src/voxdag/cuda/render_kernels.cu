@@ -9,6 +9,7 @@ namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kBeamThreads = 64;
+constexpr int kFilterSide = 16;  // pixels of a block, across and down
 
 template <class Nodes>
 __global__ void __launch_bounds__(kBeamThreads)
@@ -41,6 +42,16 @@ __global__ void __launch_bounds__(kBlockPixels)
   if (threadIdx.x % 32 == 0) atomicAdd(rays, count);
 }
 
+__global__ void __launch_bounds__(kFilterSide* kFilterSide)
+    filter_kernel(const __grid_constant__ FilterInput input, const FilterSample* samples,
+                  Vec3f* filtered) {
+  const int x = static_cast<int>(blockIdx.x) * kFilterSide + static_cast<int>(threadIdx.x);
+  const int y = static_cast<int>(blockIdx.y) * kFilterSide + static_cast<int>(threadIdx.y);
+  if (x >= input.width || y >= input.height) return;
+  filtered[static_cast<std::size_t>(y) * static_cast<std::size_t>(input.width) +
+           static_cast<std::size_t>(x)] = filtered_color(input, samples, x, y);
+}
+
 std::uint32_t beam_blocks(std::uint32_t threads) {
   return (threads + kBeamThreads - 1) / kBeamThreads;
 }
@@ -71,6 +82,16 @@ void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const L
         beam_nodes, ScalarCaster(nodes), setup, range, view_samples, rays);
   });
   check_cuda(cudaGetLastError(), "rendering");
+}
+
+void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,
+                   cudaStream_t stream) {
+  const auto blocks = [](int pixels) {
+    return static_cast<unsigned>((pixels + kFilterSide - 1) / kFilterSide);
+  };
+  filter_kernel<<<dim3(blocks(input.width), blocks(input.height)), dim3(kFilterSide, kFilterSide),
+                  0, stream>>>(input, samples, filtered);
+  check_cuda(cudaGetLastError(), "filtering");
 }
 
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
+#include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/view_sample.hpp"
 
@@ -20,5 +21,9 @@ void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uin
 /// render_pixel() for all pixels of the range; adds the number of rays to `*rays`.
 void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
+
+/// filtered_color() of every pixel.
+void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,
+                   cudaStream_t stream);
 
 }  // namespace voxdag

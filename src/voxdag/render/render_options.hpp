@@ -33,7 +33,8 @@ struct RenderOptions {
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
-  bool filter = false;  ///< Smooth voxels larger than pixels: see post_filter.hpp.
+  bool filter = false;  ///< Smooth voxels larger than pixels, but not a source's points: see
+                        ///< post_filter.hpp.
   float exposure = 0;   ///< Factor before tone mapping; 0: what suits the picture.
 
   bool with_steps = false;  ///< Fill RenderedImage::steps.

@@ -1,0 +1,131 @@
+/// The command line of `voxdag bench esvo`.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "bench_esvo.hpp"
+#include "bench_machine.hpp"
+#include "commands.hpp"
+#include "parse.hpp"
+#include "voxdag/core/atomic_file.hpp"
+
+namespace voxdag {
+namespace {
+
+struct BenchEsvoArguments {
+  EsvoBenchPlan plan;
+  std::vector<std::string> scenes, resolutions{"1K", "2K", "4K"},
+      sizes{"512x384", "1024x768", "2048x1536"};
+  std::string json_file, plot_file, rays_plot_file;
+};
+
+void write_text(const std::string& path, const std::string& text) {
+  AtomicFile file(path);
+  file.write(std::string_view(text));
+  file.commit();
+}
+
+/// Each text as `parse` has it.
+template <class Value, class Parse>
+void parse_all(const std::string& option, const std::vector<std::string>& texts, const Parse& parse,
+               std::vector<Value>& values) {
+  for (const std::string& text : texts) {
+    try {
+      values.push_back(parse(text));
+    } catch (const std::invalid_argument& wrong) {
+      throw CLI::ValidationError(option, fmt::format("\"{}\": {}", text, wrong.what()));
+    }
+  }
+}
+
+void run(const BenchEsvoArguments& arguments, Session& session) {
+  for (const std::string& path :
+       {arguments.json_file, arguments.plot_file, arguments.rays_plot_file})
+    if (!path.empty()) check_writable(path);
+  const nlohmann::ordered_json machine = machine_json();
+  const EsvoBenchResults results = bench_esvo(arguments.plan, session.progress);
+  session.bar.clear();
+  const std::string json = esvo_bench_json(results, machine).dump(2) + "\n";
+  if (!arguments.json_file.empty()) write_text(arguments.json_file, json);
+  if (!arguments.plot_file.empty()) write_text(arguments.plot_file, esvo_bench_svg(results));
+  if (!arguments.rays_plot_file.empty())
+    write_text(arguments.rays_plot_file, esvo_rays_svg(results));
+  if (session.json)
+    fmt::print("{}", json);
+  else
+    fmt::print("{}, {} threads, load average {:.2f} before\n\n{}",
+               machine.at("processor").get<std::string>(), results.threads,
+               machine.at("load_average").get<double>(), esvo_bench_table(results));
+  for (const EsvoBuildRun& build : results.builds)
+    if (!build.failure.empty())
+      throw Error(build.scene, std::to_string(1 << build.levels), build.failure);
+}
+
+}  // namespace
+
+void add_bench_esvo_command(CLI::App& parent, Session& session) {
+  const auto arguments = std::make_shared<BenchEsvoArguments>();
+  EsvoBenchPlan& plan = arguments->plan;
+  CLI::App& command = *parent.add_subcommand(
+      "esvo", "Size, time, rays and silhouettes of ESVOs, with contours and without");
+  command.footer(
+      "Example:\n  voxdag bench esvo Sibenik=sibenik.obj 'Sponza=sponza.obj --max-error 0.5' "
+      "-r 1K,2K,4K\n"
+      "A scene of the paper's name stands beside the paper's figures. Scratch files go to TMPDIR.");
+  command
+      .add_option("scenes", arguments->scenes,
+                  "NAME=MESH, and options of build after it; the mesh is a file, or a procedural "
+                  "scene as NAME or NAME:SIZE")
+      ->type_name("NAME=MESH")
+      ->required();
+  command
+      .add_option("-r,--resolution", arguments->resolutions,
+                  "Voxels a side, several with commas (default: 1K,2K,4K)")
+      ->delimiter(',')
+      ->type_name("N,N...");
+  command
+      .add_option("--size", arguments->sizes,
+                  "Pixels of the pictures whose rays are cast, several with commas (default: "
+                  "512x384,1024x768,2048x1536)")
+      ->delimiter(',')
+      ->type_name("WxH,WxH...");
+  command.add_option("--views", plan.views, "Cameras")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--repeat", plan.repeat, "Cast so often and take the fastest")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--lod", plan.lod_pixels, "Rays end at cells of so many pixels; 0: voxels")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->type_name("PIXELS")
+      ->capture_default_str();
+  command.add_flag_callback(
+      "--no-silhouettes", [&plan] { plan.silhouettes = false; },
+      "Leave out the comparison with the mesh at every resolution");
+  command.add_option("-o,--output", arguments->json_file, "Write the JSON to a file, too")
+      ->type_name("FILE.json");
+  command
+      .add_option("--plot", arguments->plot_file,
+                  "Draw megabytes, seconds and silhouettes over the resolution")
+      ->type_name("FILE.svg");
+  command.add_option("--rays-plot", arguments->rays_plot_file, "Draw bars of rays per second")
+      ->type_name("FILE.svg");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.callback([arguments, &session] {
+    parse_all("scenes", arguments->scenes, parse_esvo_scene, arguments->plan.scenes);
+    parse_all("--resolution", arguments->resolutions, parse_levels, arguments->plan.levels);
+    parse_all("--size", arguments->sizes, parse_image_size, arguments->plan.sizes);
+    std::sort(arguments->plan.levels.begin(), arguments->plan.levels.end());
+    session.work = [arguments, &session] {
+      arguments->plan.threads = session.threads;
+      run(*arguments, session);
+    };
+  });
+}
+
+}  // namespace voxdag

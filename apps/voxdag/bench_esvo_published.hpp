@@ -1,0 +1,88 @@
+#pragma once
+/// Published figures, to stand beside measured ones. Samuli Laine, Tero Karras, Efficient Sparse
+/// Voxel Octrees, I3D 2010, Tables 1 and 2: megabytes and seconds of builds on four cores of a
+/// Core2 Quad Q9300, and million primary rays per second on a Quadro FX 5800.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+namespace voxdag::published {
+
+inline constexpr std::string_view kEsvoSource =
+    "Laine and Karras 2010, Tables 1 and 2 (builds: Core2 Quad Q9300, 4 cores; rays: Quadro FX "
+    "5800)";
+inline constexpr int kEsvoFirstLevels = 10;
+inline constexpr std::array<std::array<int, 2>, 3> kEsvoSizes{
+    {{512, 384}, {1024, 768}, {2048, 1536}}};
+
+/// What the paper does not have is NaN.
+struct EsvoScene {
+  std::string_view name;
+  std::array<double, 7> megabytes, seconds;  ///< Of 10 levels and more.
+  double bytes_per_voxel;
+  /// Million rays per second by size: of triangles, cubes, contours, contours with beams.
+  std::array<std::array<double, 4>, 3> mrays;
+};
+
+inline constexpr double kNone = NAN;
+inline constexpr std::array<EsvoScene, 6> kEsvoScenes{{
+    {"City",
+     {13, 39, 131, 432, 1368, kNone, kNone},
+     {14, 23, 48, 115, 311, kNone, kNone},
+     5.44,
+     {{{46.7, 45.1, 79.9, 88.6}, {68.5, 54.3, 89.1, 106.0}, {77.1, 63.9, 97.4, 123.8}}}},
+    {"Sibenik",
+     {41, 141, 440, 1034, 1857, kNone, kNone},
+     {10, 31, 90, 194, 336, kNone, kNone},
+     5.68,
+     {{{64.3, 38.7, 80.0, 82.5}, {94.1, 46.5, 94.1, 103.6}, {107.1, 55.1, 103.9, 122.0}}}},
+    {"Sibenik-D",
+     {79, 314, 1192, 2806, kNone, kNone, kNone},
+     {70, 274, 1342, 2541, kNone, kNone, kNone},
+     8.10,
+     {{{kNone, 24.8, 32.6, 37.5}, {kNone, 30.2, 38.7, 48.3}, {kNone, 37.1, 43.6, 60.9}}}},
+    {"Hairball",
+     {442, 1552, kNone, kNone, kNone, kNone, kNone},
+     {294, 628, kNone, kNone, kNone, kNone, kNone},
+     7.48,
+     {{{11.6, 22.4, 24.1, 24.1}, {20.5, 22.5, 27.9, 28.4}, {31.2, 29.2, 36.5, 38.2}}}},
+    {"Fairy",
+     {11, 35, 99, 239, 376, 639, 1109},
+     {6, 15, 38, 86, 121, 178, 282},
+     5.62,
+     {{{63.9, 62.1, 128.2, 132.6}, {125.1, 69.4, 145.4, 150.9}, {155.8, 78.6, 160.4, 169.2}}}},
+    {"Conference",
+     {17, 40, 96, 220, 512, 1328, kNone},
+     {7, 13, 24, 51, 115, 288, kNone},
+     5.16,
+     {{{69.1, 35.8, 97.9, 104.4}, {111.9, 43.8, 110.3, 124.3}, {134.0, 52.3, 120.2, 140.8}}}},
+}};
+
+/// The paper's scene of that name, or null. Case does not matter.
+inline const EsvoScene* esvo_scene(std::string_view name) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) ==
+           std::tolower(static_cast<unsigned char>(b));
+  };
+  for (const EsvoScene& scene : kEsvoScenes)
+    if (std::equal(name.begin(), name.end(), scene.name.begin(), scene.name.end(), same))
+      return &scene;
+  return nullptr;
+}
+
+/// Of kEsvoSizes, the rates of that size; NaN where the paper has none.
+inline std::array<double, 4> esvo_mrays(const EsvoScene* scene, int width, int height) {
+  for (std::size_t i = 0; scene != nullptr && i < kEsvoSizes.size(); ++i)
+    if (kEsvoSizes[i] == std::array<int, 2>{width, height}) return scene->mrays[i];
+  return {kNone, kNone, kNone, kNone};
+}
+
+inline double esvo_of_levels(const std::array<double, 7>& values, int levels) {
+  const int column = levels - kEsvoFirstLevels;
+  return column < 0 || column >= 7 ? kNone : values[static_cast<std::size_t>(column)];
+}
+
+}  // namespace voxdag::published

@@ -1,0 +1,277 @@
+/// What `voxdag bench esvo` prints and draws.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench_esvo.hpp"
+#include "bench_esvo_published.hpp"
+#include "human.hpp"
+#include "svg_plot.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Builds = std::vector<EsvoBuildRun>;
+
+std::string number(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
+}
+
+Json json_number(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+std::string resolution_of(int levels) { return with_commas(std::uint64_t{1} << levels) + "³"; }
+
+std::string build_row(const EsvoBuildRun& run) {
+  const std::string name = fmt::format("{:>10}  {:<9}", resolution_of(run.levels),
+                                       run.with_contours ? "contours" : "cubes");
+  if (!run.failure.empty()) return fmt::format("  {} failed: {}\n", name, run.failure);
+  const published::EsvoScene* paper =
+      run.with_contours ? published::esvo_scene(run.scene) : nullptr;
+  const double megabytes =
+      paper != nullptr ? published::esvo_of_levels(paper->megabytes, run.levels) : NAN;
+  const double seconds =
+      paper != nullptr ? published::esvo_of_levels(paper->seconds, run.levels) : NAN;
+  return fmt::format("  {}{:>15}{:>10}{:>8}{:>10}{:>10}{:>10}{:>12}{:>10}{:>9}\n", name,
+                     with_commas(run.voxels), number(run.megabytes(), 1),
+                     number(run.bytes_per_voxel(), 2), number(run.build_seconds, 2),
+                     number(run.cost.cpu_seconds(), 2), human_count(run.voxels_per_second()),
+                     human_bytes(run.cost.peak_bytes), number(megabytes, 0), number(seconds, 0));
+}
+
+std::string builds_table(const Builds& builds) {
+  std::string text;
+  for (std::size_t i = 0; i < builds.size(); ++i) {
+    if (i == 0 || builds[i].scene != builds[i - 1].scene) {
+      const published::EsvoScene* paper = published::esvo_scene(builds[i].scene);
+      text += fmt::format("{}{}{}\n", i == 0 ? "" : "\n", builds[i].scene,
+                          paper == nullptr ? ""
+                                           : fmt::format(" (the paper: {:.2f} bytes per voxel)",
+                                                         paper->bytes_per_voxel));
+      text += fmt::format("  {:>10}  {:<9}{:>15}{:>10}{:>8}{:>10}{:>10}{:>10}{:>12}{:>10}{:>9}\n",
+                          "grid", "form", "voxels", "MB", "B/voxel", "build s", "CPU s", "voxels/s",
+                          "peak mem", "paper MB", "paper s");
+    }
+    text += build_row(builds[i]);
+  }
+  return text;
+}
+
+std::string rates_table(const std::vector<EsvoRateRow>& rates) {
+  if (rates.empty()) return "";
+  std::string text = fmt::format(
+      "\nMillion primary rays per second (in brackets: the paper's)\n  {:<16}{:>10}{:>12}", "scene",
+      "grid", "size");
+  for (const EsvoForm form : kEsvoForms) text += fmt::format("{:>20}", name_of(form));
+  text += "\n";
+  for (const EsvoRateRow& row : rates) {
+    text += fmt::format("  {:<16}{:>11}{:>12}", row.scene, resolution_of(row.levels),
+                        fmt::format("{}x{}", row.size.width, row.size.height));
+    const std::array<double, 4> paper =
+        published::esvo_mrays(published::esvo_scene(row.scene), row.size.width, row.size.height);
+    for (std::size_t form = 0; form < kEsvoForms.size(); ++form)
+      text += fmt::format("{:>20}",
+                          number(row.mrays_per_second[form], 2) +
+                              (std::isnan(paper[form]) ? "" : " (" + number(paper[form], 1) + ")"));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string silhouettes_table(const std::vector<SilhouetteRow>& rows) {
+  if (rows.empty()) return "";
+  std::string text = fmt::format(
+      "\nRays on the wrong side of a silhouette, per million\n  {:<16}{:>10}{:>12}{:>12}{:>26}\n",
+      "scene", "grid", "cubes", "contours", "levels of cubes saved");
+  for (const SilhouetteRow& row : rows)
+    text += fmt::format("  {:<16}{:>11}{:>12}{:>12}{:>26}\n", row.scene, resolution_of(row.levels),
+                        number(row.cubes * 1e6, 0), number(row.contours * 1e6, 0),
+                        number(levels_saved(rows, row), 1));
+  return text;
+}
+
+/// Lines over the levels, one for each scene and form.
+template <class Value>
+void add_lines(const Builds& builds, const Value& value, LineDiagram& diagram) {
+  std::size_t series = 0;
+  for (std::size_t begin = 0, end; begin < builds.size(); begin = end, ++series) {
+    PlotLine contours{builds[begin].scene, plot_style(series), {}};
+    PlotLine cubes{"", plot_style(series, "stroke-dasharray='1 3'"), {}};
+    for (end = begin; end < builds.size() && builds[end].scene == builds[begin].scene; ++end)
+      if (builds[end].failure.empty())
+        (builds[end].with_contours ? contours : cubes)
+            .points.push_back({static_cast<double>(builds[end].levels), value(builds[end])});
+    diagram.lines.insert(diagram.lines.end(), {contours, cubes});
+    std::erase_if(diagram.lines, [](const PlotLine& line) { return line.points.empty(); });
+  }
+}
+
+/// The paper's line of each scene that is among `builds`.
+void add_paper_lines(const Builds& builds, std::array<double, 7> published::EsvoScene::*values,
+                     LineDiagram& diagram) {
+  std::size_t series = 0;
+  for (std::size_t i = 0; i < builds.size(); ++i) {
+    if (i > 0 && builds[i].scene == builds[i - 1].scene) continue;
+    const published::EsvoScene* paper = published::esvo_scene(builds[i].scene);
+    PlotLine line{"", plot_style(series++, "stroke-dasharray='6 3'"), {}};
+    for (std::size_t k = 0; paper != nullptr && k < (paper->*values).size(); ++k)
+      if (!std::isnan((paper->*values)[k]))
+        line.points.push_back(
+            {static_cast<double>(k) + published::kEsvoFirstLevels, (paper->*values)[k]});
+    if (!line.points.empty()) diagram.lines.push_back(line);
+  }
+}
+
+}  // namespace
+
+std::string name_of(EsvoForm form) {
+  static constexpr std::array kNames{"triangles", "cubes", "contours", "contours_beams"};
+  return kNames[static_cast<std::size_t>(form)];
+}
+
+double levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row) {
+  const SilhouetteRow* before = nullptr;
+  for (const SilhouetteRow& next : rows) {
+    if (next.scene != row.scene) continue;
+    if (next.cubes <= row.contours) {
+      if (before == nullptr) return next.levels - row.levels;
+      const double whole = std::log(before->cubes / next.cubes);
+      const double part = whole > 0 ? std::log(before->cubes / row.contours) / whole : 0;
+      return before->levels + part * (next.levels - before->levels) - row.levels;
+    }
+    before = &next;
+  }
+  return NAN;
+}
+
+Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
+  Json json{
+      {"program", "voxdag " VOXDAG_VERSION}, {"machine", machine}, {"threads", results.threads}};
+  json["published"] = published::kEsvoSource;
+  json["builds"] = Json::array();
+  for (const EsvoBuildRun& run : results.builds) {
+    Json object{{"scene", run.scene},
+                {"resolution", std::int64_t{1} << run.levels},
+                {"levels", run.levels},
+                {"contours", run.with_contours},
+                {"load_before", run.load_before}};
+    if (!run.failure.empty()) {
+      object["failure"] = run.failure;
+      json["builds"].push_back(object);
+      continue;
+    }
+    object["voxels"] = run.voxels;
+    object["bytes"] = run.bytes;
+    object["bytes_per_voxel"] = run.bytes_per_voxel();
+    object["contour_count"] = run.contours;
+    object["far_pointers"] = run.far_pointers;
+    object["read_seconds"] = run.read_seconds;
+    object["build_seconds"] = run.build_seconds;
+    object["wall_seconds"] = run.cost.wall_seconds;
+    object["cpu_seconds"] = run.cost.cpu_seconds();
+    object["voxels_per_second"] = run.voxels_per_second();
+    object["peak_memory_bytes"] = run.cost.peak_bytes;
+    const published::EsvoScene* paper = published::esvo_scene(run.scene);
+    if (paper != nullptr && run.with_contours)
+      object["paper"] = {
+          {"megabytes", json_number(published::esvo_of_levels(paper->megabytes, run.levels))},
+          {"build_seconds", json_number(published::esvo_of_levels(paper->seconds, run.levels))},
+          {"bytes_per_voxel", paper->bytes_per_voxel}};
+    json["builds"].push_back(object);
+  }
+  json["rays"] = Json::array();
+  for (const EsvoRateRow& row : results.rates) {
+    const std::array<double, 4> paper =
+        published::esvo_mrays(published::esvo_scene(row.scene), row.size.width, row.size.height);
+    Json object{{"scene", row.scene},
+                {"resolution", std::int64_t{1} << row.levels},
+                {"width", row.size.width},
+                {"height", row.size.height},
+                {"ray_count", row.rays}};
+    for (const EsvoForm form : kEsvoForms) {
+      const auto at = static_cast<std::size_t>(form);
+      object[name_of(form)] = {{"mrays_per_s", json_number(row.mrays_per_second[at])},
+                               {"agreement_with_triangles", json_number(row.agreement[at])},
+                               {"paper_mrays_per_s", json_number(paper[at])}};
+    }
+    json["rays"].push_back(object);
+  }
+  json["silhouettes"] = Json::array();
+  for (const SilhouetteRow& row : results.silhouettes)
+    json["silhouettes"].push_back(
+        {{"scene", row.scene},
+         {"resolution", std::int64_t{1} << row.levels},
+         {"cubes_wrong", row.cubes},
+         {"contours_wrong", row.contours},
+         {"levels_saved", json_number(levels_saved(results.silhouettes, row))}});
+  return json;
+}
+
+std::string esvo_bench_table(const EsvoBenchResults& results) {
+  return builds_table(results.builds) + rates_table(results.rates) +
+         silhouettes_table(results.silhouettes);
+}
+
+std::string esvo_bench_svg(const EsvoBenchResults& results) {
+  const PlotAxis resolution{
+      false, 1, [](double levels) { return with_commas(std::uint64_t{1} << std::lround(levels)); }};
+  LineDiagram memory{"Megabytes; dots: cubes, dashes: the paper's",
+                     resolution,
+                     {true, 10, [](double v) { return fmt::format("{:.4g} MB", v); }},
+                     {}};
+  LineDiagram time{"Seconds to build; dots: cubes, dashes: the paper's",
+                   resolution,
+                   {true, 10, [](double v) { return fmt::format("{:.4g} s", v); }},
+                   {}};
+  add_lines(
+      results.builds, [](const EsvoBuildRun& run) { return run.megabytes(); }, memory);
+  add_lines(
+      results.builds, [](const EsvoBuildRun& run) { return run.build_seconds; }, time);
+  add_paper_lines(results.builds, &published::EsvoScene::megabytes, memory);
+  add_paper_lines(results.builds, &published::EsvoScene::seconds, time);
+  std::vector<LineDiagram> diagrams{memory, time};
+  LineDiagram silhouettes{"Rays on the wrong side of a silhouette, per million; dots: cubes",
+                          resolution,
+                          {true, 10, [](double v) { return fmt::format("{:.4g}", v); }},
+                          {}};
+  std::size_t series = 0;
+  const std::vector<SilhouetteRow>& rows = results.silhouettes;
+  for (std::size_t begin = 0, end; begin < rows.size(); begin = end, ++series) {
+    PlotLine contours{rows[begin].scene, plot_style(series), {}};
+    PlotLine cubes{"", plot_style(series, "stroke-dasharray='1 3'"), {}};
+    for (end = begin; end < rows.size() && rows[end].scene == rows[begin].scene; ++end) {
+      const double x = rows[end].levels;
+      if (rows[end].contours > 0) contours.points.push_back({x, rows[end].contours * 1e6});
+      if (rows[end].cubes > 0) cubes.points.push_back({x, rows[end].cubes * 1e6});
+    }
+    for (const PlotLine& line : {contours, cubes})
+      if (!line.points.empty()) silhouettes.lines.push_back(line);
+  }
+  if (!silhouettes.lines.empty()) diagrams.push_back(silhouettes);
+  if (memory.lines.empty()) throw Error("there is nothing to plot");
+  return line_svg(diagrams);
+}
+
+std::string esvo_rays_svg(const EsvoBenchResults& results) {
+  std::vector<BarDiagram> diagrams;
+  for (std::size_t i = 0; i < results.rates.size(); ++i) {
+    const EsvoRateRow& row = results.rates[i];
+    if (i == 0 || row.scene != results.rates[i - 1].scene) {
+      BarDiagram diagram;
+      diagram.title = fmt::format("{} {}: million primary rays per second", row.scene,
+                                  resolution_of(row.levels));
+      diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
+      for (const EsvoForm form : kEsvoForms) diagram.series.push_back({name_of(form), {}});
+      diagrams.push_back(diagram);
+    }
+    BarDiagram& diagram = diagrams.back();
+    diagram.groups.push_back(fmt::format("{} x {}", row.size.width, row.size.height));
+    for (std::size_t form = 0; form < kEsvoForms.size(); ++form)
+      diagram.series[form].values.push_back(row.mrays_per_second[form]);
+  }
+  if (diagrams.empty()) throw Error("there are no rays to plot");
+  return bar_svg(diagrams);
+}
+
+}  // namespace voxdag
