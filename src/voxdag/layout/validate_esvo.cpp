@@ -122,8 +122,10 @@ class BlockWalk {
       seen_[pointer] = true;
       ++counts.far_pointers;
       check_.links.push_back({static_cast<std::uint32_t>(slot),
-                              static_cast<std::int64_t>(view_.first_child(slot, d)), step.level,
-                              step.cell, {cells, cells + count}});
+                              static_cast<std::int64_t>(view_.first_child(slot, d)),
+                              step.level,
+                              step.cell,
+                              {cells, cells + count}});
       return;
     }
     check_group(pointer, count);
