@@ -140,6 +140,7 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
                      source.mesh.vertices.size(), source.mesh.triangles.size()};
   metadata.program = "voxdag " VOXDAG_VERSION;
   metadata.build = settings_of(arguments, build);
+  if (displaced) metadata.build["displaced"] = "yes";
   {
     EsvoFileWriter writer(build.output);
     FileSink sink(writer, build.memory_limit);

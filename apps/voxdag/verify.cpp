@@ -71,6 +71,9 @@ void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
 /// Points of the mesh, looked for in the octree.
 VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
   const EsvoFile file(session.subject);
+  if (file.metadata().build.contains("displaced"))
+    return {"enclosure", Result::kSkipped,
+            "the surface is displaced: the mesh does not tell where it is"};
   const MeshWithAppearance source = read_mesh_with_appearance(arguments.mesh, &session.progress);
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
   const EnclosureCheck enclosure =

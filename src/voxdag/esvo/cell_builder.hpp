@@ -37,9 +37,14 @@ struct SurfaceSum {
   Vec3f normal{};  ///< Times area.
   float area = 0;  ///< Visible area, in voxels² of the finest level.
 
+  /// Both sides of something thin would cancel: a normal that looks the other way is turned round,
+  /// as a viewer sees one side at a time.
   void add(const SurfaceSum& other) {
+    const float along = dot(normal, other.normal);
+    const bool is_opposite =
+        along < 0 && 4 * along * along > dot(normal, normal) * dot(other.normal, other.normal);
     color = color + other.color;
-    normal = normal + other.normal;
+    normal = is_opposite ? normal - other.normal : normal + other.normal;
     area += other.area;
   }
 };

@@ -168,6 +168,8 @@ void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&)) {
 VdagContents parse_vdag(std::span<const std::byte> file) {
   VdagContents contents;
   contents.chunks = read_vdag_chunks(file);
+  for (const VdagChunk& chunk : contents.chunks)
+    if (chunk.id == kChunkEsvo) fail("", "holds an ESVO, where a DAG is needed");
   check_vdag_checksums(contents.chunks);
   contents.metadata = read_vdag_metadata(contents.chunks);
   contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);
