@@ -6,6 +6,7 @@
 #include <random>
 
 #include "support/brute_svdag.hpp"
+#include "support/picture_checks.hpp"
 #include "voxdag/cpu/render_image.hpp"
 
 namespace voxdag {
@@ -46,14 +47,7 @@ Svdag mixed_scene(int levels, unsigned seed) {
   });
 }
 
-void expect_same_picture(const RenderedImage& a, const RenderedImage& b) {
-  EXPECT_EQ(a.radiance, b.radiance);
-  EXPECT_EQ(a.rgb, b.rgb);
-  EXPECT_EQ(a.depth, b.depth);
-  EXPECT_EQ(a.normal, b.normal);
-  EXPECT_EQ(a.occlusion, b.occlusion);
-  EXPECT_EQ(a.shadow, b.shadow);
-}
+using test::expect_same_picture;
 
 LightSpec sphere_light(Vec3d position, double radius) {
   LightSpec light;

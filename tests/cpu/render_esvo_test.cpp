@@ -7,6 +7,7 @@
 
 #include "support/ball_octree.hpp"
 #include "support/brute_svdag.hpp"
+#include "support/picture_checks.hpp"
 #include "support/voxel_sets.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/cpu/render_image.hpp"
@@ -14,15 +15,9 @@
 namespace voxdag {
 namespace {
 
-constexpr int kLevels = 6;
-
-Grid test_grid() {
-  Grid grid;
-  grid.levels = kLevels;
-  grid.origin = {-1, -1, -1};
-  grid.voxel_size = 2.0 / 64;
-  return grid;
-}
+using test::expect_same_picture;
+using test::kPictureLevels;
+using test::picture_grid;
 
 RenderOptions small_picture() {
   RenderOptions options;
@@ -44,20 +39,14 @@ VoxelValue ball_value(Vec3d middle) {
 }
 
 Esvo ball(bool with_contours) {
-  return pack_with_values(*ball_octree(Ball{}, kLevels, with_contours), kLevels, ball_value);
+  return pack_with_values(*ball_octree(Ball{}, kPictureLevels, with_contours), kPictureLevels,
+                          ball_value);
 }
 
 Esvo random_shapes(unsigned seed) {
   std::mt19937 rng(seed);
-  return TestEsvoAssembler(3, seed).assemble(*random_octree(rng, 0, kLevels), kLevels);
-}
-
-void expect_same_picture(const RenderedImage& a, const RenderedImage& b) {
-  EXPECT_EQ(a.radiance, b.radiance);
-  EXPECT_EQ(a.depth, b.depth);
-  EXPECT_EQ(a.normal, b.normal);
-  EXPECT_EQ(a.occlusion, b.occlusion);
-  EXPECT_EQ(a.shadow, b.shadow);
+  return TestEsvoAssembler(3, seed).assemble(*random_octree(rng, 0, kPictureLevels),
+                                             kPictureLevels);
 }
 
 TEST(RenderEsvo, BeamsChangeNoPixel) {
@@ -66,39 +55,40 @@ TEST(RenderEsvo, BeamsChangeNoPixel) {
       RenderOptions options = small_picture();
       options.lod_pixels = lod;
       options.samples_per_pixel = 2;
-      const RenderedImage with = render_image(esvo.view(), test_grid(), options);
+      const RenderedImage with = render_image(esvo.view(), picture_grid(), options);
       options.beams = false;
-      expect_same_picture(render_image(esvo.view(), test_grid(), options), with);
+      expect_same_picture(render_image(esvo.view(), picture_grid(), options), with);
     }
 }
 
 TEST(RenderEsvo, PixelsDoNotDependOnThreadsOrTiles) {
   const Esvo esvo = ball(true);
   RenderOptions options = small_picture();
-  const RenderedImage first = render_image(esvo.view(), test_grid(), options);
+  const RenderedImage first = render_image(esvo.view(), picture_grid(), options);
   options.tile_size = 7;
   RenderedImage other;
-  tbb::task_arena(3).execute([&] { other = render_image(esvo.view(), test_grid(), options); });
+  tbb::task_arena(3).execute([&] { other = render_image(esvo.view(), picture_grid(), options); });
   expect_same_picture(first, other);
   EXPECT_EQ(first.rays, other.rays);
 }
 
 TEST(RenderEsvo, CubesAreWhereThoseOfTheDagAre) {
-  for (const NamedVoxels& set : voxel_sets(kLevels, 4)) {
+  for (const NamedVoxels& set : voxel_sets(kPictureLevels, 4)) {
     if (set.voxels.empty()) continue;
-    const Svdag dag = brute_svdag(kLevels, set.voxels);
-    const Esvo esvo = TestEsvoAssembler(4, 1).assemble(*test_octree(kLevels, set.voxels), kLevels);
+    const Svdag dag = brute_svdag(kPictureLevels, set.voxels);
+    const Esvo esvo =
+        TestEsvoAssembler(4, 1).assemble(*test_octree(kPictureLevels, set.voxels), kPictureLevels);
     RenderOptions options = small_picture();
     options.occlusion_samples = 0;
     options.shadows = false;
-    EXPECT_EQ(render_image(esvo.view(), test_grid(), options).depth,
-              render_image(dag.view(), test_grid(), options).depth)
+    EXPECT_EQ(render_image(esvo.view(), picture_grid(), options).depth,
+              render_image(dag.view(), picture_grid(), options).depth)
         << set.name;
   }
 }
 
 TEST(RenderEsvo, ContoursHugTheBallAndItsNormalsAndColoursAreSeen) {
-  const Grid grid = test_grid();
+  const Grid grid = picture_grid();
   RenderOptions options = small_picture();
   options.lod_pixels = 0;
   const RenderedImage shapes = render_image(ball(true).view(), grid, options);
@@ -148,7 +138,7 @@ TEST(RenderEsvo, TheLitSideOfTheBallHasNoShadowsOfItsOwn) {
   options.height = 120;
   options.sun = Vec3d{0.5, 1.2, 3};  // from the camera
   options.sun_degrees = 0;
-  const RenderedImage image = render_image(ball(true).view(), test_grid(), options);
+  const RenderedImage image = render_image(ball(true).view(), picture_grid(), options);
   int seen = 0, dark = 0;
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (!(image.depth[i] < HUGE_VALF)) continue;
@@ -164,11 +154,12 @@ TEST(RenderEsvo, TheLitSideOfTheBallHasNoShadowsOfItsOwn) {
 TEST(RenderEsvo, WithoutViewOrAttributesItStillMakesAPicture) {
   RenderOptions options = small_picture();
   options.view = {};
-  const RenderedImage image = render_image(random_shapes(3).view(), test_grid(), options);
+  const RenderedImage image = render_image(random_shapes(3).view(), picture_grid(), options);
   const auto hits = std::count_if(image.depth.begin(), image.depth.end(),
                                   [](float depth) { return depth < HUGE_VALF; });
   EXPECT_GT(hits, 100);
-  const RenderedImage empty = render_image(EsvoView{nullptr, 0, 0, kLevels}, test_grid(), options);
+  const RenderedImage empty =
+      render_image(EsvoView{nullptr, 0, 0, kPictureLevels}, picture_grid(), options);
   EXPECT_EQ(empty.depth, std::vector<float>(empty.depth.size(), HUGE_VALF));
 }
 

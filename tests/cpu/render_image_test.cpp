@@ -6,20 +6,14 @@
 #include <cmath>
 
 #include "support/brute_svdag.hpp"
+#include "support/picture_checks.hpp"
 #include "voxdag/cpu/post_filter.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr int kLevels = 6;
-
-Grid test_grid() {
-  Grid grid;
-  grid.levels = kLevels;
-  grid.origin = {-1, -1, -1};
-  grid.voxel_size = 2.0 / 64;
-  return grid;
-}
+using test::kPictureLevels;
+using test::picture_grid;
 
 /// A floor at y < 8 voxels and a block on it.
 Svdag block_on_a_floor() {
@@ -30,7 +24,7 @@ Svdag block_on_a_floor() {
         const bool is_block = std::min(x, z) >= 24 && std::max(x, z) < 40;
         if (y < 8 || is_block) voxels.push_back({x, y, z});
       }
-  return brute_svdag(kLevels, voxels);
+  return brute_svdag(kPictureLevels, voxels);
 }
 
 RenderOptions small_picture() {
@@ -49,7 +43,7 @@ TEST(RenderImage, PixelsDoNotDependOnThreads) {
   for (const int threads : {1, 2, 7}) {
     RenderedImage image;
     tbb::task_arena(threads).execute(
-        [&] { image = render_image(dag.view(), test_grid(), options); });
+        [&] { image = render_image(dag.view(), picture_grid(), options); });
     if (threads == 1) first = image;
     EXPECT_EQ(image.rgb, first.rgb);
     EXPECT_EQ(image.depth, first.depth);
@@ -65,7 +59,7 @@ TEST(RenderImage, DepthOfAFacingPlaneIsItsDistance) {
   options.view.target = {0.1, 0, 0.2};
   options.view.up = {0, 0, -1};
   options.view.vertical_fov_degrees = 2;
-  const RenderedImage image = render_image(dag.view(), test_grid(), options);
+  const RenderedImage image = render_image(dag.view(), picture_grid(), options);
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     EXPECT_NEAR(image.depth[i], 3 - 0.25, 1e-5);
     EXPECT_NEAR(image.normal[i].y, 1, 0.02);
@@ -79,10 +73,10 @@ TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
   options.view.target = {0.1, 0, 0.2};
   options.view.up = {0, 0, -1};
   options.view.vertical_fov_degrees = 2;
-  const RenderedImage plain = render_image(dag.view(), test_grid(), options);
+  const RenderedImage plain = render_image(dag.view(), picture_grid(), options);
   EXPECT_TRUE(plain.cell_pixels.empty());
   options.filter = true;
-  const RenderedImage filtered = render_image(dag.view(), test_grid(), options);
+  const RenderedImage filtered = render_image(dag.view(), picture_grid(), options);
   // The voxels' side over a pixel's at their distance.
   const double size = 2.0 / 64 / (2 * std::tan(3.14159265 / 180) / 61 * 2.75);
   for (const std::uint8_t code : filtered.cell_pixels)
@@ -97,9 +91,9 @@ TEST(RenderImage, TheFilterLeavesTheSkyAlone) {
   RenderOptions options = small_picture();
   options.filter = true;
   options.view.eye = {0, 1, 6};
-  const RenderedImage filtered = render_image(dag.view(), test_grid(), options);
+  const RenderedImage filtered = render_image(dag.view(), picture_grid(), options);
   options.filter = false;
-  const RenderedImage plain = render_image(dag.view(), test_grid(), options);
+  const RenderedImage plain = render_image(dag.view(), picture_grid(), options);
   int sky = 0;
   for (std::size_t i = 0; i < plain.depth.size(); ++i) {
     if (plain.depth[i] < HUGE_VALF) continue;
@@ -116,9 +110,9 @@ TEST(RenderImage, TheBlockShadowsTheFloorAndNothingElseIsDark) {
   options.view.eye = {0, 6, 3};
   options.view.target = {0, -0.8, 0};
   options.exposure = 0.5f;
-  RenderedImage with = render_image(dag.view(), test_grid(), options);
+  RenderedImage with = render_image(dag.view(), picture_grid(), options);
   options.shadows = false;
-  RenderedImage without = render_image(dag.view(), test_grid(), options);
+  RenderedImage without = render_image(dag.view(), picture_grid(), options);
   int floor = 0, darker = 0;
   for (std::size_t i = 0; i < with.rgb.size(); ++i) {
     const bool is_darker = with.rgb[i].x < without.rgb[i].x;
@@ -137,11 +131,11 @@ TEST(RenderImage, ASlantedPlaneDoesNotShadowItself) {
   std::vector<Vec3i> voxels;
   for (std::int32_t z = 0; z < 64; ++z)
     for (std::int32_t x = 0; x < 64; ++x) voxels.push_back({x, (2 * x + z) / 5 + 5, z});
-  const Svdag dag = brute_svdag(kLevels, voxels);
+  const Svdag dag = brute_svdag(kPictureLevels, voxels);
   RenderOptions options = small_picture();
-  const RenderedImage with = render_image(dag.view(), test_grid(), options);
+  const RenderedImage with = render_image(dag.view(), picture_grid(), options);
   options.shadows = false;
-  EXPECT_EQ(with.rgb, render_image(dag.view(), test_grid(), options).rgb);
+  EXPECT_EQ(with.rgb, render_image(dag.view(), picture_grid(), options).rgb);
 }
 
 TEST(RenderImage, TheSunLightsTheSideThatFacesIt) {
@@ -152,12 +146,12 @@ TEST(RenderImage, TheSunLightsTheSideThatFacesIt) {
   options.view.vertical_fov_degrees = 2;  // the front of the block, at z = 0.25
   options.exposure = 0.1f;
   options.sun = {0, 0, 7};
-  const RenderedImage lit = render_image(dag.view(), test_grid(), options);
+  const RenderedImage lit = render_image(dag.view(), picture_grid(), options);
   options.sun = {0, 1, -2};
-  const RenderedImage unlit = render_image(dag.view(), test_grid(), options);
+  const RenderedImage unlit = render_image(dag.view(), picture_grid(), options);
   for (std::size_t i = 0; i < lit.rgb.size(); ++i) EXPECT_GT(lit.rgb[i].x, 2 * unlit.rgb[i].x);
   options.sun = {0, 0, 0};
-  EXPECT_THROW(render_image(dag.view(), test_grid(), options), Error);
+  EXPECT_THROW(render_image(dag.view(), picture_grid(), options), Error);
 }
 
 TEST(RenderImage, AnEmptySceneIsSky) {
@@ -177,11 +171,11 @@ TEST(RenderImage, RefusesImpossibleSizesAndStopsWhenCancelled) {
     options.width = width;
     options.height = height;
     options.samples_per_pixel = samples;
-    EXPECT_THROW(render_image(dag.view(), test_grid(), options), Error);
+    EXPECT_THROW(render_image(dag.view(), picture_grid(), options), Error);
   }
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(render_image(dag.view(), test_grid(), small_picture(), &progress), Cancelled);
+  EXPECT_THROW(render_image(dag.view(), picture_grid(), small_picture(), &progress), Cancelled);
 }
 
 }  // namespace

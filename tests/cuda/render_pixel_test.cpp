@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cuda/pictures.hpp"
+#include "support/picture_checks.hpp"
 #include "support/test_esvo.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/beam_start.hpp"
@@ -62,12 +63,7 @@ RenderedImage render_as_device(const VoxelScene& scene, const Nodes& nodes, cons
 }
 
 void expect_equal(const RenderedImage& image, const RenderedImage& expected) {
-  EXPECT_EQ(image.rgb, expected.rgb);
-  EXPECT_EQ(image.radiance, expected.radiance);
-  EXPECT_EQ(image.depth, expected.depth);
-  EXPECT_EQ(image.normal, expected.normal);
-  EXPECT_EQ(image.occlusion, expected.occlusion);
-  EXPECT_EQ(image.shadow, expected.shadow);
+  test::expect_same_picture(image, expected);
   EXPECT_EQ(image.rays, expected.rays);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "support/grid_mesh.hpp"
 #include "support/random_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/dag/build_svdag.hpp"
@@ -32,22 +33,12 @@ Grid unit_grid(int levels) { return {levels, {0, 0, 0}, 1.0, kSubvoxels}; }
 
 /// A sphere of radius `radius` about `centre`, of 2 * n² triangles.
 Mesh sphere_mesh(Vec3f centre, float radius, int n) {
-  Mesh mesh;
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j) {
-      const float a = 3.14159265f * static_cast<float>(i) / static_cast<float>(n);
-      const float b = 6.2831853f * static_cast<float>(j % n) / static_cast<float>(n);
-      mesh.vertices.push_back(
-          centre +
-          Vec3f{std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)} * radius);
-    }
-  const auto at = [n](int i, int j) { return static_cast<std::uint32_t>(i * (n + 1) + j); };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
-      mesh.triangles.push_back({at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
-    }
-  return mesh;
+  return test::grid_mesh(n, [=](int i, int j) {
+    const float a = 3.14159265f * static_cast<float>(i) / static_cast<float>(n);
+    const float b = 6.2831853f * static_cast<float>(j % n) / static_cast<float>(n);
+    return centre +
+           Vec3f{std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)} * radius;
+  });
 }
 
 struct Leaf {

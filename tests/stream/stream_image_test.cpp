@@ -1,6 +1,8 @@
 // Pictures of an ESVO that is loaded while they are made.
 #include <gtest/gtest.h>
 
+#include "support/grid_mesh.hpp"
+#include "support/picture_checks.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/esvo/build_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"
@@ -12,20 +14,11 @@ namespace {
 
 /// Waves of some thousand triangles.
 Mesh waves(int n) {
-  Mesh mesh;
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j) {
-      const float x = static_cast<float>(i) / static_cast<float>(n);
-      const float z = static_cast<float>(j) / static_cast<float>(n);
-      mesh.vertices.push_back({x, 0.2f + 0.1f * std::sin(20 * x) * std::cos(17 * z), z});
-    }
-  const auto at = [n](int i, int j) { return static_cast<std::uint32_t>(i * (n + 1) + j); };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
-      mesh.triangles.push_back({at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
-    }
-  return mesh;
+  return test::grid_mesh(n, [n](int i, int j) {
+    const float x = static_cast<float>(i) / static_cast<float>(n);
+    const float z = static_cast<float>(j) / static_cast<float>(n);
+    return Vec3f{x, 0.2f + 0.1f * std::sin(20 * x) * std::cos(17 * z), z};
+  });
 }
 
 class StreamImage : public testing::Test {
@@ -59,13 +52,6 @@ class StreamImage : public testing::Test {
     const EsvoFile file(path());
     return render_image(file.view(), file.grid(), options);
   }
-  void expect_same(const RenderedImage& a, const RenderedImage& b) const {
-    EXPECT_EQ(a.rgb, b.rgb);
-    EXPECT_EQ(a.depth, b.depth);
-    EXPECT_EQ(a.normal, b.normal);
-    EXPECT_EQ(a.occlusion, b.occlusion);
-  }
-
   TempDir dir;
   std::uint64_t bytes = 0;
   RenderOptions options;
@@ -81,7 +67,7 @@ TEST_F(StreamImage, IsThePictureOfTheWholeOctree) {
         EXPECT_EQ(pass.rgb.size(), 96u * 64u);
       });
   EXPECT_GT(passes, 0) << "something coarse is there first";
-  expect_same(image, whole());
+  test::expect_same_picture(image, whole());
   EXPECT_LT(blocks.stream().counts().bytes_loaded, bytes) << "what nobody sees is not loaded";
 }
 
@@ -94,7 +80,7 @@ TEST_F(StreamImage, IsTheSameWithLessMemoryThanItsBlocksTake) {
   const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
   EXPECT_GT(blocks.stream().counts().blocks_evicted, 0u);
   EXPECT_LE(blocks.stream().counts().bytes_loaded, needed / 2);
-  expect_same(image, whole());
+  test::expect_same_picture(image, whole());
 }
 
 TEST_F(StreamImage, WithHardlyAnyMemoryItIsCoarseButThere) {
