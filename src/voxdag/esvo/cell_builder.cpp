@@ -233,7 +233,8 @@ bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell) const
 
 VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell,
                                   ConvexPolyhedron& shape) const {
-  // A contour that saves less of the voxel's side does not pay for its four bytes.
+  // A contour that saves less of the voxel's side does not pay for its four bytes, unless it lets
+  // the subdivision end here, where each child would have to have one of its own.
   constexpr double kPays = 0.15;
   VoxelDecision decision;
   if (!settings_.contours) {
@@ -247,10 +248,14 @@ VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell,
     polygons_.clear();
     for (std::size_t i = begin; i < items_.size(); ++i) polygons_.push_back(&items_[i].polygon);
     const std::optional<FittedContour> fitted = fit_contour(shape, polygons_, candidates(begin));
-    if (fitted && (fitted->gain > kPays || (fitted->gain > error && fitted->gain > fitted->left))) {
-      decision.contour = fitted->contour;
-      clip_to_contour(shape, fitted->contour);
-      near = log2_size > 0 && is_near(begin, shape, error);
+    if (fitted) {
+      ConvexPolyhedron cut = shape;
+      clip_to_contour(cut, fitted->contour);
+      near = log2_size > 0 && is_near(begin, cut, error);
+      if (near || fitted->gain > kPays) {
+        decision.contour = fitted->contour;
+        shape = cut;
+      }
     }
   }
   decision.is_leaf = log2_size == 0 || (near && is_uniform(begin, log2_size, cell));

@@ -104,20 +104,23 @@ std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
 
   // position = |n|1 (2p - 127) / 127
   const double n1 = length1(best);
-  constexpr double kSteps = Contour::kMaxPosition;
+  constexpr int kMax = Contour::kMaxPosition;
+  constexpr double kSteps = kMax;
   const auto step_of = [&](double position) { return (position / n1 + 1) * (kSteps / 2); };
-  const int low = std::clamp(static_cast<int>(std::floor(step_of(best_surface.low) - kMargin)), 0,
-                             Contour::kMaxPosition);
-  const int high = std::clamp(static_cast<int>(std::ceil(step_of(best_surface.high) + kMargin)), 0,
-                              Contour::kMaxPosition);
+  const int low =
+      std::clamp(static_cast<int>(std::floor(step_of(best_surface.low) - kMargin)), 0, kMax);
+  const int high =
+      std::clamp(static_cast<int>(std::ceil(step_of(best_surface.high) + kMargin)), 0, kMax);
   FittedContour fitted;
-  fitted.contour = Contour::make(best, low, high);
+  // Of the two that mean the same the one that points up, so that equal ones can be shared.
+  const bool points_up = best.z != 0 ? best.z > 0 : best.y != 0 ? best.y > 0 : best.x > 0;
+  fitted.contour =
+      points_up ? Contour::make(best, low, high) : Contour::make(-best, kMax - high, kMax - low);
   Extent planes;
   planes.add(std::max(contour_position<double>(length1(best), low), best_shape.low));
   planes.add(std::min(contour_position<double>(length1(best), high), best_shape.high));
   const double length = length2(best);
   fitted.gain = (best_shape.size() - planes.size()) / length;
-  fitted.left = (planes.size() - best_surface.size()) / length;
   return fitted;
 }
 

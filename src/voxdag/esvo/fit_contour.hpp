@@ -34,11 +34,10 @@ class ContourCandidates {
   std::array<double, kMost> weights_{};
 };
 
-/// What a contour would save, as lengths in the voxel's coordinates, where its side is 2.
 struct FittedContour {
   Contour contour;
-  double gain = 0;  ///< By how much the shape becomes thinner across it.
-  double left = 0;  ///< The overestimation that remains: how much the planes exceed the surface.
+  /// By how much the shape becomes thinner across it, in the voxel's coordinates: its side is 2.
+  double gain = 0;
 };
 
 /// The best contour, or none if the shape nowhere exceeds the surface. The surface lies between

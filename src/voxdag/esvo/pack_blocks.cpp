@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/esvo/contour_pool.hpp"
 #include "voxdag/esvo/encode_pair.hpp"
 
 namespace voxdag {
@@ -86,7 +87,7 @@ class BlockWriter {
         if (!cut_.is_cut[child] && tree_.nodes[child].inner_count() > 0) stack.push_back(child);
       }
     }
-    resize((slots_.size() + kEsvoPageSlots - 1) / kEsvoPageSlots * kEsvoPageSlots);
+    resize((slots_.size() + 1) / 2 * 2);
   }
 
   /// Fills in the descriptors and what stands behind them. `target(node)` gives the slot, counted
@@ -97,15 +98,12 @@ class BlockWriter {
     info.descriptor_slots = static_cast<std::uint32_t>(slots_.size());
     info.first_descriptor = first_;
     const bool with_values = tree_.has_values();
-    std::uint32_t contour_count = 0;
-    for (const std::uint32_t node : node_at_)
-      if (node != kNone)
-        contour_count += static_cast<std::uint32_t>(
-            std::popcount(std::uint32_t{tree_.nodes[node].contour_mask}));
+    const PlacedContours placed = place_contours();
+    const std::vector<Contour>& contours = placed.pool.contours();
     info.contour_begin =
         info.descriptor_slots + static_cast<std::uint32_t>(sizeof(EsvoBlockInfo) / 8);
-    info.contour_count = contour_count;
-    std::uint32_t end = info.contour_begin + (contour_count + 1) / 2;
+    info.contour_count = static_cast<std::uint32_t>(contours.size());
+    std::uint32_t end = info.contour_begin + (info.contour_count + 1) / 2;
     const auto attach = [&](EsvoAttachmentKind kind, std::uint32_t slots_per_pair) {
       const std::uint32_t pairs = info.descriptor_slots / 2;
       info.attachments[info.attachment_count++] = {kind, end, slots_per_pair, pairs};
@@ -116,7 +114,10 @@ class BlockWriter {
     info.slots = (end + kEsvoPageSlots - 1) / kEsvoPageSlots * kEsvoPageSlots;
     slots_.resize(info.slots);
 
-    write_descriptors(info, target);
+    write_descriptors(info, placed.first, target);
+    if (!contours.empty())
+      std::memcpy(slots_.data() + info.contour_begin, contours.data(),
+                  contours.size() * sizeof(Contour));
     for (std::uint32_t page = 0; page < info.descriptor_slots; page += kEsvoPageSlots)
       slots_[page] = info.descriptor_slots - page;
     for (std::uint32_t i = 0; i < info.attachment_count; ++i) write_attachment(info.attachments[i]);
@@ -164,10 +165,29 @@ class BlockWriter {
     return cut_.is_cut[node] && tree_.nodes[node].inner_count() > 0;
   }
 
+  struct PlacedContours {
+    ContourPool pool;
+    std::vector<std::uint32_t> first;  ///< By slot: where the list of its descriptor stands.
+  };
+
+  PlacedContours place_contours() const {
+    PlacedContours placed;
+    placed.first.resize(node_at_.size());
+    std::vector<std::uint32_t> by_count[9];
+    for (std::uint32_t slot = 0; slot < node_at_.size(); ++slot)
+      if (node_at_[slot] != kNone)
+        by_count[std::popcount(std::uint32_t{tree_.nodes[node_at_[slot]].contour_mask})].push_back(
+            slot);
+    for (std::size_t count = 8; count > 0; --count)
+      for (const std::uint32_t slot : by_count[count])
+        placed.first[slot] = placed.pool.add(
+            {tree_.contours.data() + tree_.nodes[node_at_[slot]].first_contour, count});
+    return placed;
+  }
+
   template <class Target>
-  void write_descriptors(EsvoBlockInfo& info, const Target& target) {
-    std::uint32_t contour = 0;
-    auto* const contours = reinterpret_cast<Contour*>(slots_.data() + info.contour_begin);
+  void write_descriptors(EsvoBlockInfo& info, const std::vector<std::uint32_t>& first_contour,
+                         const Target& target) {
     for (std::uint32_t slot = 0; slot < info.descriptor_slots; ++slot) {
       const std::uint32_t node = node_at_[slot];
       if (node == kNone) continue;
@@ -185,12 +205,8 @@ class BlockWriter {
       } else if (n.inner_count() > 0) {
         descriptor.set_child_pointer(placement_.children[node] - slot, false);
       }
-      const auto own = static_cast<std::uint32_t>(std::popcount(std::uint32_t{n.contour_mask}));
-      if (own > 0) {
-        descriptor.set_contour_pointer(2 * info.contour_begin + contour - 2 * slot);
-        std::copy_n(tree_.contours.begin() + n.first_contour, own, contours + contour);
-        contour += own;
-      }
+      if (n.contour_mask != 0)
+        descriptor.set_contour_pointer(2 * info.contour_begin + first_contour[slot] - 2 * slot);
       slots_[slot] = descriptor.to_slot();
     }
   }

@@ -6,11 +6,11 @@
 /// Everything is one array of 64-bit slots. A block is a whole number of pages of 1024 slots (8 KB)
 /// and holds a part of the octree that hangs together:
 ///
-///   descriptors   descriptor_slots, a whole number of pages
+///   descriptors   descriptor_slots, an even number
 ///     slot 0 of each page    page header: how many slots it is from here to the block's info
 ///     other slots            child descriptors, far pointers, gaps (zero)
 ///   EsvoBlockInfo            where everything is
-///   contours                 32-bit words, padded to a slot
+///   contours                 32-bit words, padded to a slot; lists of siblings may overlap
 ///   attachments              each an array of one compression block for each pair of slots
 ///   padding                  zeros
 ///
@@ -58,8 +58,8 @@ struct EsvoBlockInfo {
   std::uint32_t first_descriptor;  ///< The group of siblings from which all others hang.
   std::uint32_t far_pointers;      ///< How many there are.
   std::uint32_t contour_begin;     ///< Slot of the first contour.
-  std::uint32_t contour_count;
-  std::uint32_t descriptors;  ///< How many there are.
+  std::uint32_t contour_count;     ///< Stored: siblings' lists that are alike stand once.
+  std::uint32_t descriptors;       ///< How many there are.
   std::uint32_t attachment_count;
   EsvoAttachment attachments[kMaxAttachments];
 

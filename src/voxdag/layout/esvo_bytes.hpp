@@ -11,8 +11,8 @@ namespace voxdag {
 struct EsvoBytes {
   std::uint64_t descriptors = 0;
   std::uint64_t far_pointers = 0;
-  std::uint64_t gaps =
-      0;  ///< Of the descriptor array: unpaired slots, page headers, ends of pages.
+  /// Of the descriptor array: unpaired slots, page headers, ends of pages.
+  std::uint64_t gaps = 0;
   std::uint64_t info = 0;
   std::uint64_t contours = 0;
   std::uint64_t colors = 0;

@@ -14,7 +14,7 @@ struct EsvoCounts {
   PerLevel leaves_per_level{};
   std::uint64_t descriptors = 0;
   std::uint64_t far_pointers = 0;
-  std::uint64_t contours = 0;
+  std::uint64_t contours = 0;  ///< Voxels that have one; blocks may share them.
   std::uint64_t blocks = 0;
 
   std::uint64_t voxels() const { return sum(voxels_per_level); }
