@@ -103,6 +103,7 @@ void add_esvo_options(CLI::App& command, EsvoArguments& arguments) {
   add("--normal-error", arguments.normal_degrees, 180.0, "DEGREES",
       "How much normals may differ in a leaf");
   add_displace_options(command, arguments.displace);
+  add_bake_options(command, arguments.bake);
   command
       .add_flag_callback(
           "--no-contours", [&settings] { settings.contours = false; },
@@ -132,6 +133,7 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   EsvoOptions options = arguments.options;
   options.settings.normal_error =
       static_cast<float>(arguments.normal_degrees * 3.14159265358979 / 180);
+  const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
   EsvoMetadata metadata;
   const std::optional<Box3d> bounds =
       displaced ? std::optional(displaced_bounds(*displaced, source.mesh)) : std::nullopt;
@@ -141,11 +143,18 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   metadata.program = "voxdag " VOXDAG_VERSION;
   metadata.build = settings_of(arguments, build);
   if (displaced) metadata.build["displaced"] = "yes";
+  std::optional<Occluders> occluders;
+  if (arguments.bake.rays > 0 && options.settings.attributes) {
+    add_bake_settings(arguments.bake, metadata.grid, metadata.build);
+    occluders.emplace(source.mesh, metadata.grid, arguments.bake, options.settings, shading, moved,
+                      progress);
+    options.settings.light = occluders->light();
+  }
   {
     EsvoFileWriter writer(build.output);
     FileSink sink(writer, build.memory_limit);
-    EsvoResult result = build_esvo(source.mesh, metadata.grid, options, &shading,
-                                   displaced ? &*displaced : nullptr, sink, &progress);
+    EsvoResult result =
+        build_esvo(source.mesh, metadata.grid, options, &shading, moved, sink, &progress);
     metadata.root = result.root;
     metadata.counts = result.counts;
     progress.throw_if_cancelled();

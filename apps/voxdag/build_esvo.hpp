@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "bake_ao.hpp"
 #include "displace_option.hpp"
 #include "session.hpp"
 #include "voxdag/core/grid.hpp"
@@ -16,6 +17,7 @@ struct EsvoArguments {
   EsvoOptions options;
   double normal_degrees = 3;  ///< EsvoSettings::normal_error as people say it.
   DisplaceArguments displace;
+  BakeArguments bake;
 };
 
 void add_esvo_options(CLI::App& command, EsvoArguments& arguments);

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "npy_rays.hpp"
 #include "sponge.hpp"
@@ -164,6 +165,26 @@ TEST_F(RenderCommand, TakesEsvoFiles) {
       run_voxdag({"trace", path("in.esvo"), "--rays", path("rays.npy"), "-o", path("hits.npy")});
   EXPECT_EQ(traced.status, 0) << traced.err;
   EXPECT_NE(traced.out.find("3 rays, 2 hits"), std::string::npos) << traced.out;
+}
+
+TEST_F(RenderCommand, OcclusionCanBeBakedIntoAnEsvo) {
+  ASSERT_EQ(run_voxdag(
+                {"build", path("sponge.ply"), "-r", "32", "--as", "esvo", "-o", path("plain.esvo")})
+                .status,
+            0);
+  const ProcessResult baked = run_voxdag({"build", path("sponge.ply"), "-r", "32", "--as", "esvo",
+                                          "--bake-ao", "16", "-o", path("baked.esvo")});
+  ASSERT_EQ(baked.status, 0) << baked.err;
+  const ProcessResult info = run_voxdag({"info", path("baked.esvo"), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.out).at("build").at("bake_ao_rays"), "16");
+  const auto picture = [&](const std::string& name) {
+    EXPECT_EQ(run_voxdag({"render", path(name + ".esvo"), "-o", path(name + ".png"), "--size",
+                          "64x48", "--ao", "0", "--exposure", "1"})
+                  .status,
+              0);
+    return read_text(path(name + ".png"));
+  };
+  EXPECT_NE(picture("plain"), picture("baked"));
 }
 
 }  // namespace

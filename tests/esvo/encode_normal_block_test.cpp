@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "voxdag/esvo/encode_pair.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -233,6 +235,22 @@ TEST(EncodeNormalBlock, TheBitsAreTheSameOnEveryMachine) {
       hash = (hash ^ word) * 0x100000001B3ull;
   }
   EXPECT_EQ(hash, 16389904005109883040u) << "changes with the encoder, not with the machine";
+}
+
+TEST(EncodePair, LeavesAreMetBetterThanInnerVoxels) {
+  std::mt19937 random(17);
+  double leaf = 0, inner = 0;
+  for (int round = 0; round < 200; ++round) {
+    PairValues values;
+    for (std::uint32_t i = 0; i < 12; ++i)
+      values.set(i, {{90, 90, 90}, random_direction(random)}, i % 6 == 0);
+    NormalBlock block;
+    encode_pair_normals(values, reinterpret_cast<std::uint64_t*>(block.words));
+    for (int i = 0; i < 12; ++i)
+      (i % 6 == 0 ? leaf : inner) += degrees_between(values.values[i].normal, block.normal(i));
+  }
+  EXPECT_LT(leaf / (200 * 2), 10);
+  EXPECT_LT(3 * leaf / 2, inner / 10);
 }
 
 }  // namespace

@@ -60,8 +60,9 @@ VoxelValue voxel_value(const SurfaceSum& sum) {
   return value;
 }
 
-void CellBuilder::start(int log2_size, const ConvexPolyhedron& shape) {
+void CellBuilder::start(int log2_size, Vec3i origin, const ConvexPolyhedron& shape) {
   log2_size_ = log2_size;
+  origin_ = origin;
   shape_ = shape;
   triangles_.clear();
   ids_.clear();
@@ -134,8 +135,6 @@ SurfaceSum CellBuilder::sum_of(std::size_t begin, int log2_size, Vec3i cell) con
   }
   return sum;
 }
-
-SurfaceSum CellBuilder::sum() const { return sum_of(0, log2_size_, {}); }
 
 void CellBuilder::drop_cut_away(std::size_t begin, int log2_size, Vec3i cell) {
   if (shading_ == nullptr) return;
@@ -228,7 +227,7 @@ bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell) const
                               normal_error(items_[i]), mean))
       return false;
   }
-  return true;
+  return is_evenly_lit(begin, log2_size, cell);
 }
 
 VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell,
@@ -275,7 +274,7 @@ CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i 
     return visited;
   }
   Visited visited;
-  visited.sum = sum_of(begin, log2_size, cell);
+  visited.sum = leaf_sum(begin, log2_size, cell);
   visited.exists = visited.sum.area > 0;
   visited.is_leaf = true;
   visited.contour = decision.contour;
@@ -342,7 +341,7 @@ BuiltVoxel CellBuilder::build(const VoxelDecision& decision) {
   built.contour = decision.contour;
   if (decision.is_leaf) {
     drop_cut_away(0, log2_size_, {});
-    built.sum = sum();
+    built.sum = leaf_sum(0, log2_size_, {});
     built.exists = built.sum.area > 0;
     built.is_leaf = true;
     return built;

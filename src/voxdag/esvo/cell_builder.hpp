@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "voxdag/esvo/esvo_tree.hpp"
+#include "voxdag/esvo/surface_light.hpp"
 #include "voxdag/esvo/surface_shading.hpp"
 #include "voxdag/esvo/surface_triangle.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
@@ -29,6 +30,9 @@ struct EsvoSettings {
   float color_error = 0.03f;
   float normal_error = 0.05f;  ///< And from its normal, in radians.
   bool attributes = true;      ///< Colours and normals.
+  /// Baked into the colours: what arrives at a leaf multiplies its colour, and where it differs
+  /// more than `color_error` allows there are no leaves above the finest level. Empty: none.
+  SurfaceLight light;
 };
 
 /// Sums over surface: what a voxel looks like is their mean.
@@ -74,8 +78,8 @@ class CellBuilder {
       : settings_(settings), shading_(shading) {}
 
   /// Begins a cell of 2^log2_size voxels without triangles. `shape` is what the ancestors' contours
-  /// leave of it.
-  void start(int log2_size, const ConvexPolyhedron& shape);
+  /// leave of it, `origin` where it begins in the grid, in voxels.
+  void start(int log2_size, Vec3i origin, const ConvexPolyhedron& shape);
   /// Adds a triangle; its origin is that of the cell. `id` is the caller's.
   void add(const SurfaceTriangle& triangle, std::uint32_t id);
 
@@ -85,8 +89,6 @@ class CellBuilder {
   /// The contour of the cell and whether it is a leaf; cuts shape() by the contour.
   VoxelDecision decide();
   const ConvexPolyhedron& shape() const { return shape_; }
-  /// The sum over the cell's polygons.
-  SurfaceSum sum() const;
   /// The ids of the triangles that meet each child.
   void split(std::vector<std::uint32_t> (&children)[8]) const;
 
@@ -112,6 +114,11 @@ class CellBuilder {
   bool is_near(std::size_t begin, const ConvexPolyhedron& shape, double error) const;
   bool is_uniform(std::size_t begin, int log2_size, Vec3i cell) const;
   ContourCandidates candidates(std::size_t begin) const;
+  bool is_evenly_lit(std::size_t begin, int log2_size, Vec3i cell) const;
+  /// Of the cell's polygons. Ends as soon as the light differs by more than `most_difference`, sRGB
+  /// encoded; the mean is not known then.
+  LightRange light_of(std::size_t begin, int log2_size, Vec3i cell, float most_difference) const;
+  SurfaceSum leaf_sum(std::size_t begin, int log2_size, Vec3i cell) const;
   SurfaceSum sum_of(std::size_t begin, int log2_size, Vec3i cell) const;
   SurfaceSample sample(const Item& item, int log2_size, Vec3i cell) const;
   int barycentrics(const Item& item, int log2_size, Vec3i cell,
@@ -124,6 +131,7 @@ class CellBuilder {
   EsvoSettings settings_;
   const SurfaceShading* shading_;
   int log2_size_ = 0;
+  Vec3i origin_{};
   ConvexPolyhedron shape_;
   std::vector<SurfaceTriangle> triangles_;
   std::vector<std::uint32_t> ids_;

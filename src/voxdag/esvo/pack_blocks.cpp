@@ -219,8 +219,10 @@ class BlockWriter {
         if (node == kNone) continue;
         const EsvoNode& n = tree_.nodes[node];
         const VoxelValue* value = tree_.values.data() + n.first_value;
-        for (std::uint32_t left = n.valid_mask; left != 0; left &= left - 1)
-          values.set(8 * half + static_cast<std::uint32_t>(std::countr_zero(left)), *value++);
+        for (std::uint32_t left = n.valid_mask; left != 0; left &= left - 1) {
+          const auto child = static_cast<std::uint32_t>(std::countr_zero(left));
+          values.set(8 * half + child, *value++, (n.leaf_mask >> child & 1u) != 0);
+        }
       }
       if (values.mask == 0) continue;
       std::uint64_t* const at = slots_.data() + attachment.begin + pair * attachment.slots_per_pair;

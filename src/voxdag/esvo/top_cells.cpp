@@ -76,7 +76,7 @@ void split_displaced(const TriangleSource& source, const TopCell& cell,
 void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cell) {
   const int log2_size = source.grid.levels - cell.level;
   const Vec3i origin = cell.cell * (1 << log2_size);
-  builder.start(log2_size, cell.shape);
+  builder.start(log2_size, origin, cell.shape);
   for (const std::uint32_t triangle : cell.triangles)
     if (source.is_displaced(triangle))
       add_displaced(builder, source, cell, triangle);

@@ -16,9 +16,10 @@ namespace voxdag {
 
 /// Ray `i` of a point. Its direction is spread around the normal; what would run below the flat
 /// piece of surface, which the normal of a curved mesh does not know about, is mirrored at it.
-VOXDAG_HD inline CastRay occlusion_ray(const RenderSetup& setup, const SurfacePoint& point,
-                                       const PixelSamples& pixel, int i) {
-  const SampleTables& tables = setup.tables;
+/// `longest` is in units of the grid's side; `cone` as RenderSettings::occlusion_cone.
+VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest, float cone,
+                                       const SurfacePoint& point, const PixelSamples& pixel,
+                                       int i) {
   const HemisphereSample sample = tables.hemisphere[pixel.set * tables.hemisphere_count + i];
   const Basis<float> basis = make_basis(point.normal);
   const Point2f flat = pixel.rotated({sample.direction.x, sample.direction.y});
@@ -26,10 +27,9 @@ VOXDAG_HD inline CastRay occlusion_ray(const RenderSetup& setup, const SurfacePo
   const float above = dot(direction, point.face);
   if (above < 0) direction = direction - point.face * (2 * above);
   CastRay ray;
-  ray.ray =
-      make_grid_ray(point.start, direction, 0, sample.reach * setup.settings.occlusion_distance);
+  ray.ray = make_grid_ray(point.start, direction, 0, sample.reach * longest);
   ray.stop.at_start = point.cell_side;
-  ray.stop.per_t = setup.settings.occlusion_cone * static_cast<float>(ray.ray.t_scale);
+  ray.stop.per_t = cone * static_cast<float>(ray.ray.t_scale);
   return ray;
 }
 
@@ -37,7 +37,8 @@ VOXDAG_HD inline CastRay occlusion_ray(const RenderSetup& setup, const SurfacePo
 template <class Caster, class Scratch>
 VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& setup,
                                      const ViewTile& tile, Scratch& scratch) {
-  const int rays = setup.settings.occlusion_samples;
+  const RenderSettings& settings = setup.settings;
+  const int rays = settings.occlusion_samples;
   const int first = tile.sample_index * rays;
   int active = 0;
   for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
@@ -51,7 +52,8 @@ VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& se
       active * rays,
       [&](int i) {
         const int pixel = scratch.active[i / rays];
-        return occlusion_ray(setup, scratch.points[pixel], scratch.pixels[pixel], first + i % rays);
+        return occlusion_ray(setup.tables, settings.occlusion_distance, settings.occlusion_cone,
+                             scratch.points[pixel], scratch.pixels[pixel], first + i % rays);
       },
       [&](int i, bool is_hit) { scratch.open[scratch.active[i / rays]] += is_hit ? 0 : 1; });
   return active * rays;

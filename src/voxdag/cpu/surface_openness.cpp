@@ -1,0 +1,51 @@
+#include "voxdag/cpu/surface_openness.hpp"
+
+#include "voxdag/cpu/fast_caster.hpp"
+#include "voxdag/render/ambient_occlusion.hpp"
+
+namespace voxdag {
+
+SurfaceOpenness::SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int rays,
+                                 double distance)
+    : voxels_(voxels),
+      grid_(grid),
+      rays_(rays),
+      distance_(static_cast<float>(distance /
+                                   (grid.voxel_size * static_cast<double>(grid.resolution())))),
+      samples_(1, rays) {}
+
+float SurfaceOpenness::operator()(Vec3d point, Vec3f normal, Vec3f face) const {
+  return voxels_.visit_nodes(
+      [&](const auto& nodes) { return open_part(nodes, point, normal, face); });
+}
+
+template <class Nodes>
+float SurfaceOpenness::open_part(const Nodes& nodes, Vec3d point, Vec3f normal, Vec3f face) const {
+  constexpr float kSlack = 0.25f;  // voxels, as where the renderer's rays start
+  const double lift = static_cast<double>(cube_height(face) + kSlack) * grid_.voxel_size;
+  const Vec3d lifted = point + static_cast<Vec3d>(face) * lift;
+  SurfacePoint start;
+  start.start = make_grid_point(grid_, lifted);
+  start.normal = normal;
+  start.face = face;
+  // In a corner the point may lie in a voxel of the other surface, which stands beside it.
+  const auto is_inside = [&] {
+    CellHit cell;
+    return cast(nodes, make_grid_ray(start.start, face, 0, 0), StopAtVoxels{}, cell);
+  };
+  const Basis<float> basis = make_basis(face);
+  for (int i = 0; i < 8 && is_inside(); ++i) {
+    const Vec3f aside = (i & 2) == 0 ? basis.u : basis.v;
+    const double step = (i & 1) == 0 ? 1 : -1, cells = i < 4 ? 1 : 2;
+    start.start =
+        make_grid_point(grid_, lifted + static_cast<Vec3d>(aside) * (step * cells * lift));
+  }
+  const SampleTables tables = samples_.view();
+  int open = 0;
+  fast_caster(nodes).any(
+      rays_, [&](int i) { return occlusion_ray(tables, distance_, 0, start, {}, i); },
+      [&](int, bool is_hit) { open += is_hit ? 0 : 1; });
+  return static_cast<float>(open) / static_cast<float>(rays_);
+}
+
+}  // namespace voxdag
