@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "bench_machine.hpp"
@@ -38,11 +39,11 @@ std::string filled_in(std::string command,
   return command;
 }
 
-Json last_line_json(const std::string& text) {
+/// The last line where that is a JSON object, else nothing.
+std::string last_line_json(const std::string& text) {
   std::string line = text.substr(0, text.find_last_not_of('\n') + 1);
   line.erase(0, line.find_last_of('\n') + 1);
-  const Json json = Json::parse(line, nullptr, false);
-  return json.is_object() ? json : Json();
+  return Json::parse(line, nullptr, false).is_object() ? line : "";
 }
 
 class Bench {
@@ -106,7 +107,8 @@ class Bench {
     run.failure = failure_of(child, 0);
     if (!run.failure.empty()) return run;
     const Json json = Json::parse(child.out);
-    run.stage_seconds = json.at("seconds");
+    for (const auto& [stage, seconds] : json.at("seconds").items())
+      run.stage_seconds.emplace_back(stage, seconds);
     run.triangles = json.at("source").at("triangles");
     run.vertices = json.at("source").at("vertices");
     run.voxels = json.at("voxels");

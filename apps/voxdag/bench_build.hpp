@@ -1,9 +1,9 @@
 #pragma once
 /// What `voxdag bench build` measures: builds, and other programs beside them. Every run is a
 /// process of its own, so that time and peak memory are those of the run.
-#include <functional>
-#include <nlohmann/json.hpp>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench_child.hpp"
@@ -36,7 +36,7 @@ struct BuildRun {
   double load_before = 0;  ///< Load average when the run began.
   std::string failure;     ///< Why there are no figures, or empty.
   ProcessCost cost;
-  nlohmann::ordered_json stage_seconds;  ///< `seconds` of `build --json`.
+  std::vector<std::pair<std::string, double>> stage_seconds;  ///< `seconds` of `build --json`.
   std::uint64_t triangles = 0, vertices = 0;
   std::uint64_t voxels = 0, svo_nodes = 0, dag_nodes = 0;
   std::uint64_t dag_bytes = 0, file_bytes = 0;
@@ -50,7 +50,12 @@ struct BuildRun {
     return static_cast<double>(cost.peak_bytes) / static_cast<double>(memory_allowance());
   }
   double voxels_per_second() const { return static_cast<double>(voxels) / cost.wall_seconds; }
-  double stage(const std::string& name) const { return stage_seconds.value(name, 0.0); }
+  /// 0 for a stage that the method does not have.
+  double stage(const std::string& name) const {
+    for (const auto& [stage, seconds] : stage_seconds)
+      if (stage == name) return seconds;
+    return 0;
+  }
 };
 
 struct RivalRun {
@@ -59,8 +64,8 @@ struct RivalRun {
   double load_before = 0;
   std::string failure;
   ProcessCost cost;
-  std::uint64_t output_bytes = 0;   ///< Of all files that it left in its folder.
-  nlohmann::ordered_json reported;  ///< The last line of its output, where that is JSON.
+  std::uint64_t output_bytes = 0;  ///< Of all files that it left in its folder.
+  std::string reported;            ///< The last line of its output where that is a JSON object.
 };
 
 struct BenchResults {

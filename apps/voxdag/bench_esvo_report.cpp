@@ -6,6 +6,7 @@
 
 #include "bench_esvo.hpp"
 #include "bench_esvo_published.hpp"
+#include "bench_machine.hpp"
 #include "human.hpp"
 #include "svg_plot.hpp"
 
@@ -146,8 +147,7 @@ double levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow&
 }
 
 Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
-  Json json{
-      {"program", "voxdag " VOXDAG_VERSION}, {"machine", machine}, {"threads", results.threads}};
+  Json json{{"program", program_name()}, {"machine", machine}, {"threads", results.threads}};
   json["published"] = published::kEsvoSource;
   json["builds"] = Json::array();
   for (const EsvoBuildRun& run : results.builds) {

@@ -1,6 +1,7 @@
 /// `voxdag bench build --json`.
 #include <cmath>
 
+#include "bench_machine.hpp"
 #include "bench_published.hpp"
 #include "bench_report.hpp"
 
@@ -37,7 +38,8 @@ Json build_json(const std::vector<BuildRun>& builds, std::size_t index) {
   if (!run.failure.empty()) json["failure"] = run.failure;
   json.update(cost_json(run.cost));
   if (!run.failure.empty()) return json;
-  json["stage_seconds"] = run.stage_seconds;
+  json["stage_seconds"] = Json::object();
+  for (const auto& [stage, seconds] : run.stage_seconds) json["stage_seconds"][stage] = seconds;
   json["triangles"] = run.triangles;
   json["vertices"] = run.vertices;
   json["mesh_bytes"] = run.mesh_bytes();
@@ -67,7 +69,7 @@ Json rival_json(const RivalRun& run) {
   if (!run.failure.empty()) json["failure"] = run.failure;
   json.update(cost_json(run.cost));
   json["output_bytes"] = run.output_bytes;
-  if (!run.reported.is_null()) json["reported"] = run.reported;
+  if (!run.reported.empty()) json["reported"] = Json::parse(run.reported);
   return json;
 }
 
@@ -88,7 +90,7 @@ Growth growth_to(const std::vector<BuildRun>& builds, std::size_t index) {
 }
 
 Json bench_json(const BenchResults& results, const Json& machine) {
-  Json json{{"program", "voxdag " VOXDAG_VERSION}, {"machine", machine}};
+  Json json{{"program", program_name()}, {"machine", machine}};
   json["builds"] = Json::array();
   for (std::size_t i = 0; i < results.builds.size(); ++i)
     json["builds"].push_back(build_json(results.builds, i));

@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "voxdag_commit.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -20,6 +22,11 @@ std::string processor_name() {
 }
 
 }  // namespace
+
+std::string program_name() {
+  const std::string commit = VOXDAG_COMMIT;
+  return "voxdag " VOXDAG_VERSION + (commit.empty() ? "" : " (" + commit + ")");
+}
 
 double load_average() {
   double load = 0;

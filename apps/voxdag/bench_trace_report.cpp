@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench_machine.hpp"
 #include "bench_trace.hpp"
 #include "human.hpp"
 #include "svg_plot.hpp"
@@ -44,7 +45,8 @@ Json trace_json(const TraceResults& results, const Json& machine) {
   Json array = Json::array();
   const bool is_cuda = !results.cuda_device.empty();
   for (const TraceRow& row : results.rows) {
-    Json object{{"scene", row.scene},
+    Json object{{"program", program_name()},
+                {"scene", row.scene},
                 {"resolution", std::int64_t{1} << row.levels},
                 {"device", is_cuda ? "cuda" : "cpu"},
                 {"device_name", is_cuda ? Json(results.cuda_device) : machine.at("processor")},

@@ -113,7 +113,8 @@ class TileRenderer {
     find_source_samples(*source_, setup_, tile, rows);
     for (int pixel = 0; pixel < tile.pixels(); ++pixel)
       scratch.samples[pixel] =
-          rows[static_cast<std::size_t>(tile.row(pixel) * tile.width + tile.column(pixel))];
+          rows[static_cast<std::size_t>(tile.row(pixel)) * static_cast<std::size_t>(tile.width) +
+               static_cast<std::size_t>(tile.column(pixel))];
     return static_cast<int>(pixels);
   }
 

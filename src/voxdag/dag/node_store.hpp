@@ -134,11 +134,11 @@ class NodeStore {
   void take_run(Run& run);
   void grow(std::uint32_t shard_index);
 
-  MemoryBudget* budget_;
-  // Read by every lookup and seldom written, so apart from what adding a node writes.
+  // Read by every lookup and seldom written, so apart from the shards, which adding a node writes.
   alignas(64) std::array<std::atomic<std::uint64_t>, kShards> tables_{};
   std::array<PageArray<std::uint32_t>, kChunks> chunks_;
-  alignas(64) std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
+  std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
+  MemoryBudget* budget_;
   std::mutex runs_mutex_;
   std::uint32_t end_ = 0;
 };
