@@ -201,7 +201,7 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
 
   std::size_t next = 0;
   tbb::parallel_pipeline(
-      static_cast<std::size_t>(2 * tbb::this_task_arena::max_concurrency()),
+      2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
                                           [&](tbb::flow_control& flow) {
                                             if (next == tasks.size() ||
