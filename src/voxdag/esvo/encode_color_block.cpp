@@ -197,7 +197,7 @@ class CutSearch {
     std::array<Cuts, 2 * kLanes> cuts;
     for (int lane = 0; lane < kLanes; ++lane) {
       cuts[static_cast<std::size_t>(lane)] = of_lane(inner, lane);
-      cuts[static_cast<std::size_t>(lane + kLanes)] = of_lane(outer, lane);
+      cuts[static_cast<std::size_t>(lane) + kLanes] = of_lane(outer, lane);
     }
     return cuts;
   }

@@ -18,6 +18,7 @@ struct Recipe {
   float number = 0;  ///< The least visible alpha, or the scale of normals.
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): sees a null pointer in what the compiler writes here
   friend auto operator<=>(const Recipe&, const Recipe&) = default;
 };
 
