@@ -57,9 +57,9 @@ void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& s
   parallel_for(std::size_t{range.last_block} - range.first_block, [&](std::size_t i) {
     ViewTile tile = block_tile(setup.camera, range.first_block + static_cast<std::uint32_t>(i));
     set_sample(tile, range.first_sample);
-    find_source_samples(source, setup, tile,
-                        {samples.host.data() + i * kBlockPixels,
-                         static_cast<std::size_t>(tile.width * tile.height)});
+    find_source_samples(
+        source, setup, tile,
+        {samples.host.data() + i * kBlockPixels, static_cast<std::size_t>(tile.pixels())});
   });
 }
 

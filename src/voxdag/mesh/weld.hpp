@@ -138,12 +138,14 @@ Mesh weld(const MeshBytes& source, const std::vector<std::string_view>& parts, c
       VertexTable own;
       std::uint32_t* corner = mesh.triangles.data()->data() + 3 * starts[first + i];
       const std::uint32_t* const end = mesh.triangles.data()->data() + 3 * starts[first + i + 1];
-      const Fault changed{parts[first + i].data(), "the file changed while it was read"};
+      const auto changed = [&] {
+        return Fault{parts[first + i].data(), "the file changed while it was read"};
+      };
       visit(first + i, [&](Vec3f position) {
-        if (corner == end) throw changed;
+        if (corner == end) throw changed();
         *corner++ = own.find_or_add(position);
       });
-      if (corner != end) throw changed;
+      if (corner != end) throw changed();
       vertices[i] = own.take_vertices();
     });
     std::vector<std::vector<std::uint32_t>> numbers(last - first);
