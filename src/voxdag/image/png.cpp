@@ -152,6 +152,7 @@ ImageRgba16 decode_png_rgba16(std::span<const std::uint8_t> bytes, const std::st
                 "absurd size " + std::to_string(width) + " x " + std::to_string(height));
   ImageRgba16 image(static_cast<int>(width), static_cast<int>(height));
   std::vector<png_bytep> rows;
+  rows.reserve(height);
   for (int y = 0; y < image.height; ++y)
     rows.push_back(reinterpret_cast<png_bytep>(image.pixel(0, y)));
   PngDecoding decoding{bytes, ""};

@@ -60,7 +60,7 @@ void weigh(FilterTable& table) {
       const float x = (static_cast<float>(ix) + 0.5f) / kPerPixel;
       const float y = (static_cast<float>(iy) + 0.5f) / kPerPixel;
       if (length(x, y) >= kFilterRadius) continue;
-      FilterSample* nearest = nullptr;
+      FilterSample* nearest = table.data();
       float least = INFINITY;
       for (FilterSample& sample : table) {
         const float apart =

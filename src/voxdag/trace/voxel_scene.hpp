@@ -15,7 +15,9 @@ class VoxelScene {
 
   const SvdagView* dag() const { return std::get_if<SvdagView>(&view_); }  ///< Or null.
   const EsvoView* esvo() const { return std::get_if<EsvoView>(&view_); }   ///< Or null.
-  int levels() const { return esvo() != nullptr ? esvo()->levels : dag()->levels; }
+  int levels() const {
+    return std::visit([](const auto& view) { return view.levels; }, view_);
+  }
 
   /// Returns body(nodes), nodes being the layout that rays are cast at: SvdagNodes or ContourNodes.
   template <class Body>
