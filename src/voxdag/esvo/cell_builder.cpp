@@ -3,66 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "voxdag/core/bits.hpp"
-#include "voxdag/image/color.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 
 namespace voxdag {
-namespace {
-
-/// Beyond so many polygons a cell is not asked whether it could be a leaf.
-constexpr std::size_t kMostInLeaf = 24;
-
-/// What surfaces look like that have no colour: linear light.
-constexpr Vec3f kGrey{0.62f, 0.60f, 0.57f};
-
-/// sRGB codes by the leading bits of a float: 13 octaves below 1, 256 steps each, half a code off
-/// at most where the curve is steepest.
-class SrgbTable {
- public:
-  SrgbTable() {
-    for (std::uint32_t i = 0; i < kSize; ++i)
-      codes_[i] = linear_to_srgb8(float_from_bits(kFirst + (i << kShift) + (1u << (kShift - 1))));
-  }
-  std::uint8_t operator()(float linear) const {
-    if (!(linear > float_from_bits(kFirst))) return 0;
-    if (linear >= 1) return 255;
-    return codes_[(bits_of_float(linear) - kFirst) >> kShift];
-  }
-
- private:
-  static constexpr std::uint32_t kFirst = (127 - 13) << 23, kShift = 15, kSize = 13 * 256;
-  std::uint8_t codes_[kSize];
-};
-
-Vec3d to_double(Vec3f v) { return static_cast<Vec3d>(v); }
-
-/// What stands for a triangle that meets a cell in a corner that rounding lost: its first corner,
-/// moved into the cell.
-SurfacePolygon touching(const SurfacePolygon& polygon) {
-  SurfacePolygon point;
-  point.count = 1;
-  point.edges[0] = SurfacePolygon::kCutEdge;
-  for (int axis = 0; axis < 3; ++axis)
-    point.corners[0][axis] = std::clamp(polygon.corners[0][axis], -1.0, 1.0);
-  return point;
-}
-
-}  // namespace
-
-VoxelValue voxel_value(const SurfaceSum& sum) {
-  static const SrgbTable encode;
-  VoxelValue value;
-  const float scale = sum.area > 0 ? 1 / sum.area : 0;
-  for (int i = 0; i < 3; ++i) value.color[i] = encode(sum.color[i] * scale);
-  const float length2 = dot(sum.normal, sum.normal);
-  value.normal = length2 > 0 ? sum.normal * (1 / std::sqrt(length2)) : Vec3f{0, 1, 0};
-  return value;
-}
 
 void CellBuilder::start(int log2_size, Vec3i origin, const ConvexPolyhedron& shape) {
-  log2_size_ = log2_size;
   origin_ = origin;
+  log2_size_ = log2_size;
   shape_ = shape;
   triangles_.clear();
   ids_.clear();
@@ -76,15 +23,20 @@ void CellBuilder::add(const SurfaceTriangle& triangle, std::uint32_t id) {
   item.conditions = triangle.setup.conditions;
   item.polygon = triangle.polygon({}, log2_size_);
   item.polygon.clip_to_cell();
-  if (item.polygon.count == 0) item.polygon = touching(triangle.polygon({}, log2_size_));
   triangles_.push_back(triangle);
+  set_look(triangles_.back());
   ids_.push_back(id);
+  set_area(item);
   items_.push_back(item);
 }
 
+void CellBuilder::set_area(Item& item) const {
+  item.area = std::max(dot(item.polygon.area(), triangles_[item.triangle].normal), 0.0);
+}
+
 double CellBuilder::area_of(const Item& item, int log2_size) const {
-  const Vec3d area = item.polygon.area();
-  return std::sqrt(dot(area, area)) * std::ldexp(1.0, 2 * (log2_size - 1));
+  const double half = 0.5 * static_cast<double>(std::int64_t{1} << log2_size);
+  return item.area * half * half;
 }
 
 double CellBuilder::weight() const {
@@ -103,214 +55,147 @@ void CellBuilder::split(std::vector<std::uint32_t> (&children)[8]) const {
   }
 }
 
-int CellBuilder::barycentrics(const Item& item, int log2_size, Vec3i cell,
-                              Vec2f (&points)[SurfacePolygon::kMaxCorners]) const {
-  const SurfaceTriangle& triangle = triangles_[item.triangle];
-  const double half = 0.5 * static_cast<double>(std::int64_t{1} << log2_size);
-  const Vec3d centre = static_cast<Vec3d>(cell) + Vec3d{half, half, half};
-  for (int i = 0; i < item.polygon.count; ++i)
-    points[i] = triangle.barycentric(centre + item.polygon.corners[i] * half);
-  return item.polygon.count;
-}
-
-SurfaceSample CellBuilder::sample(const Item& item, int log2_size, Vec3i cell) const {
-  const SurfaceTriangle& triangle = triangles_[item.triangle];
-  if (shading_ == nullptr) return {kGrey, 1, static_cast<Vec3f>(triangle.normal)};
-  Vec2f points[SurfacePolygon::kMaxCorners];
-  const int count = barycentrics(item, log2_size, cell, points);
-  SurfaceSample sample = shading_->mean(triangle.source, {points, static_cast<std::size_t>(count)});
-  if (triangle.is_displaced) sample.normal = static_cast<Vec3f>(triangle.normal);
-  return sample;
-}
-
-SurfaceSum CellBuilder::sum_of(std::size_t begin, int log2_size, Vec3i cell) const {
-  SurfaceSum sum;
-  for (std::size_t i = begin; i < items_.size(); ++i) {
-    const SurfaceSample s = sample(items_[i], log2_size, cell);
-    // A touch counts a little, so that every voxel looks like something, and so does a surface of
-    // which the alpha test may leave something.
-    const float area =
-        static_cast<float>(area_of(items_[i], log2_size) + 1e-6) * std::max(s.coverage, 1e-3f);
-    sum.add({s.color * area, s.normal * area, area});
-  }
-  return sum;
-}
-
-void CellBuilder::drop_cut_away(std::size_t begin, int log2_size, Vec3i cell) {
-  if (shading_ == nullptr) return;
-  const auto is_cut_away = [&](const Item& item) {
-    const std::uint32_t source = triangles_[item.triangle].source;
-    if (!shading_->may_be_cut(source)) return false;
-    Vec2f points[SurfacePolygon::kMaxCorners];
-    const int count = barycentrics(item, log2_size, cell, points);
-    return shading_->is_cut_away(source, {points, static_cast<std::size_t>(count)});
-  };
-  const auto first = items_.begin() + static_cast<std::ptrdiff_t>(begin);
-  items_.erase(std::remove_if(first, items_.end(), is_cut_away), items_.end());
-}
-
 ContourCandidates CellBuilder::candidates(std::size_t begin) const {
   ContourCandidates result;
   for (std::size_t i = begin; i < items_.size(); ++i) {
     const Item& item = items_[i];
     const SurfaceTriangle& triangle = triangles_[item.triangle];
-    if (triangle.contour_normal == Vec3i{}) {
+    if (!triangle.across.exists()) {
       // A segment or a point: across all axes.
       for (int axis = 0; axis < 3; ++axis) {
         Vec3i n{};
         n[axis] = Contour::kMaxNormal;
-        result.add(n, 1e-6);
+        result.add(ContourDirection(n), 1e-6);
       }
       continue;
     }
-    const Vec3d area = item.polygon.area();
-    result.add(triangle.contour_normal, std::sqrt(dot(area, area)));
+    result.add(triangle.across, item.area);
     if (triangle.open_edges == 0) continue;
     for (int k = 0; k < item.polygon.count; ++k) {
       const std::uint8_t edge = item.polygon.edges[k];
-      if (edge == SurfacePolygon::kCutEdge || (triangle.open_edges >> edge & 1) == 0) continue;
-      const Vec3d along = triangle.corners[(edge + 1) % 3] - triangle.corners[edge];
-      const Vec3d across = cross(triangle.normal, along);
+      if (edge == SurfacePolygon::kCutEdge || !triangle.across_edges[edge].exists()) continue;
       const Vec3d part =
           item.polygon.corners[(k + 1) % item.polygon.count] - item.polygon.corners[k];
-      if (dot(across, across) > 0) result.add(quantize_direction(across), dot(part, part));
+      result.add(triangle.across_edges[edge], dot(part, part));
     }
   }
   return result;
 }
 
-bool CellBuilder::is_near(std::size_t begin, const ConvexPolyhedron& shape, double error) const {
-  if (items_.size() - begin > kMostInLeaf) return false;
-  const auto is_near_point = [&](Vec3d p) {
-    for (std::size_t i = begin; i < items_.size(); ++i)
-      if (is_within(items_[i].polygon, triangles_[items_[i].triangle].normal, p, error))
-        return true;
-    return false;
-  };
-  for (int i = 0; i < shape.vertex_count(); ++i)
-    if (!is_near_point(to_double(shape.vertex(i)))) return false;
-  return shape.is_empty() || is_near_point(to_double(shape.centre()));
-}
-
-bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell) const {
-  if (!settings_.attributes) return true;
-  // The normals of what is grey or displaced are its own; of the rest `shading_` knows.
-  constexpr float kAnyNormal = 4;
-  const auto own_normal = [&](const Item& item) {
-    return shading_ == nullptr || triangles_[item.triangle].is_displaced;
-  };
-  const auto normal_error = [&](const Item& item) {
-    return own_normal(item) ? kAnyNormal : settings_.normal_error;
-  };
-  Vec2f points[SurfacePolygon::kMaxCorners];
-  const auto polygon_of = [&](const Item& item) {
-    const int count = barycentrics(item, log2_size, cell, points);
-    return std::span<const Vec2f>(points, static_cast<std::size_t>(count));
-  };
-  // Most that are not uniform are not by themselves: the mean need not be known.
-  for (std::size_t i = begin; shading_ != nullptr && i < items_.size(); ++i)
-    if (!shading_->may_be_uniform(triangles_[items_[i].triangle].source, polygon_of(items_[i]),
-                                  settings_.color_error, normal_error(items_[i])))
-      return false;
-  const SurfaceSum sum = sum_of(begin, log2_size, cell);
-  if (!(sum.area > 0)) return false;
-  const SurfaceSample mean{sum.color * (1 / sum.area), 1, sum.normal * (1 / sum.area)};
-  const float least = std::cos(std::min(settings_.normal_error, 3.14159265f)) *
-                      std::sqrt(dot(mean.normal, mean.normal));
-  for (std::size_t i = begin; i < items_.size(); ++i) {
-    const SurfaceTriangle& triangle = triangles_[items_[i].triangle];
-    if (own_normal(items_[i]) && triangle.normal != Vec3d{} &&
-        dot(static_cast<Vec3f>(triangle.normal), mean.normal) < least)
-      return false;
-    if (shading_ != nullptr &&
-        !shading_->is_uniform(triangle.source, polygon_of(items_[i]), settings_.color_error,
-                              normal_error(items_[i]), mean))
-      return false;
-  }
-  return is_evenly_lit(begin, log2_size, cell);
-}
-
-VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell,
-                                  ConvexPolyhedron& shape) const {
+VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
+                                  ConvexPolyhedron& shape, SurfaceSum& sum) const {
   // A contour that saves less of the voxel's side does not pay for its four bytes, unless it lets
   // the subdivision end here, where each child would have to have one of its own.
   constexpr double kPays = 0.15;
   VoxelDecision decision;
-  if (!settings_.contours) {
-    decision.is_leaf = log2_size == 0;
-    return decision;
-  }
-  const double error = 2 * static_cast<double>(settings_.max_error) /
-                       static_cast<double>(std::int64_t{1} << log2_size);
-  bool near = is_near(begin, shape, error);
-  if (!near) {
+  decision.is_near = is_near;
+  if (settings_.contours && !is_near) {
+    const double error = 2 * static_cast<double>(settings_.max_error) /
+                         static_cast<double>(std::int64_t{1} << log2_size);
     polygons_.clear();
-    for (std::size_t i = begin; i < items_.size(); ++i) polygons_.push_back(&items_[i].polygon);
-    const std::optional<FittedContour> fitted = fit_contour(shape, polygons_, candidates(begin));
-    if (fitted) {
-      ConvexPolyhedron cut = shape;
-      clip_to_contour(cut, fitted->contour);
-      near = log2_size > 0 && is_near(begin, cut, error);
-      if (near || fitted->gain > kPays) {
+    for (std::size_t i = begin; i < items_.size(); ++i)
+      polygons_.push_back(
+          {&items_[i].polygon, static_cast<Vec3f>(triangles_[items_[i].triangle].normal)});
+    const auto is_near_enough = [&](const ConvexPolyhedron& of) {
+      return polygons_.size() <= kMostInLeaf &&
+             is_near_surface(of, polygons_, static_cast<float>(error));
+    };
+    decision.is_near = is_near_enough(shape);
+    std::optional<FittedContour> fitted;
+    if (!decision.is_near) fitted = fit_contour(shape, polygons_, candidates(begin));
+    if (fitted && log2_size == 0) {
+      if (fitted->gain > kPays) decision.contour = fitted->contour;
+    } else if (fitted) {
+      ConvexPolyhedron cut;
+      clip_to_contour(shape, fitted->contour, cut);
+      decision.is_near = is_near_enough(cut);
+      if (decision.is_near || fitted->gain > kPays) {
         decision.contour = fitted->contour;
         shape = cut;
       }
     }
   }
-  decision.is_leaf = log2_size == 0 || (near && is_uniform(begin, log2_size, cell));
+  decision.is_leaf =
+      log2_size == 0 || (decision.is_near && is_uniform(begin, log2_size, cell, sum));
+  if (log2_size == 0) sum = sum_of(begin, log2_size, cell);
   return decision;
 }
 
-VoxelDecision CellBuilder::decide() { return decide(0, log2_size_, {}, shape_); }
+VoxelDecision CellBuilder::decide(const VoxelDecision& parent) {
+  SurfaceSum sum;
+  return decide(0, log2_size_, {}, parent.is_near, shape_, sum);
+}
 
-CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i cell,
+CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                                         ConvexPolyhedron& shape) {
   drop_cut_away(begin, log2_size, cell);
   if (items_.size() == begin) return {};
-  const VoxelDecision decision = decide(begin, log2_size, cell, shape);
+  SurfaceSum sum;
+  const VoxelDecision decision = decide(begin, log2_size, cell, is_near, shape, sum);
   if (!decision.is_leaf) {
-    Visited visited = visit_children(begin, log2_size, cell, shape);
+    Visited visited = visit_children(begin, log2_size, cell, decision.is_near, shape);
     visited.contour = decision.contour;
     return visited;
   }
   Visited visited;
-  visited.sum = leaf_sum(begin, log2_size, cell);
+  visited.sum = lit(sum, begin, log2_size, cell);
   visited.exists = visited.sum.area > 0;
   visited.is_leaf = true;
   visited.contour = decision.contour;
   return visited;
 }
 
-CellBuilder::Visited CellBuilder::visit_children(std::size_t begin, int log2_size, Vec3i cell,
-                                                 const ConvexPolyhedron& shape) {
+void CellBuilder::visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,
+                               const ConvexPolyhedron& shape, Visited (&children)[8]) {
   const std::size_t end = items_.size();
-  const std::int32_t half = 1 << (log2_size - 1);
-  Visited children[8];
-  const std::size_t first_classified = classified_.size();
-  for (std::size_t i = begin; i < end; ++i)
-    classified_.push_back(
-        classify_children(triangles_[items_[i].triangle].setup, items_[i].conditions, cell, half));
-  Visited result;
-  for (int child = 0; child < 8; ++child) {
+  const std::uint32_t low = detail::kLowChildren[part.axis];
+  for (const bool is_upper : {false, true}) {
+    const std::uint32_t half = part.children & (is_upper ? ~low : low);
+    if ((alive & half) == 0) continue;
+    const int child = std::countr_zero(half);  // The only one where the axis is the last.
     for (std::size_t i = begin; i < end; ++i) {
-      const ChildConditions& classified = classified_[first_classified + i - begin];
-      if ((classified.alive >> child & 1) == 0) continue;
-      Item item;
-      item.triangle = items_[i].triangle;
+      const ChildConditions& classified = classified_[items_[i].classified];
+      if ((classified.alive & half) == 0) continue;
+      items_.emplace_back();
+      const Item& whole = items_[i];
+      Item& item = items_.back();
+      item.triangle = whole.triangle;
+      item.classified = whole.classified;
+      item.polygon.become_half(whole.polygon, part.axis, is_upper);
+      if (part.axis > 0) continue;
       item.conditions = classified.conditions(child);
-      item.polygon = items_[i].polygon.octant(child);
-      if (item.polygon.count == 0) item.polygon = touching(items_[i].polygon.in_octant(child));
-      items_.push_back(item);
+      set_area(item);
     }
-    if (items_.size() == end) continue;
-    const Vec3i at = cell + Vec3i{child & 1, child >> 1 & 1, child >> 2} * half;
-    ConvexPolyhedron child_shape;
-    if (settings_.contours) child_shape = shape.octant(child);
-    children[child] = visit(end, log2_size - 1, at, child_shape);
+    ConvexPolyhedron half_shape;
+    if (settings_.contours && !part.is_near) half_shape.become_half(shape, part.axis, is_upper);
+    if (part.axis > 0) {
+      visit_halves(end, {part.log2_size, part.cell, part.is_near, part.axis - 1, half}, alive,
+                   half_shape, children);
+    } else {
+      const Vec3i at =
+          part.cell + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << (part.log2_size - 1));
+      children[child] = visit(end, part.log2_size - 1, at, part.is_near, half_shape);
+    }
     items_.resize(end);
   }
+}
+
+CellBuilder::Visited CellBuilder::visit_children(std::size_t begin, int log2_size, Vec3i cell,
+                                                 bool is_near, const ConvexPolyhedron& shape) {
+  const std::size_t first_classified = classified_.size();
+  std::uint32_t alive = 0;
+  for (std::size_t i = begin; i < items_.size(); ++i) {
+    Item& item = items_[i];
+    item.classified = static_cast<std::uint32_t>(classified_.size());
+    classified_.push_back(classify_children(triangles_[item.triangle].setup, item.conditions, cell,
+                                            1 << (log2_size - 1)));
+    alive |= classified_.back().alive;
+  }
+  Visited children[8];
+  visit_halves(begin, {log2_size, cell, is_near, 2, 0xFF}, alive, shape, children);
   classified_.resize(first_classified);
 
+  Visited result;
   EsvoNode& node = result.node;
   node.first_contour = static_cast<std::uint32_t>(tree_.contours.size());
   node.first_value = static_cast<std::uint32_t>(tree_.values.size());
@@ -341,12 +226,12 @@ BuiltVoxel CellBuilder::build(const VoxelDecision& decision) {
   built.contour = decision.contour;
   if (decision.is_leaf) {
     drop_cut_away(0, log2_size_, {});
-    built.sum = leaf_sum(0, log2_size_, {});
+    built.sum = lit(sum_of(0, log2_size_, {}), 0, log2_size_, {});
     built.exists = built.sum.area > 0;
     built.is_leaf = true;
     return built;
   }
-  const Visited visited = visit_children(0, log2_size_, {}, shape_);
+  const Visited visited = visit_children(0, log2_size_, {}, decision.is_near, shape_);
   built.exists = visited.exists;
   built.sum = visited.sum;
   if (!visited.exists) return built;

@@ -68,6 +68,7 @@ struct BuiltVoxel {
 /// What is decided of a voxel before its children are known.
 struct VoxelDecision {
   bool is_leaf = false;
+  bool is_near = false;  ///< Its shape is near enough to the surface: below it are no contours.
   std::optional<Contour> contour;
 };
 
@@ -86,8 +87,9 @@ class CellBuilder {
   /// How much surface there is, in voxels², and at least one for each triangle.
   double weight() const;
 
-  /// The contour of the cell and whether it is a leaf; cuts shape() by the contour.
-  VoxelDecision decide();
+  /// The contour of the cell and whether it is a leaf; cuts shape() by the contour. `parent` is
+  /// what was decided of the cell's parent.
+  VoxelDecision decide(const VoxelDecision& parent);
   const ConvexPolyhedron& shape() const { return shape_; }
   /// The ids of the triangles that meet each child.
   void split(std::vector<std::uint32_t> (&children)[8]) const;
@@ -96,10 +98,27 @@ class CellBuilder {
   BuiltVoxel build(const VoxelDecision& decision);
 
  private:
+  /// Beyond so many polygons a cell is not asked whether it could be a leaf.
+  static constexpr std::size_t kMostInLeaf = 24;
+
+  /// What a triangle has in a cell, or, while that is split, in one half of it after the other.
   struct Item {
+    Item() {}  // Nothing of it is to be zero: polygons are large.
+
     std::uint32_t triangle;
-    std::uint32_t conditions;
+    std::uint32_t conditions;  ///< Which of the triangle's conditions are open in the cell.
+    std::uint32_t classified;  ///< Of the cell that is being split: an index.
+    double area;               ///< In the cell's own coordinates.
     SurfacePolygon polygon;
+  };
+  /// Some of a cell's children: all, or those in one half of it, or in one half of that. They are
+  /// halved next across `axis`; the axes before it are left.
+  struct Part {
+    int log2_size;
+    Vec3i cell;
+    bool is_near;  ///< The shape of the cell: what becomes of it does not matter.
+    int axis;
+    std::uint32_t children;  ///< A mask.
   };
   /// A voxel with its children known, and the node that says so.
   struct Visited {
@@ -110,22 +129,41 @@ class CellBuilder {
   };
 
   void drop_cut_away(std::size_t begin, int log2_size, Vec3i cell);
-  VoxelDecision decide(std::size_t begin, int log2_size, Vec3i cell, ConvexPolyhedron& shape) const;
-  bool is_near(std::size_t begin, const ConvexPolyhedron& shape, double error) const;
-  bool is_uniform(std::size_t begin, int log2_size, Vec3i cell) const;
+  /// `sum` becomes sum_of() if the cell is a leaf.
+  VoxelDecision decide(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
+                       ConvexPolyhedron& shape, SurfaceSum& sum) const;
+  /// `sum` becomes sum_of() if it is.
+  bool is_uniform(std::size_t begin, int log2_size, Vec3i cell, SurfaceSum& sum) const;
+  bool is_of_one_look(std::size_t begin) const;
   ContourCandidates candidates(std::size_t begin) const;
   bool is_evenly_lit(std::size_t begin, int log2_size, Vec3i cell) const;
   /// Of the cell's polygons. Ends as soon as the light differs by more than `most_difference`, sRGB
   /// encoded; the mean is not known then.
   LightRange light_of(std::size_t begin, int log2_size, Vec3i cell, float most_difference) const;
-  SurfaceSum leaf_sum(std::size_t begin, int log2_size, Vec3i cell) const;
+  /// The sum over a leaf's polygons in the light that is baked in.
+  SurfaceSum lit(SurfaceSum sum, std::size_t begin, int log2_size, Vec3i cell) const;
   SurfaceSum sum_of(std::size_t begin, int log2_size, Vec3i cell) const;
-  SurfaceSample sample(const Item& item, int log2_size, Vec3i cell) const;
-  int barycentrics(const Item& item, int log2_size, Vec3i cell,
-                   Vec2f (&points)[SurfacePolygon::kMaxCorners]) const;
+  /// A polygon as `shading_` takes it; empty where it looks the same everywhere.
+  struct Piece {
+    Piece() {}
+    std::span<const Vec2f> corners() const { return {points, count}; }
+
+    std::size_t count = 0;
+    union {
+      Vec2f points[SurfacePolygon::kMaxCorners];  // uninitialised
+    };
+  };
+  Piece piece(const Item& item, int log2_size, Vec3i cell) const;
+  SurfaceSample sample(const Item& item, const Piece& of) const;
+  void add_to(SurfaceSum& sum, const Item& item, int log2_size, const SurfaceSample& sample) const;
   double area_of(const Item& item, int log2_size) const;
-  Visited visit(std::size_t begin, int log2_size, Vec3i cell, ConvexPolyhedron& shape);
-  Visited visit_children(std::size_t begin, int log2_size, Vec3i cell,
+  void set_area(Item& item) const;
+  void set_look(SurfaceTriangle& triangle) const;
+  Visited visit(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
+                ConvexPolyhedron& shape);
+  void visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,
+                    const ConvexPolyhedron& shape, Visited (&children)[8]);
+  Visited visit_children(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                          const ConvexPolyhedron& shape);
 
   EsvoSettings settings_;
@@ -137,7 +175,7 @@ class CellBuilder {
   std::vector<std::uint32_t> ids_;
   std::vector<Item> items_;                  // stack of lists, one for each cell on the way
   std::vector<ChildConditions> classified_;  // likewise
-  mutable std::vector<const SurfacePolygon*> polygons_;
+  mutable std::vector<PlanarPolygon> polygons_;
   EsvoTree tree_;  // nodes stand in reverse: children before parents, siblings from last to first
 };
 

@@ -46,7 +46,7 @@ LightRange CellBuilder::light_of(std::size_t begin, int log2_size, Vec3i cell,
     const SurfaceTriangle& triangle = triangles_[item.triangle];
     const auto own = static_cast<Vec3f>(triangle.normal);
     SurfacePlace place;
-    place.normal = with_length_1(sample(item, log2_size, cell).normal, {0, 1, 0});
+    place.normal = with_length_1(sample(item, piece(item, log2_size, cell)).normal, {0, 1, 0});
     place.face = dot(own, place.normal) < 0 ? -own : own;
     if (place.face == Vec3f{}) place.face = place.normal;
     const Vec3d middle = middle_of(item.polygon);
@@ -69,8 +69,7 @@ bool CellBuilder::is_evenly_lit(std::size_t begin, int log2_size, Vec3i cell) co
   return linear_to_srgb(range.greatest) - linear_to_srgb(range.least) <= settings_.color_error;
 }
 
-SurfaceSum CellBuilder::leaf_sum(std::size_t begin, int log2_size, Vec3i cell) const {
-  SurfaceSum sum = sum_of(begin, log2_size, cell);
+SurfaceSum CellBuilder::lit(SurfaceSum sum, std::size_t begin, int log2_size, Vec3i cell) const {
   if (settings_.light && settings_.attributes && sum.area > 0)
     sum.color = sum.color * light_of(begin, log2_size, cell, 2).mean;
   return sum;

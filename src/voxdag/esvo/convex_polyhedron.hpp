@@ -11,12 +11,13 @@
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"
+#include "voxdag/esvo/lanes.hpp"
 
 namespace voxdag {
 
 class ConvexPolyhedron {
  public:
-  static constexpr int kMaxVertices = 64, kMaxEdges = 96, kMaxFaces = 64;
+  static constexpr int kMaxVertices = 44, kMaxEdges = 64;
 
   // Most have a few of the vertices and edges that there is room for: copies leave out the rest.
   ConvexPolyhedron() {}
@@ -26,15 +27,21 @@ class ConvexPolyhedron {
   /// The cube [-1,1]³.
   static ConvexPolyhedron cube();
 
-  /// Cuts away where dot(normal, p) > offset. Where the result would be too complex it stays as it
-  /// was. What is left may be empty.
-  void clip(Vec3f normal, float offset);
+  /// Becomes what is left of `whole`, which is another, where dot(normal, p) <= offset; all of it
+  /// where the result would be too complex. May become empty.
+  void become_part(const ConvexPolyhedron& whole, Vec3f normal, float offset);
+
+  /// Becomes the half of `whole`, which is another, on one side of 0 along an axis, stretched along
+  /// it: what was [0,1] or [-1,0] is [-1,1] then.
+  void become_half(const ConvexPolyhedron& whole, int axis, bool is_upper);
 
   /// Of the octant `child` (x=1, y=2, z=4) of [-1,1]³, enlarged to [-1,1]³.
   ConvexPolyhedron octant(int child) const;
 
   int vertex_count() const { return vertex_count_; }
-  Vec3f vertex(int i) const { return vertices_[i]; }
+  Vec3f vertex(int i) const { return {at_[0][i], at_[1][i], at_[2][i]}; }
+  /// A coordinate of the vertices, in groups of four; the last group is filled up with vertices.
+  const float* coordinates(int axis) const { return at_[axis]; }
   bool is_empty() const { return vertex_count_ == 0; }
   /// The mean of the vertices.
   Vec3f centre() const;
@@ -45,12 +52,19 @@ class ConvexPolyhedron {
     std::uint8_t left, right;  // faces
   };
 
-  /// Cuts by plane distances given for each vertex, positive outside.
-  void clip(const float* distances);
+  /// Becomes what is left of `whole`, another one, where the distances of its vertices are not
+  /// positive.
+  void become_part(const ConvexPolyhedron& whole, const float* distances);
+  void fill_last_group();
+  /// kMaxFaces if there is none.
+  int unused_face() const;
+
+  static constexpr int kMaxFaces = 64;
 
   int vertex_count_ = 0, edge_count_ = 0;
+  int next_face_ = 0;  // no edge has this one or a later one
   union {
-    Vec3f vertices_[kMaxVertices];  // uninitialised
+    float at_[3][kMaxVertices + kLanes];  // uninitialised
   };
   Edge edges_[kMaxEdges];
 };

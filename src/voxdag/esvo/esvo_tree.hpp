@@ -1,9 +1,9 @@
 #pragma once
 /// A part of an ESVO while it is being built: nodes, not yet in blocks.
-#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "voxdag/core/bits.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/layout/contour.hpp"
 
@@ -26,9 +26,7 @@ struct EsvoNode {
   bool is_packed = false;
 
   std::uint32_t inner_mask() const { return valid_mask & ~std::uint32_t{leaf_mask}; }
-  std::uint32_t inner_count() const {
-    return static_cast<std::uint32_t>(std::popcount(inner_mask()));
-  }
+  std::uint32_t inner_count() const { return static_cast<std::uint32_t>(popcount8(inner_mask())); }
 };
 
 /// Node 0 is the voxel that the part belongs to. Every other node is a child of exactly one.

@@ -6,11 +6,6 @@
 namespace voxdag {
 namespace {
 
-double length2(Vec3i n) {
-  const auto v = static_cast<Vec3d>(n);
-  return std::sqrt(dot(v, v));
-}
-
 struct Extent {
   double low = HUGE_VAL, high = -HUGE_VAL;
   void add(double v) {
@@ -22,112 +17,136 @@ struct Extent {
 
 Extent extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
   const auto n = static_cast<Vec3f>(normal);
+  FloatLanes low = all_lanes(HUGE_VALF), high = -low;
+  for (int i = 0; i < shape.vertex_count(); i += kLanes) {
+    const FloatLanes along = load_lanes(shape.coordinates(0) + i) * n.x +
+                             load_lanes(shape.coordinates(1) + i) * n.y +
+                             load_lanes(shape.coordinates(2) + i) * n.z;
+    low = min(low, along);
+    high = max(high, along);
+  }
   Extent extent;
-  for (int i = 0; i < shape.vertex_count(); ++i)
-    extent.add(static_cast<double>(dot(n, shape.vertex(i))));
+  for (int lane = 0; lane < kLanes; ++lane) {
+    extent.add(static_cast<double>(low[lane]));
+    extent.add(static_cast<double>(high[lane]));
+  }
   return extent;
 }
 
-Extent extent_of(std::span<const SurfacePolygon* const> surface, Vec3i normal) {
+Extent extent_of(std::span<const PlanarPolygon> surface, Vec3i normal) {
   const auto n = static_cast<Vec3d>(normal);
   Extent extent;
-  for (const SurfacePolygon* polygon : surface)
-    for (int i = 0; i < polygon->count; ++i) extent.add(dot(n, polygon->corners[i]));
+  for (const PlanarPolygon& p : surface)
+    for (int i = 0; i < p.polygon->count; ++i) extent.add(dot(n, p.polygon->corners[i]));
   return extent;
 }
 
 }  // namespace
 
-Vec3i quantize_direction(Vec3d direction) {
+ContourDirection ContourDirection::nearest(Vec3d direction) {
   const double largest =
       std::max({std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)});
-  const Vec3d d = direction * (1 / largest);
-  const double length = std::sqrt(dot(d, d));
-  Vec3i best{};
-  double best_cosine = -1;
+  if (!(largest > 0)) return {};
+  const auto d = static_cast<Vec3f>(direction * (1 / largest));
+  const auto rounded = [](FloatLanes v) { return truncated(v + 32.5f) - 32.0f; };
   // Longer vectors are finer, but some shorter one may hit the direction better.
-  for (int scale = Contour::kMaxNormal; scale > Contour::kMaxNormal / 2; --scale) {
-    const Vec3i n{static_cast<std::int32_t>(std::lround(d.x * scale)),
-                  static_cast<std::int32_t>(std::lround(d.y * scale)),
-                  static_cast<std::int32_t>(std::lround(d.z * scale))};
-    const double cosine = dot(static_cast<Vec3d>(n), d) / (length2(n) * length);
-    if (cosine > best_cosine + 1e-12) {
-      best_cosine = cosine;
-      best = n;
-    }
+  FloatLanes least = all_lanes(HUGE_VALF), x{}, y{}, z{};
+  for (int most = Contour::kMaxNormal; most > Contour::kMaxNormal / 2; most -= kLanes) {
+    const FloatLanes scale = static_cast<float>(most) - FloatLanes{0, 1, 2, 3};
+    const FloatLanes nx = rounded(scale * d.x), ny = rounded(scale * d.y),
+                     nz = rounded(scale * d.z);
+    const FloatLanes cx = ny * d.z - nz * d.y, cy = nz * d.x - nx * d.z, cz = nx * d.y - ny * d.x;
+    // As the sine's square.
+    const FloatLanes off = (cx * cx + cy * cy + cz * cz) / (nx * nx + ny * ny + nz * nz);
+    const IntLanes better = off < least;
+    least = better ? off : least;
+    x = better ? nx : x;
+    y = better ? ny : y;
+    z = better ? nz : z;
   }
-  return best;
+  int best = 0;
+  for (int lane = 1; lane < kLanes; ++lane)
+    if (least[lane] < least[best]) best = lane;
+  const Vec3i n{static_cast<std::int32_t>(x[best]), static_cast<std::int32_t>(y[best]),
+                static_cast<std::int32_t>(z[best])};
+  // Of the two that mean the same the one that points up, so that equal contours can be shared.
+  const bool points_up = n.z != 0 ? n.z > 0 : n.y != 0 ? n.y > 0 : n.x > 0;
+  return ContourDirection(points_up ? n : -n);
 }
 
-void ContourCandidates::add(Vec3i normal, double weight) {
-  constexpr double kLike = 0.98;  // cosine: 11 degrees
-  const auto n = static_cast<Vec3d>(normal);
-  const double length = length2(normal);
+void ContourCandidates::add(const ContourDirection& direction, double weight) {
+  constexpr float kLike = 0.98f;  // cosine: 11 degrees
   for (std::size_t i = 0; i < count_; ++i) {
-    const double cosine = dot(n, static_cast<Vec3d>(normals_[i])) / (length * length2(normals_[i]));
-    if (std::fabs(cosine) < kLike) continue;
-    if (weight > weights_[i]) normals_[i] = normal;
+    const ContourDirection& other = directions_[i];
+    const auto along = static_cast<float>(dot(direction.normal, other.normal));
+    if (std::fabs(along) < kLike * direction.length * other.length) continue;
+    if (weight > weights_[i]) directions_[i] = direction;
     weights_[i] += weight;
     return;
   }
   if (count_ < kMost) {
-    normals_[count_] = normal;
+    directions_[count_] = direction;
     weights_[count_++] = weight;
     return;
   }
   const auto lightest = static_cast<std::size_t>(
       std::min_element(weights_.begin(), weights_.end()) - weights_.begin());
   if (weights_[lightest] >= weight) return;
-  normals_[lightest] = normal;
+  directions_[lightest] = direction;
   weights_[lightest] = weight;
 }
 
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
-                                         std::span<const SurfacePolygon* const> surface,
+                                         std::span<const PlanarPolygon> surface,
                                          const ContourCandidates& candidates) {
   // In steps of the stored positions.
   constexpr double kMargin = 0.01;
   if (shape.is_empty()) return std::nullopt;
-  Vec3i best{};
+  const ContourDirection* best = nullptr;
   Extent best_surface, best_shape;
   double most = 0;
-  for (const Vec3i normal : candidates.normals()) {
-    const Extent of_surface = extent_of(surface, normal), of_shape = extent_of(shape, normal);
-    const double over = (of_shape.size() - of_surface.size()) / length2(normal);
+  for (const ContourDirection& direction : candidates.directions()) {
+    const Extent of_surface = extent_of(surface, direction.normal),
+                 of_shape = extent_of(shape, direction.normal);
+    const double over =
+        (of_shape.size() - of_surface.size()) / static_cast<double>(direction.length);
     if (!(over > most)) continue;
     most = over;
-    best = normal;
+    best = &direction;
     best_surface = of_surface;
     best_shape = of_shape;
   }
-  if (!(most > 0)) return std::nullopt;
+  if (best == nullptr) return std::nullopt;
 
   // position = |n|1 (2p - 127) / 127
-  const double n1 = length1(best);
-  constexpr int kMax = Contour::kMaxPosition;
-  constexpr double kSteps = kMax;
-  const auto step_of = [&](double position) { return (position / n1 + 1) * (kSteps / 2); };
-  const int low =
-      std::clamp(static_cast<int>(std::floor(step_of(best_surface.low) - kMargin)), 0, kMax);
+  const std::int32_t length1_of_best = length1(best->normal);
+  constexpr double kSteps = Contour::kMaxPosition;
+  const auto step_of = [&](double position) {
+    return (position / length1_of_best + 1) * (kSteps / 2);
+  };
+  // Truncation rounds down what is not negative, and there is nothing below 0 or above the last.
+  const double below = step_of(best_surface.low) - kMargin;
+  const double above = kSteps - (step_of(best_surface.high) + kMargin);
+  const int low = std::clamp(static_cast<int>(below), 0, Contour::kMaxPosition);
   const int high =
-      std::clamp(static_cast<int>(std::ceil(step_of(best_surface.high) + kMargin)), 0, kMax);
+      Contour::kMaxPosition - std::clamp(static_cast<int>(above), 0, Contour::kMaxPosition);
   FittedContour fitted;
-  // Of the two that mean the same the one that points up, so that equal ones can be shared.
-  const bool points_up = best.z != 0 ? best.z > 0 : best.y != 0 ? best.y > 0 : best.x > 0;
-  fitted.contour =
-      points_up ? Contour::make(best, low, high) : Contour::make(-best, kMax - high, kMax - low);
+  fitted.contour = Contour::make(best->normal, low, high);
   Extent planes;
-  planes.add(std::max(contour_position<double>(length1(best), low), best_shape.low));
-  planes.add(std::min(contour_position<double>(length1(best), high), best_shape.high));
-  const double length = length2(best);
+  planes.add(std::max(contour_position<double>(length1_of_best, low), best_shape.low));
+  planes.add(std::min(contour_position<double>(length1_of_best, high), best_shape.high));
+  const auto length = static_cast<double>(best->length);
   fitted.gain = (best_shape.size() - planes.size()) / length;
   return fitted;
 }
 
-void clip_to_contour(ConvexPolyhedron& shape, Contour contour) {
+void clip_to_contour(const ConvexPolyhedron& shape, Contour contour, ConvexPolyhedron& result) {
   const Vec3i n = contour.normal();
-  shape.clip(static_cast<Vec3f>(n), contour_position<float>(length1(n), contour.high()));
-  shape.clip(static_cast<Vec3f>(-n), -contour_position<float>(length1(n), contour.low()));
+  ConvexPolyhedron below;
+  below.become_part(shape, static_cast<Vec3f>(n),
+                    contour_position<float>(length1(n), contour.high()));
+  result.become_part(below, static_cast<Vec3f>(-n),
+                     -contour_position<float>(length1(n), contour.low()));
 }
 
 }  // namespace voxdag

@@ -5,33 +5,46 @@
 /// candidate directions, the one in which the shape's extent exceeds the surface's most; planes
 /// across it as near to the surface as they can be stored, never nearer.
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 
 #include "voxdag/esvo/convex_polyhedron.hpp"
-#include "voxdag/esvo/surface_polygon.hpp"
+#include "voxdag/esvo/near_surface.hpp"
 #include "voxdag/layout/contour.hpp"
 
 namespace voxdag {
 
-/// The stored normal whose direction is nearest to that of `direction`, which is not zero.
-Vec3i quantize_direction(Vec3d direction);
+/// A direction as contours store it.
+struct ContourDirection {
+  Vec3i normal{};
+  float length = 0;  ///< Of `normal`; 0 if there is no direction.
 
-/// Directions to choose from, quantised; a few that differ well.
+  ContourDirection() = default;
+  explicit ContourDirection(Vec3i n)
+      : normal(n), length(std::sqrt(static_cast<float>(dot(n, n)))) {}
+
+  /// The one nearest to `direction` or its opposite, whichever points up; none for zero.
+  static ContourDirection nearest(Vec3d direction);
+
+  bool exists() const { return length > 0; }
+};
+
+/// Directions to choose from, a few that differ well.
 class ContourCandidates {
  public:
   static constexpr int kMost = 8;
 
   /// Adds a direction unless one like it (or its opposite) is there, or adds to that one's weight.
   /// Where there is no room the lightest goes.
-  void add(Vec3i normal, double weight);
+  void add(const ContourDirection& direction, double weight);
 
-  std::span<const Vec3i> normals() const { return {normals_.data(), count_}; }
+  std::span<const ContourDirection> directions() const { return {directions_.data(), count_}; }
 
  private:
   std::size_t count_ = 0;
-  std::array<Vec3i, kMost> normals_{};
-  std::array<double, kMost> weights_{};
+  std::array<ContourDirection, kMost> directions_;
+  std::array<double, kMost> weights_;
 };
 
 struct FittedContour {
@@ -41,13 +54,13 @@ struct FittedContour {
 };
 
 /// The best contour, or none if the shape nowhere exceeds the surface. The surface lies between
-/// the planes by a margin that exceeds all rounding here and in the ray casts. `points` are the
-/// corners of the polygons in the voxel; at least one.
+/// the planes by a margin that exceeds all rounding here and in the ray casts. `surface` has one
+/// polygon at least.
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
-                                         std::span<const SurfacePolygon* const> surface,
+                                         std::span<const PlanarPolygon> surface,
                                          const ContourCandidates& candidates);
 
-/// Cuts the shape by the contour's planes.
-void clip_to_contour(ConvexPolyhedron& shape, Contour contour);
+/// Of the shape what is between the contour's planes. `result` is another one.
+void clip_to_contour(const ConvexPolyhedron& shape, Contour contour, ConvexPolyhedron& result);
 
 }  // namespace voxdag

@@ -4,6 +4,9 @@
 /// (-1 where true) and `mask ? a : b` are per lane.
 #include <cstdint>
 #include <cstring>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
 
 #include "voxdag/core/vec.hpp"
 
@@ -19,6 +22,7 @@ inline FloatLanes load_lanes(const float* from) {
   std::memcpy(&lanes, from, sizeof lanes);
   return lanes;
 }
+inline void store_lanes(float* to, FloatLanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
 inline FloatLanes all_lanes(float value) { return FloatLanes{value, value, value, value}; }
 inline IntLanes all_lanes(std::int32_t value) { return IntLanes{value, value, value, value}; }
 /// x, y, z and 0.
@@ -31,5 +35,17 @@ inline FloatLanes max(FloatLanes a, FloatLanes b) { return a < b ? b : a; }
 inline FloatLanes truncated(FloatLanes v) {
   return __builtin_convertvector(__builtin_convertvector(v, IntLanes), FloatLanes);
 }
+
+/// Bit i tells whether the mask is true in lane i.
+inline unsigned lane_bits(IntLanes mask) {
+#if defined(__SSE__)
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#else
+  unsigned bits = 0;
+  for (int lane = 0; lane < kLanes; ++lane) bits |= mask[lane] != 0 ? 1u << lane : 0u;
+  return bits;
+#endif
+}
+inline bool any_lane(IntLanes mask) { return lane_bits(mask) != 0; }
 
 }  // namespace voxdag

@@ -6,7 +6,7 @@
 /// Clipping", 1974) and doubles their coordinates, which is exact. What is cut by mistake at one
 /// level would leave a hole below it, so a corner may lie 1e-9 outside of the plane that cuts, and
 /// is moved onto it.
-#include <cassert>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -47,61 +47,74 @@ struct SurfacePolygon {
     return p;
   }
 
-  /// Keeps where sign * (p[axis] - position) >= 0; sign is 1 or -1.
-  void clip(int axis, double position, double sign) {
+  /// Becomes the part of `whole`, another polygon, where sign * (p[axis] - position) >= 0; sign is
+  /// 1 or -1.
+  void become_part(const SurfacePolygon& whole, int axis, double position, double sign) {
     constexpr double kSlack = 1e-9;
     double distances[kMaxCorners];
     bool all = true;
-    for (int i = 0; i < count; ++i) {
-      distances[i] = sign * (corners[i][axis] - position);
-      if (std::fabs(distances[i]) < kSlack) distances[i] = 0;
+    for (int i = 0; i < whole.count; ++i) {
+      const double distance = sign * (whole.corners[i][axis] - position);
+      distances[i] = std::fabs(distance) < kSlack ? 0 : distance;
       all &= distances[i] > 0;
     }
-    if (all) return;
-    SurfacePolygon result;
-    const auto add = [&](Vec3d corner, std::uint8_t edge) {
-      if (result.count == kMaxCorners) return;
-      result.corners[result.count] = corner;
-      result.edges[result.count++] = edge;
-    };
-    for (int i = 0; i < count; ++i) {
-      const int next = i + 1 == count ? 0 : i + 1;
+    if (all) {
+      *this = whole;
+      return;
+    }
+    count = 0;
+    for (int i = 0; i < whole.count; ++i) {
+      const int next = i + 1 == whole.count ? 0 : i + 1;
       const double here = distances[i], there = distances[next];
-      if (here >= 0) {
-        Vec3d corner = corners[i];
-        if (here == 0) corner[axis] = position;
-        add(corner, here == 0 && there < 0 ? kCutEdge : edges[i]);
+      if (here >= 0 && count < kMaxCorners) {
+        corners[count] = whole.corners[i];
+        if (here == 0) corners[count][axis] = position;
+        edges[count++] = here == 0 && there < 0 ? kCutEdge : whole.edges[i];
       }
-      if (!(here > 0 && there < 0) && !(here < 0 && there > 0)) continue;
-      Vec3d corner = corners[i] + (corners[next] - corners[i]) * (here / (here - there));
-      corner[axis] = position;
-      add(corner, here > 0 ? kCutEdge : edges[i]);
+      if (!(here * there < 0) || count == kMaxCorners) continue;
+      const Vec3d from = whole.corners[i];
+      corners[count] = from + (whole.corners[next] - from) * (here / (here - there));
+      corners[count][axis] = position;
+      edges[count++] = here > 0 ? kCutEdge : whole.edges[i];
     }
-    *this = result;
   }
 
-  /// The same corners in the coordinates of the cell's octant `child`.
-  SurfacePolygon in_octant(int child) const {
-    SurfacePolygon p = *this;
-    for (int i = 0; i < p.count; ++i)
-      for (int axis = 0; axis < 3; ++axis)
-        p.corners[i][axis] = 2 * p.corners[i][axis] - ((child >> axis & 1) != 0 ? 1.0 : -1.0);
-    return p;
+  /// Becomes the half of `whole` on one side of 0 along an axis, stretched along it: what was [0,1]
+  /// or [-1,0] is [-1,1] then. Where rounding lost all that is known to be there a point is left.
+  void become_half(const SurfacePolygon& whole, int axis, bool is_upper) {
+    become_part(whole, axis, 0, is_upper ? 1 : -1);
+    if (count == 0) {
+      become_point(whole.corners[0]);
+      corners[0][axis] = 0;
+    }
+    for (int i = 0; i < count; ++i) corners[i][axis] = 2 * corners[i][axis] - (is_upper ? 1 : -1);
   }
 
-  /// The part in the octant `child`, in the octant's coordinates.
-  SurfacePolygon octant(int child) const {
-    SurfacePolygon p(*this);
-    for (int axis = 0; axis < 3; ++axis) p.clip(axis, 0, (child >> axis & 1) != 0 ? 1.0 : -1.0);
-    return p.in_octant(child);
-  }
-
-  /// The part in [-1,1]³.
+  /// Keeps the part in [-1,1]³, or a point there if rounding lost it.
   void clip_to_cell() {
-    for (int axis = 0; axis < 3; ++axis) {
-      clip(axis, -1, 1);
-      clip(axis, 1, -1);
+    bool is_inside = true;
+    for (int i = 0; i < count; ++i)
+      for (int axis = 0; axis < 3; ++axis) is_inside &= std::fabs(corners[i][axis]) < 1;
+    if (is_inside) return;
+    SurfacePolygon parts[2];
+    const SurfacePolygon* from = this;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1}) {
+        parts[side].become_part(*from, axis, 2 * side - 1, 1 - 2 * side);
+        from = &parts[side];
+      }
+    if (from->count > 0) {
+      *this = *from;
+      return;
     }
+    become_point(corners[0]);
+    for (int axis = 0; axis < 3; ++axis) corners[0][axis] = std::clamp(corners[0][axis], -1.0, 1.0);
+  }
+
+  void become_point(Vec3d point) {
+    count = 1;
+    corners[0] = point;
+    edges[0] = kCutEdge;
   }
 
   /// The vector area: its length is the area, its direction the normal.
@@ -112,24 +125,5 @@ struct SurfacePolygon {
     return sum * 0.5;
   }
 };
-
-/// Whether a point is no farther from a polygon than `distance`. Its plane has the unit normal
-/// given (or zero, where the polygon is a segment or a point).
-inline bool is_within(const SurfacePolygon& polygon, Vec3d normal, Vec3d point, double distance) {
-  if (polygon.count == 0) return false;
-  const double height = dot(normal, point - polygon.corners[0]);
-  if (height > distance || height < -distance) return false;
-  bool inside = polygon.count > 2 && dot(normal, normal) > 0;
-  for (int i = 0; i < polygon.count; ++i) {
-    const Vec3d a = polygon.corners[i];
-    const Vec3d edge = polygon.corners[i + 1 == polygon.count ? 0 : i + 1] - a;
-    const Vec3d to = point - a;
-    inside = inside && dot(cross(normal, edge), to) >= 0;
-    const double length2 = dot(edge, edge), along = dot(to, edge);
-    const Vec3d d = along <= 0 ? to : along >= length2 ? to - edge : to - edge * (along / length2);
-    if (dot(d, d) <= distance * distance) return true;
-  }
-  return inside;
-}
 
 }  // namespace voxdag

@@ -192,10 +192,11 @@ ColorBounds SurfaceShading::Tables::color_bounds(std::uint32_t t, const Material
 bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLook& look,
                                                std::span<const Vec2f> polygon, Vec3f direction,
                                                float error) const {
+  if (error >= 3.14159265f) return true;
   direction = unit_or_zero(direction);
   const TangentFrames frames = look.normal_texture ? tangents[t] : TangentFrames{};
   if (frames.tangents == nullptr) {
-    const float least = std::cos(std::min(error, 3.14159265f));
+    const float least = std::cos(error);
     const Vec3f* const n = normals(t);
     if (n == nullptr || (n[0] == n[1] && n[0] == n[2])) {
       const Vec3f normal = n == nullptr ? face_normal(mesh, t) : n[0];
@@ -253,12 +254,10 @@ SurfaceShading::SurfaceShading(SurfaceShading&&) noexcept = default;
 SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polygon) const {
   const Tables& tables = *tables_;
   const MaterialLook& look = tables.look(t);
-  const bool is_plain = !look.color_texture && !look.normal_texture &&
-                        tables.appearance.colors.empty() && look.least_corner_alpha <= 0;
-  if (is_plain) {
+  const bool is_plain = has_one_color(t) && !look.normal_texture;
+  if (is_plain && has_one_normal(t)) {
     const Vec3f* const n = tables.normals(t);
-    if (n == nullptr) return {look.color, 1, face_normal(tables.mesh, t)};
-    if (n[0] == n[1] && n[0] == n[2]) return {look.color, 1, n[0]};
+    return {look.color, 1, n == nullptr ? face_normal(tables.mesh, t) : n[0]};
   }
   const PolygonMoments moments = polygon_moments(polygon);
   SurfaceSample sample{look.color, 1, tables.mean_normal(t, polygon, moments)};
@@ -289,6 +288,16 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
                                   agreement);
   }
   return sample;
+}
+
+bool SurfaceShading::has_one_color(std::uint32_t t) const {
+  const MaterialLook& look = tables_->look(t);
+  return !look.color_texture && tables_->appearance.colors.empty() && look.least_corner_alpha <= 0;
+}
+
+bool SurfaceShading::has_one_normal(std::uint32_t t) const {
+  const Vec3f* const n = tables_->normals(t);
+  return !tables_->look(t).normal_texture && (n == nullptr || (n[0] == n[1] && n[0] == n[2]));
 }
 
 bool SurfaceShading::is_uniform(std::uint32_t t, std::span<const Vec2f> polygon, float color_error,

@@ -23,7 +23,8 @@ struct SurfaceSample {
 
 /// Refers to mesh and appearance, which must outlive it; owns the decoded textures. Immutable and
 /// thread-safe. Polygons are convex, lie in their triangle, and are given by the barycentric
-/// coordinates (of corners 1 and 2) of their corners; one, two or collinear corners are fine.
+/// coordinates (of corners 1 and 2) of their corners; one, two or collinear corners are fine, and
+/// none where the triangle has one colour and one normal.
 class SurfaceShading {
  public:
   /// Decodes the textures. What cannot be read is left out and named in `warnings`, one line each
@@ -36,6 +37,10 @@ class SurfaceShading {
   /// Means over a polygon. Textures are read through mip maps with a footprint of the polygon's
   /// size and shape.
   SurfaceSample mean(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
+
+  /// Whether all of the triangle is visible and of one colour; whether all its normals are one.
+  bool has_one_color(std::uint32_t triangle) const;
+  bool has_one_normal(std::uint32_t triangle) const;
 
   /// True only if all of the polygon is visible (or, where `mean.coverage` is 0, none of it), the
   /// colour of every point is within `color_error` of the mean's (largest difference of a channel,

@@ -2,11 +2,13 @@
 /// A triangle as the ESVO builder needs it: which voxels it meets, where it runs, what it looks
 /// like.
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/esvo/fit_contour.hpp"
 #include "voxdag/esvo/surface_polygon.hpp"
+#include "voxdag/esvo/surface_shading.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
 namespace voxdag {
@@ -15,11 +17,13 @@ namespace voxdag {
 struct SurfaceTriangle {
   TriangleSetup setup;
   Vec3d corners[3];
-  Vec3d normal{};               ///< Unit length; zero for a triangle without area.
-  Vec3i contour_normal{};       ///< `normal` as a contour stores it; zero likewise.
-  std::uint32_t source = 0;     ///< Triangle of the mesh.
-  bool is_displaced = false;    ///< Its normal is its own, not that of the source.
+  Vec3d normal{};                     ///< Unit length; zero for a triangle without area.
+  ContourDirection across;            ///< `normal` as a contour stores it; none likewise.
+  std::uint32_t source = 0;           ///< Triangle of the mesh.
+  std::optional<SurfaceSample> look;  ///< That of all its points, if they look the same.
+  bool is_displaced = false;          ///< Its normal is its own, not that of the source.
   std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
+  ContourDirection across_edges[3];  ///< In the plane and perpendicular to the open edges.
   /// The barycentric coordinates of a point p of corners 1 and 2 of the source triangle:
   /// base + (dot(u, p), dot(v, p)).
   Vec2d base;
@@ -38,7 +42,11 @@ struct SurfaceTriangle {
     const double area2 = dot(n, n);
     if (area2 > 0) {
       t.normal = n * (1 / std::sqrt(area2));
-      t.contour_normal = quantize_direction(t.normal);
+      t.across = ContourDirection::nearest(t.normal);
+      for (int e = 0; e < 3; ++e)
+        if ((open_edges >> e & 1) != 0)
+          t.across_edges[e] =
+              ContourDirection::nearest(cross(t.normal, t.corners[(e + 1) % 3] - t.corners[e]));
       t.u = cross(e2, n) * (1 / area2);
       t.v = cross(n, e1) * (1 / area2);
       t.base = {-dot(t.u, t.corners[0]), -dot(t.v, t.corners[0])};

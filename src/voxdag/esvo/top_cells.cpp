@@ -123,7 +123,7 @@ std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSett
       load(builder, source, cell);
       cell.weight = builder.weight();
       if (cell.parent != TopCell::kNoParent) {
-        cell.decision = builder.decide();
+        cell.decision = builder.decide(cells[cell.parent].decision);
         cell.shape = builder.shape();
       }
       cell.is_task = cell.decision.is_leaf || log2_size <= 2 || cell.weight < kTaskWeight;

@@ -1,0 +1,22 @@
+#pragma once
+/// Whether a shape is near to a surface.
+#include <span>
+
+#include "voxdag/esvo/convex_polyhedron.hpp"
+#include "voxdag/esvo/surface_polygon.hpp"
+
+namespace voxdag {
+
+/// A convex polygon and the unit normal of its plane: zero where the polygon is a segment or a
+/// point.
+struct PlanarPolygon {
+  const SurfacePolygon* polygon;
+  Vec3f normal;
+};
+
+/// Whether the shape's vertices and their mean are each no farther than `distance` from one of the
+/// polygons. An empty shape is.
+bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
+                     float distance);
+
+}  // namespace voxdag
