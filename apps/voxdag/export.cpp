@@ -5,7 +5,7 @@
 
 #include "commands.hpp"
 #include "parse.hpp"
-#include "voxdag/file/vdag_file.hpp"
+#include "scene_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -17,13 +17,19 @@ struct ExportArguments {
 };
 
 void export_file(ExportArguments& arguments, Session& session) {
-  const VdagFile file(session.subject);
-  const double voxels = static_cast<double>(file.metadata().counts.voxels);
-  arguments.options.progress = [&session, voxels](std::uint64_t done) {
+  const SceneFile file(session.subject);
+  const VoxelSet voxels = file.voxels();
+  // Of an ESVO's leaves nobody knows before how many voxels they stand for.
+  std::uint64_t count = 0;
+  const Box3i window = arguments.options.window.value_or(whole_grid(voxels.levels()));
+  voxels.for_each_leaf_block(window, [&](Vec3i, std::uint64_t mask) {
+    count += static_cast<std::uint64_t>(popcount64(mask));
+  });
+  arguments.options.progress = [&session, count](std::uint64_t done) {
     session.progress.throw_if_cancelled();
-    session.progress.report("export", static_cast<double>(done) / voxels, done);
+    session.progress.report("export", static_cast<double>(done) / static_cast<double>(count), done);
   };
-  export_voxels(arguments.output, file.view(), file.grid(),
+  export_voxels(arguments.output, voxels, file.grid(),
                 arguments.faces ? PlyContent::kFaces : PlyContent::kPoints, arguments.options);
 }
 
@@ -34,7 +40,9 @@ void add_export_command(CLI::App& app, Session& session) {
   CLI::App& command =
       add_command(app, "export", "Write the voxels as .npy, .ply or .raw, by the extension",
                   "voxdag export scene.vdag -o voxels.npy");
-  command.add_option("file", session.subject, "The .vdag file")->type_name("FILE")->required();
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
   command
       .add_option("-o,--output", arguments->output,
                   ".npy: coordinates, or dense bytes with --window; .ply: points, or with --faces "

@@ -4,15 +4,15 @@
 
 namespace voxdag {
 
-void export_voxels(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+void export_voxels(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                    PlyContent ply_content, const ExportOptions& options) {
   const std::filesystem::path extension = path.extension();
-  if (extension == ".npy" && options.window) return export_npy_dense(path, view, grid, options);
-  if (extension == ".npy") return export_npy_coordinates(path, view, grid, options);
-  if (extension == ".raw") return export_raw(path, view, grid, options);
+  if (extension == ".npy" && options.window) return export_npy_dense(path, voxels, grid, options);
+  if (extension == ".npy") return export_npy_coordinates(path, voxels, grid, options);
+  if (extension == ".raw") return export_raw(path, voxels, grid, options);
   if (extension == ".ply" && ply_content == PlyContent::kFaces)
-    return export_ply_faces(path, view, grid, options);
-  if (extension == ".ply") return export_ply_points(path, view, grid, options);
+    return export_ply_faces(path, voxels, grid, options);
+  if (extension == ".ply") return export_ply_points(path, voxels, grid, options);
   throw Error(path.string(), "",
               "cannot export to '" + extension.string() + "': known are .npy, .ply and .raw");
 }

@@ -34,7 +34,7 @@ void refuse_too_large(const std::filesystem::path& path, const Box3i& window,
 /// Calls write(bytes) with one run of the dense array after the other. A run is a strip of the
 /// window: a stretch of the slowest axis, or of the middle one where a single layer is too much.
 template <class Write>
-void for_each_dense_strip(const SvdagView& view, const Box3i& window, const std::string& axes,
+void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std::string& axes,
                           const ExportOptions& options, const Write& write) {
   const int slow = axes[0] - 'x', mid = axes[1] - 'x', fast = axes[2] - 'x';
   const Vec3l size = size_of(window);
@@ -44,7 +44,7 @@ void for_each_dense_strip(const SvdagView& view, const Box3i& window, const std:
       layers > 1 ? size[mid] : std::clamp<std::int64_t>(kStripBytes / size[fast], 1, size[mid]);
 
   std::vector<std::uint8_t> bytes;
-  std::uint64_t voxels = 0;
+  std::uint64_t done = 0;
   for (std::int64_t a = window.lo[slow]; a < window.hi[slow]; a += layers)
     for (std::int64_t b = window.lo[mid]; b < window.hi[mid]; b += lines) {
       Box3i strip = window;
@@ -55,30 +55,30 @@ void for_each_dense_strip(const SvdagView& view, const Box3i& window, const std:
       strip.hi[mid] = static_cast<std::int32_t>(std::min<std::int64_t>(b + lines, window.hi[mid]));
       const Vec3l strip_size = size_of(strip);
       bytes.assign(static_cast<std::size_t>(strip_size.x * strip_size.y * strip_size.z), 0);
-      for_each_voxel(view, strip, [&](Vec3i voxel) {
+      voxels.for_each_voxel(strip, [&](Vec3i voxel) {
         const Vec3l at = Vec3l(voxel - strip.lo);
         bytes[static_cast<std::size_t>((at[slow] * strip_size[mid] + at[mid]) * strip_size[fast] +
                                        at[fast])] = 1;
-        ++voxels;
+        ++done;
       });
       write(bytes);
-      if (options.progress) options.progress(voxels);
+      if (options.progress) options.progress(done);
     }
 }
 
 }  // namespace
 
-void export_npy_coordinates(const std::filesystem::path& path, const SvdagView& view,
+void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& voxels,
                             const Grid& grid, const ExportOptions& options) {
-  const Box3i window = export_window(path, view, options);
+  const Box3i window = export_window(path, voxels, options);
   std::uint64_t count = 0;
-  for_each_leaf_block(view, window, [&](Vec3i, std::uint64_t mask) {
+  voxels.for_each_leaf_block(window, [&](Vec3i, std::uint64_t mask) {
     count += static_cast<std::uint64_t>(popcount64(mask));
   });
   NpyWriter writer(path, "<i4", {3}, sizeof(std::int32_t), count);
   std::vector<Vec3i> rows;
   static_assert(sizeof(Vec3i) == 12);
-  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t mask) {
+  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1)
       rows.push_back(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
     if (rows.size() < kRowsAtOnce) return;
@@ -90,14 +90,14 @@ void export_npy_coordinates(const std::filesystem::path& path, const SvdagView& 
   write_placement(path, grid, window, kCoordinates);
 }
 
-void export_npy_dense(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+void export_npy_dense(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options) {
-  const Box3i window = export_window(path, view, options);
+  const Box3i window = export_window(path, voxels, options);
   refuse_too_large(path, window, options);
   const Vec3l size = size_of(window);
   const Vec3<std::uint64_t> shape(size);
   NpyWriter writer(path, "|u1", {shape.y, shape.z}, 1, shape.x);
-  for_each_dense_strip(view, window, kNpyDense.axes, options,
+  for_each_dense_strip(voxels, window, kNpyDense.axes, options,
                        [&](const std::vector<std::uint8_t>& bytes) {
                          writer.write_bytes(bytes.data(), bytes.size());
                        });
@@ -105,12 +105,12 @@ void export_npy_dense(const std::filesystem::path& path, const SvdagView& view, 
   write_placement(path, grid, window, kNpyDense);
 }
 
-void export_raw(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options) {
-  const Box3i window = export_window(path, view, options);
+  const Box3i window = export_window(path, voxels, options);
   refuse_too_large(path, window, options);
   AtomicFile file(path);
-  for_each_dense_strip(view, window, kRawDense.axes, options,
+  for_each_dense_strip(voxels, window, kRawDense.axes, options,
                        [&](const std::vector<std::uint8_t>& bytes) {
                          file.write(std::span<const std::uint8_t>(bytes));
                        });

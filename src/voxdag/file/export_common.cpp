@@ -7,9 +7,9 @@
 
 namespace voxdag {
 
-Box3i export_window(const std::filesystem::path& path, const SvdagView& view,
+Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
                     const ExportOptions& options) {
-  const Box3i grid = whole_grid(view.levels);
+  const Box3i grid = whole_grid(voxels.levels());
   if (!options.window) return grid;
   const Box3i& window = *options.window;
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,18 +8,18 @@ namespace voxdag {
 
 /// The window asked for, or the whole grid. Throws Error(path, "window", reason) if it is empty or
 /// reaches out of the grid.
-Box3i export_window(const std::filesystem::path& path, const SvdagView& view,
+Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
                     const ExportOptions& options);
 
 /// for_each_leaf_block that tells options.progress how many voxels were done, not too often.
 template <class Fn>
-void export_leaf_blocks(const SvdagView& view, const Box3i& window, const ExportOptions& options,
+void export_leaf_blocks(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options,
                         const Fn& fn) {
-  std::uint64_t voxels = 0, blocks = 0;
-  for_each_leaf_block(view, window, [&](Vec3i origin, std::uint64_t mask) {
+  std::uint64_t done = 0, blocks = 0;
+  voxels.for_each_leaf_block(window, [&](Vec3i origin, std::uint64_t mask) {
     fn(origin, mask);
-    voxels += static_cast<std::uint64_t>(popcount64(mask));
-    if (++blocks % 16384 == 0 && options.progress) options.progress(voxels);
+    done += static_cast<std::uint64_t>(popcount64(mask));
+    if (++blocks % 16384 == 0 && options.progress) options.progress(done);
   });
 }
 

@@ -8,7 +8,7 @@
 #include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/export_common.hpp"
-#include "voxdag/layout/svdag_lookup.hpp"
+#include "voxdag/layout/stored_values.hpp"
 
 namespace voxdag {
 namespace {
@@ -33,8 +33,12 @@ bool float_suffices(const Grid& grid) {
 /// to the same length by a comment.
 class PlyFile {
  public:
-  PlyFile(const std::filesystem::path& path, const Grid& grid, bool has_faces)
-      : file_(path), grid_(grid), has_faces_(has_faces), use_float_(float_suffices(grid)) {
+  struct Content {
+    bool faces = false, normals = false, colors = false;
+  };
+
+  PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content)
+      : file_(path), grid_(grid), content_(content), use_float_(float_suffices(grid)) {
     constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
     header_bytes_ = header(most, most, "").size();
     file_.write_zeros(header_bytes_);
@@ -49,6 +53,18 @@ class PlyFile {
       file_.write(&world, sizeof world);
     }
     ++vertices_;
+  }
+
+  /// What the last vertex looks like: to be called after each, if there are normals or colours.
+  void write_look(const EsvoView& esvo, const EsvoVoxel& voxel) {
+    Vec3f normal, color;
+    if (content_.normals && stored_normal(esvo, voxel, normal)) file_.write(&normal, sizeof normal);
+    if (!content_.colors || !stored_color(esvo, voxel, color)) return;
+    std::array<std::uint8_t, 3> rgb;
+    for (std::size_t i = 0; i < 3; ++i)
+      rgb[i] =
+          static_cast<std::uint8_t>(std::lround(255 * linear_to_srgb(color[static_cast<int>(i)])));
+    file_.write(rgb.data(), rgb.size());
   }
 
   void write_quad(const std::array<std::uint32_t, 4>& corners) {
@@ -79,7 +95,12 @@ class PlyFile {
     text += "comment resolution " + std::to_string(grid_.resolution()) + "\n";
     text += "comment " + padding + "\nelement vertex " + std::to_string(vertices) + "\n";
     for (const char axis : {'x', 'y', 'z'}) text += "property " + type + " " + axis + "\n";
-    if (has_faces_)
+    if (content_.normals)
+      for (const char axis : {'x', 'y', 'z'}) text += std::string("property float n") + axis + "\n";
+    if (content_.colors)
+      for (const char* channel : {"red", "green", "blue"})
+        text += std::string("property uchar ") + channel + "\n";
+    if (content_.faces)
       text +=
           "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
     return text + "end_header\n";
@@ -87,7 +108,8 @@ class PlyFile {
 
   AtomicFile file_;
   Grid grid_;
-  bool has_faces_, use_float_;
+  Content content_;
+  bool use_float_;
   std::size_t header_bytes_ = 0;
   std::uint64_t vertices_ = 0, faces_ = 0;
 };
@@ -138,12 +160,12 @@ void for_each_face(const BlockSurface& surface, const Fn& fn) {
                       face % 2));
 }
 
-BlockSurface block_surface(const SvdagView& view, const Box3i& window, Vec3i origin,
+BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i origin,
                            std::uint64_t block) {
   const auto neighbour = [&](int axis, int step) {
     Vec3i at = origin;
     at[axis] += step;
-    return leaf_block_at(view, at) & leaf_window_mask(at, window);
+    return voxels.leaf_block_at(at) & leaf_window_mask(at, window);
   };
   BlockSurface surface;
   for (int axis = 0; axis < 3; ++axis) {
@@ -158,35 +180,54 @@ BlockSurface block_surface(const SvdagView& view, const Box3i& window, Vec3i ori
 
 }  // namespace
 
-void export_ply_points(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                        const ExportOptions& options) {
-  const Box3i window = export_window(path, view, options);
-  PlyFile file(path, grid, false);
-  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t mask) {
+  const Box3i window = export_window(path, voxels, options);
+  const auto write_voxels = [](PlyFile& file, Vec3i origin, std::uint64_t mask, const auto& look) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
           origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
       file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
+      look();
     }
+  };
+  if (const EsvoView* esvo = voxels.esvo(); esvo != nullptr && !esvo->is_empty()) {
+    const auto has = [&](EsvoAttachmentKind kind) {
+      return esvo->attachment(esvo->root, kind) != nullptr;
+    };
+    PlyFile file(
+        path, grid,
+        {.normals = has(EsvoAttachmentKind::kNormals), .colors = has(EsvoAttachmentKind::kColors)});
+    std::uint64_t parts = 0;
+    for_each_leaf_part(*esvo, window, [&](Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) {
+      write_voxels(file, origin, mask, [&] { file.write_look(*esvo, leaf); });
+      if (++parts % 16384 == 0 && options.progress) options.progress(file.vertices());
+    });
+    file.commit();
+    return;
+  }
+  PlyFile file(path, grid, {});
+  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t mask) {
+    write_voxels(file, origin, mask, [] {});
   });
   file.commit();
 }
 
-void export_ply_faces(const std::filesystem::path& path, const SvdagView& view, const Grid& grid,
+void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options) {
-  const Box3i window = export_window(path, view, options);
-  PlyFile file(path, grid, true);
+  const Box3i window = export_window(path, voxels, options);
+  PlyFile file(path, grid, {.faces = true});
   // PLY has all vertices before all faces: two walks that make the same surfaces.
-  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t block) {
-    const BlockSurface surface = block_surface(view, window, origin, block);
+  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t block) {
+    const BlockSurface surface = block_surface(voxels, window, origin, block);
     for (int i = 0; i < kCorners; ++i)
       if (surface.corners[i]) file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}));
     if (file.vertices() > std::numeric_limits<std::int32_t>::max())
       throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
   });
   std::uint32_t first_vertex = 0;
-  export_leaf_blocks(view, window, options, [&](Vec3i origin, std::uint64_t block) {
-    const BlockSurface surface = block_surface(view, window, origin, block);
+  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t block) {
+    const BlockSurface surface = block_surface(voxels, window, origin, block);
     std::array<std::uint32_t, kCorners> vertex_of_corner;
     std::uint32_t next = first_vertex;
     for (int i = 0; i < kCorners; ++i) {

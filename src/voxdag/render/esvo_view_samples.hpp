@@ -1,6 +1,6 @@
 #pragma once
 /// The primary rays of a tile through an ESVO: shapes cut by contours, colours and normals.
-#include "voxdag/render/esvo_shading.hpp"
+#include "voxdag/layout/stored_values.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/esvo_cast.hpp"

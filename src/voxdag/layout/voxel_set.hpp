@@ -1,0 +1,47 @@
+#pragma once
+/// The voxels of the finest level, whatever form they are stored in.
+#include <variant>
+
+#include "voxdag/layout/esvo_leaf_parts.hpp"
+#include "voxdag/layout/for_each_voxel.hpp"
+#include "voxdag/layout/svdag_lookup.hpp"
+
+namespace voxdag {
+
+/// A view: points to what it was made from, which must be valid.
+class VoxelSet {
+ public:
+  VoxelSet(const SvdagView& dag) : view_(dag) {}   // NOLINT(google-explicit-constructor)
+  VoxelSet(const EsvoView& esvo) : view_(esvo) {}  // NOLINT(google-explicit-constructor)
+
+  const EsvoView* esvo() const { return std::get_if<EsvoView>(&view_); }  ///< Or null.
+  int levels() const {
+    return std::visit([](const auto& view) { return view.levels; }, view_);
+  }
+
+  /// As the functions of the same names for DAGs; of an ESVO see esvo_leaf_parts.hpp.
+  template <class Fn>
+  void for_each_leaf_block(const Box3i& window, const Fn& fn) const {
+    std::visit([&](const auto& view) { voxdag::for_each_leaf_block(view, window, fn); }, view_);
+  }
+  template <class Fn>
+  void for_each_voxel(const Box3i& window, const Fn& fn) const {
+    for_each_leaf_block(window, [&](Vec3i origin, std::uint64_t mask) {
+      for (; mask != 0; mask &= mask - 1)
+        fn(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
+    });
+  }
+  std::uint64_t leaf_block_at(Vec3i voxel) const {
+    if (esvo() == nullptr) return voxdag::leaf_block_at(std::get<SvdagView>(view_), voxel);
+    std::uint64_t found = 0;
+    const Vec3i lo{voxel.x & ~3, voxel.y & ~3, voxel.z & ~3};
+    for_each_leaf_block({lo, lo + Vec3i{4, 4, 4}},
+                        [&](Vec3i, std::uint64_t mask) { found = mask; });
+    return found;
+  }
+
+ private:
+  std::variant<SvdagView, EsvoView> view_;
+};
+
+}  // namespace voxdag
