@@ -12,7 +12,6 @@
 #include "trace_measure.hpp"
 #include "trace_rival_openvdb.hpp"
 #include "trace_rivals.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -76,13 +75,14 @@ struct OpenVdbSet {
   std::vector<std::uint8_t> hits;
 };
 
-std::vector<std::uint8_t> hits_of(const SvdagView& dag, const std::vector<CastRay>& casts) {
-  const SvdagNodes nodes(dag);
+std::vector<std::uint8_t> hits_of(const VoxelScene& voxels, const std::vector<CastRay>& casts) {
   std::vector<std::uint8_t> hits;
-  for (const CastRay& ray : casts) {
-    CellHit cell;
-    hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
-  }
+  voxels.visit_nodes([&](const auto& nodes) {
+    for (const CastRay& ray : casts) {
+      CellHit cell;
+      hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
+    }
+  });
   return hits;
 }
 
@@ -94,7 +94,7 @@ TraceRow row_of(const TraceScene& scene, const std::string& layout_name, const T
   row.levels = scene.grid.levels;
   row.rays = rays;
   row.count = static_cast<std::uint64_t>(sums.rays);
-  row.dag_bytes = layout.bytes();
+  row.layout_bytes = layout.bytes();
   row.view_mrays_per_second = sums.view_rates;
   row.mrays_per_second = sums.rays / sums.ours.seconds * 1e-6;
   row.hit_part = sums.hits / sums.rays;
@@ -112,15 +112,18 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
   results.threads = tbb::this_task_arena::max_concurrency();
   const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
-  const std::vector<View> views = bench_views(scene.dag, scene.grid, aspect, plan.views);
+  const std::vector<View> views = bench_views(scene.voxels, scene.grid, aspect, plan.views);
   std::optional<EmbreeRival> embree;
   if (scene.mesh != nullptr && EmbreeRival::is_available()) embree.emplace(*scene.mesh);
+  std::vector<std::string> names = plan.layouts;
+  if (names.empty()) names = {trace_layouts(scene.voxels).front()};
   std::vector<std::unique_ptr<TraceLayout>> layouts;
-  for (const std::string& name : plan.layouts)
-    layouts.push_back(make_trace_layout(name, scene.dag));
+  for (const std::string& name : names) layouts.push_back(make_trace_layout(name, scene.voxels));
   std::vector<std::optional<DeviceScene>> device_dags;
   for (const auto& layout : layouts) {
-    device_dags.push_back(load_on_device(plan.device, scene.dag, layout->device_layout()));
+    device_dags.push_back(layout->device_layout()
+                              ? load_on_device(plan.device, scene.voxels, *layout->device_layout())
+                              : std::nullopt);
     if (device_dags.back()) results.cuda_device = device_dags.back()->device().name;
   }
   std::optional<OpenVdbRival> openvdb;
@@ -131,9 +134,10 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   const double steps = static_cast<double>(views.size() * kRayClasses.size());
   std::size_t done = 0;
   for (const View& view : views) {
-    BeamPass beams(scene.dag, scene.grid, picture_options(scene.dag, scene.grid, view, plan.rays));
+    BeamPass beams(scene.voxels, scene.grid,
+                   picture_options(scene.voxels, scene.grid, view, plan.rays));
     beams.run();
-    const RecordedRays recorded = record_rays(scene.dag, beams, plan.rays);
+    const RecordedRays recorded = record_rays(scene.voxels, beams, plan.rays);
     for (const RayClass rays : kRayClasses) {
       progress.throw_if_cancelled();
       progress.report(scene.name, static_cast<double>(done) / steps, done);
@@ -160,7 +164,8 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       if (!openvdb) continue;
       const std::vector<CastRay> some = some_of(whole, kOpenVdbRays);
       openvdb->add(scene.grid, some);
-      openvdb_sets.push_back({rays, static_cast<double>(casts.size()), hits_of(scene.dag, some)});
+      openvdb_sets.push_back(
+          {rays, static_cast<double>(casts.size()), hits_of(scene.voxels, some)});
     }
   }
   if (openvdb) {
@@ -178,7 +183,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   for (std::size_t i = 0; i < layouts.size(); ++i)
     for (const RayClass rays : kRayClasses) {
       const RowSums& s = sums[i][static_cast<std::size_t>(rays)];
-      if (s.rays > 0) results.rows.push_back(row_of(scene, plan.layouts[i], *layouts[i], rays, s));
+      if (s.rays > 0) results.rows.push_back(row_of(scene, names[i], *layouts[i], rays, s));
     }
 }
 

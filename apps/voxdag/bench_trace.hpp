@@ -12,17 +12,17 @@
 
 namespace voxdag {
 
-/// A DAG to measure.
+/// A DAG or ESVO to measure.
 struct TraceScene {
   std::string name;
   Grid grid;
-  SvdagView dag;
+  VoxelScene voxels;
   const Mesh* mesh = nullptr;  ///< What it was built from, for rivals that cast at triangles.
   std::filesystem::path file;  ///< The same as a .vdag, for rivals that are programs; or empty.
 };
 
 struct TracePlan {
-  std::vector<std::string> layouts;  ///< As trace_layouts() names them.
+  std::vector<std::string> layouts;  ///< As trace_layouts() names them; empty: the default.
   RayOptions rays;
   DeviceChoice device;  ///< On CUDA our casts on the CPU are a rival: they must agree.
   int views = 4;
@@ -45,7 +45,7 @@ struct TraceRow {
   double mrays_per_second = 0;
   double hit_part = 0;                          ///< Of the rays.
   double cells_per_ray = 0, bytes_per_ray = 0;  ///< Cells looked at, bytes read from nodes.
-  std::uint64_t dag_bytes = 0;                  ///< Of the layout.
+  std::uint64_t layout_bytes = 0;
   std::vector<double> view_mrays_per_second;
   std::vector<RivalRate> rivals;
 };

@@ -9,11 +9,11 @@
 #include "bench_trace.hpp"
 #include "commands.hpp"
 #include "parse.hpp"
+#include "scene_file.hpp"
 #include "scratch_folder.hpp"
 #include "trace_casters.hpp"
 #include "voxdag/core/atomic_file.hpp"
 #include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/mesh/read_mesh.hpp"
 #include "voxdag/mesh/scenes.hpp"
@@ -90,12 +90,14 @@ TraceResults bench_list(const BenchTraceArguments& arguments, Session& session) 
 }
 
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
-  const VdagFile file(session.subject);
+  const SceneFile file(session.subject);
+  if (file.scene().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
+    throw Error("--openvdb", "", "takes the voxels of a DAG, not of an ESVO");
   Mesh mesh;
   if (!arguments.mesh_file.empty()) mesh = read_mesh(arguments.mesh_file, &session.progress);
-  const std::string& name = file.metadata().source.name;
+  const std::string name = file.source_name();
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
-                   file.view(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
+                   file.scene(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
   TraceResults results;
   bench_trace(scene, arguments.plan, session.progress, results);
   return results;
@@ -141,7 +143,7 @@ void finish_plan(BenchTraceArguments& arguments, const Session& session) {
   const char* variable = std::getenv("VOXDAG_SCENES");
   if (arguments.scenes.empty() && variable != nullptr) arguments.scenes = variable;
   if (arguments.scenes.empty())
-    throw CLI::ValidationError("--scenes", "is needed without a .vdag file (or VOXDAG_SCENES)");
+    throw CLI::ValidationError("--scenes", "is needed without a file (or VOXDAG_SCENES)");
 }
 
 }  // namespace
@@ -149,13 +151,12 @@ void finish_plan(BenchTraceArguments& arguments, const Session& session) {
 void add_bench_trace_command(CLI::App& parent, Session& session) {
   const auto arguments = std::make_shared<BenchTraceArguments>();
   TracePlan& plan = arguments->plan;
-  plan.layouts = {trace_layouts().front()};
   CLI::App& command = *parent.add_subcommand(
       "trace", "Rays per second of every kind, beside others' casts of the same rays");
   command.footer(
       "Example:\n  voxdag bench trace sponza.vdag --mesh sponza.obj --plot rays.svg\n"
       "Without a file: Crytek Sponza, Sibenik, San Miguel, Lucy and hairball, built in memory.");
-  command.add_option("file", session.subject, "A .vdag file")->type_name("FILE");
+  command.add_option("file", session.subject, "A .vdag or .esvo file")->type_name("FILE");
   command.add_option("--mesh", arguments->mesh_file, "Its mesh, for Embree")->type_name("MESH");
   command
       .add_option("--scenes", arguments->scenes,
@@ -166,11 +167,13 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
                   "Without a file: voxels a side, several with commas (default: 4K,32K)")
       ->delimiter(',')
       ->type_name("N,N...");
-  command.add_option("--layout", plan.layouts, "Layouts to cast at, several with commas")
+  command
+      .add_option("--layout", plan.layouts,
+                  "Layouts to cast at, several with commas: of a DAG paper (the default), "
+                  "paper_scalar and wide, of an ESVO contours (the default) and cubes")
       ->delimiter(',')
-      ->check(CLI::IsMember(trace_layouts()))
-      ->type_name("LAYOUT")
-      ->capture_default_str();
+      ->check(CLI::IsMember(trace_layouts()).description(""))
+      ->type_name("LAYOUT");
   add_parsed_option(command, "--size", arguments->size, parse_image_size, "WxH",
                     "Pixels of each view (default 1024x768)");
   command.add_option("--views", plan.views, "Cameras")

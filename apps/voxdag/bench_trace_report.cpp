@@ -52,7 +52,7 @@ Json trace_json(const TraceResults& results, const Json& machine) {
                 {"device_name", is_cuda ? Json(results.cuda_device) : machine.at("processor")},
                 {"threads", results.threads},
                 {"layout", row.layout},
-                {"dag_bytes", row.dag_bytes},
+                {"layout_bytes", row.layout_bytes},
                 {"rays", std::string(name_of(row.rays))},
                 {"ray_count", row.count},
                 {"hit_part", row.hit_part},
@@ -83,7 +83,7 @@ std::string trace_table(const TraceResults& results) {
     const TraceRow& row = results.rows[i];
     if (i == 0 || !is_same_dag(row, results.rows[i - 1])) {
       text += fmt::format("{}{} {}, layout {}, {}\n", i == 0 ? "" : "\n", row.scene,
-                          resolution_of(row), row.layout, human_bytes(row.dag_bytes));
+                          resolution_of(row), row.layout, human_bytes(row.layout_bytes));
       text += fmt::format("  {:<14}{:>12}{:>8}{:>8}{:>8}{:>10}", "rays", "count", "hit", "cells",
                           "bytes", "Mrays/s");
       for (const std::string& rival : rivals) text += fmt::format("{:>24}", rival);

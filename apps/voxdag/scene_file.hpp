@@ -25,6 +25,11 @@ class SceneFile {
     if (const auto* esvo = std::get_if<EsvoFile>(&file_)) return esvo->view();
     return std::get<VdagFile>(file_).view();
   }
+  /// Of the mesh's file, or empty.
+  const std::string& source_name() const {
+    if (const auto* esvo = std::get_if<EsvoFile>(&file_)) return esvo->metadata().source.name;
+    return std::get<VdagFile>(file_).metadata().source.name;
+  }
   const Grid& grid() const {
     if (const auto* esvo = std::get_if<EsvoFile>(&file_)) return esvo->grid();
     return std::get<VdagFile>(file_).grid();

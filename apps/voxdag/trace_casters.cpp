@@ -48,7 +48,7 @@ class PaperLayout : public TraceLayout {
   explicit PaperLayout(const SvdagView& dag) : dag_(dag) {}
 
   std::uint64_t bytes() const override { return dag_.bytes(); }
-  DeviceLayout device_layout() const override { return DeviceLayout::kPaper; }
+  std::optional<DeviceLayout> device_layout() const override { return DeviceLayout::kPaper; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
     return runner_of(PacketCaster(SvdagNodes(dag_)), rays, casts);
   }
@@ -101,7 +101,7 @@ class Wide : public TraceLayout {
   explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}
 
   std::uint64_t bytes() const override { return dag_.view().bytes(); }
-  DeviceLayout device_layout() const override { return DeviceLayout::kWide; }
+  std::optional<DeviceLayout> device_layout() const override { return DeviceLayout::kWide; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
     return runner_of(ScalarCaster<WideNodes>(WideNodes(dag_.view())), rays, casts);
   }
@@ -115,15 +115,70 @@ class Wide : public TraceLayout {
   WideSvdag dag_;
 };
 
+/// Counts the bytes that a walk through an ESVO reads.
+template <class Nodes>
+class ByteCountingEsvoNodes : public Nodes {
+ public:
+  ByteCountingEsvoNodes(const EsvoView& esvo, std::uint64_t& steps, std::uint64_t& bytes)
+      : Nodes(esvo), steps_(&steps), bytes_(&bytes) {}
+
+  void on_step() const { ++*steps_; }
+  void on_read(std::uint32_t bytes) const { *bytes_ += bytes; }
+
+ private:
+  std::uint64_t *steps_, *bytes_;
+};
+
+/// An ESVO, ray by ray, with its contours or as cubes.
+template <class Nodes>
+class EsvoTraceLayout : public TraceLayout {
+ public:
+  explicit EsvoTraceLayout(const EsvoView& esvo) : esvo_(esvo) {}
+
+  std::uint64_t bytes() const override { return esvo_.slot_count * 8; }
+  std::optional<DeviceLayout> device_layout() const override {
+    if (Nodes::kWithContours) return DeviceLayout::kEsvo;
+    return std::nullopt;
+  }
+  TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
+    return runner_of(ScalarCaster<Nodes>(Nodes(esvo_)), rays, casts);
+  }
+  WalkCost cost(std::span<const CastRay> casts) const override {
+    std::uint64_t steps = 0, read = 0;
+    const ByteCountingEsvoNodes<Nodes> nodes(esvo_, steps, read);
+    return cost_of(nodes, casts, steps, read);
+  }
+
+ private:
+  EsvoView esvo_;
+};
+
+const std::vector<std::string> kDagLayouts{"paper", "paper_scalar", "wide"};
+const std::vector<std::string> kEsvoLayouts{"contours", "cubes"};
+
 }  // namespace
 
-std::vector<std::string> trace_layouts() { return {"paper", "paper_scalar", "wide"}; }
+std::vector<std::string> trace_layouts() {
+  std::vector<std::string> all = kDagLayouts;
+  all.insert(all.end(), kEsvoLayouts.begin(), kEsvoLayouts.end());
+  return all;
+}
 
-std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const SvdagView& dag) {
+std::vector<std::string> trace_layouts(const VoxelScene& voxels) {
+  return voxels.esvo() != nullptr ? kEsvoLayouts : kDagLayouts;
+}
+
+std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelScene& voxels) {
+  if (const EsvoView* esvo = voxels.esvo()) {
+    if (name == "contours") return std::make_unique<EsvoTraceLayout<ContourNodes>>(*esvo);
+    if (name == "cubes") return std::make_unique<EsvoTraceLayout<EsvoNodes>>(*esvo);
+    throw Error("there is no layout \"" + name + "\" of an ESVO");
+  }
+  const SvdagView& dag = *voxels.dag();
   if (name == "paper") return std::make_unique<PaperLayout>(dag);
   if (name == "paper_scalar") return std::make_unique<PaperScalarLayout>(dag);
   if (name == "wide") return std::make_unique<Wide>(dag);
-  throw Error("there is no layout \"" + name + "\"");
+  throw Error("there is no layout \"" + name + "\" of a DAG");
 }
 
 }  // namespace voxdag

@@ -80,5 +80,21 @@ TEST_F(BenchTrace, RefusesWhatItCannotMeasure) {
   expect_failure(bench({path("in.vdag"), "--openvdb", path("absent")}), 1, "absent");
 }
 
+TEST_F(BenchTrace, TakesEsvosInBothForms) {
+  ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "-o", path("in.esvo")}).status, 0);
+  const ProcessResult result = bench({path("in.esvo"), "--layout", "contours,cubes", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::set<std::string> layouts;
+  for (const auto& row : nlohmann::json::parse(result.out)) {
+    layouts.insert(row.at("layout"));
+    EXPECT_GT(row.at("mrays_per_s"), 0);
+    EXPECT_GT(row.at("bytes_per_ray"), 0);
+  }
+  EXPECT_EQ(layouts, (std::set<std::string>{"contours", "cubes"}));
+  const ProcessResult other = bench({path("in.esvo"), "--layout", "wide"});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.err.find("no layout \"wide\" of an ESVO"), std::string::npos) << other.err;
+}
+
 }  // namespace
 }  // namespace voxdag

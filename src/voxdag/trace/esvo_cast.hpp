@@ -50,6 +50,10 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   const float ix = ray.inverse.x, iy = ray.inverse.y, iz = ray.inverse.z;
   const std::uint32_t mirrored = ray.mirrored;
   const auto least = [](float a, float b) { return a < b ? a : b; };
+  const auto descriptor_at = [&](std::uint64_t at) {
+    if constexpr (requires { nodes.on_read(8u); }) nodes.on_read(8u);
+    return esvo.descriptor(at);
+  };
 
   // INITIALIZE
   float t = ray.t_min, t_max = ray.t_max;
@@ -59,7 +63,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   std::uint64_t slots[kMaxLevels];
   float t_maxes[kMaxLevels];
   std::uint64_t slot = esvo.root;
-  ChildDescriptor parent = esvo.descriptor(slot);
+  ChildDescriptor parent = descriptor_at(slot);
   ContourPlane plane;  // by which the ray came to t, if by one
   std::uint32_t x = kOne, y = kOne,
                 z = kOne;   // lower corner of the current voxel's cube, a child of the parent
@@ -93,6 +97,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
       ContourPlane entered = plane;
       if constexpr (kWithContours) {
         if ((parent.contour_mask() >> index & 1u) != 0) {
+          if constexpr (requires { nodes.on_read(4u); }) nodes.on_read(4u);
           const Contour contour = esvo.contour(slot, parent, static_cast<int>(index));
           const ContourSpan span = contour_ray.span(contour, x, y, z, bit, t_exit);
           if (span.t_enter > tv_min) {
@@ -120,7 +125,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
         }
         h = t_exit;
         slot = esvo.child(slot, parent, static_cast<int>(index));
-        parent = esvo.descriptor(slot);
+        parent = descriptor_at(slot);
         if constexpr (kWithContours) {
           t = tv_min;
           t_max = tv_max;
@@ -175,7 +180,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     child = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
     slot = slots[kTopBit - bit];
     if constexpr (kWithContours) t_max = t_maxes[kTopBit - bit];
-    parent = esvo.descriptor(slot);
+    parent = descriptor_at(slot);
     h = 0;
   }
 }
