@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/check_esvo.hpp"
 #include "voxdag/image/stone_heights.hpp"
 
 namespace voxdag {
@@ -204,6 +206,35 @@ TEST(DisplacedTriangles, BarycentricsNameThePlaceInTheBaseTriangle) {
         EXPECT_LT(dot(d, d), 1e-12);
       }
     });
+}
+
+TEST(DisplacedTriangles, OctreesEncloseWhatWasTessellated) {
+  const Crate crate;
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance,
+                                     {{stones(), -0.1, 0.3, {}, 0}, Displacement{}});
+  Grid grid;
+  grid.origin = {-1, -1, -1};
+  grid.levels = 8;
+  grid.voxel_size = 4.0 / 256;
+  grid.quantization_scale = kSubvoxels / grid.voxel_size;
+  EsvoMemory memory;
+  const EsvoResult result = build_esvo(crate.mesh, grid, {}, nullptr, &triangles, memory);
+  const std::vector<std::uint64_t> slots = memory.take();
+
+  // Rounded as the builder does; floats hold these positions exactly.
+  Mesh micro;
+  for (const MicroTriangle& m :
+       tessellate(triangles, crate.mesh, std::sqrt(2.0) * grid.voxel_size)) {
+    const auto first = static_cast<std::uint32_t>(micro.vertices.size());
+    for (const Vec3d& p : m.positions)
+      micro.vertices.push_back(static_cast<Vec3f>(
+          grid.to_world(static_cast<Vec3d>(*quantize(grid, p)) * (1.0 / kSubvoxels))));
+    micro.triangles.push_back({first, first + 1, first + 2});
+  }
+  const EnclosureCheck check = check_enclosure(EsvoView{slots.data(), slots.size(), result.root, 8},
+                                               {micro, grid}, nullptr, 4 * micro.triangles.size());
+  EXPECT_GT(check.points, micro.triangles.size());
+  EXPECT_FALSE(check.outside);
 }
 
 }  // namespace

@@ -189,6 +189,8 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
     TopCell& cell = cells[task];
     CellBuilder& builder = builders.local();
     load(builder, source, cell);
+    if (cell.is_displaced && cell.parent != TopCell::kNoParent && builder.weight() > 0)
+      cell.decision = builder.decide(cells[cell.parent].decision);
     cell.triangles = {};
     finished->task = task;
     finished->voxel = builder.build(cell.decision);

@@ -45,13 +45,12 @@ double CellBuilder::weight() const {
   return weight;
 }
 
-void CellBuilder::split(std::vector<std::uint32_t> (&children)[8]) const {
+void CellBuilder::split(std::array<std::vector<std::uint32_t>, 8>& children) const {
   for (auto& child : children) child.clear();
   for (const Item& item : items_) {
-    const ChildConditions classified = classify_children(
-        triangles_[item.triangle].setup, item.conditions, {}, 1 << (log2_size_ - 1));
+    const ChildConditions classified = classify(item, log2_size_, {});
     for (std::uint32_t left = classified.alive; left != 0; left &= left - 1)
-      children[std::countr_zero(left)].push_back(ids_[item.triangle]);
+      children[static_cast<std::size_t>(std::countr_zero(left))].push_back(ids_[item.triangle]);
   }
 }
 
@@ -84,9 +83,6 @@ ContourCandidates CellBuilder::candidates(std::size_t begin) const {
 
 VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                                   ConvexPolyhedron& shape, SurfaceSum& sum) const {
-  // A contour that saves less of the voxel's side does not pay for its four bytes, unless it lets
-  // the subdivision end here, where each child would have to have one of its own.
-  constexpr double kPays = 0.15;
   VoxelDecision decision;
   decision.is_near = is_near;
   if (settings_.contours && !is_near) {
@@ -102,14 +98,17 @@ VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell, 
     };
     decision.is_near = is_near_enough(shape);
     std::optional<FittedContour> fitted;
-    if (!decision.is_near) fitted = fit_contour(shape, polygons_, candidates(begin));
+    if (!decision.is_near) {
+      const ContourCandidates directions = candidates(begin);
+      fitted = fit_contour(shape, directions, extents_of(polygons_, directions));
+    }
     if (fitted && log2_size == 0) {
-      if (fitted->gain > kPays) decision.contour = fitted->contour;
+      if (fitted->pays()) decision.contour = fitted->contour;
     } else if (fitted) {
       ConvexPolyhedron cut;
       clip_to_contour(shape, fitted->contour, cut);
       decision.is_near = is_near_enough(cut);
-      if (decision.is_near || fitted->gain > kPays) {
+      if (decision.is_near || fitted->pays()) {
         decision.contour = fitted->contour;
         shape = cut;
       }
@@ -145,6 +144,23 @@ CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i 
   return visited;
 }
 
+ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cell) const {
+  const TriangleSetup& setup = triangles_[item.triangle].setup;
+  // A triangle that meets the cell, and whose box lies in one child, meets that.
+  const int shift = log2_size - 1;
+  const auto half_of = [&](Vec3i voxel, int axis) { return (voxel[axis] - cell[axis]) >> shift; };
+  int child = 0;
+  bool is_in_one = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int lo = half_of(setup.box_lo, axis), hi = half_of(setup.box_hi, axis);
+    is_in_one &= lo == hi && (lo & ~1) == 0;
+    child |= lo << axis;
+  }
+  if (!is_in_one) return classify_children(setup, item.conditions, cell, 1 << shift);
+  const std::uint64_t every = item.conditions * 0x0001000100010001ull;
+  return {1u << child, {every, every}};
+}
+
 void CellBuilder::visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,
                                const ConvexPolyhedron& shape, Visited (&children)[8]) {
   const std::size_t end = items_.size();
@@ -161,16 +177,26 @@ void CellBuilder::visit_halves(std::size_t begin, const Part& part, std::uint32_
       Item& item = items_.back();
       item.triangle = whole.triangle;
       item.classified = whole.classified;
-      item.polygon.become_half(whole.polygon, part.axis, is_upper);
+      const bool is_in_one_child = (classified.alive & (classified.alive - 1)) == 0;
+      if (!is_in_one_child) {
+        item.polygon.become_half(whole.polygon, part.axis, is_upper);
+      } else if (part.axis == 0) {
+        const Item& of_cell = items_[part.items + whole.classified - part.classified];
+        item.polygon = of_cell.polygon;
+        for (int axis = 0; axis < 3; ++axis) item.polygon.stretch(axis, (child >> axis & 1) != 0);
+        item.area = 4 * of_cell.area;
+      }
       if (part.axis > 0) continue;
       item.conditions = classified.conditions(child);
-      set_area(item);
+      if (!is_in_one_child) set_area(item);
     }
     ConvexPolyhedron half_shape;
     if (settings_.contours && !part.is_near) half_shape.become_half(shape, part.axis, is_upper);
     if (part.axis > 0) {
-      visit_halves(end, {part.log2_size, part.cell, part.is_near, part.axis - 1, half}, alive,
-                   half_shape, children);
+      Part next = part;
+      next.axis = part.axis - 1;
+      next.children = half;
+      visit_halves(end, next, alive, half_shape, children);
     } else {
       const Vec3i at =
           part.cell + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << (part.log2_size - 1));
@@ -187,12 +213,12 @@ CellBuilder::Visited CellBuilder::visit_children(std::size_t begin, int log2_siz
   for (std::size_t i = begin; i < items_.size(); ++i) {
     Item& item = items_[i];
     item.classified = static_cast<std::uint32_t>(classified_.size());
-    classified_.push_back(classify_children(triangles_[item.triangle].setup, item.conditions, cell,
-                                            1 << (log2_size - 1)));
+    classified_.push_back(classify(item, log2_size, cell));
     alive |= classified_.back().alive;
   }
   Visited children[8];
-  visit_halves(begin, {log2_size, cell, is_near, 2, 0xFF}, alive, shape, children);
+  visit_halves(begin, {log2_size, cell, is_near, 2, 0xFF, begin, first_classified}, alive, shape,
+               children);
   classified_.resize(first_classified);
 
   Visited result;

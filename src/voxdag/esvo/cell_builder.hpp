@@ -9,6 +9,7 @@
 /// Which voxels there are is exact (design: exact cover); contours enclose the polygons that the
 /// triangles leave in a voxel. What is seen of a leaf is the mean over its polygons, what is seen
 /// of another voxel the mean over its leaves, by area.
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -92,7 +93,7 @@ class CellBuilder {
   VoxelDecision decide(const VoxelDecision& parent);
   const ConvexPolyhedron& shape() const { return shape_; }
   /// The ids of the triangles that meet each child.
-  void split(std::vector<std::uint32_t> (&children)[8]) const;
+  void split(std::array<std::vector<std::uint32_t>, 8>& children) const;
 
   /// All below the cell, whose own contour is `decision.contour`.
   BuiltVoxel build(const VoxelDecision& decision);
@@ -107,7 +108,7 @@ class CellBuilder {
 
     std::uint32_t triangle;
     std::uint32_t conditions;  ///< Which of the triangle's conditions are open in the cell.
-    std::uint32_t classified;  ///< Of the cell that is being split: an index.
+    std::uint32_t classified;  ///< While a cell is split: what of it is alive, an index.
     double area;               ///< In the cell's own coordinates.
     SurfacePolygon polygon;
   };
@@ -119,6 +120,8 @@ class CellBuilder {
     bool is_near;  ///< The shape of the cell: what becomes of it does not matter.
     int axis;
     std::uint32_t children;  ///< A mask.
+    std::size_t items;       ///< Where the cell's are, those that are classified from...
+    std::size_t classified;  ///< ...here on.
   };
   /// A voxel with its children known, and the node that says so.
   struct Visited {
@@ -161,6 +164,7 @@ class CellBuilder {
   void set_look(SurfaceTriangle& triangle) const;
   Visited visit(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                 ConvexPolyhedron& shape);
+  ChildConditions classify(const Item& item, int log2_size, Vec3i cell) const;
   void visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,
                     const ConvexPolyhedron& shape, Visited (&children)[8]);
   Visited visit_children(std::size_t begin, int log2_size, Vec3i cell, bool is_near,

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "voxdag/esvo/tangent_frames.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,21 +42,6 @@ Vec2f projected(Vec3d p, int axis, double size) {
   return {static_cast<float>(u - std::floor(u)), static_cast<float>(v - std::floor(v))};
 }
 
-struct Interval {
-  double lo, hi;
-};
-
-Interval operator*(Interval a, Interval b) {
-  const auto [lo, hi] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
-  return {lo, hi};
-}
-
-void extend(Box3d& box, Vec3d p, double margin) {
-  const Vec3d m{margin, margin, margin};
-  box.extend(p - m);
-  box.extend(p + m);
-}
-
 }  // namespace
 
 DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
@@ -63,20 +49,25 @@ DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appea
     : mesh_(mesh), appearance_(appearance), displacements_(std::move(displacements)) {
   for (const Displacement& d : displacements_)
     if (d.moves()) radius_ = std::max({radius_, std::abs(d.base), std::abs(d.base + d.gain)});
-  if (radius_ == 0) return;
+  if (radius_ > 0) group();
+  bounds_.resize(mesh.triangles.size());
+  parallel_for(bounds_.size(), 256,
+               [&](std::size_t i) { bounds_[i] = find_bounds(static_cast<std::uint32_t>(i)); });
+}
 
+void DisplacedTriangles::group() {
   const auto hash = [](Vec3f p) {
     std::uint64_t h = 0;
     for (int axis = 0; axis < 3; ++axis)  // + 0: both zeros are one place.
       h = (h ^ std::bit_cast<std::uint32_t>(p[axis] + 0.0f)) * 0x9E3779B97F4A7C15ull, h ^= h >> 31;
     return static_cast<std::size_t>(h);
   };
-  std::unordered_map<Vec3f, std::uint32_t, decltype(hash)> place_of(mesh.vertices.size(), hash);
-  places_.reserve(3 * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles)
+  std::unordered_map<Vec3f, std::uint32_t, decltype(hash)> place_of(mesh_.vertices.size(), hash);
+  places_.reserve(3 * mesh_.triangles.size());
+  for (const Triangle& triangle : mesh_.triangles)
     for (const std::uint32_t vertex : triangle)
       places_.push_back(
-          place_of.try_emplace(mesh.vertices[vertex], static_cast<std::uint32_t>(place_of.size()))
+          place_of.try_emplace(mesh_.vertices[vertex], static_cast<std::uint32_t>(place_of.size()))
               .first->second);
   group_corners(place_of.size());
   group_edges();
@@ -279,24 +270,25 @@ bool DisplacedTriangles::is_seam(std::uint32_t t, std::uint8_t edges) const {
   return differs(groups_[corner_groups_[3 * t + corner]]);
 }
 
-Box3d DisplacedTriangles::piece_bounds(const Pass& pass, const Vertex& a, const Vertex& b,
-                                       const Vertex& c) const {
+DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const Vertex& a, const Vertex& b,
+                                           const Vertex& c) const {
   const Displacement& d = displacement(pass.triangle);
   const std::array<const Vertex*, 3> corners{&a, &b, &c};
-  Box3d flat = Box3d::empty(), box = Box3d::empty();
-  for (const Vertex* v : corners) {
-    flat.extend(v->position);
-    if (is_seam(pass.triangle, v->edges)) extend(box, v->position, radius_);
+  DisplacedPiece piece;
+  Box3d flat = Box3d::empty();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vertex& v = *corners[i];
+    flat.extend(v.position);
+    piece.corners[i] = v.position;
+    piece.normals[i] = unit_or_zero(v.normal);
+    if (is_seam(pass.triangle, v.edges)) piece.reach[i] = radius_;
   }
-  const std::array<Vec3f, 3> n{unit_or_zero(a.normal), unit_or_zero(b.normal),
-                               unit_or_zero(c.normal)};
+  const std::array<Vec3f, 3>& n = piece.normals;
   const Vec3f middle = unit_or_zero(n[0] + n[1] + n[2]);
-  // No mean of the three is shorter than this.
   const float shortest = std::min({dot(n[0], middle), dot(n[1], middle), dot(n[2], middle)});
   if (!(shortest > 0.3f)) {
-    extend(box, flat.lo, radius_);
-    extend(box, flat.hi, radius_);
-    return box;
+    piece.slack = radius_;
+    return piece;
   }
 
   HeightTexture::Bounds range{{65535}, {0}};
@@ -334,48 +326,52 @@ Box3d DisplacedTriangles::piece_bounds(const Pass& pass, const Vertex& a, const 
     include(lo, hi);
   }
   const double p = d.base + d.gain * range.lo[0] / 65535, q = d.base + d.gain * range.hi[0] / 65535;
-  const Interval height{std::min(p, q), std::max(p, q)};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [lo, hi] = std::minmax({n[0][axis], n[1][axis], n[2][axis]});
-    const Interval component{lo < 0 ? lo / shortest : lo, hi > 0 ? hi / shortest : hi};
-    const Interval offset = component * height;
-    // Normals that are nearly equal count as equal.
-    const double slack = 2e-3 * radius_;
-    box.lo[axis] = std::min(box.lo[axis], flat.lo[axis] + offset.lo - slack);
-    box.hi[axis] = std::max(box.hi[axis], flat.hi[axis] + offset.hi + slack);
-  }
-  return box;
+  piece.heights = {std::min(p, q), std::max(p, q)};
+  piece.shortest = shortest;
+  // Normals that are nearly equal count as equal.
+  piece.slack = 2e-3 * radius_;
+  return piece;
 }
 
-Box3d DisplacedTriangles::displaced_bounds(std::uint32_t t) const {
+Box3d DisplacedTriangles::find_bounds(std::uint32_t t) const {
   const Pass pass(*this, t, std::numeric_limits<double>::infinity());
-  if (is_displaced(t)) return piece_bounds(pass, pass.corners[0], pass.corners[1], pass.corners[2]);
+  if (is_displaced(t))
+    return enclose(pass, pass.corners[0], pass.corners[1], pass.corners[2]).box();
   Box3d box = Box3d::empty();
   for (const Vertex& corner : pass.corners) box.extend(corner.position);
   return box;
 }
 
-bool DisplacedTriangles::may_meet(std::uint32_t t, const Box3d& region, double edge_limit,
-                                  double small) const {
+std::uint32_t DisplacedTriangles::regions_met(std::uint32_t t, std::span<const Box3d, 8> regions,
+                                              double edge_limit, double small) const {
+  std::uint32_t met = 0;
+  for (std::size_t i = 0; i < 8; ++i)
+    if (meets(bounds_[t], regions[i])) met |= 1u << i;
+  const Vec3d size = bounds_[t].hi - bounds_[t].lo;
+  if (met == 0 || !is_displaced(t) || std::max({size.x, size.y, size.z}) < small) return met;
   Pass pass(*this, t, edge_limit);
-  if (is_displaced(t))
-    return piece_may_meet(pass, pass.corners[0], pass.corners[1], pass.corners[2], region, small);
-  return meets(displaced_bounds(t), region);
+  return piece_meets(pass, pass.corners[0], pass.corners[1], pass.corners[2], regions, met, small);
 }
 
-bool DisplacedTriangles::piece_may_meet(const Pass& pass, Vertex& a, Vertex& b, Vertex& c,
-                                        const Box3d& region, double small) const {
-  const Box3d box = piece_bounds(pass, a, b, c);
-  if (!meets(box, region)) return false;
+std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, Vertex& a, Vertex& b, Vertex& c,
+                                              std::span<const Box3d, 8> regions, std::uint32_t set,
+                                              double small) const {
+  const Box3d box = enclose(pass, a, b, c).box();
+  std::uint32_t met = 0, surely = 0;
+  for (std::uint32_t left = set; left != 0; left &= left - 1) {
+    const Box3d& region = regions[static_cast<std::size_t>(std::countr_zero(left))];
+    if (!meets(box, region)) continue;
+    met |= left & -left;
+    if (min(box.lo, region.lo) == region.lo && max(box.hi, region.hi) == region.hi)
+      surely |= left & -left;
+  }
   const Vec3d size = box.hi - box.lo;
-  const bool is_inside = min(box.lo, region.lo) == region.lo && max(box.hi, region.hi) == region.hi;
-  if (is_inside || std::max({size.x, size.y, size.z}) < small || is_small(pass, a, b, c))
-    return true;
-  bool found = false;
+  if (met == surely || std::max({size.x, size.y, size.z}) < small || is_small(pass, a, b, c))
+    return met;
   for_each_part(pass, a, b, c, [&](Vertex& p, Vertex& q, Vertex& r) {
-    found = found || piece_may_meet(pass, p, q, r, region, small);
+    if ((met & ~surely) != 0) surely |= piece_meets(pass, p, q, r, regions, met & ~surely, small);
   });
-  return found;
+  return surely;
 }
 
 }  // namespace voxdag

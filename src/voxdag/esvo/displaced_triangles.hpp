@@ -14,6 +14,7 @@
 
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/vec2.hpp"
+#include "voxdag/esvo/displaced_piece.hpp"
 #include "voxdag/esvo/displacement.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
@@ -38,11 +39,22 @@ class DisplacedTriangles {
   bool is_displaced(std::uint32_t triangle) const { return displacement(triangle).moves(); }
 
   /// Holds all that tessellate() emits for the triangle, whatever the region and limit.
-  Box3d displaced_bounds(std::uint32_t triangle) const;
+  const Box3d& displaced_bounds(std::uint32_t triangle) const { return bounds_[triangle]; }
 
-  /// False only if tessellate() with this region and limit would emit nothing. May be true all the
-  /// same: pieces smaller than `small` world units are not looked into.
-  bool may_meet(std::uint32_t triangle, const Box3d& region, double edge_limit, double small) const;
+  /// Bit i is 0 only if tessellate() with regions[i] and this limit would emit nothing. It may be 1
+  /// all the same: pieces smaller than `small` world units are not looked into.
+  std::uint32_t regions_met(std::uint32_t triangle, std::span<const Box3d, 8> regions,
+                            double edge_limit, double small) const;
+
+  /// Calls body(const DisplacedPiece&) for pieces of a displaced triangle that together enclose
+  /// what tessellate() with the limit emits in the region; they are smaller than `small` world
+  /// units where tessellation allows it.
+  template <class Body>
+  void for_each_piece(std::uint32_t triangle, const Box3d& region, double edge_limit, double small,
+                      Body&& body) const {
+    Pass pass(*this, triangle, edge_limit);
+    visit_pieces(pass, pass.corners[0], pass.corners[1], pass.corners[2], region, small, body);
+  }
 
   /// Calls emit(const MicroTriangle&) for those micro triangles whose bounds meet `region`
   /// (closed). Their edges were `edge_limit` world units at most before displacement, which must be
@@ -113,6 +125,7 @@ class DisplacedTriangles {
     return mesh_.vertices[mesh_.triangles[corner / 3][corner % 3]];
   }
 
+  void group();
   void group_corners(std::size_t place_count);
   void group_edges();
   /// Makes a group of what `agree` tells apart.
@@ -147,7 +160,7 @@ class DisplacedTriangles {
   const Vec3d& displace(const Pass& pass, Vertex& vertex) const;
 
   bool is_seam(std::uint32_t triangle, std::uint8_t edges) const;
-  Box3d piece_bounds(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c) const;
+  DisplacedPiece enclose(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c) const;
 
   static Vertex between(const Vertex& a, const Vertex& b) {
     return {(a.position + b.position) * 0.5,
@@ -181,13 +194,29 @@ class DisplacedTriangles {
       return;
     }
     if (!search.is_inside) {
-      const Box3d box = piece_bounds(pass, a, b, c);
+      const Box3d box = enclose(pass, a, b, c).box();
       if (!meets(box, search.region)) return;
       search.is_inside =
           box.lo == max(box.lo, search.region.lo) && box.hi == min(box.hi, search.region.hi);
     }
     for_each_part(pass, a, b, c,
                   [&](Vertex& p, Vertex& q, Vertex& r) { split(pass, p, q, r, search, emit); });
+  }
+
+  template <class Body>
+  void visit_pieces(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Box3d& region,
+                    double small, Body&& body) const {
+    const DisplacedPiece piece = enclose(pass, a, b, c);
+    const Box3d box = piece.box();
+    if (!meets(box, region)) return;
+    const Vec3d size = box.hi - box.lo;
+    if (std::max({size.x, size.y, size.z}) < small || is_small(pass, a, b, c)) {
+      body(piece);
+      return;
+    }
+    for_each_part(pass, a, b, c, [&](Vertex& p, Vertex& q, Vertex& r) {
+      visit_pieces(pass, p, q, r, region, small, body);
+    });
   }
 
   static bool is_small(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c) {
@@ -246,8 +275,11 @@ class DisplacedTriangles {
     }
   }
 
-  bool piece_may_meet(const Pass& pass, Vertex& a, Vertex& b, Vertex& c, const Box3d& region,
-                      double small) const;
+  Box3d find_bounds(std::uint32_t triangle) const;
+  /// Of the regions in a set.
+  std::uint32_t piece_meets(const Pass& pass, Vertex& a, Vertex& b, Vertex& c,
+                            std::span<const Box3d, 8> regions, std::uint32_t set,
+                            double small) const;
 
   const Mesh& mesh_;
   const Appearance& appearance_;
@@ -257,6 +289,7 @@ class DisplacedTriangles {
   std::vector<std::uint32_t> places_;  ///< By CornerIndex: equal for equal positions.
   std::vector<Group> groups_;
   std::vector<CornerIndex> members_;
+  std::vector<Box3d> bounds_;  ///< By triangle: displaced_bounds().
 };
 
 }  // namespace voxdag

@@ -6,16 +6,7 @@
 namespace voxdag {
 namespace {
 
-struct Extent {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  void add(double v) {
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-  }
-  double size() const { return high - low; }
-};
-
-Extent extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
+ContourExtent extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
   const auto n = static_cast<Vec3f>(normal);
   FloatLanes low = all_lanes(HUGE_VALF), high = -low;
   for (int i = 0; i < shape.vertex_count(); i += kLanes) {
@@ -25,19 +16,11 @@ Extent extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
     low = min(low, along);
     high = max(high, along);
   }
-  Extent extent;
+  ContourExtent extent;
   for (int lane = 0; lane < kLanes; ++lane) {
     extent.add(static_cast<double>(low[lane]));
     extent.add(static_cast<double>(high[lane]));
   }
-  return extent;
-}
-
-Extent extent_of(std::span<const PlanarPolygon> surface, Vec3i normal) {
-  const auto n = static_cast<Vec3d>(normal);
-  Extent extent;
-  for (const PlanarPolygon& p : surface)
-    for (int i = 0; i < p.polygon->count; ++i) extent.add(dot(n, p.polygon->corners[i]));
   return extent;
 }
 
@@ -96,18 +79,49 @@ void ContourCandidates::add(const ContourDirection& direction, double weight) {
   weights_[lightest] = weight;
 }
 
+ContourExtents extents_of(std::span<const PlanarPolygon> surface,
+                          const ContourCandidates& candidates) {
+  // Floats will do: what they round away is a hundredth of kMargin.
+  const std::span<const ContourDirection> directions = candidates.directions();
+  ContourExtents extents;
+  constexpr int kGroups = ContourCandidates::kMost / kLanes;
+  FloatLanes x[kGroups]{}, y[kGroups]{}, z[kGroups]{}, low[kGroups]{}, high[kGroups]{};
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const auto n = static_cast<Vec3f>(directions[i].normal);
+    const std::size_t group = i / kLanes, lane = i % kLanes;
+    x[group][lane] = n.x, y[group][lane] = n.y, z[group][lane] = n.z;
+  }
+  const int groups = (static_cast<int>(directions.size()) + kLanes - 1) / kLanes;
+  for (int group = 0; group < groups; ++group) {
+    FloatLanes least = all_lanes(HUGE_VALF), most = -least;
+    for (const PlanarPolygon& p : surface)
+      for (int i = 0; i < p.polygon->count; ++i) {
+        const auto corner = static_cast<Vec3f>(p.polygon->corners[i]);
+        const FloatLanes along = x[group] * corner.x + y[group] * corner.y + z[group] * corner.z;
+        least = min(least, along);
+        most = max(most, along);
+      }
+    low[group] = least;
+    high[group] = most;
+  }
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    extents[i] = {static_cast<double>(low[i / kLanes][i % kLanes]),
+                  static_cast<double>(high[i / kLanes][i % kLanes])};
+  return extents;
+}
+
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
-                                         std::span<const PlanarPolygon> surface,
-                                         const ContourCandidates& candidates) {
+                                         const ContourCandidates& candidates,
+                                         const ContourExtents& extents) {
   // In steps of the stored positions.
   constexpr double kMargin = 0.01;
   if (shape.is_empty()) return std::nullopt;
   const ContourDirection* best = nullptr;
-  Extent best_surface, best_shape;
+  ContourExtent best_surface, best_shape;
   double most = 0;
-  for (const ContourDirection& direction : candidates.directions()) {
-    const Extent of_surface = extent_of(surface, direction.normal),
-                 of_shape = extent_of(shape, direction.normal);
+  for (std::size_t i = 0; i < candidates.directions().size(); ++i) {
+    const ContourDirection& direction = candidates.directions()[i];
+    const ContourExtent of_surface = extents[i], of_shape = extent_of(shape, direction.normal);
     const double over =
         (of_shape.size() - of_surface.size()) / static_cast<double>(direction.length);
     if (!(over > most)) continue;
@@ -132,7 +146,7 @@ std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
       Contour::kMaxPosition - std::clamp(static_cast<int>(above), 0, Contour::kMaxPosition);
   FittedContour fitted;
   fitted.contour = Contour::make(best->normal, low, high);
-  Extent planes;
+  ContourExtent planes;
   planes.add(std::max(contour_position<double>(length1_of_best, low), best_shape.low));
   planes.add(std::min(contour_position<double>(length1_of_best, high), best_shape.high));
   const auto length = static_cast<double>(best->length);

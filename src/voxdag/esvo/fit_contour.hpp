@@ -51,14 +51,34 @@ struct FittedContour {
   Contour contour;
   /// By how much the shape becomes thinner across it, in the voxel's coordinates: its side is 2.
   double gain = 0;
+
+  /// A contour that saves less of the voxel's side does not pay for its four bytes, unless it lets
+  /// the subdivision end here, where each child would have to have one of its own.
+  bool pays() const { return gain > 0.15; }
 };
 
-/// The best contour, or none if the shape nowhere exceeds the surface. The surface lies between
-/// the planes by a margin that exceeds all rounding here and in the ray casts. `surface` has one
-/// polygon at least.
+/// The least and the greatest dot(normal, p) of some points p.
+struct ContourExtent {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+
+  void add(double v) {
+    low = v < low ? v : low;
+    high = v > high ? v : high;
+  }
+  double size() const { return high - low; }
+};
+using ContourExtents = std::array<ContourExtent, ContourCandidates::kMost>;
+
+/// Those of a surface of one polygon at least, by direction.
+ContourExtents extents_of(std::span<const PlanarPolygon> surface,
+                          const ContourCandidates& candidates);
+
+/// The best contour, or none if the shape nowhere exceeds the surface, whose extents along the
+/// candidates are given. The surface lies between the planes by a margin that exceeds all rounding
+/// here and in the ray casts.
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
-                                         std::span<const PlanarPolygon> surface,
-                                         const ContourCandidates& candidates);
+                                         const ContourCandidates& candidates,
+                                         const ContourExtents& extents);
 
 /// Of the shape what is between the contour's planes. `result` is another one.
 void clip_to_contour(const ConvexPolyhedron& shape, Contour contour, ConvexPolyhedron& result);

@@ -87,7 +87,13 @@ struct SurfacePolygon {
       become_point(whole.corners[0]);
       corners[0][axis] = 0;
     }
-    for (int i = 0; i < count; ++i) corners[i][axis] = 2 * corners[i][axis] - (is_upper ? 1 : -1);
+    stretch(axis, is_upper);
+  }
+
+  /// The same for what is known to lie in that half.
+  void stretch(int axis, bool is_upper) {
+    const double shift = is_upper ? -1 : 1;
+    for (int i = 0; i < count; ++i) corners[i][axis] = 2 * corners[i][axis] + shift;
   }
 
   /// Keeps the part in [-1,1]³, or a point there if rounding lost it.

@@ -3,8 +3,11 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
+#include "voxdag/esvo/enclose_cell.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/voxelize/overlap.hpp"
 
@@ -14,16 +17,15 @@ namespace {
 /// Voxels of surface that one task takes.
 constexpr double kTaskWeight = 1 << 16;
 
-/// The side of the cells in which displaced triangles are tessellated.
-constexpr int kDisplacedTaskLog2 = 7;
+/// The side of the smallest cells that are still divided into tasks.
+constexpr int kLeastLog2 = 2;
 
-/// In world units, with a little more around for rounding.
-Box3d world_box(const Grid& grid, Vec3i cell, int log2_size) {
-  const double size = static_cast<double>(std::int64_t{1} << log2_size), margin = 1.0 / kSubvoxels;
-  const Vec3d lo = static_cast<Vec3d>(cell) * size;
-  return {grid.to_world(lo - Vec3d{margin, margin, margin}),
-          grid.to_world(lo + Vec3d{size + margin, size + margin, size + margin})};
-}
+/// Cells of more triangles have no contours: they are not worth the memory that it takes to look at
+/// all of the triangles at once.
+constexpr std::size_t kMostLoaded = 1 << 16;
+
+/// The side of the cells in which displaced triangles are tessellated.
+constexpr int kDisplacedTaskLog2 = 5;
 
 void add_displaced(CellBuilder& builder, const TriangleSource& source, const TopCell& cell,
                    std::uint32_t triangle) {
@@ -32,7 +34,7 @@ void add_displaced(CellBuilder& builder, const TriangleSource& source, const Top
   const Vec3i origin = cell.cell * (1 << log2_size);
   const Vec3l lo = static_cast<Vec3l>(origin) * std::int64_t{kSubvoxels};
   source.displaced->tessellate(
-      triangle, world_box(grid, cell.cell, log2_size), grid.voxel_size,
+      triangle, world_box(grid, cell.cell, log2_size), source.edge_limit(),
       [&](const MicroTriangle& micro) {
         QuantizedTriangle quantized;
         for (int i = 0; i < 3; ++i) {
@@ -51,25 +53,53 @@ void add_displaced(CellBuilder& builder, const TriangleSource& source, const Top
       });
 }
 
-/// The triangles that may meet each child, for cells with displaced ones.
-void split_displaced(const TriangleSource& source, const TopCell& cell,
-                     std::vector<std::uint32_t> (&children)[8]) {
-  const Grid& grid = source.grid;
-  const int log2_half = grid.levels - cell.level - 1;
-  const double small = grid.voxel_size * static_cast<double>(std::int64_t{1} << log2_half) / 4;
-  for (int child = 0; child < 8; ++child) {
-    const Vec3i at = cell.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2};
-    const Box3d box = world_box(grid, at, log2_half);
-    const Vec3l lo = static_cast<Vec3l>(at) * (std::int64_t{kSubvoxels} << log2_half);
-    for (const std::uint32_t triangle : cell.triangles) {
-      const QuantizedTriangle t = source.mesh.triangle(triangle);
-      if (source.is_displaced(triangle)
-              ? source.displaced->may_meet(triangle, box, grid.voxel_size, small)
-              : triangle_overlaps_cube(t.x, t.y, t.z, lo, std::int64_t{kSubvoxels} << log2_half))
-        children[child].push_back(triangle);
-    }
+using Children = std::array<std::vector<std::uint32_t>, 8>;
+
+/// Which children of a cell its triangles may meet, without a CellBuilder: for cells that get no
+/// contour.
+class CellSplitter {
+ public:
+  CellSplitter(const TriangleSource& source, const TopCell& cell)
+      : source_(source),
+        log2_half_(source.grid.levels - cell.level - 1),
+        origin_(cell.cell * (2 << log2_half_)) {
+    for (int child = 0; child < 8; ++child)
+      regions_[static_cast<std::size_t>(child)] = world_box(
+          source.grid, cell.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2}, log2_half_);
   }
-}
+
+  Children split(const std::vector<std::uint32_t>& triangles) const {
+    constexpr std::size_t kChunk = 1024;
+    std::vector<Children> chunks((triangles.size() + kChunk - 1) / kChunk);
+    parallel_for(chunks.size(), [&](std::size_t chunk) {
+      const std::size_t end = std::min((chunk + 1) * kChunk, triangles.size());
+      for (std::size_t i = chunk * kChunk; i < end; ++i)
+        for (std::uint32_t left = children_met(triangles[i]); left != 0; left &= left - 1)
+          chunks[chunk][static_cast<std::size_t>(std::countr_zero(left))].push_back(triangles[i]);
+    });
+    Children children;
+    for (std::size_t child = 0; child < 8; ++child)
+      for (const Children& chunk : chunks)
+        children[child].insert(children[child].end(), chunk[child].begin(), chunk[child].end());
+    return children;
+  }
+
+ private:
+  /// A mask.
+  std::uint32_t children_met(std::uint32_t triangle) const {
+    if (source_.is_displaced(triangle)) {
+      return source_.displaced->regions_met(triangle, regions_, source_.edge_limit(),
+                                            std::ldexp(source_.grid.voxel_size, log2_half_ - 2));
+    }
+    const TriangleSetup setup = make_triangle_setup(source_.mesh.triangle(triangle), origin_);
+    return classify_children(setup, setup.conditions, {}, 1 << log2_half_).alive;
+  }
+
+  const TriangleSource& source_;
+  int log2_half_;
+  Vec3i origin_;
+  std::array<Box3d, 8> regions_;
+};
 
 }  // namespace
 
@@ -100,9 +130,6 @@ std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSett
 
   tbb::enumerable_thread_specific<CellBuilder> builders(
       [&] { return CellBuilder(settings, shading); });
-  struct Children {
-    std::vector<std::uint32_t> triangles[8];
-  };
   for (std::size_t begin = 0; begin < cells.size();) {
     const std::size_t end = cells.size();
     std::vector<Children> children(end - begin);
@@ -110,12 +137,18 @@ std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSett
       if (progress != nullptr && progress->cancelled()) return;
       TopCell& cell = cells[begin + i];
       const int log2_size = source.grid.levels - cell.level;
-      if (std::any_of(cell.triangles.begin(), cell.triangles.end(),
-                      [&](std::uint32_t triangle) { return source.is_displaced(triangle); })) {
+      cell.is_displaced =
+          std::any_of(cell.triangles.begin(), cell.triangles.end(),
+                      [&](std::uint32_t triangle) { return source.is_displaced(triangle); });
+      const bool is_heavy = cell.triangles.size() > kMostLoaded && log2_size > kLeastLog2;
+      if (cell.is_displaced || is_heavy) {
         cell.weight = std::ldexp(1.0, 2 * log2_size);
-        cell.is_task = log2_size <= kDisplacedTaskLog2;
+        cell.is_task = cell.is_displaced && log2_size <= kDisplacedTaskLog2;
         if (cell.is_task) return;
-        split_displaced(source, cell, children[i].triangles);
+        if (settings.contours && !is_heavy && cell.parent != TopCell::kNoParent)
+          cell.decision =
+              decide_enclosed(source, cell.level, cell.cell, cell.triangles, cell.shape);
+        children[i] = CellSplitter(source, cell).split(cell.triangles);
         cell.triangles = {};
         return;
       }
@@ -126,16 +159,17 @@ std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSett
         cell.decision = builder.decide(cells[cell.parent].decision);
         cell.shape = builder.shape();
       }
-      cell.is_task = cell.decision.is_leaf || log2_size <= 2 || cell.weight < kTaskWeight;
+      cell.is_task = cell.decision.is_leaf || log2_size <= kLeastLog2 || cell.weight < kTaskWeight;
       if (cell.is_task) return;
-      builder.split(children[i].triangles);
+      builder.split(children[i]);
       cell.triangles = {};
     });
     if (progress != nullptr) progress->throw_if_cancelled();
     for (std::size_t at = begin; at < end; ++at) {
       if (cells[at].is_task) continue;
       for (int child = 0; child < 8; ++child) {
-        std::vector<std::uint32_t>& triangles = children[at - begin].triangles[child];
+        std::vector<std::uint32_t>& triangles =
+            children[at - begin][static_cast<std::size_t>(child)];
         if (triangles.empty()) continue;
         ++cells[at].children_left;
         TopCell& cell = cells.emplace_back();

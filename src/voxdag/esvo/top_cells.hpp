@@ -4,23 +4,10 @@
 #include <vector>
 
 #include "voxdag/esvo/cell_builder.hpp"
-#include "voxdag/esvo/displaced_triangles.hpp"
+#include "voxdag/esvo/triangle_source.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
-
-/// Where a cell's triangles come from.
-struct TriangleSource {
-  const Grid& grid;
-  const QuantizedMesh& mesh;
-  const std::vector<std::uint8_t>& open_edges;  ///< By triangle of the quantised mesh.
-  const DisplacedTriangles* displaced;          ///< Null where nothing is.
-
-  bool is_displaced(std::uint32_t triangle) const {
-    return displaced != nullptr && triangle < mesh.mesh_triangle_count() &&
-           displaced->is_displaced(triangle);
-  }
-};
 
 struct TopCell {
   static constexpr std::uint32_t kNoParent = ~std::uint32_t{0};
@@ -33,14 +20,16 @@ struct TopCell {
   ConvexPolyhedron shape;                ///< Cut by its own contour, too.
   VoxelDecision decision;
   double weight = 0;              ///< CellBuilder::weight.
+  bool is_displaced = false;      ///< Has displaced triangles: a task is decided when it is built.
   bool is_task = false;           ///< Its children are not among the cells.
   int children_left = 0;          ///< Children that are cells and not finished.
   std::vector<BuiltVoxel> built;  ///< The children that are finished.
 };
 
 /// Decides the cells down to tasks, parents before children. The first is the root, which is no
-/// leaf. Cells with displaced triangles become tasks when they are small, and have no contours
-/// above that: what they hold is not known before. Throws Cancelled.
+/// leaf. Cells with displaced triangles become tasks when they are small; above that they get
+/// contours around what encloses the triangles. Cells of very many triangles get none. Throws
+/// Cancelled.
 std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
                                     const SurfaceShading* shading, Progress* progress);
 
