@@ -12,18 +12,15 @@
 #include <string>
 #include <vector>
 
+#include "chunk_mutator.hpp"
 #include "support/brute_svdag.hpp"
-#include "support/vdag_bytes.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
 #include "voxdag/layout/svdag_lookup.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace voxdag {
 namespace {
@@ -84,76 +81,14 @@ void walk(const VdagContents& contents) {
     std::abort();
 }
 
-struct Piece {
-  VdagChunkEntry entry;
-  std::string bytes;
-};
-
-std::vector<Piece> take_apart(const std::string& file) {
-  std::vector<Piece> pieces;
-  if (file.size() < sizeof(VdagHeader)) return pieces;
-  const auto count = peek<VdagHeader>(file, 0).chunk_count;
-  for (std::size_t i = 0; i < std::min<std::size_t>(count, 8); ++i) {
-    if (entry_offset(i + 1) > file.size()) break;
-    const auto entry = peek<VdagChunkEntry>(file, entry_offset(i));
-    if (entry.offset > file.size() || entry.length > file.size() - entry.offset) break;
-    pieces.push_back({entry, file.substr(entry.offset, entry.length)});
-  }
-  return pieces;
-}
-
-std::string put_together(const std::vector<Piece>& pieces) {
-  std::string file(vdag_align(entry_offset(pieces.size())), '\0');
-  VdagHeader header{};
-  std::memcpy(header.magic, kVdagMagic, sizeof kVdagMagic);
-  header.version = kVdagVersion;
-  header.chunk_count = static_cast<std::uint32_t>(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    VdagChunkEntry entry = pieces[i].entry;
-    entry.offset = file.size();
-    entry.length = pieces[i].bytes.size();
-    poke(file, entry_offset(i), entry);
-    file += pieces[i].bytes;
-    file.resize(vdag_align(file.size()));
-  }
-  header.file_bytes = file.size();
-  poke(file, 0, header);
-  repair_checksums(file);
-  return file;
-}
-
-/// Changes one word a little, or copies one word over another: what is likely to stay a DAG.
-template <class T>
-void change_word(std::string& bytes, std::mt19937& rng) {
-  const std::size_t count = bytes.size() / sizeof(T);
-  if (count == 0) return;
-  const auto offset = [&] { return rng() % count * sizeof(T); };
-  const std::size_t to = offset();
-  T value = peek<T>(bytes, offset());
-  if (rng() % 2 == 0) value = static_cast<T>(peek<T>(bytes, to) + static_cast<T>(rng() % 9) - 4);
-  if (rng() % 4 == 0) value ^= T{1} << rng() % (8 * sizeof(T));
-  poke(bytes, to, value);
-}
-
-void change_bytes(std::string& bytes) {
-  const std::size_t size = bytes.size(), most = size + 64;
-  bytes.resize(most);
-  bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, most));
-}
-
 void change(std::vector<Piece>& pieces, std::mt19937& rng) {
   Piece& piece = pieces[rng() % pieces.size()];
   const bool wide = piece.entry.id == kChunkLeafBlocks || piece.entry.id == kChunkLevels;
   switch (rng() % 8) {
     case 0:
       return change_bytes(piece.bytes);
-    case 1: {
-      std::string entry(sizeof piece.entry, '\0');
-      poke(entry, 0, piece.entry);
-      entry[rng() % 8] ^= static_cast<char>(1 << rng() % 8);
-      piece.entry = peek<VdagChunkEntry>(entry, 0);
-      return;
-    }
+    case 1:
+      return change_entry(piece.entry, rng);
     default:
       return wide ? change_word<std::uint64_t>(piece.bytes, rng)
                   : change_word<std::uint32_t>(piece.bytes, rng);
@@ -181,19 +116,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
-  using namespace voxdag;
-  std::mt19937 rng(seed);
-  if (rng() % 32 == 0) return LLVMFuzzerMutate(data, size, max_size);
-  const std::string old(reinterpret_cast<const char*>(data), size);
-  std::vector<Piece> pieces = take_apart(old);
-  std::string file;
-  if (pieces.empty() || rng() % 256 == 0) {
-    file = seed_file(rng);
-  } else {
-    for (unsigned i = 0; i <= rng() % 4; ++i) change(pieces, rng);
-    file = put_together(pieces);
-  }
-  if (file.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
-  std::memcpy(data, file.data(), file.size());
-  return file.size();
+  return voxdag::mutate_chunks(data, size, max_size, seed, voxdag::change, voxdag::seed_file);
 }
