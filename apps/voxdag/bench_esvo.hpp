@@ -96,9 +96,14 @@ void bench_esvo_rays(const EsvoBenchPlan& plan, const EsvoBenchScene& scene,
                      const std::filesystem::path& mesh, Progress& progress,
                      EsvoBenchResults& results);
 
-/// How many levels of cubes the contours of `row` are worth, by the silhouettes of the same scene;
-/// NaN where no cubes were measured that are as good.
-double levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row);
+/// How many levels of cubes the contours of a row are worth.
+struct LevelsSaved {
+  double levels = 0;
+  bool at_least = false;  ///< No cubes that were measured are as good.
+};
+
+/// By the silhouettes of the same scene.
+LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row);
 
 /// bench/README.md lists the keys.
 nlohmann::ordered_json esvo_bench_json(const EsvoBenchResults& results,

@@ -85,10 +85,12 @@ std::string silhouettes_table(const std::vector<SilhouetteRow>& rows) {
   std::string text = fmt::format(
       "\nRays on the wrong side of a silhouette, per million\n  {:<16}{:>10}{:>12}{:>12}{:>26}\n",
       "scene", "grid", "cubes", "contours", "levels of cubes saved");
-  for (const SilhouetteRow& row : rows)
+  for (const SilhouetteRow& row : rows) {
+    const LevelsSaved saved = levels_saved(rows, row);
     text += fmt::format("  {:<16}{:>11}{:>12}{:>12}{:>26}\n", row.scene, resolution_of(row.levels),
                         number(row.cubes * 1e6, 0), number(row.contours * 1e6, 0),
-                        number(levels_saved(rows, row), 1));
+                        (saved.at_least ? "> " : "") + number(saved.levels, 1));
+  }
   return text;
 }
 
@@ -131,19 +133,19 @@ std::string name_of(EsvoForm form) {
   return kNames[static_cast<std::size_t>(form)];
 }
 
-double levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row) {
+LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row) {
   const SilhouetteRow* before = nullptr;
   for (const SilhouetteRow& next : rows) {
     if (next.scene != row.scene) continue;
     if (next.cubes <= row.contours) {
-      if (before == nullptr) return next.levels - row.levels;
+      if (before == nullptr) return {static_cast<double>(next.levels - row.levels)};
       const double whole = std::log(before->cubes / next.cubes);
       const double part = whole > 0 ? std::log(before->cubes / row.contours) / whole : 0;
-      return before->levels + part * (next.levels - before->levels) - row.levels;
+      return {before->levels + part * (next.levels - before->levels) - row.levels};
     }
     before = &next;
   }
-  return NAN;
+  return {static_cast<double>(before != nullptr ? before->levels - row.levels : 0), true};
 }
 
 Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
@@ -198,13 +200,15 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
     json["rays"].push_back(object);
   }
   json["silhouettes"] = Json::array();
-  for (const SilhouetteRow& row : results.silhouettes)
-    json["silhouettes"].push_back(
-        {{"scene", row.scene},
-         {"resolution", std::int64_t{1} << row.levels},
-         {"cubes_wrong", row.cubes},
-         {"contours_wrong", row.contours},
-         {"levels_saved", json_number(levels_saved(results.silhouettes, row))}});
+  for (const SilhouetteRow& row : results.silhouettes) {
+    const LevelsSaved saved = levels_saved(results.silhouettes, row);
+    json["silhouettes"].push_back({{"scene", row.scene},
+                                   {"resolution", std::int64_t{1} << row.levels},
+                                   {"cubes_wrong", row.cubes},
+                                   {"contours_wrong", row.contours},
+                                   {"levels_saved", saved.levels},
+                                   {"levels_saved_is_least", saved.at_least}});
+  }
   return json;
 }
 
