@@ -43,7 +43,7 @@ std::vector<std::size_t> find_uv(const PlyElement& element) {
   for (const auto& names :
        {std::array{"s", "t"}, std::array{"u", "v"}, std::array{"texture_u", "texture_v"},
         std::array{"texture_s", "texture_t"}}) {
-    const std::vector<std::size_t> found = find_all(element, {names[0], names[1]});
+    std::vector<std::size_t> found = find_all(element, {names[0], names[1]});
     if (!found.empty()) return found;
   }
   return {};
