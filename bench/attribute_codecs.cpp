@@ -104,8 +104,8 @@ Blocks cylinders(float radius) {
 /// Where `planes` planes of random directions meet.
 Blocks corners(int planes) {
   return make([planes](std::mt19937& random) {
-    std::vector<Vec3f> normals;
-    for (int i = 0; i < planes; ++i) normals.push_back(direction(random));
+    std::vector<Vec3f> normals(static_cast<std::size_t>(planes));
+    for (Vec3f& normal : normals) normal = direction(random);
     return voxels_of([normals](Vec3f p) {
       float nearest = -INFINITY;
       for (const Vec3f& n : normals) nearest = std::max(nearest, dot(n, p));

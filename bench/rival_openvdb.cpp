@@ -24,6 +24,7 @@ struct MeshInGrid {
   const voxdag::Mesh& mesh;
   const voxdag::Grid& grid;
 
+  // NOLINTBEGIN(readability-identifier-naming): OpenVDB's names
   std::size_t polygonCount() const { return mesh.triangles.size(); }
   std::size_t pointCount() const { return mesh.vertices.size(); }
   std::size_t vertexCount(std::size_t) const { return 3; }
@@ -34,6 +35,7 @@ struct MeshInGrid {
     // OpenVDB's voxels are centred on whole numbers, ours begin there.
     position = {p.x - 0.5, p.y - 0.5, p.z - 0.5};
   }
+  // NOLINTEND(readability-identifier-naming)
 };
 
 void convert(const char* mesh_file, unsigned resolution, const char* output) {

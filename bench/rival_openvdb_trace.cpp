@@ -38,11 +38,13 @@ class FirstActiveVoxel {
       : accessor_(accessor), ray_(ray) {}
 
   const VdbRay& ray() const { return ray_; }
+  // NOLINTBEGIN(readability-identifier-naming): OpenVDB's names
   template <class Node>
   bool hasNode(const openvdb::Coord& at) {
     return accessor_.template probeConstNode<Node>(at) != nullptr;
   }
   void setRange(double t0, double t1) { ray_.setTimes(t0, t1); }
+  // NOLINTEND(readability-identifier-naming)
   void init(double) {}
   bool operator()(const openvdb::Coord& at, double) { return accessor_.isValueOn(at); }
 
