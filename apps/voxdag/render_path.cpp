@@ -143,6 +143,7 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
   }
 
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < static_cast<int>(count); ++i)
     times.push_back(path.start() + i / arguments.fps);
   const auto start = Clock::now();
