@@ -140,9 +140,10 @@ void MeshViewSource::Scene::sample_packet(const Camera& camera, const ViewTile& 
   rtcIntersect16(valid.data(), embree_.scene(), &context, &packet);
   for (int i = 0; i < kPacket; ++i) {
     if (valid[i] == 0) continue;
-    const auto row = static_cast<std::size_t>(y0 + i / kPacketSide);
-    const auto column = static_cast<std::size_t>(x0 + i % kPacketSide);
-    ViewSample& sample = samples[row * static_cast<std::size_t>(tile.width) + column];
+    const int row = y0 + i / kPacketSide, column = x0 + i % kPacketSide;
+    ViewSample& sample =
+        samples[static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.width) +
+                static_cast<std::size_t>(column)];
     sample = {};
     if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     const double u = static_cast<double>(packet.hit.u[i]), v = static_cast<double>(packet.hit.v[i]);
