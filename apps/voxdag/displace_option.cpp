@@ -11,9 +11,7 @@
 #include "voxdag/image/stone_heights.hpp"
 
 namespace voxdag {
-namespace {
 
-/// "TEXTURE:AMOUNT" or "TEXTURE:AMOUNT:SCALE"; the texture's name may have colons itself.
 void parse_displace(const std::string& text, DisplaceArguments& arguments) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0;;) {
@@ -44,8 +42,6 @@ void parse_displace(const std::string& text, DisplaceArguments& arguments) {
   for (std::size_t i = 1; i < parts.size(); ++i) arguments.texture += ":" + parts[i];
   if (arguments.texture.empty()) throw std::invalid_argument("not TEXTURE:AMOUNT[:SCALE]");
 }
-
-}  // namespace
 
 void add_displace_options(CLI::App& command, DisplaceArguments& arguments) {
   const auto store = [&arguments](const std::string& text) {

@@ -18,6 +18,10 @@ struct DisplaceArguments {
   bool is_off = false;  ///< Not even the materials' own maps.
 };
 
+/// From "TEXTURE:AMOUNT" or "TEXTURE:AMOUNT:SCALE"; the texture's name may have colons itself.
+/// Throws std::invalid_argument.
+void parse_displace(const std::string& text, DisplaceArguments& arguments);
+
 void add_displace_options(CLI::App& command, DisplaceArguments& arguments);
 
 /// The mesh displaced as asked, or nothing where nothing moves.
@@ -29,7 +33,7 @@ std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& argume
 /// What holds all of the displaced surface.
 Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh);
 
-/// As `--displace` takes it, or empty.
+/// As `--displace` takes it, without the texture's folder, or empty.
 std::string displace_text(const DisplaceArguments& arguments);
 
 }  // namespace voxdag

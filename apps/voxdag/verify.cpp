@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "displace_option.hpp"
 #include "human.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/check_esvo.hpp"
@@ -23,6 +24,7 @@ struct VerifyArguments {
   std::string mesh;
   std::uint64_t samples = 20'000;
   std::uint64_t seed = 1;
+  DisplaceArguments displace;
 };
 
 const char* result_name(Result result) {
@@ -68,17 +70,36 @@ void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
   fmt::print("{}\n", nlohmann::ordered_json{{"passed", passed}, {"checks", list}}.dump(2));
 }
 
+/// What the surface was displaced by, of the options or as the file says; nothing where the file
+/// names a texture that may be anywhere.
+std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
+                                                 const DisplaceArguments& asked) {
+  if (!asked.texture.empty()) return asked;
+  const std::map<std::string, std::string>& build = file.metadata().build;
+  DisplaceArguments arguments;
+  arguments.is_off = !build.contains("displaced");
+  if (!build.contains("displace")) return arguments;
+  parse_displace(build.at("displace"), arguments);
+  if (arguments.texture != "stone") return std::nullopt;
+  return arguments;
+}
+
 /// Points of the mesh, looked for in the octree.
 VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
   const EsvoFile file(session.subject);
-  if (file.metadata().build.contains("displaced"))
+  const std::optional<DisplaceArguments> displace = displacement_of(file, arguments.displace);
+  if (!displace)
     return {"enclosure", Result::kSkipped,
-            "the surface is displaced: the mesh does not tell where it is"};
+            fmt::format("the surface is displaced: needs --displace, which was {}",
+                        file.metadata().build.at("displace"))};
   const MeshWithAppearance source = read_mesh_with_appearance(arguments.mesh, &session.progress);
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
+  std::vector<std::string> warnings;
+  const std::optional<DisplacedTriangles> displaced =
+      open_displaced(*displace, source.mesh, source.appearance, warnings, session.progress);
   const EnclosureCheck enclosure =
-      check_enclosure(file.view(), QuantizedMesh(source.mesh, file.grid()), &shading,
-                      arguments.samples, arguments.seed);
+      check_enclosure(file.view(), QuantizedMesh(source.mesh, file.grid()), file.grid(), &shading,
+                      displaced ? &*displaced : nullptr, arguments.samples, arguments.seed);
   VerifyCheck check{"enclosure", Result::kPassed,
                     fmt::format("{} points of the surface", with_commas(enclosure.points))};
   if (!enclosure.outside) return check;
@@ -131,6 +152,7 @@ void add_verify_command(CLI::App& app, Session& session) {
   command.add_option("--seed", arguments->seed, "Another seed takes another sample")
       ->type_name("N")
       ->capture_default_str();
+  add_displace_options(command, arguments->displace);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);

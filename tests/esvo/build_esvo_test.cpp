@@ -120,7 +120,8 @@ TEST(BuildEsvo, ContoursEncloseTheSurface) {
     options.settings.max_error = seed % 2 == 0 ? 0.5f : 4.0f;
     options.settings.normal_error = 3;
     const Esvo esvo = build_esvo(mesh, grid, options);
-    const EnclosureCheck check = check_enclosure(esvo.view(), {mesh, grid}, nullptr, 5000);
+    const EnclosureCheck check =
+        check_enclosure(esvo.view(), {mesh, grid}, grid, nullptr, nullptr, 5000);
     EXPECT_GT(check.points, 1000u);
     EXPECT_FALSE(check.outside.has_value())
         << "seed " << seed << " triangle " << check.outside->triangle << " level "

@@ -231,10 +231,37 @@ TEST(DisplacedTriangles, OctreesEncloseWhatWasTessellated) {
           grid.to_world(static_cast<Vec3d>(*quantize(grid, p)) * (1.0 / kSubvoxels))));
     micro.triangles.push_back({first, first + 1, first + 2});
   }
-  const EnclosureCheck check = check_enclosure(EsvoView{slots.data(), slots.size(), result.root, 8},
-                                               {micro, grid}, nullptr, 4 * micro.triangles.size());
+  const EsvoView esvo{slots.data(), slots.size(), result.root, 8};
+  const EnclosureCheck check =
+      check_enclosure(esvo, {micro, grid}, grid, nullptr, nullptr, 4 * micro.triangles.size());
   EXPECT_GT(check.points, micro.triangles.size());
   EXPECT_FALSE(check.outside);
+
+  // The same by the displacement itself, and that of another wall is noticed.
+  const QuantizedMesh crate_in_grid(crate.mesh, grid);
+  const EnclosureCheck own =
+      check_enclosure(esvo, crate_in_grid, grid, nullptr, &triangles, 20'000);
+  EXPECT_GT(own.points, 15'000u);
+  EXPECT_FALSE(own.outside);
+  const DisplacedTriangles deeper(crate.mesh, crate.appearance,
+                                  {{stones(), -0.2, 0.3, {}, 0}, Displacement{}});
+  EXPECT_TRUE(check_enclosure(esvo, crate_in_grid, grid, nullptr, &deeper, 20'000).outside);
+}
+
+TEST(DisplacedTriangles, AMicroTriangleIsFoundByItsPlace) {
+  const Crate crate;
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance,
+                                     {{stones(), -0.1, 0.3, {}, 0}, Displacement{}});
+  const Box3d all{{-10, -10, -10}, {10, 10, 10}};
+  for (std::uint32_t triangle = 0; triangle < crate.mesh.triangles.size(); ++triangle) {
+    if (!triangles.is_displaced(triangle)) continue;
+    triangles.tessellate(triangle, all, 0.1, [&](const MicroTriangle& m) {
+      const Vec2f place = (m.barycentrics[0] + m.barycentrics[1] + m.barycentrics[2]) * (1.0f / 3);
+      const MicroTriangle found = triangles.micro_at(triangle, place, 0.1);
+      EXPECT_EQ(found.positions, m.positions);
+      EXPECT_EQ(found.barycentrics, m.barycentrics);
+    });
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "voxdag/esvo/triangle_source.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
@@ -64,9 +65,9 @@ struct Walk {
 
 }  // namespace
 
-EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh,
-                               const SurfaceShading* shading, std::uint64_t samples,
-                               std::uint64_t seed) {
+EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
+                               const SurfaceShading* shading, const DisplacedTriangles* displaced,
+                               std::uint64_t samples, std::uint64_t seed) {
   const std::size_t count = mesh.triangle_count();
   std::vector<double> area_before(count + 1);
   const auto corners = [&](std::size_t i, Vec3d(&p)[3]) {
@@ -99,6 +100,10 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh,
           std::min<std::size_t>(static_cast<std::size_t>(at - area_before.begin()), count) - 1;
     }
     if (!mesh.in_range(triangle)) return;
+    const std::uint32_t source = mesh.source(triangle);
+    const bool is_displaced = displaced != nullptr && displaced->is_displaced(source);
+    // Pieces stand for what was cut off at the grid's sides, before displacement.
+    if (is_displaced && source != triangle) return;
     Vec3d p[3];
     corners(triangle, p);
     double u = unit(a), v = unit(b);
@@ -106,14 +111,27 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh,
     // Corners and edges, now and then.
     if (i % 16 == 1) u = static_cast<double>(a & 1), v = u > 0 ? 0 : static_cast<double>(b & 1);
     if (i % 16 == 3) v = 0;
+    Vec2f place{static_cast<float>(u), static_cast<float>(v)};
+    if (is_displaced) {
+      const MicroTriangle micro = displaced->micro_at(source, place, displaced_edge_limit(grid));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::optional<Vec3i> q = quantize(grid, micro.positions[k]);
+        if (!q) return;
+        p[k] = static_cast<Vec3d>(*q) * (1.0 / kSubvoxels);
+      }
+      // Anywhere in the small one.
+      u = unit(mix(c)), v = unit(mix(c + 1));
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const std::array<Vec2f, 3>& corner = micro.barycentrics;
+      place = corner[0] + (corner[1] - corner[0]) * static_cast<float>(u) +
+              (corner[2] - corner[0]) * static_cast<float>(v);
+    }
     const Vec3d point = p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v;
     for (int axis = 0; axis < 3; ++axis)
       if (!(point[axis] >= 0 && point[axis] < size)) return;
     if (shading != nullptr) {
-      const Vec2f at[1] = {{static_cast<float>(u), static_cast<float>(v)}};
-      if (mesh.source(triangle) == triangle &&
-          shading->is_cut_away(static_cast<std::uint32_t>(triangle), at))
-        return;
+      const Vec2f at[1] = {place};
+      if (source == triangle && shading->is_cut_away(source, at)) return;
     }
     looked_at.fetch_add(1, std::memory_order_relaxed);
     Walk walk{esvo, point};
@@ -121,7 +139,7 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh,
     const std::lock_guard lock(mutex);
     if (i >= first_bad.load()) return;
     first_bad = i;
-    result.outside = PointOutside{mesh.source(triangle), point, walk.deepest + 1};
+    result.outside = PointOutside{source, point, walk.deepest + 1};
   });
   result.points = looked_at;
   return result;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "voxdag/esvo/displaced_triangles.hpp"
 #include "voxdag/esvo/surface_shading.hpp"
 #include "voxdag/layout/esvo.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
@@ -25,9 +26,11 @@ struct EnclosureCheck {
 /// were built), spread by area and with every triangle and its corners in turn, and walks the
 /// octree to each: it must be in voxels and between the planes of every contour down to a leaf. A
 /// point may be in any of the voxels within 1e-6 of a voxel of it. Points outside of the grid, and
-/// points that `shading` (or null) says are cut away, are passed over. Deterministic.
-EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh,
-                               const SurfaceShading* shading, std::uint64_t samples,
-                               std::uint64_t seed = 1);
+/// points that `shading` (or null) says are cut away, are passed over. Where the mesh is
+/// `displaced` (or null) the points are those of the displaced surface in `grid`, tessellated as it
+/// was for building. Deterministic.
+EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
+                               const SurfaceShading* shading, const DisplacedTriangles* displaced,
+                               std::uint64_t samples, std::uint64_t seed = 1);
 
 }  // namespace voxdag

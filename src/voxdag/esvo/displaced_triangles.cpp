@@ -374,4 +374,37 @@ std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, Vertex& a, Verte
   return surely;
 }
 
+MicroTriangle DisplacedTriangles::micro_at(std::uint32_t triangle, Vec2f place,
+                                           double edge_limit) const {
+  Pass pass(*this, triangle, edge_limit);
+  std::array<Vertex, 3> piece = pass.corners;
+  // How far inside of a piece the place lies: negative outside.
+  const auto depth_in = [&](const Vertex& a, const Vertex& b, const Vertex& c) {
+    const auto side = [&](const Vertex& p, const Vertex& q) {
+      const Vec2d from{static_cast<double>(p.b1), static_cast<double>(p.b2)};
+      const Vec2d along = Vec2d{static_cast<double>(q.b1), static_cast<double>(q.b2)} - from;
+      const Vec2d to = Vec2d{static_cast<double>(place.x), static_cast<double>(place.y)} - from;
+      return cross(along, to);
+    };
+    return std::min({side(a, b), side(b, c), side(c, a)});
+  };
+  while (!is_small(pass, piece[0], piece[1], piece[2])) {
+    double deepest = -HUGE_VAL;
+    std::array<Vertex, 3> part = piece;
+    for_each_part(pass, piece[0], piece[1], piece[2], [&](Vertex& a, Vertex& b, Vertex& c) {
+      const double depth = depth_in(a, b, c);
+      if (!(depth > deepest)) return;
+      deepest = depth;
+      part = {a, b, c};
+    });
+    piece = part;
+  }
+  MicroTriangle micro;
+  for (std::size_t i = 0; i < 3; ++i) {
+    micro.positions[i] = displace(pass, piece[i]);
+    micro.barycentrics[i] = {piece[i].b1, piece[i].b2};
+  }
+  return micro;
+}
+
 }  // namespace voxdag

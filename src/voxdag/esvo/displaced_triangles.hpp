@@ -76,6 +76,10 @@ class DisplacedTriangles {
     split(pass, pass.corners[0], pass.corners[1], pass.corners[2], Search{region, false}, emit);
   }
 
+  /// The micro triangle that has the place with these barycentric coordinates (of corners 1 and 2)
+  /// of a displaced triangle, one of those that tessellate() emits with the limit.
+  MicroTriangle micro_at(std::uint32_t triangle, Vec2f place, double edge_limit) const;
+
  private:
   /// A corner of a piece. The barycentric coordinates are exact: halves of halves.
   struct Vertex {

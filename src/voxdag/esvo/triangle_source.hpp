@@ -11,6 +11,10 @@
 
 namespace voxdag {
 
+/// The longest edge, before displacement, that a displaced triangle is left with: edges end up
+/// between half of it and all of it, a voxel long.
+inline double displaced_edge_limit(const Grid& grid) { return std::sqrt(2.0) * grid.voxel_size; }
+
 struct TriangleSource {
   const Grid& grid;
   const QuantizedMesh& mesh;
@@ -22,9 +26,7 @@ struct TriangleSource {
            displaced->is_displaced(triangle);
   }
 
-  /// The longest edge that a displaced triangle is left with: edges end up between half of it and
-  /// all of it, a voxel long.
-  double edge_limit() const { return std::sqrt(2.0) * grid.voxel_size; }
+  double edge_limit() const { return displaced_edge_limit(grid); }
 };
 
 /// A cell of 2^log2_size voxels, in world units, with a little more around for rounding. `cell`
