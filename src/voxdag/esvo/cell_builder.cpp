@@ -93,8 +93,7 @@ VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell, 
       polygons_.push_back(
           {&items_[i].polygon, static_cast<Vec3f>(triangles_[items_[i].triangle].normal)});
     const auto is_near_enough = [&](const ConvexPolyhedron& of) {
-      return polygons_.size() <= kMostInLeaf &&
-             is_near_surface(of, polygons_, static_cast<float>(error));
+      return is_near_surface(of, polygons_, static_cast<float>(error));
     };
     decision.is_near = is_near_enough(shape);
     std::optional<FittedContour> fitted;
@@ -146,19 +145,22 @@ CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i 
 
 ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cell) const {
   const TriangleSetup& setup = triangles_[item.triangle].setup;
-  // A triangle that meets the cell, and whose box lies in one child, meets that.
+  // A triangle in the cell whose box lies in one child, or in two side by side, meets them.
   const int shift = log2_size - 1;
-  const auto half_of = [&](Vec3i voxel, int axis) { return (voxel[axis] - cell[axis]) >> shift; };
-  int child = 0;
-  bool is_in_one = true;
+  unsigned lo = 0, hi = 0;
+  bool is_inside = true;
   for (int axis = 0; axis < 3; ++axis) {
-    const int lo = half_of(setup.box_lo, axis), hi = half_of(setup.box_hi, axis);
-    is_in_one &= lo == hi && (lo & ~1) == 0;
-    child |= lo << axis;
+    const int from = (setup.box_lo[axis] - cell[axis]) >> shift;
+    const int to = (setup.box_hi[axis] - cell[axis]) >> shift;
+    is_inside &= ((from | to) & ~1) == 0;
+    lo |= static_cast<unsigned>(from) << axis;
+    hi |= static_cast<unsigned>(to) << axis;
   }
-  if (!is_in_one) return classify_children(setup, item.conditions, cell, 1 << shift);
+  const unsigned across = lo ^ hi;
+  if (!is_inside || (across & (across - 1)) != 0)
+    return classify_children(setup, item.conditions, cell, 1 << shift);
   const std::uint64_t every = item.conditions * 0x0001000100010001ull;
-  return {1u << child, {every, every}};
+  return {1u << lo | 1u << hi, {every, every}};
 }
 
 void CellBuilder::visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,

@@ -99,9 +99,6 @@ class CellBuilder {
   BuiltVoxel build(const VoxelDecision& decision);
 
  private:
-  /// Beyond so many polygons a cell is not asked whether it could be a leaf.
-  static constexpr std::size_t kMostInLeaf = 24;
-
   /// What a triangle has in a cell, or, while that is split, in one half of it after the other.
   struct Item {
     Item() {}  // Nothing of it is to be zero: polygons are large.

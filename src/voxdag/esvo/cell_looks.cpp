@@ -126,7 +126,7 @@ bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell, Surfa
   const auto normal_error = [&](const Item& item) {
     return own_normal(item) ? kAnyNormal : settings_.normal_error;
   };
-  Piece pieces[kMostInLeaf];
+  Piece pieces[kMostNearPolygons];
   // Most that are not uniform are not by themselves: the mean need not be known.
   for (std::size_t i = begin; i < items_.size(); ++i) {
     const SurfaceTriangle& triangle = triangles_[items_[i].triangle];

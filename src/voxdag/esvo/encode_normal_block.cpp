@@ -17,6 +17,8 @@ namespace {
 
 /// Mean squared chords above which more than one kind of grid is tried: two degrees.
 constexpr float kHard = 1.2e-3f;
+/// And below which no other is: half a degree.
+constexpr float kGood = kHard / 16;
 
 /// The normals on a plane across their mean, where their rays meet it, along the two principal
 /// directions of the points.
@@ -204,7 +206,7 @@ void move_integers(const NormalValues& values, NormalFit& fit) {
       fit_points(values, moved);
       if (moved.error < fit.error) fit = moved;
     }
-    if (!(fit.error < 0.98f * before)) return;
+    if (!(fit.error < 0.95f * before)) return;
   }
 }
 
@@ -239,7 +241,9 @@ NormalFit fit_grid(const NormalValues& values) {
   }
   if (best.error < kHard * values.total_weight) return best;
   consider_corners(values, best);
+  if (best.error < kGood * values.total_weight) return best;
   consider_opposites(values, best);
+  if (best.error < kGood * values.total_weight) return best;
   move_integers(values, best);
   return best;
 }

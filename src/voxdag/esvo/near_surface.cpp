@@ -36,8 +36,9 @@ FloatLanes size_of(FloatLanes v) { return max(v, -v); }
 /// Heights over a polygon's plane.
 struct Plane {
   Vec3f normal;
-  float offset;
+  float offset = 0;
 
+  Plane() = default;
   explicit Plane(const PlanarPolygon& p)
       : normal(p.normal), offset(dot(p.normal, static_cast<Vec3f>(p.polygon->corners[0]))) {}
   FloatLanes height(const PointGroups& points, int group) const {
@@ -49,7 +50,11 @@ struct Plane {
 /// Distances from a convex polygon.
 class PolygonDistance {
  public:
-  explicit PolygonDistance(const PlanarPolygon& p) : plane_(p), count_(p.polygon->count) {
+  PolygonDistance() {}
+
+  void set(const PlanarPolygon& p) {
+    plane_ = Plane(p);
+    count_ = p.polygon->count;
     for (int i = 0; i < count_; ++i) {
       Edge& edge = edges_[i];
       const int next = i + 1 == count_ ? 0 : i + 1;
@@ -98,9 +103,11 @@ class PolygonDistance {
   };
 
   Plane plane_;
-  int count_;
-  bool has_inside_;
-  Edge edges_[SurfacePolygon::kMaxCorners];
+  int count_ = 0;
+  bool has_inside_ = false;
+  union {
+    Edge edges_[SurfacePolygon::kMaxCorners];  // uninitialised: most have a few
+  };
 };
 
 }  // namespace
@@ -108,27 +115,26 @@ class PolygonDistance {
 bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
                      float distance) {
   if (shape.is_empty()) return true;
+  if (surface.empty() || surface.size() > kMostNearPolygons) return false;
   const PointGroups points(shape);
-  IntLanes far[kMaxGroups];
   // Most shapes that reach too far do so by their points' heights over all of the planes.
-  std::fill_n(far, points.count, all_lanes(-1));
-  for (const PlanarPolygon& polygon : surface) {
-    const Plane plane(polygon);
-    for (int i = 0; i < points.count; ++i) far[i] &= size_of(plane.height(points, i)) > distance;
+  for (int i = 0; i < points.count; ++i) {
+    IntLanes far = all_lanes(-1);
+    for (const PlanarPolygon& polygon : surface)
+      far &= size_of(Plane(polygon).height(points, i)) > distance;
+    if (any_lane(far)) return false;
   }
-  for (int i = 0; i < points.count; ++i)
-    if (any_lane(far[i])) return false;
-
-  std::fill_n(far, points.count, all_lanes(-1));
-  int done = 0;
-  for (const PlanarPolygon& polygon : surface) {
-    const PolygonDistance from(polygon);
-    for (int i = done; i < points.count; ++i)
-      if (any_lane(far[i])) far[i] = from.still_far(points, i, distance, far[i]);
-    while (done < points.count && !any_lane(far[done])) ++done;
-    if (done == points.count) return true;
+  PolygonDistance polygons[kMostNearPolygons];
+  std::size_t known = 0;
+  for (int i = 0; i < points.count; ++i) {
+    IntLanes far = all_lanes(-1);
+    for (std::size_t k = 0; k < surface.size() && any_lane(far); ++k) {
+      if (k == known) polygons[known++].set(surface[k]);
+      far = polygons[k].still_far(points, i, distance, far);
+    }
+    if (any_lane(far)) return false;
   }
-  return false;
+  return true;
 }
 
 }  // namespace voxdag

@@ -14,8 +14,11 @@ struct PlanarPolygon {
   Vec3f normal;
 };
 
+/// More are not looked at.
+inline constexpr std::size_t kMostNearPolygons = 24;
+
 /// Whether the shape's vertices and their mean are each no farther than `distance` from one of the
-/// polygons. An empty shape is.
+/// polygons. An empty shape is; any other is not where there are more than kMostNearPolygons.
 bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
                      float distance);
 

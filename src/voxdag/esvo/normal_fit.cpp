@@ -133,7 +133,9 @@ void consider_grid(const NormalValues& values, const RealGrid& grid, const Norma
     if (is_lost(real)) break;
     store(values, real, next);
     if (!(next.error < fit.error)) break;
+    const bool was_worth_it = next.error < 0.9f * fit.error;
     fit = next;
+    if (!was_worth_it) break;
   }
   if (fit.error < best.error) best = fit;
 }

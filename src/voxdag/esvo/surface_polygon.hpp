@@ -7,6 +7,7 @@
 /// level would leave a hole below it, so a corner may lie 1e-9 outside of the plane that cuts, and
 /// is moved onto it.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -52,30 +53,49 @@ struct SurfacePolygon {
   void become_part(const SurfacePolygon& whole, int axis, double position, double sign) {
     constexpr double kSlack = 1e-9;
     double distances[kMaxCorners];
-    bool all = true;
-    for (int i = 0; i < whole.count; ++i) {
+    unsigned inside = 0, on_plane = 0;
+    const int n = whole.count;
+    for (int i = 0; i < n; ++i) {
       const double distance = sign * (whole.corners[i][axis] - position);
-      distances[i] = std::fabs(distance) < kSlack ? 0 : distance;
-      all &= distances[i] > 0;
+      const bool is_on_plane = std::fabs(distance) < kSlack;
+      distances[i] = is_on_plane ? 0 : distance;
+      on_plane |= static_cast<unsigned>(is_on_plane) << i;
+      inside |= static_cast<unsigned>(distances[i] >= 0) << i;
     }
-    if (all) {
-      *this = whole;
-      return;
-    }
-    count = 0;
-    for (int i = 0; i < whole.count; ++i) {
-      const int next = i + 1 == whole.count ? 0 : i + 1;
-      const double here = distances[i], there = distances[next];
-      if (here >= 0 && count < kMaxCorners) {
-        corners[count] = whole.corners[i];
-        if (here == 0) corners[count][axis] = position;
-        edges[count++] = here == 0 && there < 0 ? kCutEdge : whole.edges[i];
-      }
-      if (!(here * there < 0) || count == kMaxCorners) continue;
+    const auto is_inside = [&](int i) { return (inside >> i & 1) != 0; };
+    const auto add_corner = [&](int i) {
+      if (count == kMaxCorners) return;
+      corners[count] = whole.corners[i];
+      if ((on_plane >> i & 1) != 0) corners[count][axis] = position;
+      edges[count++] = whole.edges[i];
+    };
+    const auto add_cut = [&](int i, int next, std::uint8_t edge) {
+      if (count == kMaxCorners) return;
       const Vec3d from = whole.corners[i];
-      corners[count] = from + (whole.corners[next] - from) * (here / (here - there));
+      const double share = distances[i] / (distances[i] - distances[next]);
+      corners[count] = from + (whole.corners[next] - from) * share;
       corners[count][axis] = position;
-      edges[count++] = here > 0 ? kCutEdge : whole.edges[i];
+      edges[count++] = edge;
+    };
+    count = 0;
+    // Corners whose predecessors are outside. A convex polygon has one at most, but for rounding.
+    const unsigned after = (inside << 1 | inside >> (n - 1)) & ((1u << n) - 1);
+    unsigned entries = inside & ~after;
+    if (entries == 0 && inside != 0)
+      for (int i = 0; i < n; ++i) add_corner(i);
+    for (; entries != 0; entries &= entries - 1) {
+      int i = std::countr_zero(entries), next = i;
+      const int before = i == 0 ? n - 1 : i - 1;
+      if (distances[i] > 0) add_cut(before, i, whole.edges[before]);
+      do {
+        i = next;
+        add_corner(i);
+        next = i + 1 == n ? 0 : i + 1;
+      } while (is_inside(next));
+      if (distances[i] > 0)
+        add_cut(i, next, kCutEdge);
+      else
+        edges[count - 1] = kCutEdge;
     }
   }
 

@@ -22,7 +22,7 @@ constexpr int kLeastLog2 = 2;
 
 /// Cells of more triangles have no contours: they are not worth the memory that it takes to look at
 /// all of the triangles at once.
-constexpr std::size_t kMostLoaded = 1 << 16;
+constexpr std::size_t kMostLoaded = 1 << 14;
 
 /// The side of the cells in which displaced triangles are tessellated.
 constexpr int kDisplacedTaskLog2 = 5;

@@ -82,8 +82,8 @@ class MipPyramid {
         std::max(std::sqrt(4 * minor), std::sqrt(12 * major) / (kMaxTaps * kTapDistance));
     if (major < 0.05f) return sample(0, region.center);
     if (!(major < 1e18f)) return sample(level_count() - 1, region.center);
-    const int level = std::clamp(texel >= 1.0f ? std::ilogb(texel) : 0, 0, level_count() - 1);
-    const float size = std::ldexp(1.0f, level);
+    const int level = std::clamp(texel >= 1.0f ? exponent_of(texel) : 0, 0, level_count() - 1);
+    const auto size = static_cast<float>(1 << level);
     const float own = (size * size - 1) / 4;  // variance of the level's filter beyond level 0's
     const auto taps = [&](float variance, float& distance) {
       const float left = 12 * std::max(variance - own, 0.0f);
@@ -211,6 +211,10 @@ class MipPyramid {
   static int floor_int(float x) {
     const int truncated = static_cast<int>(x);
     return truncated - (x < static_cast<float>(truncated));
+  }
+  /// std::ilogb of a positive number that is not subnormal.
+  static int exponent_of(float x) {
+    return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23) - 127;
   }
   /// std::floor, which is a call on processors without SSE 4.1.
   static float floor_of(float x) {
