@@ -118,6 +118,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   std::vector<std::string> names = plan.layouts;
   if (names.empty()) names = {trace_layouts(scene.voxels).front()};
   std::vector<std::unique_ptr<TraceLayout>> layouts;
+  layouts.reserve(names.size());
   for (const std::string& name : names) layouts.push_back(make_trace_layout(name, scene.voxels));
   std::vector<std::optional<DeviceScene>> device_dags;
   for (const auto& layout : layouts) {

@@ -95,7 +95,7 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
     throw Error("--openvdb", "", "takes the voxels of a DAG, not of an ESVO");
   Mesh mesh;
   if (!arguments.mesh_file.empty()) mesh = read_mesh(arguments.mesh_file, &session.progress);
-  const std::string name = file.source_name();
+  const std::string& name = file.source_name();
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
                    file.scene(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
   TraceResults results;

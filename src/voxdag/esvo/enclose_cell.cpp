@@ -37,6 +37,7 @@ VoxelDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cel
   if (pieces.empty() && polygons.empty()) return {};
 
   std::vector<PlanarPolygon> surface;
+  surface.reserve(polygons.size());
   for (const SurfacePolygon& polygon : polygons) surface.push_back({&polygon, {}});
   ContourExtents extents = extents_of(surface, candidates);
   const Vec3d middle = grid.to_world(centre);
