@@ -13,8 +13,8 @@ struct Interval {
   double lo, hi;
 
   friend Interval operator*(Interval a, Interval b) {
-    const auto [lo, hi] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
-    return {lo, hi};
+    const auto [least, most] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
+    return {least, most};
   }
 };
 
