@@ -111,6 +111,9 @@ class DisplacedTriangles {
 
   /// A corner of the mesh, 3 * triangle + corner, or the edge that starts there.
   using CornerIndex = std::uint32_t;
+  static constexpr CornerIndex next_corner(CornerIndex corner) {
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+  }
 
   /// Corners at one place, or edges between the same places: those that differ in what moves them.
   struct Group {
