@@ -15,15 +15,16 @@ namespace voxdag {
 
 /// Coordinates are voxels relative to the origin of the cell in hand.
 struct SurfaceTriangle {
+  // What every level reads comes first.
   TriangleSetup setup;
-  Vec3d corners[3];
-  Vec3d normal{};                     ///< Unit length; zero for a triangle without area.
-  ContourDirection across;            ///< `normal` as a contour stores it; none likewise.
-  std::uint32_t source = 0;           ///< Triangle of the mesh.
-  std::optional<SurfaceSample> look;  ///< That of all its points, if they look the same.
-  bool is_displaced = false;          ///< Its normal is its own, not that of the source.
+  Vec3d normal{};               ///< Unit length; zero for a triangle without area.
+  ContourDirection across;      ///< `normal` as a contour stores it; none likewise.
+  std::uint32_t source = 0;     ///< Triangle of the mesh.
+  bool is_displaced = false;    ///< Its normal is its own, not that of the source.
   std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
-  ContourDirection across_edges[3];  ///< In the plane and perpendicular to the open edges.
+  std::optional<SurfaceSample> look;  ///< That of all its points, if they look the same.
+  ContourDirection across_edges[3];   ///< In the plane and perpendicular to the open edges.
+  Vec3d corners[3];
   /// The barycentric coordinates of a point p of corners 1 and 2 of the source triangle:
   /// base + (dot(u, p), dot(v, p)).
   Vec2d base;
