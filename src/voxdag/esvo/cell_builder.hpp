@@ -101,7 +101,8 @@ class CellBuilder {
  private:
   /// What a triangle has in a cell, or, while that is split, in one half of it after the other.
   struct Item {
-    Item() {}  // Nothing of it is to be zero: polygons are large.
+    // Nothing of it is to be zero: polygons are large.
+    Item() {}  // NOLINT(clang-analyzer-optin.cplusplus.UninitializedObject): see above
 
     std::uint32_t triangle;
     std::uint32_t conditions;  ///< Which of the triangle's conditions are open in the cell.
