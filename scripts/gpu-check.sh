@@ -56,14 +56,14 @@ for where in cpu cuda; do
 done
 [ $measure = yes ] || exit 0
 
-# bench NAME FILE.vdag MESH
+# bench NAME FILE MESH LAYOUTS
 bench() {
   echo "== $1"
-  voxdag bench trace "$2" --mesh "$3" --device cuda --layout paper,wide --size 1920x1080 --rays 8000000 \
+  voxdag bench trace "$2" --mesh "$3" --device cuda --layout "$4" --size 1920x1080 --rays 8000000 \
     -o "$folder/$1.json"
 }
 mkdir -p "$folder"
-bench courtyard-2048 $scene.vdag $scene.ply
+bench courtyard-2048 $scene.vdag $scene.ply paper,wide
 
 scenes=${VOXDAG_SCENES-}
 if [ -z "$scenes" ] && [ -f ../shared/scenes/unpack.sh ]; then
@@ -77,7 +77,9 @@ if [ -z "$sponza" ]; then
 else
   for resolution in 4096 32768; do
     voxdag build "$sponza" -r $resolution -o $build/sponza.vdag
-    bench sponza-$resolution $build/sponza.vdag "$sponza"
+    bench sponza-$resolution $build/sponza.vdag "$sponza" paper,wide
   done
+  voxdag build "$sponza" -r 1024 -o $build/sponza.esvo
+  bench sponza-1024-esvo $build/sponza.esvo "$sponza" contours
 fi
 echo "== done in $SECONDS s: $folder"
