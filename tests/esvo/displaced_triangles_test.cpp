@@ -4,12 +4,14 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
 #include <tuple>
 
 #include "voxdag/esvo/build_esvo.hpp"
 #include "voxdag/esvo/check_esvo.hpp"
 #include "voxdag/image/stone_heights.hpp"
+#include "voxdag/layout/validate_esvo.hpp"
 
 namespace voxdag {
 namespace {
@@ -262,6 +264,38 @@ TEST(DisplacedTriangles, AMicroTriangleIsFoundByItsPlace) {
       EXPECT_EQ(found.barycentrics, m.barycentrics);
     });
   }
+}
+
+TEST(DisplacedTriangles, GridsThatHoldAPartOfTheSurfaceAreFinished) {
+  const Crate crate;
+  const DisplacedTriangles triangles(crate.mesh, crate.appearance,
+                                     {{stones(), -0.1, 0.3, {}, 0}, Displacement{}});
+  std::mt19937 random(9);
+  const auto place = [&](double lo, double hi) {
+    return lo + (hi - lo) * static_cast<double>(random()) / 4294967296.0;
+  };
+  // Grids that reach into the topmost stones of a side: there are cells that bounds of the heights
+  // meet, and the surface does not.
+  int with_voxels = 0;
+  for (int round = 0; round < 60; ++round) {
+    Grid grid;
+    for (int axis = 0; axis < 3; ++axis) grid.origin[axis] = place(0, 1);
+    constexpr Vec3d kSize{2, 1.5, 1.25};
+    grid.origin[round % 3] = kSize[round % 3] - place(0, 0.04);
+    grid.levels = 7;
+    grid.voxel_size = 0.4 / 128;
+    grid.quantization_scale = kSubvoxels / grid.voxel_size;
+    EsvoMemory memory;
+    EsvoResult result = build_esvo(crate.mesh, grid, {}, nullptr, &triangles, memory);
+    const std::vector<std::uint64_t> slots = memory.take();
+    const EsvoView esvo{slots.data(), slots.size(), result.root, grid.levels};
+    EXPECT_EQ(validate_esvo(esvo, result.directory), result.counts) << "round " << round;
+    const EnclosureCheck check =
+        check_enclosure(esvo, QuantizedMesh(crate.mesh, grid), grid, nullptr, &triangles, 500);
+    EXPECT_FALSE(check.outside) << "round " << round;
+    with_voxels += esvo.is_empty() ? 0 : 1;
+  }
+  EXPECT_GT(with_voxels, 20);
 }
 
 }  // namespace

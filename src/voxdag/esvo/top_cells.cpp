@@ -180,6 +180,8 @@ std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSett
         cell.triangles = std::move(triangles);
         cell.shape = cells[at].shape.octant(child);
       }
+      // What may meet a cell need not: a task without triangles says so to the cell above.
+      if (cells[at].children_left == 0) cells[at].is_task = true;
     }
     begin = end;
   }
