@@ -78,10 +78,11 @@ struct SurfacePolygon {
       edges[count++] = edge;
     };
     count = 0;
+    if (inside == 0) return;
     // Corners whose predecessors are outside. A convex polygon has one at most, but for rounding.
     const unsigned after = (inside << 1 | inside >> (n - 1)) & ((1u << n) - 1);
     unsigned entries = inside & ~after;
-    if (entries == 0 && inside != 0)
+    if (entries == 0)
       for (int i = 0; i < n; ++i) add_corner(i);
     for (; entries != 0; entries &= entries - 1) {
       int i = std::countr_zero(entries), next = i;
