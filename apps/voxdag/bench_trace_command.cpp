@@ -170,7 +170,8 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
   command
       .add_option("--layout", plan.layouts,
                   "Layouts to cast at, several with commas: of a DAG paper (the default), "
-                  "paper_scalar and wide, of an ESVO contours (the default) and cubes")
+                  "paper_scalar and wide, of an ESVO contours (the default), "
+                  "contours_scalar, cubes and cubes_scalar")
       ->delimiter(',')
       ->check(CLI::IsMember(trace_layouts()).description(""))
       ->type_name("LAYOUT");

@@ -2,7 +2,7 @@
 
 #include "caster_runner.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
@@ -129,7 +129,7 @@ class ByteCountingEsvoNodes : public Nodes {
   std::uint64_t *steps_, *bytes_;
 };
 
-/// An ESVO, ray by ray, with its contours or as cubes.
+/// An ESVO, with its contours or as cubes.
 template <class Nodes>
 class EsvoTraceLayout : public TraceLayout {
  public:
@@ -141,7 +141,7 @@ class EsvoTraceLayout : public TraceLayout {
     return std::nullopt;
   }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(ScalarCaster<Nodes>(Nodes(esvo_)), rays, casts);
+    return runner_of(fast_caster(Nodes(esvo_)), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;
@@ -154,7 +154,21 @@ class EsvoTraceLayout : public TraceLayout {
 };
 
 const std::vector<std::string> kDagLayouts{"paper", "paper_scalar", "wide"};
-const std::vector<std::string> kEsvoLayouts{"contours", "cubes"};
+/// The same ray by ray.
+template <class Nodes>
+class EsvoScalarLayout : public EsvoTraceLayout<Nodes> {
+ public:
+  explicit EsvoScalarLayout(const EsvoView& esvo) : EsvoTraceLayout<Nodes>(esvo), nodes_(esvo) {}
+
+  TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
+    return runner_of(ScalarCaster<Nodes>(nodes_), rays, casts);
+  }
+
+ private:
+  Nodes nodes_;
+};
+
+const std::vector<std::string> kEsvoLayouts{"contours", "contours_scalar", "cubes", "cubes_scalar"};
 
 }  // namespace
 
@@ -171,6 +185,8 @@ std::vector<std::string> trace_layouts(const VoxelScene& voxels) {
 std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelScene& voxels) {
   if (const EsvoView* esvo = voxels.esvo()) {
     if (name == "contours") return std::make_unique<EsvoTraceLayout<ContourNodes>>(*esvo);
+    if (name == "contours_scalar") return std::make_unique<EsvoScalarLayout<ContourNodes>>(*esvo);
+    if (name == "cubes_scalar") return std::make_unique<EsvoScalarLayout<EsvoNodes>>(*esvo);
     if (name == "cubes") return std::make_unique<EsvoTraceLayout<EsvoNodes>>(*esvo);
     throw Error("there is no layout \"" + name + "\" of an ESVO");
   }

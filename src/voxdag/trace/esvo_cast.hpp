@@ -2,8 +2,8 @@
 /// The ray cast through an ESVO, with contours or, as cubes, without.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1 and Figure 8,
-/// whose variables these are: the active span of the ray is [t, t_max], and h is where it leaves
-/// the parent, or 0 where the parent is on the stack already.
+/// whose variables these are: the active span of the ray is t <= T < t_max, and h is where it
+/// leaves the parent, or 0 where the parent is on the stack already.
 ///
 /// The walk is that of cast.hpp, plane rule, voxel rule and all: without contours it meets just the
 /// cells that cast() meets in a DAG of the same voxels, at the same T, to the bit. Where a voxel
@@ -56,7 +56,9 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   };
 
   // INITIALIZE
-  float t = ray.t_min, t_max = ray.t_max;
+  float t = ray.t_min;
+  const float t_end = end_of_range(ray.t_max);
+  float t_max = t_end;
   float h = least(least((ox - 1.0f) * ix, (oy - 1.0f) * iy), (oz - 1.0f) * iz);
   if (h <= t) return false;
   const ContourRay contour_ray(ray);
@@ -91,7 +93,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     float t_exit = least(least(tx, ty), tz);
 
     const std::uint32_t index = child ^ mirrored;
-    if ((parent.valid_mask() >> index & 1u) != 0 && (!kWithContours || t <= t_max)) {
+    if ((parent.valid_mask() >> index & 1u) != 0 && (!kWithContours || t < t_max)) {
       // INTERSECT
       float tv_min = t, tv_max = least(t_exit, t_max);
       ContourPlane entered = plane;
@@ -107,7 +109,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
           tv_max = least(span.t_leave, tv_max);
         }
       }
-      if (!kWithContours || tv_min <= tv_max) {
+      if (!kWithContours || tv_min < tv_max) {
         const int level = kTopBit - bit + 1;
         const bool is_leaf = (parent.leaf_mask() >> index & 1u) != 0;
         if (is_leaf || stop(level, t, t_exit)) {
@@ -138,11 +140,11 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     }
 
     // ADVANCE
-    if (t_exit > ray.t_max) return false;
+    if (t_exit >= t_end) return false;
     bool leaves_parent = false;
     if constexpr (kWithContours) {
       plane = {};
-      leaves_parent = t_exit > t_max;  // never the root's: its span is the ray's range
+      leaves_parent = t_exit >= t_max;  // never the root's: its span is the ray's range
       if (leaves_parent) {
         ++bit;
         const std::uint32_t above = ~0u << bit;
@@ -153,7 +155,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
         ty = (oy - float_from_bits(y)) * iy;
         tz = (oz - float_from_bits(z)) * iz;
         t_exit = least(least(tx, ty), tz);
-        if (t_exit > ray.t_max) return false;
+        if (t_exit >= t_end) return false;
       }
     }
     t = t_exit;

@@ -62,6 +62,11 @@ struct GridRay {
   VOXDAG_HD double to_world_t(double grid_t) const { return std::fma(grid_t, t_scale, t_start); }
 };
 
+/// The least float above t_max >= 0: T < that just where T <= t_max.
+VOXDAG_HD inline float end_of_range(float t_max) {
+  return t_max < HUGE_VALF ? float_from_bits(bits_of_float(t_max) + 1) : t_max;
+}
+
 /// The ray origin + t * direction, t_min <= t <= t_max, in world units, as the traversal takes it.
 /// Works for origins anywhere; t_min and t_max are rounded to nearest in T.
 VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec3d world_direction,

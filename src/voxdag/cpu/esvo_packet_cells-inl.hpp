@@ -1,0 +1,198 @@
+// The rays of a packet against a voxel's cube, its contour and its children's cubes.
+#if defined(VOXDAG_ESVO_PACKET_CELLS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_ESVO_PACKET_CELLS_INL
+#undef VOXDAG_ESVO_PACKET_CELLS_INL
+#else
+#define VOXDAG_ESVO_PACKET_CELLS_INL
+#endif
+
+#include "voxdag/cpu/esvo_packet_walk-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+#if VOXDAG_ESVO_PACKET_LANES
+
+/// Which of `rays` meet the voxel's shape, and of these, with kWithStop, which end at it. With kCut
+/// it has a contour: sets the spans of its level.
+template <bool kWithContours>
+template <bool kCut, bool kWithStop>
+HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::clip(
+    const Visit& visit, Rays rays, Rays& stopped) {
+  const DF d;
+  const DI di;
+  const std::uint32_t level = visit.level;
+  const int bit = 23 - static_cast<int>(level);
+  VF lower[3], upper[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    lower[axis] = hn::Set(d, float_from_bits(visit.corner[axis]));
+    upper[axis] = hn::Set(d, float_from_bits(visit.corner[axis] + (1u << bit)));
+  }
+  const Spans& above = spans_below(level - 1);
+  Spans& here = spans_[kCut ? level : 0];
+  VI normal[3], low, high, length1;
+  if constexpr (kCut) {
+    const ContourSlab slab = ContourSlab::make(visit.contour, packet_.mirrored, bit);
+    std::int32_t centre = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      normal[axis] = hn::Set(di, slab.normal[axis]);
+      centre += slab.normal[axis] *
+                static_cast<std::int32_t>(visit.corner[axis] - kOne + (1u << (bit - 1)));
+    }
+    low = hn::Set(di, centre + slab.low);
+    high = hn::Set(di, centre + slab.high);
+    length1 = hn::Set(di, slab.length1);
+  }
+  auto first = hn::Set(d, HUGE_VALF), last = hn::Zero(d);
+  Rays met = 0;
+  stopped = 0;
+  for (Rays rest = rays; rest != 0;) {
+    const std::size_t at = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
+    rest &= ~(kVectorRays << at);
+    VF enters[3], exits[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto origin = hn::Load(d, packet_.origin[axis] + at),
+                 inverse = hn::Load(d, packet_.inverse[axis] + at);
+      enters[axis] = hn::Mul(hn::Sub(origin, upper[axis]), inverse);
+      exits[axis] = hn::Mul(hn::Sub(origin, lower[axis]), inverse);
+    }
+    const auto exit = hn::Min(hn::Min(exits[0], exits[1]), exits[2]);
+    auto enter = hn::Max(hn::Max(enters[0], enters[1]), enters[2]);
+    enter = hn::Max(enter, hn::Load(d, above.enter + at));
+    auto leave = hn::Min(exit, hn::Load(d, above.leave + at));
+    if constexpr (kCut) {
+      const auto along = [&](const std::int32_t(&v)[3][RayPacket::kMaxRays]) HWY_ATTR {
+        const auto xy = hn::Add(hn::Mul(normal[0], hn::Load(di, v[0] + at)),
+                                hn::Mul(normal[1], hn::Load(di, v[1] + at)));
+        return hn::Add(xy, hn::Mul(normal[2], hn::Load(di, v[2] + at)));
+      };
+      const auto position = along(position_);
+      const auto fall = hn::Or(along(direction_), hn::Set(di, 1));
+      const auto base = hn::Set(d, ContourSlab::kReachBase);
+      const auto reach = hn::Sub(hn::BitCast(di, hn::Add(exit, base)), hn::BitCast(di, base));
+      const auto slack = hn::ShiftRight<ContourSlab::kReachShift>(
+          hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
+      const auto inverse = hn::Div(hn::Set(d, 2.0f), hn::ConvertTo(d, fall));
+      const auto t_high =
+          hn::Mul(hn::ConvertTo(d, hn::Sub(hn::Sub(position, high), slack)), inverse);
+      const auto t_low = hn::Mul(hn::ConvertTo(d, hn::Add(hn::Sub(position, low), slack)), inverse);
+      enter = hn::Max(enter, hn::Min(t_high, t_low));
+      leave = hn::Min(leave, hn::Max(t_high, t_low));
+      hn::Store(enter, d, here.enter + at);
+      hn::Store(leave, d, here.leave + at);
+      const auto is_met = hn::Lt(enter, leave);
+      first = hn::Min(first, hn::IfThenElse(is_met, enter, first));
+      last = hn::Max(last, hn::IfThenElseZero(is_met, leave));
+    }
+    met |= bits_of(hn::Lt(enter, leave)) << at;
+    if constexpr (kWithStop) {
+      const auto limit = hn::Add(hn::Load(d, packet_.stop_start + at),
+                                 hn::Mul(hn::Load(d, packet_.stop_per_t + at), exit));
+      stopped |= bits_of(hn::Le(hn::Set(d, side_of(level)), limit)) << at;
+    }
+  }
+  if constexpr (kCut) {
+    here.first = hn::GetLane(hn::MinOfLanes(d, first));
+    here.last = hn::GetLane(hn::MaxOfLanes(d, last));
+  }
+  met &= rays;
+  stopped &= met;
+  return met;
+}
+
+/// Which of `rays` meet which children's cubes.
+template <bool kWithContours>
+HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, const Spans& spans,
+                                                         Rays rays, ChildRays& children) const {
+  const DF d;
+  const std::uint32_t half = 1u << (22 - visit.level);
+  const auto plane = [&](int axis, std::uint32_t i) HWY_ATTR {
+    return hn::Set(d, float_from_bits(visit.corner[axis] + i * half));
+  };
+  const auto x0 = plane(0, 0), x1 = plane(0, 1), x2 = plane(0, 2);
+  const auto y0 = plane(1, 0), y1 = plane(1, 1), y2 = plane(1, 2);
+  const auto z0 = plane(2, 0), z1 = plane(2, 1), z2 = plane(2, 2);
+  Rays m0 = 0, m1 = 0, m2 = 0, m3 = 0, m4 = 0, m5 = 0, m6 = 0, m7 = 0;
+  for (Rays rest = rays; rest != 0;) {
+    const std::size_t first = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
+    rest &= ~(kVectorRays << first);
+    const auto t = [&](int axis, VF position) HWY_ATTR {
+      return hn::Mul(hn::Sub(hn::Load(d, packet_.origin[axis] + first), position),
+                     hn::Load(d, packet_.inverse[axis] + first));
+    };
+    const auto tx0 = t(0, x0), tx1 = t(0, x1), tx2 = t(0, x2);
+    const auto ty0 = t(1, y0), ty1 = t(1, y1), ty2 = t(1, y2);
+    const auto tz0 = t(2, z0), tz1 = t(2, z1), tz2 = t(2, z2);
+    const auto begin = hn::Load(d, spans.enter + first), end = hn::Load(d, spans.leave + first);
+    const auto enter_z0 = hn::Max(tz1, begin), enter_z1 = hn::Max(tz2, begin);
+    const auto exit_z0 = hn::Min(tz0, end), exit_z1 = hn::Min(tz1, end);
+    // A pair of children, one above the other.
+    const auto column = [&](VF enter_xy, VF exit_xy, Rays& lower, Rays& upper) HWY_ATTR {
+      lower |= bits_of(hn::Lt(hn::Max(enter_xy, enter_z0), hn::Min(exit_xy, exit_z0))) << first;
+      upper |= bits_of(hn::Lt(hn::Max(enter_xy, enter_z1), hn::Min(exit_xy, exit_z1))) << first;
+    };
+    column(hn::Max(tx1, ty1), hn::Min(tx0, ty0), m0, m4);
+    column(hn::Max(tx2, ty1), hn::Min(tx1, ty0), m1, m5);
+    column(hn::Max(tx1, ty2), hn::Min(tx0, ty1), m2, m6);
+    column(hn::Max(tx2, ty2), hn::Min(tx1, ty1), m3, m7);
+  }
+  children.meet[0] = m0 & rays;
+  children.meet[1] = m1 & rays;
+  children.meet[2] = m2 & rays;
+  children.meet[3] = m3 & rays;
+  children.meet[4] = m4 & rays;
+  children.meet[5] = m5 & rays;
+  children.meet[6] = m6 & rays;
+  children.meet[7] = m7 & rays;
+}
+
+/// Whether the rays are close together for the voxel's children: not worth telling apart.
+template <bool kWithContours>
+inline bool EsvoPacketWalk<kWithContours>::is_narrow(const Visit& visit, const Spans& spans) const {
+  const std::uint32_t size = 1u << (23 - visit.level);
+  float enter = spans.first;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float t = (origin_range_[axis][0] - float_from_bits(visit.corner[axis] + size)) *
+                    inverse_range_[axis][0];
+    enter = t > enter ? t : enter;
+  }
+  return width_at_start_ + width_per_t_ * enter < kNarrow * side_of(visit.level + 1);
+}
+
+/// The children that any ray can meet. The bounds of T hold in float arithmetic too, since rounding
+/// is monotone.
+template <bool kWithContours>
+inline std::uint32_t EsvoPacketWalk<kWithContours>::children_met_by_hull(const Visit& visit,
+                                                                         const Spans& spans) const {
+  const hn::CappedTag<float, 8> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  static_assert(hn::MaxLanes(d) == 8);
+  alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
+                                                             {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
+                                                             {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
+  const auto half = hn::Set(du, 1u << (22 - visit.level));
+  auto enter = hn::Set(d, spans.first), exit = hn::Set(d, spans.last);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto low =
+        hn::Or(hn::Set(du, visit.corner[axis]), hn::And(hn::Load(du, kUpper[axis]), half));
+    const auto high = hn::Add(low, half);
+    const auto slow = hn::Set(d, inverse_range_[axis][1]),
+               fast = hn::Set(d, inverse_range_[axis][0]);
+    const auto to_high = hn::Sub(hn::Set(d, origin_range_[axis][0]), hn::BitCast(d, high));
+    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), hn::BitCast(d, low));
+    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
+    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
+  }
+  std::uint8_t bits[8];
+  hn::StoreMaskBits(d, hn::Lt(enter, exit), bits);
+  return bits[0];
+}
+
+#endif  // VOXDAG_ESVO_PACKET_LANES
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#endif
