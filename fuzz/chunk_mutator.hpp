@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/vdag_bytes.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
@@ -97,6 +98,18 @@ std::size_t mutate_chunks(std::uint8_t* data, std::size_t size, std::size_t max_
   if (file.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
   std::memcpy(data, file.data(), file.size());
   return file.size();
+}
+
+/// For LLVMFuzzerTestOneInput: walk(parse(the bytes)), unless `parse` finds them damaged.
+template <class Parse, class Walk>
+int read_and_walk(const std::uint8_t* data, std::size_t size, const Parse& parse,
+                  const Walk& walk) {
+  const AlignedBytes bytes(std::string(reinterpret_cast<const char*>(data), size));
+  try {
+    walk(parse(bytes.span()));
+  } catch (const Error&) {
+  }
+  return 0;
 }
 
 }  // namespace voxdag

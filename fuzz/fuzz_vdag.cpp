@@ -105,13 +105,7 @@ std::string seed_file(std::mt19937& rng) {
 }  // namespace voxdag
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace voxdag;
-  const AlignedBytes bytes(std::string(reinterpret_cast<const char*>(data), size));
-  try {
-    walk(parse_vdag(bytes.span()));
-  } catch (const Error&) {
-  }
-  return 0;
+  return voxdag::read_and_walk(data, size, voxdag::parse_vdag, voxdag::walk);
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,

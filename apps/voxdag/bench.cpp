@@ -7,10 +7,10 @@
 
 #include "bench_build.hpp"
 #include "bench_machine.hpp"
+#include "bench_output.hpp"
 #include "bench_report.hpp"
 #include "commands.hpp"
 #include "parse.hpp"
-#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/mesh/scenes.hpp"
 
 namespace voxdag {
@@ -19,7 +19,7 @@ namespace {
 struct BenchArguments {
   BenchPlan plan;
   std::vector<std::string> resolutions, rivals;
-  std::string json_file, plot_file;
+  BenchOutput output;
 };
 
 constexpr std::array kDefaultResolutions{"512", "1024", "2048"};
@@ -32,45 +32,27 @@ Rival parse_rival(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(std::string_view(text));
-  file.commit();
-}
-
 void finish_plan(BenchArguments& arguments) {
   BenchPlan& plan = arguments.plan;
   if (plan.meshes.empty())
     for (const SceneInfo& scene : scene_list()) plan.meshes.emplace_back(scene.name);
   if (arguments.resolutions.empty())
     arguments.resolutions.assign(kDefaultResolutions.begin(), kDefaultResolutions.end());
-  for (const std::string& text : arguments.resolutions) {
-    try {
-      plan.levels.push_back(parse_levels(text));
-    } catch (const std::invalid_argument& wrong) {
-      throw CLI::ValidationError("--resolution", wrong.what());
-    }
-  }
+  parse_all("--resolution", arguments.resolutions, parse_levels, plan.levels);
   std::sort(plan.levels.begin(), plan.levels.end());
   for (const std::string& text : arguments.rivals) plan.rivals.push_back(parse_rival(text));
 }
 
 void bench(const BenchArguments& arguments, Session& session) {
-  for (const std::string& path : {arguments.json_file, arguments.plot_file})
-    if (!path.empty()) check_writable(path);
+  arguments.output.check_writable();
   const nlohmann::ordered_json machine = machine_json();
   const BenchResults results = bench_build(arguments.plan, session.progress);
-  session.bar.clear();
-  const std::string json = bench_json(results, machine).dump(2) + "\n";
-  if (!arguments.json_file.empty()) write_text(arguments.json_file, json);
-  if (!arguments.plot_file.empty()) write_text(arguments.plot_file, bench_svg(results));
-  if (session.json) {
-    fmt::print("{}", json);
-  } else {
-    fmt::print("{} ({} cores), load average {:.2f} before\n\n{}",
-               machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
-               machine.at("load_average").get<double>(), bench_table(results));
-  }
+  arguments.output.write(
+      bench_json(results, machine), {bench_svg(results)},
+      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
+                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
+                  machine.at("load_average").get<double>(), bench_table(results)),
+      session);
   for (const BuildRun& run : results.builds)
     if (!run.failure.empty()) throw Error(run.scene, std::to_string(1 << run.levels), run.failure);
 }
@@ -111,9 +93,11 @@ void add_build(CLI::App& parent, Session& session) {
   command.add_option("--repeat", plan.repeat, "Measure so often and take the fastest")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
-  command.add_option("-o,--output", arguments->json_file, "Write the JSON to a file, too")
+  command.add_option("-o,--output", arguments->output.json_file, "Write the JSON to a file, too")
       ->type_name("FILE.json");
-  command.add_option("--plot", arguments->plot_file, "Draw seconds and bytes over the resolution")
+  command
+      .add_option("--plot", arguments->output.plot_files[0],
+                  "Draw seconds and bytes over the resolution")
       ->type_name("FILE.svg");
   add_threads_option(command, session);
   add_quiet_option(command, session);

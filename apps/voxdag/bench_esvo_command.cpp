@@ -6,9 +6,9 @@
 
 #include "bench_esvo.hpp"
 #include "bench_machine.hpp"
+#include "bench_output.hpp"
 #include "commands.hpp"
 #include "parse.hpp"
-#include "voxdag/core/atomic_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -17,46 +17,19 @@ struct BenchEsvoArguments {
   EsvoBenchPlan plan;
   std::vector<std::string> scenes, resolutions{"1K", "2K", "4K"},
       sizes{"512x384", "1024x768", "2048x1536"};
-  std::string json_file, plot_file, rays_plot_file;
+  BenchOutput output;
 };
 
-void write_text(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(std::string_view(text));
-  file.commit();
-}
-
-/// Each text as `parse` has it.
-template <class Value, class Parse>
-void parse_all(const std::string& option, const std::vector<std::string>& texts, const Parse& parse,
-               std::vector<Value>& values) {
-  for (const std::string& text : texts) {
-    try {
-      values.push_back(parse(text));
-    } catch (const std::invalid_argument& wrong) {
-      throw CLI::ValidationError(option, fmt::format("\"{}\": {}", text, wrong.what()));
-    }
-  }
-}
-
 void run(const BenchEsvoArguments& arguments, Session& session) {
-  for (const std::string& path :
-       {arguments.json_file, arguments.plot_file, arguments.rays_plot_file})
-    if (!path.empty()) check_writable(path);
+  arguments.output.check_writable();
   const nlohmann::ordered_json machine = machine_json();
   const EsvoBenchResults results = bench_esvo(arguments.plan, session.progress);
-  session.bar.clear();
-  const std::string json = esvo_bench_json(results, machine).dump(2) + "\n";
-  if (!arguments.json_file.empty()) write_text(arguments.json_file, json);
-  if (!arguments.plot_file.empty()) write_text(arguments.plot_file, esvo_bench_svg(results));
-  if (!arguments.rays_plot_file.empty())
-    write_text(arguments.rays_plot_file, esvo_rays_svg(results));
-  if (session.json)
-    fmt::print("{}", json);
-  else
-    fmt::print("{}, {} threads, load average {:.2f} before\n\n{}",
-               machine.at("processor").get<std::string>(), results.threads,
-               machine.at("load_average").get<double>(), esvo_bench_table(results));
+  arguments.output.write(
+      esvo_bench_json(results, machine), {esvo_bench_svg(results), esvo_rays_svg(results)},
+      fmt::format("{}, {} threads, load average {:.2f} before\n\n{}",
+                  machine.at("processor").get<std::string>(), results.threads,
+                  machine.at("load_average").get<double>(), esvo_bench_table(results)),
+      session);
   for (const EsvoBuildRun& build : results.builds)
     if (!build.failure.empty())
       throw Error(build.scene, std::to_string(1 << build.levels), build.failure);
@@ -105,13 +78,14 @@ void add_bench_esvo_command(CLI::App& parent, Session& session) {
   command.add_flag_callback(
       "--no-silhouettes", [&plan] { plan.silhouettes = false; },
       "Leave out the comparison with the mesh at every resolution");
-  command.add_option("-o,--output", arguments->json_file, "Write the JSON to a file, too")
+  command.add_option("-o,--output", arguments->output.json_file, "Write the JSON to a file, too")
       ->type_name("FILE.json");
   command
-      .add_option("--plot", arguments->plot_file,
+      .add_option("--plot", arguments->output.plot_files[0],
                   "Draw megabytes, seconds and silhouettes over the resolution")
       ->type_name("FILE.svg");
-  command.add_option("--rays-plot", arguments->rays_plot_file, "Draw bars of rays per second")
+  command
+      .add_option("--rays-plot", arguments->output.plot_files[1], "Draw bars of rays per second")
       ->type_name("FILE.svg");
   add_threads_option(command, session);
   add_quiet_option(command, session);

@@ -218,16 +218,13 @@ std::string esvo_bench_table(const EsvoBenchResults& results) {
 }
 
 std::string esvo_bench_svg(const EsvoBenchResults& results) {
-  const PlotAxis resolution{
-      false, 1, [](double levels) { return with_commas(std::uint64_t{1} << std::lround(levels)); }};
+  const PlotAxis resolution = resolution_axis();
   LineDiagram memory{"Megabytes; dots: cubes, dashes: the paper's",
                      resolution,
                      {true, 10, [](double v) { return fmt::format("{:.4g} MB", v); }},
                      {}};
-  LineDiagram time{"Seconds to build; dots: cubes, dashes: the paper's",
-                   resolution,
-                   {true, 10, [](double v) { return fmt::format("{:.4g} s", v); }},
-                   {}};
+  LineDiagram time{
+      "Seconds to build; dots: cubes, dashes: the paper's", resolution, log_seconds_axis(), {}};
   add_lines(
       results.builds, [](const EsvoBuildRun& run) { return run.megabytes(); }, memory);
   add_lines(

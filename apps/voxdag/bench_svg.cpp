@@ -10,12 +10,9 @@
 namespace voxdag {
 
 std::string bench_svg(const BenchResults& results) {
-  const PlotAxis resolution{
-      false, 1, [](double levels) { return with_commas(std::uint64_t{1} << std::lround(levels)); }};
-  LineDiagram time{"Seconds, all included; dashes: growth of the DAG",
-                   resolution,
-                   {true, 10, [](double v) { return fmt::format("{:.4g} s", v); }},
-                   {}};
+  const PlotAxis resolution = resolution_axis();
+  LineDiagram time{
+      "Seconds, all included; dashes: growth of the DAG", resolution, log_seconds_axis(), {}};
   LineDiagram memory{
       "Bytes of the DAG; dashes: peak memory of the build",
       resolution,

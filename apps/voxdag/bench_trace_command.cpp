@@ -6,13 +6,13 @@
 #include <memory>
 
 #include "bench_machine.hpp"
+#include "bench_output.hpp"
 #include "bench_trace.hpp"
 #include "commands.hpp"
 #include "parse.hpp"
 #include "scene_file.hpp"
 #include "scratch_folder.hpp"
 #include "trace_casters.hpp"
-#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/mesh/read_mesh.hpp"
@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 
 struct BenchTraceArguments {
   TracePlan plan;
-  std::string mesh_file, scenes, json_file, plot_file;
+  std::string mesh_file, scenes;
+  BenchOutput output;
   std::vector<std::string> resolutions{"4K", "32K"};
   std::vector<int> levels;
   ImageSize size{1024, 768};
@@ -103,42 +104,25 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
   return results;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(std::string_view(text));
-  file.commit();
-}
-
 void run(BenchTraceArguments& arguments, Session& session) {
-  for (const std::string& path : {arguments.json_file, arguments.plot_file})
-    if (!path.empty()) check_writable(path);
+  arguments.output.check_writable();
   const nlohmann::ordered_json machine = machine_json();
   const TraceResults results =
       session.subject.empty() ? bench_list(arguments, session) : bench_file(arguments, session);
-  session.bar.clear();
-  const std::string json = trace_json(results, machine).dump(2) + "\n";
-  if (!arguments.json_file.empty()) write_text(arguments.json_file, json);
-  if (!arguments.plot_file.empty()) write_text(arguments.plot_file, trace_svg(results));
-  if (session.json)
-    fmt::print("{}", json);
-  else
-    fmt::print("{}{}, {} threads, load average {:.2f} before\n\n{}",
-               results.cuda_device.empty() ? "" : results.cuda_device + "; ",
-               machine.at("processor").get<std::string>(), results.threads,
-               machine.at("load_average").get<double>(), trace_table(results));
+  arguments.output.write(
+      trace_json(results, machine), {trace_svg(results)},
+      fmt::format("{}{}, {} threads, load average {:.2f} before\n\n{}",
+                  results.cuda_device.empty() ? "" : results.cuda_device + "; ",
+                  machine.at("processor").get<std::string>(), results.threads,
+                  machine.at("load_average").get<double>(), trace_table(results)),
+      session);
   if (!results.failures.empty()) throw Error(results.failures.front());
 }
 
 void finish_plan(BenchTraceArguments& arguments, const Session& session) {
   arguments.plan.rays.width = arguments.size.width;
   arguments.plan.rays.height = arguments.size.height;
-  for (const std::string& text : arguments.resolutions) {
-    try {
-      arguments.levels.push_back(parse_levels(text));
-    } catch (const std::invalid_argument& wrong) {
-      throw CLI::ValidationError("--resolution", wrong.what());
-    }
-  }
+  parse_all("--resolution", arguments.resolutions, parse_levels, arguments.levels);
   if (!session.subject.empty()) return;
   const char* variable = std::getenv("VOXDAG_SCENES");
   if (arguments.scenes.empty() && variable != nullptr) arguments.scenes = variable;
@@ -208,9 +192,9 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
       .add_option("--openvdb", plan.openvdb_program,
                   "bench/rival_openvdb_trace of the build, to cast the rays with OpenVDB, too")
       ->type_name("PROGRAM");
-  command.add_option("-o,--output", arguments->json_file, "Write the JSON to a file, too")
+  command.add_option("-o,--output", arguments->output.json_file, "Write the JSON to a file, too")
       ->type_name("FILE.json");
-  command.add_option("--plot", arguments->plot_file, "Draw bars of rays per second")
+  command.add_option("--plot", arguments->output.plot_files[0], "Draw bars of rays per second")
       ->type_name("FILE.svg");
   add_device_option(command, plan.device);
   add_threads_option(command, session);

@@ -18,7 +18,7 @@ struct ExportArguments {
 
 void export_file(ExportArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
-  const VoxelSet voxels = file.voxels();
+  const VoxelSet voxels = file.scene();
   // Of an ESVO's leaves nobody knows before how many voxels they stand for.
   std::uint64_t count = 0;
   const Box3i window = arguments.options.window.value_or(whole_grid(voxels.levels()));

@@ -93,12 +93,6 @@ std::vector<float> exposures(const CameraPath& path, const std::vector<double>& 
   return smooth;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(std::string_view(text));
-  file.commit();
-}
-
 std::string plot_beside(const std::string& csv) {
   return std::filesystem::path(csv).replace_extension(".svg").string();
 }
@@ -167,8 +161,8 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
     session.progress.report("frames", static_cast<double>(i + 1) / count, i + 1);
   }
   if (!arguments.timings.empty()) {
-    write_text(arguments.timings, timings_csv(timings));
-    write_text(plot_beside(arguments.timings), timings_svg(timings));
+    write_whole_file(arguments.timings, timings_csv(timings));
+    write_whole_file(plot_beside(arguments.timings), timings_svg(timings));
   }
   session.bar.clear();
   if (session.quiet) return;

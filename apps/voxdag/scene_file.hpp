@@ -5,7 +5,6 @@
 
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
-#include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
@@ -17,11 +16,6 @@ class SceneFile {
 
   /// Points into the file.
   VoxelScene scene() const {
-    if (const auto* esvo = std::get_if<EsvoFile>(&file_)) return esvo->view();
-    return std::get<VdagFile>(file_).view();
-  }
-  /// Likewise, of the finest level.
-  VoxelSet voxels() const {
     if (const auto* esvo = std::get_if<EsvoFile>(&file_)) return esvo->view();
     return std::get<VdagFile>(file_).view();
   }

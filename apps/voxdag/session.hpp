@@ -2,7 +2,9 @@
 /// What the subcommands share: the options that many of them have, progress and cancellation.
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "progress_bar.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -47,6 +49,19 @@ CLI::Option* add_parsed_option(CLI::App& command, const std::string& name, Targe
     }
   };
   return command.add_option_function<std::string>(name, store, help)->type_name(shape);
+}
+
+/// Appends each of the texts of an option that takes several, as `parse` has it; likewise.
+template <class Value, class Parse>
+void parse_all(const std::string& option, const std::vector<std::string>& texts, const Parse& parse,
+               std::vector<Value>& values) {
+  for (const std::string& text : texts) {
+    try {
+      values.push_back(parse(text));
+    } catch (const std::invalid_argument& wrong) {
+      throw CLI::ValidationError(option, "\"" + text + "\": " + wrong.what());
+    }
+  }
 }
 
 /// Throws Error unless a file can be made at `path`: called before long work, not after it.

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+
+#include "human.hpp"
 
 namespace voxdag {
 namespace {
@@ -169,6 +172,15 @@ std::string bars_in_box(const BarDiagram& diagram, double left, double top, doub
 }
 
 }  // namespace
+
+PlotAxis resolution_axis() {
+  return {false, 1,
+          [](double levels) { return with_commas(std::uint64_t{1} << std::lround(levels)); }};
+}
+
+PlotAxis log_seconds_axis() {
+  return {true, 10, [](double v) { return fmt::format("{:.4g} s", v); }};
+}
 
 std::string plot_style(std::size_t series, const char* more) {
   return fmt::format("stroke='{}' {}", color(series), more);

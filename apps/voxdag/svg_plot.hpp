@@ -15,6 +15,11 @@ struct PlotAxis {
   std::function<std::string(double value)> tick;
 };
 
+/// Of the log2 of resolutions: "1,024".
+PlotAxis resolution_axis();
+/// By powers of ten: "10 s".
+PlotAxis log_seconds_axis();
+
 struct PlotLine {
   std::string name;  ///< In the legend, or empty.
   std::string style;

@@ -8,20 +8,15 @@
 #include <set>
 #include <tuple>
 
+#include "support/displaced_crate.hpp"
 #include "voxdag/esvo/build_esvo.hpp"
 #include "voxdag/esvo/check_esvo.hpp"
-#include "voxdag/image/stone_heights.hpp"
 #include "voxdag/layout/validate_esvo.hpp"
 
 namespace voxdag {
 namespace {
 
 const Box3d kEverywhere{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
-
-std::shared_ptr<const HeightTexture> stones() {
-  static const auto texture = std::make_shared<const HeightTexture>(make_stone_heights(1, 128));
-  return texture;
-}
 
 std::vector<MicroTriangle> tessellate(const DisplacedTriangles& triangles, const Mesh& mesh,
                                       double limit, const Box3d& region = kEverywhere) {
@@ -48,38 +43,6 @@ std::size_t open_edges(const std::vector<MicroTriangle>& all) {
   for (const auto& [edge, balance] : edges) open += balance != 0 && edge.first != edge.second;
   return open;
 }
-
-/// A closed box of 12 triangles with corners of its own for every face, and texture coordinates
-/// that do not agree along its edges.
-struct Crate {
-  Mesh mesh;
-  Appearance appearance;
-
-  Crate() {
-    for (int axis = 0; axis < 3; ++axis)
-      for (int side = 0; side < 2; ++side) {
-        const auto corner = [&](int u, int v) {
-          constexpr Vec3f kSize{2, 1.5f, 1.25f};
-          Vec3f p;
-          p[axis] = static_cast<float>(side);
-          p[(axis + 1) % 3] = static_cast<float>(side == 1 ? u : v);
-          p[(axis + 2) % 3] = static_cast<float>(side == 1 ? v : u);
-          return p * kSize;
-        };
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
-          mesh.vertices.push_back(corner(u, v));
-        mesh.triangles.push_back({first, first + 1, first + 2});
-        mesh.triangles.push_back({first, first + 2, first + 3});
-        const float shift = 0.37f * static_cast<float>(first);
-        for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}})
-          appearance.uvs.push_back({static_cast<float>(u) + shift, static_cast<float>(v) * 0.8f});
-      }
-    appearance.materials.resize(2);
-    mesh.materials = {"a", "b"};
-    mesh.triangle_materials.assign(mesh.triangles.size(), 0);
-  }
-};
 
 TEST(DisplacedTriangles, NeighboursOfDifferentMappingLeaveNoCracks) {
   const Crate crate;
@@ -277,7 +240,7 @@ TEST(DisplacedTriangles, GridsThatHoldAPartOfTheSurfaceAreFinished) {
   // Grids that reach into the topmost stones of a side: there are cells that bounds of the heights
   // meet, and the surface does not.
   int with_voxels = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 12; ++round) {
     Grid grid;
     for (int axis = 0; axis < 3; ++axis) grid.origin[axis] = place(0, 1);
     constexpr Vec3d kSize{2, 1.5, 1.25};
@@ -295,7 +258,7 @@ TEST(DisplacedTriangles, GridsThatHoldAPartOfTheSurfaceAreFinished) {
     EXPECT_FALSE(check.outside) << "round " << round;
     with_voxels += esvo.is_empty() ? 0 : 1;
   }
-  EXPECT_GT(with_voxels, 20);
+  EXPECT_GT(with_voxels, 4);
 }
 
 }  // namespace

@@ -57,6 +57,12 @@ void forget(char* name) noexcept {
 
 }  // namespace
 
+void write_whole_file(const std::filesystem::path& path, std::string_view text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
 void remove_unfinished_files() noexcept {
   for (auto& slot : unfinished)
     if (const char* name = slot.exchange(nullptr)) ::unlink(name);

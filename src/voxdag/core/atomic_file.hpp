@@ -62,6 +62,9 @@ class AtomicFile {
   std::vector<std::byte> buffer_;
 };
 
+/// A file of this text.
+void write_whole_file(const std::filesystem::path& path, std::string_view text);
+
 /// Removes the temporary files of every AtomicFile that was not committed, for a signal handler
 /// about to end the process: async-signal-safe. A commit() after it fails. With more than 64 files
 /// open at a time the others are left.

@@ -113,9 +113,13 @@ VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell, 
       }
     }
   }
-  decision.is_leaf =
-      log2_size == 0 || (decision.is_near && is_uniform(begin, log2_size, cell, sum));
-  if (log2_size == 0) sum = sum_of(begin, log2_size, cell);
+  if (log2_size == 0) {
+    decision.is_leaf = true;
+    sum = sum_of(begin, log2_size, cell);
+    put_in_light(begin, log2_size, cell, sum);
+  } else {
+    decision.is_leaf = decision.is_near && is_uniform(begin, log2_size, cell, sum);
+  }
   return decision;
 }
 
@@ -136,7 +140,7 @@ CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i 
     return visited;
   }
   Visited visited;
-  visited.sum = lit(sum, begin, log2_size, cell);
+  visited.sum = sum;
   visited.exists = visited.sum.area > 0;
   visited.is_leaf = true;
   visited.contour = decision.contour;
@@ -254,7 +258,8 @@ BuiltVoxel CellBuilder::build(const VoxelDecision& decision) {
   built.contour = decision.contour;
   if (decision.is_leaf) {
     drop_cut_away(0, log2_size_, {});
-    built.sum = lit(sum_of(0, log2_size_, {}), 0, log2_size_, {});
+    built.sum = sum_of(0, log2_size_, {});
+    put_in_light(0, log2_size_, {}, built.sum);
     built.exists = built.sum.area > 0;
     built.is_leaf = true;
     return built;

@@ -130,19 +130,18 @@ class CellBuilder {
   };
 
   void drop_cut_away(std::size_t begin, int log2_size, Vec3i cell);
-  /// `sum` becomes sum_of() if the cell is a leaf.
+  /// `sum` becomes what is seen of the cell if it is a leaf.
   VoxelDecision decide(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                        ConvexPolyhedron& shape, SurfaceSum& sum) const;
-  /// `sum` becomes sum_of() if it is.
+  /// `sum` becomes what is seen of it if it is.
   bool is_uniform(std::size_t begin, int log2_size, Vec3i cell, SurfaceSum& sum) const;
   bool is_of_one_look(std::size_t begin) const;
   ContourCandidates candidates(std::size_t begin) const;
-  bool is_evenly_lit(std::size_t begin, int log2_size, Vec3i cell) const;
-  /// Of the cell's polygons. Ends as soon as the light differs by more than `most_difference`, sRGB
-  /// encoded; the mean is not known then.
-  LightRange light_of(std::size_t begin, int log2_size, Vec3i cell, float most_difference) const;
-  /// The sum over a leaf's polygons in the light that is baked in.
-  SurfaceSum lit(SurfaceSum sum, std::size_t begin, int log2_size, Vec3i cell) const;
+  /// The mean of what is baked in over the cell's polygons, or nothing if it differs among them
+  /// more than a leaf above the finest level allows.
+  std::optional<float> light_of(std::size_t begin, int log2_size, Vec3i cell) const;
+  /// False if there is nothing that the whole cell could be lit by.
+  bool put_in_light(std::size_t begin, int log2_size, Vec3i cell, SurfaceSum& sum) const;
   SurfaceSum sum_of(std::size_t begin, int log2_size, Vec3i cell) const;
   /// A polygon as `shading_` takes it; empty where it looks the same everywhere.
   struct Piece {

@@ -22,8 +22,7 @@ Vec3d middle_of(const SurfacePolygon& polygon) {
 
 }  // namespace
 
-LightRange CellBuilder::light_of(std::size_t begin, int log2_size, Vec3i cell,
-                                 float most_difference) const {
+std::optional<float> CellBuilder::light_of(std::size_t begin, int log2_size, Vec3i cell) const {
   // A voxel of the finest level is asked for where most of its surface is; greater ones in the
   // middle of their polygons, too, and near their corners, where light may be another.
   std::size_t largest = begin;
@@ -31,13 +30,13 @@ LightRange CellBuilder::light_of(std::size_t begin, int log2_size, Vec3i cell,
     if (area_of(items_[i], 0) > area_of(items_[largest], 0)) largest = i;
   const double half = 0.5 * static_cast<double>(std::int64_t{1} << log2_size);
   const Vec3d centre = static_cast<Vec3d>(origin_ + cell) + Vec3d{half, half, half};
-  LightRange range{0, 2, -1};
+  float least = 1, most = 0;
   double weight_sum = 0, sum = 0;
   const auto ask = [&](SurfacePlace& place, Vec3d local, double weight) {
     place.point = centre + local * half;
     const float light = settings_.light(place);
-    range.least = std::min(range.least, light);
-    range.greatest = std::max(range.greatest, light);
+    least = std::min(least, light);
+    most = std::max(most, light);
     sum += weight * static_cast<double>(light);
     weight_sum += weight;
   };
@@ -55,24 +54,18 @@ LightRange CellBuilder::light_of(std::size_t begin, int log2_size, Vec3i cell,
     if (log2_size == 0) break;
     for (int k = 0; k < item.polygon.count; ++k) {
       ask(place, item.polygon.corners[k] * 0.875 + middle * 0.125, weight);
-      if (linear_to_srgb(range.greatest) - linear_to_srgb(range.least) > most_difference)
-        return range;
+      if (linear_to_srgb(most) - linear_to_srgb(least) > settings_.color_error) return {};
     }
   }
-  range.mean = static_cast<float>(sum / weight_sum);
-  return range;
+  return static_cast<float>(sum / weight_sum);
 }
 
-bool CellBuilder::is_evenly_lit(std::size_t begin, int log2_size, Vec3i cell) const {
-  if (!settings_.light || log2_size == 0) return true;
-  const LightRange range = light_of(begin, log2_size, cell, settings_.color_error);
-  return linear_to_srgb(range.greatest) - linear_to_srgb(range.least) <= settings_.color_error;
-}
-
-SurfaceSum CellBuilder::lit(SurfaceSum sum, std::size_t begin, int log2_size, Vec3i cell) const {
-  if (settings_.light && settings_.attributes && sum.area > 0)
-    sum.color = sum.color * light_of(begin, log2_size, cell, 2).mean;
-  return sum;
+bool CellBuilder::put_in_light(std::size_t begin, int log2_size, Vec3i cell,
+                               SurfaceSum& sum) const {
+  if (!settings_.light || !settings_.attributes || !(sum.area > 0)) return true;
+  const std::optional<float> light = light_of(begin, log2_size, cell);
+  if (light) sum.color = sum.color * *light;
+  return light.has_value();
 }
 
 }  // namespace voxdag

@@ -116,7 +116,7 @@ bool CellBuilder::is_of_one_look(std::size_t begin) const {
 bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell, SurfaceSum& sum) const {
   if (!settings_.attributes || is_of_one_look(begin)) {
     sum = sum_of(begin, log2_size, cell);
-    return !settings_.attributes || is_evenly_lit(begin, log2_size, cell);
+    return put_in_light(begin, log2_size, cell, sum);
   }
   // The normals of what is grey or displaced are its own; of the rest `shading_` knows.
   constexpr float kAnyNormal = 4;
@@ -154,7 +154,7 @@ bool CellBuilder::is_uniform(std::size_t begin, int log2_size, Vec3i cell, Surfa
       return false;
   }
   sum = all;
-  return is_evenly_lit(begin, log2_size, cell);
+  return put_in_light(begin, log2_size, cell, sum);
 }
 
 }  // namespace voxdag

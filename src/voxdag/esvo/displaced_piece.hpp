@@ -6,17 +6,9 @@
 
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/vec.hpp"
+#include "voxdag/esvo/interval.hpp"
 
 namespace voxdag {
-
-struct Interval {
-  double lo, hi;
-
-  friend Interval operator*(Interval a, Interval b) {
-    const auto [least, most] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
-    return {least, most};
-  }
-};
 
 /// Its points are those of a flat triangle, moved along normals between those of its corners, by
 /// heights between two bounds; and by `slack` in any direction.

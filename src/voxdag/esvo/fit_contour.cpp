@@ -6,7 +6,7 @@
 namespace voxdag {
 namespace {
 
-ContourExtent extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
+Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
   const auto n = static_cast<Vec3f>(normal);
   FloatLanes low = all_lanes(HUGE_VALF), high = -low;
   for (int i = 0; i < shape.vertex_count(); i += kLanes) {
@@ -16,7 +16,7 @@ ContourExtent extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
     low = min(low, along);
     high = max(high, along);
   }
-  ContourExtent extent;
+  Interval extent;
   for (int lane = 0; lane < kLanes; ++lane) {
     extent.add(static_cast<double>(low[lane]));
     extent.add(static_cast<double>(high[lane]));
@@ -117,11 +117,11 @@ std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
   constexpr double kMargin = 0.01;
   if (shape.is_empty()) return std::nullopt;
   const ContourDirection* best = nullptr;
-  ContourExtent best_surface, best_shape;
+  Interval best_surface, best_shape;
   double most = 0;
   for (std::size_t i = 0; i < candidates.directions().size(); ++i) {
     const ContourDirection& direction = candidates.directions()[i];
-    const ContourExtent of_surface = extents[i], of_shape = extent_of(shape, direction.normal);
+    const Interval of_surface = extents[i], of_shape = extent_of(shape, direction.normal);
     const double over =
         (of_shape.size() - of_surface.size()) / static_cast<double>(direction.length);
     if (!(over > most)) continue;
@@ -139,16 +139,16 @@ std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
     return (position / length1_of_best + 1) * (kSteps / 2);
   };
   // Truncation rounds down what is not negative, and there is nothing below 0 or above the last.
-  const double below = step_of(best_surface.low) - kMargin;
-  const double above = kSteps - (step_of(best_surface.high) + kMargin);
+  const double below = step_of(best_surface.lo) - kMargin;
+  const double above = kSteps - (step_of(best_surface.hi) + kMargin);
   const int low = std::clamp(static_cast<int>(below), 0, Contour::kMaxPosition);
   const int high =
       Contour::kMaxPosition - std::clamp(static_cast<int>(above), 0, Contour::kMaxPosition);
   FittedContour fitted;
   fitted.contour = Contour::make(best->normal, low, high);
-  ContourExtent planes;
-  planes.add(std::max(contour_position<double>(length1_of_best, low), best_shape.low));
-  planes.add(std::min(contour_position<double>(length1_of_best, high), best_shape.high));
+  Interval planes;
+  planes.add(std::max(contour_position<double>(length1_of_best, low), best_shape.lo));
+  planes.add(std::min(contour_position<double>(length1_of_best, high), best_shape.hi));
   const auto length = static_cast<double>(best->length);
   fitted.gain = (best_shape.size() - planes.size()) / length;
   return fitted;

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "voxdag/esvo/convex_polyhedron.hpp"
+#include "voxdag/esvo/interval.hpp"
 #include "voxdag/esvo/near_surface.hpp"
 #include "voxdag/layout/contour.hpp"
 
@@ -57,19 +58,10 @@ struct FittedContour {
   bool pays() const { return gain > 0.15; }
 };
 
-/// The least and the greatest dot(normal, p) of some points p.
-struct ContourExtent {
-  double low = HUGE_VAL, high = -HUGE_VAL;
+/// The least and the greatest dot(normal, p) of some points p, by direction.
+using ContourExtents = std::array<Interval, ContourCandidates::kMost>;
 
-  void add(double v) {
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-  }
-  double size() const { return high - low; }
-};
-using ContourExtents = std::array<ContourExtent, ContourCandidates::kMost>;
-
-/// Those of a surface of one polygon at least, by direction.
+/// Those of a surface of one polygon at least.
 ContourExtents extents_of(std::span<const PlanarPolygon> surface,
                           const ContourCandidates& candidates);
 

@@ -16,9 +16,4 @@ struct SurfacePlace {
 /// depends on the place alone.
 using SurfaceLight = std::function<float(const SurfacePlace&)>;
 
-/// Over the surface in a voxel.
-struct LightRange {
-  float mean = 1, least = 1, greatest = 1;
-};
-
 }  // namespace voxdag

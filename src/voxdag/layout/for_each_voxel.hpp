@@ -73,10 +73,11 @@ void for_each_leaf_block(const SvdagView& dag, const Box3i& window, const Fn& fn
   if (!dag.is_empty()) detail::walk_leaf_blocks(dag, window, 0, 0, {0, 0, 0}, fn);
 }
 
-/// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in Morton order.
-template <class Fn>
-void for_each_voxel(const SvdagView& dag, const Box3i& window, const Fn& fn) {
-  for_each_leaf_block(dag, window, [&](Vec3i origin, std::uint64_t mask) {
+/// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in the order that
+/// for_each_leaf_block has for such a view: of a DAG in Morton order.
+template <class View, class Fn>
+void for_each_voxel(const View& voxels, const Box3i& window, const Fn& fn) {
+  for_each_leaf_block(voxels, window, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1)
       fn(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
   });

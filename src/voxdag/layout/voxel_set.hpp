@@ -14,7 +14,8 @@ class VoxelSet {
   VoxelSet(const SvdagView& dag) : view_(dag) {}   // NOLINT(google-explicit-constructor)
   VoxelSet(const EsvoView& esvo) : view_(esvo) {}  // NOLINT(google-explicit-constructor)
 
-  const EsvoView* esvo() const { return std::get_if<EsvoView>(&view_); }  ///< Or null.
+  const SvdagView* dag() const { return std::get_if<SvdagView>(&view_); }  ///< Or null.
+  const EsvoView* esvo() const { return std::get_if<EsvoView>(&view_); }   ///< Or null.
   int levels() const {
     return std::visit([](const auto& view) { return view.levels; }, view_);
   }
@@ -26,13 +27,10 @@ class VoxelSet {
   }
   template <class Fn>
   void for_each_voxel(const Box3i& window, const Fn& fn) const {
-    for_each_leaf_block(window, [&](Vec3i origin, std::uint64_t mask) {
-      for (; mask != 0; mask &= mask - 1)
-        fn(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
-    });
+    std::visit([&](const auto& view) { voxdag::for_each_voxel(view, window, fn); }, view_);
   }
   std::uint64_t leaf_block_at(Vec3i voxel) const {
-    if (esvo() == nullptr) return voxdag::leaf_block_at(std::get<SvdagView>(view_), voxel);
+    if (dag() != nullptr) return voxdag::leaf_block_at(*dag(), voxel);
     std::uint64_t found = 0;
     const Vec3i lo{voxel.x & ~3, voxel.y & ~3, voxel.z & ~3};
     for_each_leaf_block({lo, lo + Vec3i{4, 4, 4}},

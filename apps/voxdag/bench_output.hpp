@@ -1,0 +1,23 @@
+#pragma once
+/// Where `voxdag bench` writes what it measured.
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "session.hpp"
+
+namespace voxdag {
+
+struct BenchOutput {
+  std::string json_file;  ///< Or empty.
+  std::array<std::string, 2> plot_files;
+
+  /// Throws Error unless all files can be made: called before the work.
+  void check_writable() const;
+  /// Writes the files and prints JSON or `text`. A drawing for each plot file.
+  void write(const nlohmann::ordered_json& json, const std::vector<std::string>& drawings,
+             const std::string& text, Session& session) const;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,42 @@
+#include "voxdag/esvo/top_cells.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "support/displaced_crate.hpp"
+
+namespace voxdag {
+namespace {
+
+TEST(TopCells, EveryCellIsATaskOrHasChildren) {
+  // What encloses pieces of a slanted surface is looser for large cells than for small ones: there
+  // are cells that it meets, and none of their children.
+  Crate crate;
+  for (Vec3f& v : crate.mesh.vertices)
+    v = {0.6f * v.x - 0.8f * v.y, 0.48f * v.x + 0.36f * v.y - 0.8f * v.z,
+         0.64f * v.x + 0.48f * v.y + 0.6f * v.z};
+  const DisplacedTriangles displaced(crate.mesh, crate.appearance,
+                                     {{stones(), -0.1, 0.3, {}, 0}, Displacement{}});
+  Grid grid;
+  grid.origin = {-1.5, -1.5, -0.5};
+  grid.levels = 10;
+  grid.voxel_size = std::ldexp(4.0, -grid.levels);
+  grid.quantization_scale = kSubvoxels / grid.voxel_size;
+  const QuantizedMesh mesh(crate.mesh, grid);
+  const std::vector<std::uint8_t> open_edges(crate.mesh.triangles.size());
+  const std::vector<TopCell> cells =
+      find_top_cells({grid, mesh, open_edges, &displaced}, {}, nullptr, nullptr);
+  std::set<std::size_t> parents;
+  for (std::size_t i = 1; i < cells.size(); ++i) parents.insert(cells[i].parent);
+  int missed_by_all = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_NE(cells[i].is_task, parents.contains(i)) << i;
+    missed_by_all += cells[i].is_task && cells[i].triangles.empty() ? 1 : 0;
+  }
+  EXPECT_GT(missed_by_all, 0);
+}
+
+}  // namespace
+}  // namespace voxdag
