@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/cpu/beam_starts.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/render_plan.hpp"
@@ -95,23 +95,13 @@ struct BeamPass::State {
 };
 
 BeamPass::BeamPass(const VoxelScene& scene, const Grid& grid, const RenderOptions& options)
-    : state_(std::make_unique<State>(scene, grid, options)) {
-  state_->starts.resize(static_cast<std::size_t>(beams_across(options.width)) *
-                        static_cast<std::size_t>(beams_across(options.height)));
-}
+    : state_(std::make_unique<State>(scene, grid, options)) {}
 
 BeamPass::~BeamPass() = default;
 
 void BeamPass::run() {
-  const RenderSetup& setup = state_->plan.setup();
-  const int rows = (setup.camera.height + kCoarseBeamPixels - 1) / kCoarseBeamPixels;
-  state_->scene.visit_nodes([&](const auto& nodes) {
-    parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
-      for (int x = 0; x < setup.camera.width; x += kCoarseBeamPixels)
-        set_beam_starts(nodes, setup, x, static_cast<int>(row) * kCoarseBeamPixels,
-                        state_->starts.data());
-    });
-  });
+  state_->scene.visit_nodes(
+      [&](const auto& nodes) { find_beam_starts(nodes, state_->plan.setup(), state_->starts); });
 }
 
 const float* BeamPass::starts() const { return state_->starts.data(); }

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "voxdag/core/morton.hpp"
+#include "voxdag/cpu/beam_starts.hpp"
 #include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
-#include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/render_tile.hpp"
 #include "voxdag/render/source_view_samples.hpp"
 
@@ -50,15 +50,6 @@ void for_each_block(const Camera& camera, const Body& body) {
   });
 }
 
-template <class Nodes>
-std::vector<float> cast_beams(const Nodes& nodes, const RenderSetup& setup) {
-  const Camera& camera = setup.camera;
-  std::vector<float> starts(static_cast<std::size_t>(beams_across(camera.width)) *
-                            static_cast<std::size_t>(beams_across(camera.height)));
-  for_each_block(camera, [&](int x, int y) { set_beam_starts(nodes, setup, x, y, starts.data()); });
-  return starts;
-}
-
 /// Renders the picture of a setup, of which it changes the start of primary rays only.
 template <class Nodes>
 class TileRenderer {
@@ -69,7 +60,7 @@ class TileRenderer {
   TileRenderer(const Nodes& nodes, const RenderSetup& setup, bool beams, const ViewSource* source)
       : nodes_(nodes), caster_(fast_caster(nodes_)), setup_(setup), source_(source) {
     if (!beams || source != nullptr) return;
-    beam_starts_ = cast_beams(nodes_, setup_);
+    find_beam_starts(nodes_, setup_, beam_starts_);
     setup_.beam_starts = beam_starts_.data();
   }
   TileRenderer(const TileRenderer&) = delete;
@@ -98,9 +89,16 @@ class TileRenderer {
     return rays;
   }
 
-  /// Fills the steps of primary rays.
+  /// Fills the steps of primary rays, each cast by itself, as are their beams.
   void count() const {
-    for_each_block(setup_.camera, [&](int x, int y) { count_steps(nodes_, setup_, x, y); });
+    const Camera& camera = setup_.camera;
+    RenderSetup setup = setup_;
+    std::vector<float> starts(beam_starts_.size());
+    if (!starts.empty()) setup.beam_starts = starts.data();
+    for_each_block(camera, [&](int x, int y) {
+      if (!starts.empty()) set_beam_starts(nodes_, setup_, x, y, starts.data());
+      count_steps(nodes_, setup, x, y);
+    });
   }
 
  private:

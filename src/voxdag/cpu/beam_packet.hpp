@@ -1,0 +1,36 @@
+#pragma once
+/// Beams that are cast together.
+#include <cstddef>
+
+#include "voxdag/trace/beam.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+
+/// Up to 64 beams from one point (trace/beam.hpp), and where they first meet anything. Arrays are
+/// by axis, then by beam.
+struct BeamPacket {
+  static constexpr std::size_t kMaxBeams = 64;
+
+  Vec3d apex{};
+  BeamStop stop;
+  double lowest[3][kMaxBeams], highest[3][kMaxBeams];
+  std::size_t size = 0;
+  /// A t before which no ray of the beam meets anything; +infinity if none does at all. As good as
+  /// that of first_met() but for rounding to float, downwards.
+  alignas(64) float first[kMaxBeams];
+
+  void add(const Vec3d& low, const Vec3d& high) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lowest[axis][size] = low[axis];
+      highest[axis][size] = high[axis];
+    }
+    ++size;
+  }
+};
+
+/// Sets packet.first of its beams, of which there must be one at least.
+void cast_beam_packet(const SvdagNodes& nodes, BeamPacket& packet);
+void cast_beam_packet(const EsvoNodes& nodes, BeamPacket& packet);
+
+}  // namespace voxdag

@@ -1,0 +1,54 @@
+#pragma once
+/// Where the primary rays of a picture may start.
+#include <vector>
+
+#include "voxdag/cpu/beam_packet.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/render/primary_beams.hpp"
+
+namespace voxdag {
+
+/// Finds RenderSetup::beam_starts of a whole picture on all threads, for any layout that
+/// cast_beam_packet() takes: see render/primary_beams.hpp. Beams here are of 8×8 pixels, for rays
+/// in packets gain less by finer ones than these take, and 8×8 of them are cast together.
+template <class Nodes>
+void find_beam_starts(const Nodes& nodes, const RenderSetup& setup, std::vector<float>& starts) {
+  constexpr int kSide = 8, kPixels = kCoarseBeamPixels, kParts = kPixels / kBeamPixels;
+  constexpr float kDown = 1 - 0x1p-20f;  // what a ray's own t is rounded by
+  const Camera& camera = setup.camera;
+  const int across = beams_across(camera.width) / kParts,
+            down = beams_across(camera.height) / kParts;
+  starts.resize(static_cast<std::size_t>(across * kParts) *
+                static_cast<std::size_t>(down * kParts));
+  const double to_unit = 1.0 / setup.side();
+  const Vec3d origin = camera.direction(0, 0) * to_unit;
+  const Vec3d right = (camera.direction(kPixels, 0) - camera.direction(0, 0)) * to_unit;
+  const Vec3d below = (camera.direction(0, kPixels) - camera.direction(0, 0)) * to_unit;
+  const Vec3d zero{}, lowest = min(right, zero) + min(below, zero),
+                      highest = max(right, zero) + max(below, zero);
+  const int columns = (across + kSide - 1) / kSide, rows = (down + kSide - 1) / kSide;
+  parallel_for(static_cast<std::size_t>(columns * rows), [&](std::size_t at) {
+    const int first_x = static_cast<int>(at) % columns * kSide,
+              first_y = static_cast<int>(at) / columns * kSide;
+    const int width = across - first_x < kSide ? across - first_x : kSide,
+              height = down - first_y < kSide ? down - first_y : kSide;
+    BeamPacket packet;
+    packet.apex = (camera.eye - setup.grid.origin) * to_unit;
+    packet.stop = pixel_beam_stop(setup, kPixels);
+    for (int i = 0; i < width * height; ++i) {
+      const Vec3d corner = origin + right * static_cast<double>(first_x + i % width) +
+                           below * static_cast<double>(first_y + i / width);
+      packet.add(corner + lowest, corner + highest);
+    }
+    cast_beam_packet(nodes, packet);
+    for (int i = 0; i < width * height; ++i)
+      for (int part = 0; part < kParts * kParts; ++part) {
+        const int x = (first_x + i % width) * kParts + part % kParts,
+                  y = (first_y + i / width) * kParts + part / kParts;
+        starts[static_cast<std::size_t>(y) * static_cast<std::size_t>(across * kParts) +
+               static_cast<std::size_t>(x)] = packet.first[i] * kDown;
+      }
+  });
+}
+
+}  // namespace voxdag
