@@ -111,11 +111,13 @@ void render(RenderArguments& arguments, Session& session) {
   arguments.options.height = arguments.size.height;
   arguments.options.filter = arguments.filter.value_or(scene.esvo() != nullptr);
   const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
+  std::optional<CpuScene> cpu_scene;
+  if (!device_dag) cpu_scene.emplace(scene);
   const std::unique_ptr<ViewSource> source =
       open_view_source(arguments.mesh, arguments.options.albedo, scene, file.grid(), session);
   const auto render_frame = [&](const RenderOptions& options, Progress* progress) {
     if (device_dag) return render_image(*device_dag, file.grid(), options, progress, source.get());
-    return render_image(scene, file.grid(), options, progress, source.get());
+    return render_image(*cpu_scene, file.grid(), options, progress, source.get());
   };
   if (!arguments.path.file.empty()) {
     const auto write_frame = [&](const RenderedImage& image, int frame) {

@@ -47,6 +47,8 @@ void trace(const TraceArguments& arguments, Session& session) {
   std::optional<CudaTracer> cuda;
   if (device_dag) cuda.emplace(*device_dag, file.grid());
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
+  std::optional<CpuScene> cpu_scene;
+  if (!cuda) cpu_scene.emplace(scene, reader.rows());
   NpyWriter writer(arguments.output, kHitType, {}, kHitBytes, reader.rows());
 
   const std::size_t batch =
@@ -62,7 +64,7 @@ void trace(const TraceArguments& arguments, Session& session) {
     if (cuda)
       cuda->trace(batch_rays, batch_hits);
     else
-      trace_batch(scene, file.grid(), batch_rays, batch_hits);
+      trace_batch(*cpu_scene, file.grid(), batch_rays, batch_hits);
     for (std::size_t i = 0; i < count; ++i) pack_hit(hits[i], &rows[i * kHitBytes]);
     hit_count += static_cast<std::uint64_t>(
         std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),

@@ -3,6 +3,7 @@
 #include "caster_runner.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/fast_caster.hpp"
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
@@ -42,15 +43,15 @@ WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::
   return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
 }
 
-/// The layout of files, by packets of rays.
-class PaperLayout : public TraceLayout {
+/// The layout of files, ray by ray.
+class PaperScalarLayout : public TraceLayout {
  public:
-  explicit PaperLayout(const SvdagView& dag) : dag_(dag) {}
+  explicit PaperScalarLayout(const SvdagView& dag) : dag_(dag) {}
 
   std::uint64_t bytes() const override { return dag_.bytes(); }
   std::optional<DeviceLayout> device_layout() const override { return DeviceLayout::kPaper; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(PacketCaster(SvdagNodes(dag_)), rays, casts);
+    return runner_of(ScalarCaster<SvdagNodes>(SvdagNodes(dag_)), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;
@@ -62,17 +63,20 @@ class PaperLayout : public TraceLayout {
   SvdagView dag_;
 };
 
-/// The same layout, ray by ray.
-class PaperScalarLayout : public PaperLayout {
+/// The same layout and what packets need beside it, by packets of rays.
+class PaperLayout : public PaperScalarLayout {
  public:
-  explicit PaperScalarLayout(const SvdagView& dag) : PaperLayout(dag), nodes_(dag) {}
+  explicit PaperLayout(const SvdagView& dag) : PaperScalarLayout(dag), caster_(SvdagNodes(dag)) {}
 
+  std::uint64_t bytes() const override {
+    return PaperScalarLayout::bytes() + caster_.dag().bytes();
+  }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(ScalarCaster<SvdagNodes>(nodes_), rays, casts);
+    return runner_of(caster_, rays, casts);
   }
 
  private:
-  SvdagNodes nodes_;
+  PacketCaster caster_;
 };
 
 /// Counts the bytes that a walk through the wide layout reads.

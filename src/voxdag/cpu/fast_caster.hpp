@@ -1,12 +1,9 @@
 #pragma once
-/// The fastest caster of the CPU for each layout.
+/// The fastest caster of the CPU for each layout but DAGs, for which CpuScene keeps one.
 #include "voxdag/cpu/esvo_packet_caster.hpp"
-#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/streamed_nodes.hpp"
 
 namespace voxdag {
-
-inline PacketCaster fast_caster(const SvdagNodes& nodes) { return PacketCaster(nodes); }
 
 template <EsvoLayout Nodes>
 EsvoPacketCaster<Nodes> fast_caster(const Nodes& nodes) {

@@ -15,25 +15,12 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Fills the last vector with copies of the last ray.
-inline void PacketWalk::pad() {
-  for (std::size_t i = packet_.size; i % kWidth != 0; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      packet_.origin[axis][i] = packet_.origin[axis][packet_.size - 1];
-      packet_.inverse[axis][i] = packet_.inverse[axis][packet_.size - 1];
-    }
-    packet_.t_min[i] = packet_.t_min[packet_.size - 1];
-    packet_.t_end[i] = packet_.t_end[packet_.size - 1];
-    packet_.stop_start[i] = packet_.stop_per_t[i] = 0;
-  }
-}
-
 /// Finds the ranges that the rays are in.
 inline void PacketWalk::bound() {
   const DF d;
   const auto range = [&](const float* values, float out[2]) HWY_ATTR {
     auto low = hn::Load(d, values), high = low;
-    for (std::size_t i = kWidth; i < packet_.size; i += kWidth) {
+    for (std::size_t i = kWidth; i < rays_.size; i += kWidth) {
       low = hn::Min(low, hn::Load(d, values + i));
       high = hn::Max(high, hn::Load(d, values + i));
     }
@@ -42,28 +29,28 @@ inline void PacketWalk::bound() {
   };
   width_at_start_ = width_per_t_ = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    range(packet_.origin[axis], origin_range_[axis]);
-    range(packet_.inverse[axis], inverse_range_[axis]);
+    range(rays_.origin[axis], origin_range_[axis]);
+    range(rays_.inverse[axis], inverse_range_[axis]);
     const float apart = origin_range_[axis][1] - origin_range_[axis][0];
     const float spread = 1 / inverse_range_[axis][0] - 1 / inverse_range_[axis][1];
     width_at_start_ = apart > width_at_start_ ? apart : width_at_start_;
     width_per_t_ = spread > width_per_t_ ? spread : width_per_t_;
   }
-  float least[2], most[2];
-  range(packet_.t_min, least);
-  range(packet_.t_end, most);
+  float least[2], longest[2];
+  range(rays_.t_min, least);
+  range(rays_.t_end, longest);
   t_range_[0] = least[0];
-  t_range_[1] = most[1];
+  t_range_[1] = longest[1];
   last_t_min_ = least[1];
-  if (!packet_.has_stop) return;
-  range(packet_.stop_start, least);
-  range(packet_.stop_per_t, most);
-  stop_range_[0] = least[1];
-  stop_range_[1] = most[1];
+  stop_level_ = nodes_.levels();
+  if (!rays_.has_stop) return;
+  range(rays_.stop_start, stop_start_);
+  range(rays_.stop_per_t, stop_per_t_);
   // T is at most 1 in the grid.
-  const float limit = (stop_range_[0] + stop_range_[1]) * (1 + 0x1p-10f);
-  for (stop_level_ = packet_.coarsest; stop_level_ < nodes_.levels(); ++stop_level_)
-    if (float_from_bits(static_cast<std::uint32_t>(127 - stop_level_) << 23) <= limit) break;
+  const float most =
+      stop_per_t_[1] > 0 ? (stop_start_[1] + stop_per_t_[1]) * (1 + 0x1p-10f) : stop_start_[1];
+  stop_level_ = rays_.coarsest;
+  while (stop_level_ < nodes_.levels() && side_of(stop_level_) > most) ++stop_level_;
 }
 
 /// Whether the rays are close together for the children of this node: not worth telling apart.
@@ -79,33 +66,6 @@ inline bool PacketWalk::is_narrow(const std::uint32_t corner[3], int level) cons
   return width_at_start_ + width_per_t_ * enter < kNarrow * side;
 }
 
-/// The children of the node of `level` at `corner` that any ray can meet. The bounds of T hold in
-/// float arithmetic too, since rounding is monotone.
-inline std::uint32_t PacketWalk::children_met_by_hull(const std::uint32_t corner[3],
-                                                      int level) const {
-  const hn::CappedTag<float, 8> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  static_assert(hn::MaxLanes(d) == 8);
-  alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
-                                                             {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
-                                                             {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
-  const auto half = hn::Set(du, 1u << (22 - level));
-  auto enter = hn::Set(d, t_range_[0]), exit = hn::Set(d, t_range_[1]);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto low = hn::Or(hn::Set(du, corner[axis]), hn::And(hn::Load(du, kUpper[axis]), half));
-    const auto high = hn::Add(low, half);
-    const auto slow = hn::Set(d, inverse_range_[axis][1]),
-               fast = hn::Set(d, inverse_range_[axis][0]);
-    const auto to_high = hn::Sub(hn::Set(d, origin_range_[axis][0]), hn::BitCast(d, high));
-    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), hn::BitCast(d, low));
-    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
-    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
-  }
-  std::uint8_t bits[8];
-  hn::StoreMaskBits(d, hn::Lt(enter, exit), bits);
-  return bits[0];
-}
-
 /// The lowest cells, of level `finest` at most, that hold the starts of all rays, and starts and
 /// ends. A position p here is in the cell with lower < p <= upper, as the voxel rule has it.
 inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int finest) const {
@@ -118,14 +78,14 @@ inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int 
   for (int axis = 0; axis < 3; ++axis) {
     auto start_or = hn::Zero(du), start_and = hn::Set(du, ~0u);
     auto end_or = start_or, end_and = start_and;
-    for (std::size_t i = 0; i < packet_.size; i += kWidth) {
-      const auto origin = hn::Load(d, packet_.origin[axis] + i),
-                 inverse = hn::Load(d, packet_.inverse[axis] + i);
-      const auto t_min = hn::Load(d, packet_.t_min + i);
+    for (std::size_t i = 0; i < rays_.size; i += kWidth) {
+      const auto origin = hn::Load(d, rays_.origin[axis] + i),
+                 inverse = hn::Load(d, rays_.inverse[axis] + i);
+      const auto t_min = hn::Load(d, rays_.t_min + i);
       const auto is_later = hn::Gt(t_min, zero);
       const auto start = hn::Sub(origin, hn::Div(t_min, inverse));
       const auto start_slack = hn::IfThenElseZero(is_later, slack);
-      const auto end = hn::Sub(origin, hn::Div(hn::Load(d, packet_.t_end + i), inverse));
+      const auto end = hn::Sub(origin, hn::Div(hn::Load(d, rays_.t_end + i), inverse));
       const auto bits = [&](VF p) HWY_ATTR {
         const auto inside = hn::Min(hn::Max(p, least), two);
         return hn::Sub(hn::BitCast(du, inside), hn::Set(du, 1));
@@ -167,9 +127,9 @@ inline int PacketWalk::finest_without_stop() const {
   int level = 0;
   for (; level < nodes_.levels() - 2; ++level) {
     if (level + 1 < stop_level_) continue;
-    const float side = float_from_bits(static_cast<std::uint32_t>(126 - level) << 23);
+    const float side = side_of(level + 1);
     const float leaves = last_t_min_ + side;
-    if (side <= (stop_range_[0] + stop_range_[1] * leaves) * (1 + 0x1p-10f)) break;
+    if (side <= (stop_start_[1] + stop_per_t_[1] * leaves) * (1 + 0x1p-10f)) break;
   }
   return level;
 }

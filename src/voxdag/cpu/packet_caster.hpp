@@ -1,73 +1,80 @@
 #pragma once
 /// The caster of the CPU: sorts a stream of rays into packets of like direction.
-#include "voxdag/cpu/ray_packet.hpp"
+#include <algorithm>
+#include <memory>
+
+#include "voxdag/cpu/dag_packet.hpp"
+#include "voxdag/cpu/ray_window.hpp"
 
 namespace voxdag {
 
-/// A caster (see trace/scalar_caster.hpp) on the paper's layout. Fast where rays that follow one
-/// another are near each other, as those of neighbouring pixels or of one surface point are.
+/// A caster (see trace/scalar_caster.hpp) on the paper's layout and what is made from it. Fast
+/// where rays that come within thousands of one another are near each other, as those of a tile of
+/// a picture are. Copies share what they point to.
 class PacketCaster {
  public:
-  explicit PacketCaster(const SvdagNodes& nodes) : nodes_(nodes) {}
+  /// Takes time and memory in proportion to the DAG: see BoundedDag.
+  explicit PacketCaster(const SvdagNodes& nodes)
+      : dag_(std::make_shared<const BoundedDag>(nodes)) {}
 
-  int levels() const { return nodes_.levels(); }
+  int levels() const { return dag_->nodes().levels(); }
+  const BoundedDag& dag() const { return *dag_; }
 
   template <class MakeRay, class OnResult>
   void closest(int count, const MakeRay& make_ray, const OnResult& on_result) const {
-    GridRay rays[kOctants][RayPacket::kMaxRays];
-    run(
+    run<true>(
         count, make_ray,
-        [&](std::size_t octant, std::size_t at, const GridRay& ray) { rays[octant][at] = ray; },
-        [&](int i, const GridRay& ray) { on_result(i, ray, CellHit{}, false); },
-        [&](std::size_t octant, const RayPacket& packet, const int* ids, std::uint64_t hits) {
-          for (std::size_t at = 0; at < packet.size; ++at) {
-            const bool is_hit = (hits >> at & 1u) != 0;
-            on_result(ids[at], rays[octant][at], is_hit ? packet.hit(at) : CellHit{}, is_hit);
-          }
-        });
+        [&](int i, const GridRay& ray, const DagHits& hits, std::size_t at) {
+          const bool is_hit = hits.is_hit(at);
+          on_result(i, ray, is_hit ? hits[at] : CellHit{}, is_hit);
+        },
+        [&](int i, const GridRay& ray) { on_result(i, ray, CellHit{}, false); });
   }
 
   template <class MakeRay, class OnResult>
   void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
-    run(
-        count, make_ray, [](std::size_t, std::size_t, const GridRay&) {},
-        [&](int i, const GridRay&) { on_result(i, false); },
-        [&](std::size_t, const RayPacket& packet, const int* ids, std::uint64_t hits) {
-          for (std::size_t at = 0; at < packet.size; ++at)
-            on_result(ids[at], (hits >> at & 1u) != 0);
-        });
+    run<false>(
+        count, make_ray,
+        [&](int i, const GridRay&, const DagHits& hits, std::size_t at) {
+          on_result(i, hits.is_hit(at));
+        },
+        [&](int i, const GridRay&) { on_result(i, false); });
   }
 
  private:
-  static constexpr std::size_t kOctants = 8;
-
-  template <class MakeRay, class OnAdd, class OnMiss, class OnCast>
-  void run(int count, const MakeRay& make_ray, const OnAdd& on_add, const OnMiss& on_miss,
-           const OnCast& on_cast) const {
-    RayPacket packets[kOctants];
-    int ids[kOctants][RayPacket::kMaxRays];
-    const auto flush = [&](std::size_t octant) {
-      RayPacket& packet = packets[octant];
-      on_cast(octant, packet, ids[octant], cast_packet(nodes_, packet));
-      packet.clear();
-    };
-    for (int i = 0; i < count; ++i) {
-      const CastRay ray = make_ray(i);
-      if (ray.ray.misses()) {
-        on_miss(i, ray.ray);
-        continue;
+  template <bool kClosest, class MakeRay, class OnCast, class OnMiss>
+  void run(int count, const MakeRay& make_ray, const OnCast& on_cast, const OnMiss& on_miss) const {
+    RayWindow window;
+    DagPacket packet;
+    DagHits hits;
+    for (int first = 0; first < count; first += RayWindow::kMaxRays) {
+      window.fill(std::min(RayWindow::kMaxRays, count - first),
+                  [&](int i) { return make_ray(first + i); });
+      if (window.ordered() < window.size())
+        for (int i = 0; i < window.size(); ++i)
+          if (window[i].ray.misses()) on_miss(first + i, window[i].ray);
+      for (int place = 0; place < window.ordered();) {
+        const int begin = place;
+        const std::uint32_t mirrored = window[window.at(begin)].ray.mirrored;
+        packet.size = 0;
+        do {
+          packet.rays[packet.size++] = &window[window.at(place)];
+          ++place;
+        } while (place < window.ordered() && packet.size < DagPacket::kMaxRays &&
+                 window[window.at(place)].ray.mirrored == mirrored);
+        if constexpr (kClosest)
+          cast_packet(*dag_, packet, hits);
+        else
+          hits.met = cast_packet_any(*dag_, packet);
+        for (std::size_t at = 0; at < packet.size; ++at) {
+          const int i = window.at(begin + static_cast<int>(at));
+          on_cast(first + i, window[i].ray, hits, at);
+        }
       }
-      RayPacket& packet = packets[ray.ray.mirrored];
-      ids[ray.ray.mirrored][packet.size] = i;
-      on_add(ray.ray.mirrored, packet.size, ray.ray);
-      packet.add(ray);
-      if (packet.size == RayPacket::kMaxRays) flush(ray.ray.mirrored);
     }
-    for (std::size_t octant = 0; octant < kOctants; ++octant)
-      if (packets[octant].size > 0) flush(octant);
   }
 
-  SvdagNodes nodes_;
+  std::shared_ptr<const BoundedDag> dag_;
 };
 
 }  // namespace voxdag

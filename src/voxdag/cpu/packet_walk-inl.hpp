@@ -11,9 +11,12 @@
 #include <hwy/highway.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 
-#include "voxdag/cpu/ray_packet.hpp"
+#include "voxdag/cpu/bounded_dag.hpp"
+#include "voxdag/cpu/dag_packet.hpp"
 
 // The lanes are 8 or 16 rays, or the 8 voxels of an octant: smaller vectors are not worth it.
 #undef VOXDAG_PACKET_LANES
@@ -42,11 +45,25 @@ class PacketWalk {
   static constexpr std::uint32_t kOne = 0x3F800000u;  ///< The bits of 1.0f.
 
  public:
-  PacketWalk(const SvdagNodes& nodes, RayPacket& packet) : nodes_(nodes), packet_(packet) {}
+  /// `hits` is null where it is only asked which rays meet anything.
+  PacketWalk(const BoundedDag& dag, DagHits* hits)
+      : nodes_(dag.nodes()), words_(dag.words()), hits_(hits) {}
 
-  Rays cast();
+  Rays cast(const DagPacket& packet);
 
  private:
+  /// The rays, by axis, then by ray; the last vector is filled up with copies of the last ray.
+  struct Lanes {
+    alignas(64) float origin[3][DagPacket::kMaxRays], inverse[3][DagPacket::kMaxRays];
+    alignas(64) float t_min[DagPacket::kMaxRays];
+    /// The next float after t_max: a cell is met if it is entered before that.
+    alignas(64) float t_end[DagPacket::kMaxRays];
+    alignas(64) float stop_start[DagPacket::kMaxRays], stop_per_t[DagPacket::kMaxRays];
+    std::size_t size;
+    std::uint32_t mirrored;
+    int coarsest;  ///< Of the levels of detail.
+    bool has_stop;
+  };
   /// A node to visit.
   struct alignas(32) Visit {
     Rays rays;
@@ -55,14 +72,13 @@ class PacketWalk {
     std::uint32_t corner[3];  ///< Float bits.
     std::uint32_t level;
   };
-  /// What a visit is about where rays may end at cells above the voxels.
-  struct StopVisit {
-    Rays here;   ///< The rays that end at this cell.
-    Rays finer;  ///< Those that may end at a cell in this one, if it is a leaf block.
-  };
-  /// By mirrored child index, the rays that meet the child, and that end there or in it.
-  struct ChildRays {
-    Rays meet[8], stop[8], finer[8];
+  /// In Visit::skipped: the rays end at this cell.
+  static constexpr std::uint32_t kEndsHere = 0x100;
+  /// Of the children of a node, by their mirrored index.
+  struct Children {
+    std::uint32_t met;       ///< Those that any ray can meet.
+    std::uint32_t all_end;   ///< Those at which all rays end that meet them.
+    std::uint32_t some_end;  ///< Those at which any ray can end.
   };
   /// The cells, named by the bits that positions in them share.
   struct CommonCell {
@@ -84,6 +100,27 @@ class PacketWalk {
     if ((mirrored & 4u) != 0) mask = (mask & 0x0Fu) << 4 | mask >> 4;
     return mask;
   }
+  static HWY_INLINE std::uint32_t bits_of_lanes(hn::Mask<hn::CappedTag<float, 8>> mask) {
+    std::uint8_t bits[8];
+    hn::StoreMaskBits(hn::CappedTag<float, 8>(), mask, bits);
+    return bits[0];
+  }
+  /// By `mirrored` and a node's child mask, then by mirrored child index, the number of children
+  /// that are stored before that child.
+  using RankTable = std::array<std::array<std::array<std::uint8_t, 8>, 256>, 8>;
+  static constexpr RankTable ranks() {
+    RankTable table{};
+    for (std::uint32_t m = 0; m < 8; ++m)
+      for (std::uint32_t mask = 0; mask < 256; ++mask)
+        for (std::uint32_t child = 0; child < 8; ++child)
+          table[m][mask][child] =
+              static_cast<std::uint8_t>(std::popcount(mask & ((1u << (child ^ m)) - 1)) & 7);
+    return table;
+  }
+  const std::uint8_t* ranks_of(std::uint32_t mask) const {
+    alignas(64) static constexpr RankTable kRanks = ranks();
+    return kRanks[rays_.mirrored][mask].data();
+  }
   using MaskTable = std::array<std::array<std::uint8_t, 256>, 8>;
   static constexpr MaskTable mirrored_masks() {
     MaskTable table{};
@@ -91,6 +128,20 @@ class PacketWalk {
       for (std::uint32_t mask = 0; mask < 256; ++mask)
         table[m][mask] = static_cast<std::uint8_t>(mirrored_mask(mask, m));
     return table;
+  }
+  std::uint32_t mirrored(std::uint32_t mask) const {
+    static constexpr MaskTable kMasks = mirrored_masks();
+    return kMasks[rays_.mirrored][mask];
+  }
+  static float side_of(int level) {
+    return float_from_bits(static_cast<std::uint32_t>(127 - level) << 23);
+  }
+  /// Sets all voxels of the octants that have any.
+  static std::uint64_t filled_octants(std::uint64_t block) {
+    block |= block >> 4 & 0x0F0F0F0F0F0F0F0Fu;
+    block |= block >> 2 & 0x3333333333333333u;
+    block |= block >> 1 & 0x5555555555555555u;
+    return (block & 0x0101010101010101u) * 0xFF;
   }
   /// The same for both levels of a leaf block.
   static std::uint64_t mirrored_block(std::uint64_t m, std::uint32_t mirrored) {
@@ -110,15 +161,13 @@ class PacketWalk {
     return m;
   }
 
-  void pad();
+  void load(const DagPacket& packet);
   void bound();
-  std::uint32_t children_met_by_hull(const std::uint32_t corner[3], int level) const;
   bool is_narrow(const std::uint32_t corner[3], int level) const;
   void common_cells(CommonCell& starts, CommonCell& reach, int finest) const;
   int finest_without_stop() const;
   std::size_t begin(Rays all, Visit* stack) const;
-  template <bool kWithStop>
-  Rays walk(Rays all);
+  void walk();
   static HWY_INLINE void set_child(Visit& visit, const Visit& parent, std::uint32_t child,
                                    std::uint32_t half) {
     // By the child's bits: whether half is added to the corner.
@@ -131,23 +180,50 @@ class PacketWalk {
     hn::StoreU(hn::Or(corner, hn::And(hn::Load(d, kBits[child]), hn::Set(d, half))), d,
                visit.corner);
   }
-  template <bool kWithStop>
-  void intersect(const std::uint32_t corner[3], int level, Rays rays, ChildRays& children) const;
-  Rays cast_in_block(std::uint64_t block, const std::uint32_t corner[3], int levels, Rays rays);
-  void record(Rays rays, const std::uint32_t corner[3], int level) {
+  /// Lanes are the children of a node.
+  using DChild = hn::CappedTag<std::uint32_t, 8>;
+  using DPlane = hn::CappedTag<float, 8>;
+  static_assert(hn::MaxLanes(DChild()) == 8);
+  HWY_INLINE void set_planes(const std::uint32_t corner[3], int level, hn::Vec<DChild> boxes);
+  HWY_INLINE Children bound_children(int child_level) const;
+  HWY_INLINE Children children_met_by(int i, int child_level) const;
+  HWY_INLINE Rays rays_meeting(std::uint32_t child, Rays rays) const;
+  Rays rays_ending(std::uint32_t child, int child_level, Rays rays) const;
+  void visit_children(const Visit& visit, Visit* stack, std::size_t& top);
+  void end_at_children(const Visit& visit, std::uint32_t met);
+  void cast_in_block(const Visit& visit);
+  /// Whether ray i ends at the cell of this level with the lower corner `low`, which it meets.
+  bool ends_at(int i, const float low[3], int level) const {
+    if (level < rays_.coarsest) return false;
+    float exit = HUGE_VALF;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float t = (rays_.origin[axis][i] - low[axis]) * rays_.inverse[axis][i];
+      exit = t < exit ? t : exit;
+    }
+    return side_of(level) <= rays_.stop_start[i] + rays_.stop_per_t[i] * exit;
+  }
+  void end(Rays rays, const std::uint32_t corner[3], int level) {
+    searching_ &= ~rays;
+    if (hits_ == nullptr) return;
     for (; rays != 0; rays &= rays - 1) {
       const int i = lowest_bit64(rays);
-      for (int axis = 0; axis < 3; ++axis) packet_.cell[i][axis] = corner[axis];
-      packet_.level[i] = level;
+      for (int axis = 0; axis < 3; ++axis) hits_->corner[axis][i] = corner[axis];
+      hits_->level[i] = level;
     }
   }
+  void set_hit_t();
 
   const SvdagNodes& nodes_;
-  RayPacket& packet_;
+  const std::uint32_t* words_;
+  DagHits* hits_;
+  Lanes rays_;
+  Rays searching_ = 0;              ///< Those that have not met anything.
+  alignas(64) float planes_[6][8];  ///< Of the boxes at hand: the lower ones by axis, the upper.
   /// Least and greatest of all rays, by axis, then of t_min and t_end.
   float origin_range_[3][2], inverse_range_[3][2], t_range_[2];
-  int stop_level_;  ///< Rays that may end above the voxels do so at this level or finer ones.
-  float last_t_min_, stop_range_[2];    ///< The greatest; of stop_start and stop_per_t.
+  float stop_start_[2], stop_per_t_[2];
+  float last_t_min_;
+  int stop_level_;  ///< No ray ends above this level; L where they all end at voxels.
   float width_at_start_, width_per_t_;  ///< About how far apart the rays are at T.
 };
 

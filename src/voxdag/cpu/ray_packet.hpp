@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "voxdag/trace/scalar_caster.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 
@@ -45,22 +44,6 @@ struct RayPacket {
     coarsest = cast_ray.stop.coarsest_level;
     has_stop |= cast_ray.stop.at_start > 0 || cast_ray.stop.per_t > 0;
   }
-
-  /// What ray i, which met a cell, met first.
-  CellHit hit(std::size_t i) const {
-    CellHit hit{t_min[i], cell[i][0], cell[i][1], cell[i][2], level[i]};
-    for (int axis = 0; axis < 3; ++axis) {
-      const float upper = float_from_bits(cell[i][axis] + (1u << (23 - hit.level)));
-      const float enter = (origin[axis][i] - upper) * inverse[axis][i];
-      hit.t = enter > hit.t ? enter : hit.t;
-    }
-    return hit;
-  }
 };
-
-/// Casts the packet's rays: sets cell and level of those that meet a cell, and returns them, bit i
-/// for ray i. What each meets is what cast() in trace/cast.hpp finds for it, to the bit, on any
-/// instruction set.
-std::uint64_t cast_packet(const SvdagNodes& nodes, RayPacket& packet);
 
 }  // namespace voxdag

@@ -21,12 +21,12 @@ RenderedImage finish(RenderPlan& plan, const RenderOptions& options, const ViewS
 
 }  // namespace
 
-RenderedImage render_image(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
+RenderedImage render_image(const CpuScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress, const ViewSource* source) {
-  RenderPlan plan(scene, grid, options);
+  RenderPlan plan(scene.voxels(), grid, options);
   const std::vector<ViewTile> tiles = make_tiles(options.width, options.height, options.tile_size);
-  plan.image().rays = scene.visit_nodes([&](const auto& nodes) {
-    const TileRenderer renderer(nodes, plan.setup(), options.beams, source);
+  plan.image().rays = scene.visit([&](const auto& nodes, const auto& caster) {
+    const TileRenderer renderer(nodes, caster, plan.setup(), options.beams, source);
     const std::uint64_t rays = renderer.render(tiles, progress);
     if (options.with_steps) renderer.count();
     return rays;
@@ -46,8 +46,8 @@ RenderedImage render_streamed(BlockSource& source, const Grid& grid, const Rende
     pass_options.view = {plan.image().view.eye, plan.image().view.target, plan.image().view.up,
                          plan.image().view.vertical_fov_degrees};
     const Vec3d eye = plan.image().view.eye;
-    const TileRenderer renderer(StreamedNodes(source.view(), source.listener()), plan.setup(),
-                                options.beams, nullptr);
+    const StreamedNodes nodes(source.view(), source.listener());
+    const TileRenderer renderer(nodes, fast_caster(nodes), plan.setup(), options.beams, nullptr);
     rays += renderer.render(tiles, progress);
     const BlockSource::Loaded loaded = source.load_missing(eye, false);
     if (loaded.missed > 0 && loaded.loaded > 0) {

@@ -1,9 +1,9 @@
 #pragma once
 /// A picture of voxels, on the CPU.
+#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/view_source.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -11,7 +11,7 @@ namespace voxdag {
 /// their number. The surface points are those of `source`, or the voxels where it is null. Depth
 /// and normal are those of a pixel's first sample. The scene must be valid and have the grid's
 /// levels. Throws Error for options out of range, Cancelled.
-RenderedImage render_image(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
+RenderedImage render_image(const CpuScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress = nullptr, const ViewSource* source = nullptr);
 
 }  // namespace voxdag

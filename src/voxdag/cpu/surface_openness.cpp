@@ -1,13 +1,12 @@
 #include "voxdag/cpu/surface_openness.hpp"
 
-#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/render/ambient_occlusion.hpp"
 
 namespace voxdag {
 
 SurfaceOpenness::SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int rays,
                                  double distance)
-    : voxels_(voxels),
+    : scene_(voxels),
       grid_(grid),
       rays_(rays),
       distance_(static_cast<float>(distance /
@@ -15,12 +14,14 @@ SurfaceOpenness::SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int
       samples_(1, rays) {}
 
 float SurfaceOpenness::operator()(Vec3d point, Vec3f normal, Vec3f face) const {
-  return voxels_.visit_nodes(
-      [&](const auto& nodes) { return open_part(nodes, point, normal, face); });
+  return scene_.visit([&](const auto& nodes, const auto& caster) {
+    return open_part(nodes, caster, point, normal, face);
+  });
 }
 
-template <class Nodes>
-float SurfaceOpenness::open_part(const Nodes& nodes, Vec3d point, Vec3f normal, Vec3f face) const {
+template <class Nodes, class Caster>
+float SurfaceOpenness::open_part(const Nodes& nodes, const Caster& caster, Vec3d point,
+                                 Vec3f normal, Vec3f face) const {
   constexpr float kSlack = 0.25f;  // voxels, as where the renderer's rays start
   const double lift = static_cast<double>(cube_height(face) + kSlack) * grid_.voxel_size;
   const Vec3d lifted = point + static_cast<Vec3d>(face) * lift;
@@ -42,7 +43,7 @@ float SurfaceOpenness::open_part(const Nodes& nodes, Vec3d point, Vec3f normal, 
   }
   const SampleTables tables = samples_.view();
   int open = 0;
-  fast_caster(nodes).any(
+  caster.any(
       rays_, [&](int i) { return occlusion_ray(tables, distance_, 0, start, {}, i); },
       [&](int, bool is_hit) { open += is_hit ? 0 : 1; });
   return static_cast<float>(open) / static_cast<float>(rays_);

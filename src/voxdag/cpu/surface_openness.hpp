@@ -1,8 +1,8 @@
 #pragma once
 /// Ambient occlusion of points of a surface, for baking.
 #include "voxdag/core/grid.hpp"
+#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/render/sample_tables.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -20,10 +20,11 @@ class SurfaceOpenness {
   float operator()(Vec3d point, Vec3f normal, Vec3f face) const;
 
  private:
-  template <class Nodes>
-  float open_part(const Nodes& nodes, Vec3d point, Vec3f normal, Vec3f face) const;
+  template <class Nodes, class Caster>
+  float open_part(const Nodes& nodes, const Caster& caster, Vec3d point, Vec3f normal,
+                  Vec3f face) const;
 
-  VoxelScene voxels_;
+  CpuScene scene_;
   Grid grid_;
   int rays_;
   float distance_;  // in units of the grid's side

@@ -8,7 +8,6 @@
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/beam_starts.hpp"
-#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/render/count_steps.hpp"
@@ -51,14 +50,15 @@ void for_each_block(const Camera& camera, const Body& body) {
 }
 
 /// Renders the picture of a setup, of which it changes the start of primary rays only.
-template <class Nodes>
+template <class Nodes, class Caster>
 class TileRenderer {
  public:
   static constexpr int kMaxTileSize = 32;
 
   /// `source` is null where the surface points are those of the voxels.
-  TileRenderer(const Nodes& nodes, const RenderSetup& setup, bool beams, const ViewSource* source)
-      : nodes_(nodes), caster_(fast_caster(nodes_)), setup_(setup), source_(source) {
+  TileRenderer(const Nodes& nodes, const Caster& caster, const RenderSetup& setup, bool beams,
+               const ViewSource* source)
+      : nodes_(nodes), caster_(caster), setup_(setup), source_(source) {
     if (!beams || source != nullptr) return;
     find_beam_starts(nodes_, setup_, beam_starts_);
     setup_.beam_starts = beam_starts_.data();
@@ -117,7 +117,7 @@ class TileRenderer {
   }
 
   Nodes nodes_;
-  decltype(fast_caster(std::declval<const Nodes&>())) caster_;
+  Caster caster_;
   RenderSetup setup_;
   const ViewSource* source_;
   std::vector<float> beam_starts_;

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cassert>
 
-#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
@@ -29,13 +28,12 @@ void trace_block(const Caster& caster, const Grid& grid, std::span<const Ray> ra
 
 }  // namespace
 
-void trace_batch(const VoxelScene& scene, const Grid& grid, std::span<const Ray> rays,
+void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress) {
-  assert(rays.size() == hits.size() && grid.levels == scene.levels());
+  assert(rays.size() == hits.size() && grid.levels == scene.voxels().levels());
   const std::size_t blocks = (rays.size() + kBlock - 1) / kBlock;
   std::atomic<std::size_t> done{0};
-  scene.visit_nodes([&](const auto& nodes) {
-    const auto caster = fast_caster(nodes);
+  scene.visit([&](const auto&, const auto& caster) {
     parallel_for(blocks, [&](std::size_t block) {
       if (progress != nullptr && progress->cancelled()) return;
       const std::size_t begin = block * kBlock, size = std::min(kBlock, rays.size() - begin);

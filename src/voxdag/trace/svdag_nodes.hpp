@@ -24,7 +24,11 @@ class SvdagNodes {
       : nodes_(dag.nodes),
         leaf_blocks_(dag.leaf_blocks),
         levels_(dag.levels),
-        is_empty_(dag.is_empty()) {}
+        is_empty_(dag.is_empty()),
+        view_(dag) {}
+
+  /// What it was made from.
+  VOXDAG_HD const SvdagView& view() const { return view_; }
 
   VOXDAG_HD bool is_empty() const { return is_empty_; }
   VOXDAG_HD int levels() const { return levels_; }
@@ -64,6 +68,7 @@ class SvdagNodes {
   const std::uint64_t* leaf_blocks_;
   int levels_;
   bool is_empty_;
+  SvdagView view_;
 };
 
 }  // namespace voxdag

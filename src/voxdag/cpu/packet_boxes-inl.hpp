@@ -1,0 +1,209 @@
+// The rays of a packet against the boxes of a node's children.
+#if defined(VOXDAG_PACKET_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_PACKET_BOXES_INL
+#undef VOXDAG_PACKET_BOXES_INL
+#else
+#define VOXDAG_PACKET_BOXES_INL
+#endif
+
+#include "voxdag/cpu/packet_walk-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+#if VOXDAG_PACKET_LANES
+
+/// Sets the planes of the boxes of the children of the node of `level` at `corner`, one box a lane,
+/// rounded outwards to the cells that rays may end at.
+HWY_INLINE void PacketWalk::set_planes(const std::uint32_t corner[3], int level,
+                                       hn::Vec<DChild> boxes) {
+  const DChild d;
+  const DPlane df;
+  alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
+                                                             {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
+                                                             {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
+  int below = CellBox::kBits - (stop_level_ - (level + 1));
+  below = below < 0 ? 0 : below > CellBox::kBits ? CellBox::kBits : below;
+  const std::uint32_t rounded = (1u << below) - 1;
+  const auto kept = hn::Set(d, ~rounded & (CellBox::kParts - 1)), filled = hn::Set(d, rounded);
+  const auto side = hn::Set(d, 1u << (22 - level));
+  const int shift = 22 - CellBox::kBits - level;  // a part's side
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    // Mirrored, the last part is the first.
+    const bool is_mirrored = (rays_.mirrored >> axis & 1u) != 0;
+    const auto flip = hn::Set(d, is_mirrored ? CellBox::kParts - 1 : 0u);
+    const auto parts_at = [&](std::uint32_t field) HWY_ATTR {
+      const auto parts = hn::ShiftRightSame(boxes, static_cast<int>(CellBox::kBits * field));
+      return hn::And(hn::Xor(parts, flip), kept);
+    };
+    const auto first = parts_at(is_mirrored ? axis + 3 : axis);
+    const auto last = hn::Or(parts_at(is_mirrored ? axis : axis + 3), filled);
+    const auto at = hn::Or(hn::Set(d, corner[axis]), hn::And(hn::Load(d, kUpper[axis]), side));
+    const auto low = hn::Add(at, hn::ShiftLeftSame(first, shift));
+    const auto high = hn::Add(at, hn::ShiftLeftSame(hn::Add(last, hn::Set(d, 1)), shift));
+    hn::Store(hn::BitCast(df, low), df, planes_[axis]);
+    hn::Store(hn::BitCast(df, high), df, planes_[axis + 3]);
+  }
+}
+
+/// What the ranges that the rays are in say of the boxes. The bounds of T hold in float arithmetic
+/// too, since rounding is monotone.
+HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) const {
+  const DPlane d;
+  auto enter = hn::Set(d, t_range_[0]), exit = hn::Set(d, HUGE_VALF);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto slow = hn::Set(d, inverse_range_[axis][1]),
+               fast = hn::Set(d, inverse_range_[axis][0]);
+    const auto to_high =
+        hn::Sub(hn::Set(d, origin_range_[axis][0]), hn::Load(d, planes_[axis + 3]));
+    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), hn::Load(d, planes_[axis]));
+    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
+    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
+  }
+  Children children;
+  children.met = bits_of_lanes(hn::Lt(enter, hn::Min(exit, hn::Set(d, t_range_[1]))));
+  children.all_end = children.some_end = 0;
+  if (child_level < stop_level_ || child_level >= nodes_.levels()) return children;
+  // The boxes are the cells here.
+  const auto side = hn::Set(d, side_of(child_level));
+  const auto limit = [&](int of, hn::Vec<DPlane> t) HWY_ATTR {
+    return hn::Add(hn::Set(d, stop_start_[of]), hn::Mul(hn::Set(d, stop_per_t_[of]), t));
+  };
+  children.all_end = bits_of_lanes(hn::Le(side, limit(0, enter)));
+  children.some_end = bits_of_lanes(hn::Le(side, limit(1, exit)));
+  return children;
+}
+
+/// Which boxes ray i meets, and at which cells it ends that it meets.
+HWY_INLINE PacketWalk::Children PacketWalk::children_met_by(int i, int child_level) const {
+  const DPlane d;
+  auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, HUGE_VALF);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto origin = hn::Set(d, rays_.origin[axis][i]),
+               inverse = hn::Set(d, rays_.inverse[axis][i]);
+    enter = hn::Max(enter, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis + 3])), inverse));
+    exit = hn::Min(exit, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis])), inverse));
+  }
+  Children children;
+  children.met = bits_of_lanes(hn::Lt(enter, hn::Min(exit, hn::Set(d, rays_.t_end[i]))));
+  children.all_end = children.some_end = 0;
+  if (child_level < stop_level_ || child_level >= nodes_.levels()) return children;
+  const auto limit =
+      hn::Add(hn::Set(d, rays_.stop_start[i]), hn::Mul(hn::Set(d, rays_.stop_per_t[i]), exit));
+  children.all_end = children.some_end =
+      bits_of_lanes(hn::Le(hn::Set(d, side_of(child_level)), limit)) & children.met;
+  return children;
+}
+
+/// Which of `rays` meet the box of child `child`.
+HWY_INLINE PacketWalk::Rays PacketWalk::rays_meeting(std::uint32_t child, Rays rays) const {
+  const DF d;
+  const auto x0 = hn::Set(d, planes_[0][child]), x1 = hn::Set(d, planes_[3][child]);
+  const auto y0 = hn::Set(d, planes_[1][child]), y1 = hn::Set(d, planes_[4][child]);
+  const auto z0 = hn::Set(d, planes_[2][child]), z1 = hn::Set(d, planes_[5][child]);
+  Rays met = 0;
+  for (Rays rest = rays; rest != 0;) {
+    const std::size_t first = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
+    rest &= ~(kVectorRays << first);
+    const auto t = [&](int axis, VF position) HWY_ATTR {
+      return hn::Mul(hn::Sub(hn::Load(d, rays_.origin[axis] + first), position),
+                     hn::Load(d, rays_.inverse[axis] + first));
+    };
+    const auto enter =
+        hn::Max(hn::Max(t(0, x1), t(1, y1)), hn::Max(t(2, z1), hn::Load(d, rays_.t_min + first)));
+    const auto exit =
+        hn::Min(hn::Min(t(0, x0), t(1, y0)), hn::Min(t(2, z0), hn::Load(d, rays_.t_end + first)));
+    met |= bits_of(hn::Lt(enter, exit)) << first;
+  }
+  return met & rays;
+}
+
+/// Which of `rays`, that all meet the cell of child `child` of level `child_level`, end there.
+inline PacketWalk::Rays PacketWalk::rays_ending(std::uint32_t child, int child_level,
+                                                Rays rays) const {
+  Rays ending = 0;
+  for (Rays rest = rays; rest != 0; rest &= rest - 1) {
+    const int i = lowest_bit64(rest);
+    const float low[3] = {planes_[0][child], planes_[1][child], planes_[2][child]};
+    if (ends_at(i, low, child_level)) ending |= Rays{1} << i;
+  }
+  return ending;
+}
+
+/// Puts the children that rays meet on the stack, the nearest on top; those at which rays end with
+/// these rays alone.
+inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::size_t& top) {
+  const auto level = static_cast<int>(visit.level);
+  const std::uint32_t side = 1u << (22 - level);
+  const std::uint32_t* node = words_ + 2 * std::size_t{visit.node};
+  const std::uint32_t present = node[0];
+  const std::uint32_t* pointers = node + 2;
+  const DChild d;
+  const std::uint8_t* rank_of = ranks_of(present);
+  const auto ranks = hn::PromoteTo(d, hn::Load(hn::Rebind<std::uint8_t, DChild>(), rank_of));
+  const auto boxes = hn::TableLookupLanes(hn::LoadU(d, pointers + popcount8(present)),
+                                          hn::IndicesFromVec(d, ranks));
+  set_planes(visit.corner, level, boxes);
+  const std::uint32_t not_skipped = mirrored(present) & ~visit.skipped;
+  const bool is_single = (visit.rays & (visit.rays - 1)) == 0;
+  const Children children =
+      is_single ? children_met_by(lowest_bit64(visit.rays), level + 1) : bound_children(level + 1);
+  const std::uint32_t met = children.met & not_skipped;
+  if (met == 0) return;
+  if ((met & ~children.all_end) == 0) {
+    end_at_children(visit, met);
+    return;
+  }
+  const bool are_as_one =
+      is_single || ((visit.rays >> (2 * kWidth - 1) >> 1) != 0 && is_narrow(visit.corner, level));
+  for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
+    const auto child = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    const bool may_end = (children.some_end >> child & 1u) != 0;
+    Visit& next = stack[top];
+    next.rays = are_as_one && !may_end ? visit.rays : rays_meeting(child, visit.rays);
+    next.skipped = 0;
+    next.node = pointers[rank_of[child]];
+    hwy::Prefetch(level == nodes_.levels() - 3
+                      ? static_cast<const std::uint32_t*>(nodes_.address(next.node, level + 1))
+                      : words_ + 2 * std::size_t{next.node});
+    set_child(next, visit, child, side);
+    if (!may_end) {
+      top += next.rays != 0 ? 1 : 0;
+      continue;
+    }
+    const Rays ending = rays_ending(child, level + 1, next.rays);
+    next.rays ^= ending;
+    top += next.rays != 0 ? 1 : 0;
+    if (ending == 0) continue;
+    Visit& end = stack[top++];
+    end.rays = ending;
+    end.node = 0;
+    end.skipped = kEndsHere;
+    set_child(end, visit, child, side);
+  }
+}
+
+/// Ends rays at the children `met`, at which all rays end that meet them.
+inline void PacketWalk::end_at_children(const Visit& visit, std::uint32_t met) {
+  const std::uint32_t side = 1u << (22 - visit.level);
+  Rays rays = visit.rays;
+  while (met != 0 && rays != 0) {
+    const auto child = static_cast<std::uint32_t>(highest_bit(met));
+    met ^= 1u << child;
+    const Rays hits = rays_meeting(child, rays);
+    if (hits == 0) continue;
+    Visit cell;
+    set_child(cell, visit, child, side);
+    end(hits, cell.corner, static_cast<int>(cell.level));
+    rays ^= hits;
+  }
+}
+
+#endif  // VOXDAG_PACKET_LANES
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#endif
