@@ -33,11 +33,6 @@ class FileSink : public EsvoSink {
   std::uint64_t memory_limit_;
 };
 
-void print_warnings(const std::vector<std::string>& warnings, Session& session) {
-  session.bar.clear();
-  for (const std::string& warning : warnings) fmt::print(stderr, "voxdag: warning: {}\n", warning);
-}
-
 std::map<std::string, std::string> settings_of(const EsvoArguments& arguments,
                                                const EsvoBuild& build) {
   const EsvoSettings& settings = arguments.options.settings;

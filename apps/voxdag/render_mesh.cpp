@@ -2,6 +2,7 @@
 
 #include "voxdag/deferred/mesh_in_grid.hpp"
 #include "voxdag/deferred/mesh_view_source.hpp"
+#include "voxdag/mesh/read_appearance.hpp"
 #include "voxdag/mesh/read_mesh.hpp"
 
 namespace voxdag {
@@ -9,9 +10,11 @@ namespace voxdag {
 void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
   command
       .add_option("--mesh", arguments.file,
-                  "The mesh of the voxels: what is seen are its triangles, with smooth normals; "
-                  "shadows and occlusion are the voxels'")
+                  "The mesh of the voxels: what is seen are its triangles, with their colours, "
+                  "textures and normals; shadows and occlusion are the voxels'")
       ->type_name("MESH");
+  command.add_flag("--grey", arguments.grey,
+                   "Show the mesh in one grey, with normals of its triangles");
   command
       .add_option("--primary", arguments.primary,
                   "What is seen (default: the mesh if there is one)")
@@ -28,12 +31,23 @@ std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec
                                              const VoxelScene& scene, const Grid& grid,
                                              Session& session) {
   if (arguments.file.empty() || arguments.primary == "voxels") return nullptr;
-  Mesh mesh = read_mesh(arguments.file, &session.progress);
+  MeshWithAppearance source;
+  if (arguments.grey)
+    source.mesh = read_mesh(arguments.file, &session.progress);
+  else
+    source = read_mesh_with_appearance(arguments.file, &session.progress);
+  print_warnings(source.warnings, session);
   try {
-    check_mesh_in_grid(mesh, scene, grid);
+    check_mesh_in_grid(source.mesh, scene, grid);
     MeshViewOptions options;
     options.albedo = albedo;
-    return std::make_unique<MeshViewSource>(std::move(mesh), options);
+    if (arguments.grey) return std::make_unique<MeshViewSource>(std::move(source.mesh), options);
+    std::vector<std::string> warnings;
+    auto view_source =
+        std::make_unique<MeshViewSource>(std::move(source.mesh), std::move(source.appearance),
+                                         options, &warnings, &session.progress);
+    print_warnings(warnings, session);
+    return view_source;
   } catch (const Error& error) {
     throw Error(arguments.file, error.place(), error.reason());
   }

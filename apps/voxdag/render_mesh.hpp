@@ -13,6 +13,7 @@ namespace voxdag {
 
 struct MeshArguments {
   std::string file;     ///< Empty: none.
+  bool grey = false;    ///< Leave out its colours, textures and normals.
   std::string primary;  ///< "mesh", "voxels" or empty: mesh where there is one.
 };
 

@@ -1,5 +1,7 @@
 #include "session.hpp"
 
+#include <fmt/core.h>
+
 #include "voxdag/core/atomic_file.hpp"
 
 namespace voxdag {
@@ -23,6 +25,11 @@ void add_quiet_option(CLI::App& command, Session& session) {
 
 void add_json_option(CLI::App& command, Session& session) {
   command.add_flag("--json", session.json, "Print the result as JSON");
+}
+
+void print_warnings(const std::vector<std::string>& warnings, Session& session) {
+  session.bar.clear();
+  for (const std::string& warning : warnings) fmt::print(stderr, "voxdag: warning: {}\n", warning);
 }
 
 void check_writable(const std::string& path) { AtomicFile{path}; }

@@ -40,8 +40,9 @@ EmbreeScene::EmbreeScene(Mesh mesh, EmbreeMode mode) : mesh_(std::move(mesh)) {
   device_ = rtcNewDevice(nullptr);
   if (device_ == nullptr) fail(rtcGetDeviceError(nullptr));
   scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_,
-                   mode == EmbreeMode::kRobust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  rtcSetSceneFlags(scene_, mode == EmbreeMode::kRobust
+                               ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+                               : RTC_SCENE_FLAG_NONE);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                              mesh_.vertices.data(), 0, sizeof(Vec3f), mesh_.vertices.size());

@@ -8,7 +8,7 @@ namespace voxdag {
 
 enum class EmbreeMode {
   kFast,    ///< Embree's defaults.
-  kRobust,  ///< No ray slips through between two triangles of an edge.
+  kRobust,  ///< No ray slips through between two triangles of an edge; contexts may have filters.
 };
 
 /// Owns device, scene and mesh; Embree reads the mesh's own buffers. Rays may be cast from any

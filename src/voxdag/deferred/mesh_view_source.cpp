@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
-#include "voxdag/deferred/corner_normals.hpp"
 #include "voxdag/deferred/embree_scene.hpp"
 
 namespace voxdag {
@@ -13,30 +13,30 @@ namespace {
 constexpr int kPacketSide = 4;
 constexpr int kPacket = kPacketSide * kPacketSide;
 
-/// A point of a triangle: its corners weighted.
-struct Barycentrics {
-  std::array<double, 3> weights;
-};
-
-/// The triangle's point nearest to where the line meets its plane, in double. `guess` is what float
-/// arithmetic found; it stays where line and plane are all but parallel.
-Barycentrics refine(const std::array<Vec3d, 3>& corners, Vec3d origin, Vec3d direction,
-                    Barycentrics guess) {
+/// Where a line meets the plane of a triangle, in double: the weights of corners 1 and 2; nothing
+/// where the two are all but parallel.
+std::optional<Vec2d> meet_plane(const std::array<Vec3d, 3>& corners, Vec3d origin,
+                                Vec3d direction) {
   const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0], ao = origin - corners[0];
   const Vec3d n = cross(ab, ac);
   const double facing = dot(n, direction);
   const double most = std::sqrt(dot(n, n) * dot(direction, direction));
-  if (!(std::fabs(facing) > 1e-12 * most)) return guess;
+  if (!(std::fabs(facing) > 1e-12 * most)) return {};
   const Vec3d moment = cross(direction, ao);
-  double u = dot(ac, moment) / facing, v = -dot(ab, moment) / facing;
-  u = std::clamp(u, 0.0, 1.0);
-  v = std::clamp(v, 0.0, 1.0);
+  return Vec2d{dot(ac, moment) / facing, -dot(ab, moment) / facing};
+}
+
+/// A point of the triangle not far from `at`.
+Vec2d into_triangle(Vec2d at) {
+  double u = std::clamp(at.x, 0.0, 1.0), v = std::clamp(at.y, 0.0, 1.0);
   if (const double sum = u + v; sum > 1) {
     u /= sum;
     v /= sum;
   }
-  return {{1 - u - v, u, v}};
+  return {u, v};
 }
+
+Vec2f to_float(Vec2d v) { return {static_cast<float>(v.x), static_cast<float>(v.y)}; }
 
 /// The vector of unit length nearest to `normal` that does not face away from the viewer.
 Vec3f turned_to(Vec3f normal, Vec3f view) {
@@ -50,9 +50,11 @@ Vec3f turned_to(Vec3f normal, Vec3f view) {
 class MeshViewSource::Scene {
  public:
   Scene(Mesh mesh, const MeshViewOptions& options)
-      : albedo_(options.albedo),
-        normals_(corner_normals(mesh, options.crease_degrees)),
-        embree_(std::move(mesh), EmbreeMode::kRobust) {}
+      : embree_(std::move(mesh), EmbreeMode::kRobust), looks_(embree_.mesh(), options) {}
+  Scene(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
+        std::vector<std::string>* warnings, Progress* progress)
+      : embree_(std::move(mesh), EmbreeMode::kRobust),
+        looks_(embree_.mesh(), std::move(appearance), options, warnings, progress) {}
 
   /// Casts the rays of up to 4x4 pixels.
   void sample_packet(const Camera& camera, const ViewTile& tile, int x0, int y0,
@@ -68,26 +70,51 @@ class MeshViewSource::Scene {
     return direction * std::max(t, 0.0) - to_center;
   }
 
-  ViewSample view_sample(const Camera& camera, Vec3d origin, Vec3d direction,
-                         std::uint32_t triangle, Barycentrics guess) const;
+  /// The ray's pixel is that at (x,y) in the picture; `guess` is what float arithmetic found.
+  ViewSample view_sample(const Camera& camera, double x, double y, Vec3d origin, Vec3d direction,
+                         std::uint32_t triangle, Vec2d guess) const;
 
-  Vec3f albedo_;
-  std::vector<std::array<PackedNormal, 3>> normals_;
+  /// Lets rays through what alpha has cut away.
+  struct Context : RTCIntersectContext {
+    const MeshLooks* looks;
+  };
+  static void skip_holes(const RTCFilterFunctionNArguments* hits);
+
   EmbreeScene embree_;
+  MeshLooks looks_;
 };
 
-ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, Vec3d origin, Vec3d direction,
-                                              std::uint32_t triangle, Barycentrics guess) const {
+void MeshViewSource::Scene::skip_holes(const RTCFilterFunctionNArguments* hits) {
+  const MeshLooks& looks = *static_cast<const Context*>(hits->context)->looks;
+  for (unsigned i = 0; i < hits->N; ++i) {
+    if (hits->valid[i] != -1) continue;
+    const Vec2f at{RTCHitN_u(hits->hit, hits->N, i), RTCHitN_v(hits->hit, hits->N, i)};
+    if (looks.is_hole(RTCHitN_primID(hits->hit, hits->N, i), at)) hits->valid[i] = 0;
+  }
+}
+
+ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, double y,
+                                              Vec3d origin, Vec3d direction, std::uint32_t triangle,
+                                              Vec2d guess) const {
   const Mesh& mesh = embree_.mesh();
   std::array<Vec3d, 3> corners;
-  for (int i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i)
     corners[i] = static_cast<Vec3d>(mesh.vertices[mesh.triangles[triangle][i]]);
-  const auto weights = refine(corners, origin, direction, guess).weights;
+  const Vec2d at = into_triangle(meet_plane(corners, origin, direction).value_or(guess));
   ViewSample sample;
-  sample.albedo = albedo_;
-  sample.point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2] +
-                 embree_.center();
+  sample.point =
+      corners[0] * (1 - at.x - at.y) + corners[1] * at.x + corners[2] * at.y + embree_.center();
   sample.depth = static_cast<float>(dot(sample.point - camera.eye, camera.forward));
+
+  // What the pixel covers of the triangle, more or less: where its corners' rays meet the plane.
+  std::array<Vec2f, 4> footprint;
+  for (int i = 0; i < 4; ++i) {
+    const double dx = i == 0 || i == 3 ? -0.5 : 0.5, dy = i < 2 ? -0.5 : 0.5;
+    const auto met =
+        meet_plane(corners, camera.eye - embree_.center(), camera.direction(x + dx, y + dy));
+    footprint[static_cast<std::size_t>(i)] = to_float(into_triangle(met.value_or(at)));
+  }
+  sample.albedo = looks_.albedo(triangle, footprint);
 
   const Vec3f view = static_cast<Vec3f>(normalized(-direction));
   const Vec3d winding = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -96,12 +123,10 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, Vec3d origin
     sample.face = sample.normal = view;
     return sample;
   }
-  const bool is_back = dot(winding, direction) > 0;
-  sample.face = static_cast<Vec3f>(winding * ((is_back ? -1 : 1) / length));
-  Vec3f normal{};
-  for (int i = 0; i < 3; ++i)
-    normal = normal + normals_[triangle][i].unpack() * static_cast<float>(weights[i]);
-  if (is_back) normal = -normal;
+  sample.face = static_cast<Vec3f>(winding * ((dot(winding, direction) > 0 ? -1 : 1) / length));
+  Vec3f normal = looks_.normal(triangle, to_float(at), footprint);
+  // Files need not agree with themselves about which side is the front.
+  if (dot(normal, sample.face) < 0) normal = -normal;
   sample.normal = dot(normal, normal) > 0 ? turned_to(normalized(normal), view) : sample.face;
   return sample;
 }
@@ -134,9 +159,11 @@ void MeshViewSource::Scene::sample_packet(const Camera& camera, const ViewTile& 
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  RTCIntersectContext context;
+  Context context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.looks = &looks_;
+  if (looks_.has_holes()) context.filter = skip_holes;
   rtcIntersect16(valid.data(), embree_.scene(), &context, &packet);
   for (int i = 0; i < kPacket; ++i) {
     if (valid[i] == 0) continue;
@@ -147,13 +174,18 @@ void MeshViewSource::Scene::sample_packet(const Camera& camera, const ViewTile& 
     sample = {};
     if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     const double u = static_cast<double>(packet.hit.u[i]), v = static_cast<double>(packet.hit.v[i]);
-    sample =
-        view_sample(camera, origins[i], directions[i], packet.hit.primID[i], {{1 - u - v, u, v}});
+    sample = view_sample(camera, tile.x + column + tile.dx, tile.y + row + tile.dy, origins[i],
+                         directions[i], packet.hit.primID[i], {u, v});
   }
 }
 
 MeshViewSource::MeshViewSource(Mesh mesh, const MeshViewOptions& options)
     : scene_(std::make_unique<Scene>(std::move(mesh), options)) {}
+
+MeshViewSource::MeshViewSource(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
+                               std::vector<std::string>* warnings, Progress* progress)
+    : scene_(std::make_unique<Scene>(std::move(mesh), std::move(appearance), options, warnings,
+                                     progress)) {}
 
 MeshViewSource::~MeshViewSource() = default;
 

@@ -3,25 +3,23 @@
 /// "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4.
 #include <memory>
 
-#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/deferred/mesh_looks.hpp"
 #include "voxdag/render/view_source.hpp"
 
 namespace voxdag {
 
-struct MeshViewOptions {
-  Vec3f albedo{0.62f, 0.60f, 0.57f};  ///< Linear, in [0,1], of all surfaces.
-  /// Edges whose faces differ by less look round (see corner_normals).
-  float crease_degrees = 40;
-};
-
 /// Finds what pixels see with Embree and works out the point in double, from the triangle: off the
 /// ray by nothing and off the triangle by at most 2^-25 of the mesh's longest side, a thousandth of
-/// a voxel at 32,768³. Needs no voxels.
+/// a voxel at 32,768³. Colours and normal maps are filtered over the pixel; what alpha cuts away is
+/// looked through. Needs no voxels.
 class MeshViewSource : public ViewSource {
  public:
   /// Takes the mesh over and builds what casts need, on the threads of the current TBB arena.
   /// Throws Error where the library was built without Embree, or memory is short.
   explicit MeshViewSource(Mesh mesh, const MeshViewOptions& options = {});
+  /// With what the mesh's file says of its look. Warnings as of SurfaceShading.
+  MeshViewSource(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
+                 std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr);
   ~MeshViewSource() override;
 
   void sample(const Camera& camera, const ViewTile& tile,

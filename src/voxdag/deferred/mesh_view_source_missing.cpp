@@ -6,10 +6,22 @@ namespace voxdag {
 
 class MeshViewSource::Scene {};
 
-MeshViewSource::MeshViewSource(Mesh /*mesh*/, const MeshViewOptions& /*options*/) {
+namespace {
+
+[[noreturn]] void refuse() {
   throw Error(
       "view samples from a mesh need Embree 3, which this voxdag was built without (install "
       "libembree-dev and build again)");
+}
+
+}  // namespace
+
+MeshViewSource::MeshViewSource(Mesh /*mesh*/, const MeshViewOptions& /*options*/) { refuse(); }
+
+MeshViewSource::MeshViewSource(Mesh /*mesh*/, Appearance /*appearance*/,
+                               const MeshViewOptions& /*options*/,
+                               std::vector<std::string>* /*warnings*/, Progress* /*progress*/) {
+  refuse();
 }
 
 MeshViewSource::~MeshViewSource() = default;

@@ -15,8 +15,8 @@
 
 #include "voxdag/esvo/esvo_tree.hpp"
 #include "voxdag/esvo/surface_light.hpp"
-#include "voxdag/esvo/surface_shading.hpp"
 #include "voxdag/esvo/surface_triangle.hpp"
+#include "voxdag/surface/surface_shading.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 
 namespace voxdag {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "voxdag/esvo/displaced_triangles.hpp"
-#include "voxdag/esvo/surface_shading.hpp"
 #include "voxdag/layout/esvo.hpp"
+#include "voxdag/surface/surface_shading.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

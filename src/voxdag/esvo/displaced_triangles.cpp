@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "voxdag/esvo/tangent_frames.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/surface/tangent_frames.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "voxdag/esvo/material_textures.hpp"
+#include "voxdag/surface/material_textures.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

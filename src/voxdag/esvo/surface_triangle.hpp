@@ -8,7 +8,7 @@
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/esvo/fit_contour.hpp"
 #include "voxdag/esvo/surface_polygon.hpp"
-#include "voxdag/esvo/surface_shading.hpp"
+#include "voxdag/surface/surface_shading.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
 namespace voxdag {

@@ -1,4 +1,4 @@
-#include "voxdag/esvo/tangent_frames.hpp"
+#include "voxdag/surface/tangent_frames.hpp"
 
 #include <algorithm>
 #include <array>

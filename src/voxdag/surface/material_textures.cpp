@@ -1,4 +1,4 @@
-#include "voxdag/esvo/material_textures.hpp"
+#include "voxdag/surface/material_textures.hpp"
 
 #include <atomic>
 #include <compare>

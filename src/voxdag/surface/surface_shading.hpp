@@ -38,6 +38,7 @@ class SurfaceShading {
   /// size and shape.
   SurfaceSample mean(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
+  bool has_normal_map(std::uint32_t triangle) const;
   /// Whether all of the triangle is visible and of one colour; whether all its normals are one.
   bool has_one_color(std::uint32_t triangle) const;
   bool has_one_normal(std::uint32_t triangle) const;

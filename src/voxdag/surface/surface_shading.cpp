@@ -1,13 +1,13 @@
-#include "voxdag/esvo/surface_shading.hpp"
+#include "voxdag/surface/surface_shading.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "voxdag/esvo/material_textures.hpp"
-#include "voxdag/esvo/polygon_moments.hpp"
-#include "voxdag/esvo/tangent_frames.hpp"
 #include "voxdag/image/srgb_curve.hpp"
+#include "voxdag/surface/material_textures.hpp"
+#include "voxdag/surface/polygon_moments.hpp"
+#include "voxdag/surface/tangent_frames.hpp"
 
 namespace voxdag {
 namespace {
@@ -288,6 +288,10 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
                                   agreement);
   }
   return sample;
+}
+
+bool SurfaceShading::has_normal_map(std::uint32_t t) const {
+  return tables_->look(t).normal_texture != nullptr;
 }
 
 bool SurfaceShading::has_one_color(std::uint32_t t) const {
