@@ -48,7 +48,7 @@ void bench(const BenchArguments& arguments, Session& session) {
   const nlohmann::ordered_json machine = machine_json();
   const BenchResults results = bench_build(arguments.plan, session.progress);
   arguments.output.write(
-      bench_json(results, machine), {bench_svg(results)},
+      bench_json(results, machine), {[&] { return bench_svg(results); }},
       fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
                   machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
                   machine.at("load_average").get<double>(), bench_table(results)),

@@ -25,7 +25,8 @@ void run(const BenchEsvoArguments& arguments, Session& session) {
   const nlohmann::ordered_json machine = machine_json();
   const EsvoBenchResults results = bench_esvo(arguments.plan, session.progress);
   arguments.output.write(
-      esvo_bench_json(results, machine), {esvo_bench_svg(results), esvo_rays_svg(results)},
+      esvo_bench_json(results, machine),
+      {[&] { return esvo_bench_svg(results); }, [&] { return esvo_rays_svg(results); }},
       fmt::format("{}, {} threads, load average {:.2f} before\n\n{}",
                   machine.at("processor").get<std::string>(), results.threads,
                   machine.at("load_average").get<double>(), esvo_bench_table(results)),

@@ -13,13 +13,13 @@ void BenchOutput::check_writable() const {
 }
 
 void BenchOutput::write(const nlohmann::ordered_json& json,
-                        const std::vector<std::string>& drawings, const std::string& text,
-                        Session& session) const {
+                        const std::vector<std::function<std::string()>>& drawings,
+                        const std::string& text, Session& session) const {
   session.bar.clear();
   const std::string json_text = json.dump(2) + "\n";
   if (!json_file.empty()) write_whole_file(json_file, json_text);
   for (std::size_t i = 0; i < drawings.size(); ++i)
-    if (!plot_files[i].empty()) write_whole_file(plot_files[i], drawings[i]);
+    if (!plot_files[i].empty()) write_whole_file(plot_files[i], drawings[i]());
   fmt::print("{}", session.json ? json_text : text);
 }
 

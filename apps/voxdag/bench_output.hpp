@@ -1,6 +1,7 @@
 #pragma once
 /// Where `voxdag bench` writes what it measured.
 #include <array>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -15,9 +16,10 @@ struct BenchOutput {
 
   /// Throws Error unless all files can be made: called before the work.
   void check_writable() const;
-  /// Writes the files and prints JSON or `text`. A drawing for each plot file.
-  void write(const nlohmann::ordered_json& json, const std::vector<std::string>& drawings,
-             const std::string& text, Session& session) const;
+  /// Writes the files and prints JSON or `text`. `drawings` draw the plots that are wanted.
+  void write(const nlohmann::ordered_json& json,
+             const std::vector<std::function<std::string()>>& drawings, const std::string& text,
+             Session& session) const;
 };
 
 }  // namespace voxdag

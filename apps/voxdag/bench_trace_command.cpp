@@ -110,7 +110,7 @@ void run(BenchTraceArguments& arguments, Session& session) {
   const TraceResults results =
       session.subject.empty() ? bench_list(arguments, session) : bench_file(arguments, session);
   arguments.output.write(
-      trace_json(results, machine), {trace_svg(results)},
+      trace_json(results, machine), {[&] { return trace_svg(results); }},
       fmt::format("{}{}, {} threads, load average {:.2f} before\n\n{}",
                   results.cuda_device.empty() ? "" : results.cuda_device + "; ",
                   machine.at("processor").get<std::string>(), results.threads,
