@@ -9,7 +9,8 @@
 //
 // A contour is looked at when its voxel is visited, not when its parent is: by then rays that end
 // nearer by are gone. What it leaves of the rays' ranges is kept for its level, as the voxels below
-// are visited before any other of that level.
+// are visited before any other of that level. Where only a few rays are left it is the other way
+// round: one ray after the other is tried at all children, and their contours, at once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/cast_esvo_packet.cpp"
 #include <hwy/foreach_target.h>
@@ -17,6 +18,7 @@
 
 #include "voxdag/cpu/esvo_packet.hpp"
 #include "voxdag/cpu/esvo_packet_cells-inl.hpp"
+#include "voxdag/cpu/esvo_packet_children-inl.hpp"
 #include "voxdag/cpu/esvo_packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -75,6 +77,7 @@ void EsvoPacketWalk<kWithContours>::bound() {
   for (std::size_t i = 0; i < packet_.size; i += kWidth) {
     hn::Store(hn::Load(d, packet_.t_min + i), d, own.enter + i);
     hn::Store(hn::Load(d, packet_.t_end + i), d, own.leave + i);
+    hn::Store(hn::Zero(di), di, own.enter_level + i);
   }
   float least[2], most[2];
   range(packet_.t_min, least);
@@ -104,22 +107,13 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::clip
                    : clip<false, false>(visit, rays, stopped);
 }
 
-/// The contour through which a ray that meets the visited voxel at t enters its shape.
+/// The contour of the path's voxel of `level`, or an ancestor, by which a ray came to t, if by one.
 template <bool kWithContours>
-ContourPlane EsvoPacketWalk<kWithContours>::plane_of(const Visit& visit, std::size_t ray,
-                                                     float t) const {
-  // The coarsest voxel whose span begins there, if that is not where its cube does.
-  std::uint32_t span = span_at_[visit.level];
-  if (spans_[span].enter[ray] != t) return {};
-  while (span > 0 && spans_[span_at_[span - 1]].enter[ray] == t) span = span_at_[span - 1];
-  if (span == 0) return {};
-  const int bit = 23 - static_cast<int>(span);
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint32_t corner = visit.corner[axis] & ~0u << bit;
-    const float upper = float_from_bits(corner + (1u << bit));
-    if ((packet_.origin[axis][ray] - upper) * packet_.inverse[axis][ray] == t) return {};
-  }
-  return {contours_[span], static_cast<int>(span)};
+HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours>::plane_at(std::uint32_t level,
+                                                                std::size_t ray, float t) const {
+  const Spans& spans = spans_below(level);
+  const std::int32_t enter_level = spans.enter[ray] == t ? spans.enter_level[ray] : 0;
+  return {enter_level != 0 ? contours_[enter_level] : Contour{}, enter_level};
 }
 
 template <bool kWithContours>
@@ -138,7 +132,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::record(const Visit& visit, Rays r
     packet_.t[i] = t;
     packet_.level[i] = static_cast<int>(visit.level);
     packet_.slot[i] = slots_[visit.level - 1];
-    if constexpr (kWithContours) packet_.plane[i] = plane_of(visit, i, t);
+    if constexpr (kWithContours) packet_.plane[i] = plane_at(visit.level, i, t);
   }
 }
 
@@ -148,31 +142,39 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::push_children(const Visit& visit,
                                                              std::uint32_t met,
                                                              const ChildRays& children,
                                                              bool is_exact) {
+  // By the child's bits: whether half is added to the corner; and to the level after that.
+  alignas(16) static constexpr std::uint32_t kBits[8][4] = {
+      {0, 0, 0, 0},   {~0u, 0, 0, 0},   {0, ~0u, 0, 0},   {~0u, ~0u, 0, 0},
+      {0, 0, ~0u, 0}, {~0u, 0, ~0u, 0}, {0, ~0u, ~0u, 0}, {~0u, ~0u, ~0u, 0}};
+  alignas(16) static constexpr std::uint32_t kNextLevel[4] = {0, 0, 0, 1};
   if (met == 0) return;
-  const std::uint32_t half = 1u << (22 - visit.level);
+  const hn::CappedTag<std::uint32_t, 4> d4;
+  const auto half = hn::Set(d4, 1u << (22 - visit.level));
+  const auto corner = hn::Add(hn::LoadU(d4, visit.corner), hn::Load(d4, kNextLevel));
   const std::uint32_t inner = descriptor.inner_mask();
   const std::uint32_t with_contour = kWithContours ? descriptor.contour_mask() : 0;
+  const auto& inner_before = kBefore[inner];
+  const auto& contours_before = kBefore[with_contour];
+  const std::uint32_t* const contours = contours_of(visit, descriptor);
   const std::uint64_t first_child =
       inner != 0 ? esvo_.first_child(visit.slot, descriptor) : std::uint64_t{0};
   for (; met != 0; met &= met - 1) {
     const auto child = static_cast<std::uint32_t>(lowest_bit64(met));
+    // Taken back where no ray meets the child: that is hard to foretell.
     Visit& next = stack_[top_];
     next.rays = children.meet[child];
-    if (next.rays == 0) continue;
-    ++top_;
+    top_ += next.rays != 0 ? 1 : 0;
     const std::uint32_t index = child ^ packet_.mirrored;
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
-      next.corner[axis] = visit.corner[axis] | ((child >> axis & 1u) != 0 ? half : 0u);
-    next.level = visit.level + 1;
+    hn::StoreU(hn::Or(corner, hn::And(hn::Load(d4, kBits[child]), half)), d4, next.corner);
     next.is_exact = is_exact;
-    next.slot = kLeaf;
-    if ((inner >> index & 1u) != 0) {
-      next.slot = first_child + static_cast<std::uint64_t>(popcount8(inner & ((1u << index) - 1u)));
-      hwy::Prefetch(esvo_.slots + next.slot);
-    }
+    const bool is_inner = (inner >> index & 1u) != 0;
+    next.slot = is_inner ? first_child + inner_before[index] : kLeaf;
+    hwy::Prefetch(esvo_.slots + (is_inner ? next.slot : visit.slot));
     next.contour = {};
-    if ((with_contour >> index & 1u) != 0)
-      next.contour = esvo_.contour(visit.slot, descriptor, static_cast<int>(index));
+    if constexpr (kWithContours) {
+      const std::uint32_t has_contour = with_contour >> index & 1u;
+      next.contour.bits = contours[has_contour * contours_before[index]] & (0u - has_contour);
+    }
   }
 }
 
@@ -209,14 +211,16 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::walk
     }
     slots_[level] = visit.slot;
     const ChildDescriptor descriptor = esvo_.descriptor(visit.slot);
-    const std::uint32_t mask = mirrored_mask(descriptor.valid_mask(), packet_.mirrored);
+    const std::uint32_t mask = mirrored(descriptor.valid_mask());
     const Spans& spans = spans_below(level);
     ChildRays children;
-    const bool by_hull = (rays >> (2 * kWidth - 1) >> 1) != 0 && is_narrow(visit, spans);
+    const bool by_hull = may_go_by_hull(rays) && is_narrow(visit, spans);
     std::uint32_t met = mask;
     if (by_hull) {
       met &= children_met_by_hull(visit, spans);
       for (Rays& meet : children.meet) meet = rays;
+    } else if (popcount64(rays) <= kFew) {
+      searching &= ~end_at_children(visit, descriptor, rays, children);
     } else {
       intersect(visit, spans, rays, children);
     }

@@ -14,6 +14,28 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_ESVO_PACKET_LANES
 
+/// ContourRay::span: where rays with n.O = position and n.d = speed are between planes.
+template <bool kWithContours>
+template <class VFloat, class VInt>
+HWY_INLINE void EsvoPacketWalk<kWithContours>::cut(VInt position, VInt speed, VFloat exit, VInt low,
+                                                   VInt high, VInt length1, VFloat& enter,
+                                                   VFloat& leave) {
+  const hn::DFromV<VFloat> d;
+  const hn::DFromV<VInt> di;
+  const auto base = hn::Set(d, ContourSlab::kReachBase);
+  const auto reach = hn::Sub(hn::BitCast(di, hn::Add(exit, base)), hn::BitCast(di, base));
+  const auto slack =
+      hn::ShiftRight<ContourSlab::kReachShift>(hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
+  const auto fall = hn::ConvertTo(d, hn::Or(speed, hn::Set(di, 1)));
+  const auto inverse = hn::Div(hn::Set(d, 2.0f), fall);
+  const auto above_high = hn::Sub(hn::Sub(position, high), slack),
+             above_low = hn::Add(hn::Sub(position, low), slack);
+  const auto t_high = hn::Mul(hn::ConvertTo(d, above_high), inverse),
+             t_low = hn::Mul(hn::ConvertTo(d, above_low), inverse);
+  enter = hn::Min(t_high, t_low);
+  leave = hn::Max(t_high, t_low);
+}
+
 /// Which of `rays` meet the voxel's shape, and of these, with kWithStop, which end at it. With kCut
 /// it has a contour: sets the spans of its level.
 template <bool kWithContours>
@@ -59,7 +81,9 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
     }
     const auto exit = hn::Min(hn::Min(exits[0], exits[1]), exits[2]);
     auto enter = hn::Max(hn::Max(enters[0], enters[1]), enters[2]);
-    enter = hn::Max(enter, hn::Load(d, above.enter + at));
+    const auto above_enter = hn::Load(d, above.enter + at);
+    const auto by_cube = hn::RebindMask(di, hn::Gt(enter, above_enter));
+    enter = hn::Max(enter, above_enter);
     auto leave = hn::Min(exit, hn::Load(d, above.leave + at));
     if constexpr (kCut) {
       const auto along = [&](const std::int32_t(&v)[3][RayPacket::kMaxRays]) HWY_ATTR {
@@ -67,18 +91,15 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
                                 hn::Mul(normal[1], hn::Load(di, v[1] + at)));
         return hn::Add(xy, hn::Mul(normal[2], hn::Load(di, v[2] + at)));
       };
-      const auto position = along(position_);
-      const auto fall = hn::Or(along(direction_), hn::Set(di, 1));
-      const auto base = hn::Set(d, ContourSlab::kReachBase);
-      const auto reach = hn::Sub(hn::BitCast(di, hn::Add(exit, base)), hn::BitCast(di, base));
-      const auto slack = hn::ShiftRight<ContourSlab::kReachShift>(
-          hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
-      const auto inverse = hn::Div(hn::Set(d, 2.0f), hn::ConvertTo(d, fall));
-      const auto t_high =
-          hn::Mul(hn::ConvertTo(d, hn::Sub(hn::Sub(position, high), slack)), inverse);
-      const auto t_low = hn::Mul(hn::ConvertTo(d, hn::Add(hn::Sub(position, low), slack)), inverse);
-      enter = hn::Max(enter, hn::Min(t_high, t_low));
-      leave = hn::Min(leave, hn::Max(t_high, t_low));
+      VF cut_enter, cut_leave;
+      cut(along(position_), along(direction_), exit, low, high, length1, cut_enter, cut_leave);
+      const auto by_contour = hn::RebindMask(di, hn::Gt(cut_enter, enter));
+      const auto enter_level = hn::IfThenZeroElse(by_cube, hn::Load(di, above.enter_level + at));
+      hn::Store(
+          hn::IfThenElse(by_contour, hn::Set(di, static_cast<std::int32_t>(level)), enter_level),
+          di, here.enter_level + at);
+      enter = hn::Max(enter, cut_enter);
+      leave = hn::Min(leave, cut_leave);
       hn::Store(enter, d, here.enter + at);
       hn::Store(leave, d, here.leave + at);
       const auto is_met = hn::Lt(enter, leave);

@@ -42,8 +42,6 @@ struct ContourSlab {
 
   /// Of a voxel of 1 << bit in units of 2^-23.
   VOXDAG_HD static ContourSlab make(Contour contour, std::uint32_t mirrored, int bit) {
-    // Outwards, by more than what bound() and slack() are rounded down.
-    constexpr std::int32_t kWider = 3;
     const auto sign = [mirrored](int axis) {
       return -static_cast<std::int32_t>(mirrored >> axis & 1u);
     };
@@ -51,10 +49,17 @@ struct ContourSlab {
     ContourSlab slab;
     slab.normal = {(n.x ^ sign(0)) - sign(0), (n.y ^ sign(1)) - sign(1), (n.z ^ sign(2)) - sign(2)};
     slab.length1 = voxdag::length1(n);
-    slab.low = bound(slab.length1, contour.low(), bit) - kWider;
-    slab.high = bound(slab.length1, contour.high(), bit) + kWider;
+    const std::int32_t low_steps = slab.length1 * (2 * contour.low() - Contour::kMaxPosition),
+                       high_steps = slab.length1 * (2 * contour.high() - Contour::kMaxPosition);
+    const std::int32_t wider = kWider + (slab.length1 << (bit - 1) >> kWiderShift);
+    slab.low = (low_steps * kStep >> (kTopBit - bit)) - wider;
+    slab.high = (high_steps * kStep >> (kTopBit - bit)) + wider;
     return slab;
   }
+  /// h position(p) is its steps times 2^(bit - 1) / 127: here 2^22 / 127, then a shift. Both are
+  /// rounded down, by less than what the planes are moved outwards; so is slack().
+  static constexpr std::int32_t kTopBit = 23, kStep = (1 << 22) / Contour::kMaxPosition;
+  static constexpr std::int32_t kWider = 3, kWiderShift = 20;
 
   /// How far the planes are moved outwards for a ray that leaves the cube at t_exit: of 16 u |n| T
   /// the whole units.
@@ -65,15 +70,6 @@ struct ContourSlab {
   }
   static constexpr float kReachBase = 8192.0f;
   static constexpr int kReachShift = 7;
-
- private:
-  /// h position(p), rounded down.
-  VOXDAG_HD static std::int32_t bound(std::int32_t n1, int position, int bit) {
-    constexpr int kShift = 40;
-    constexpr std::int64_t kReciprocal = (std::int64_t{1} << kShift) / Contour::kMaxPosition;
-    const std::int64_t steps = n1 * (2 * position - Contour::kMaxPosition);
-    return static_cast<std::int32_t>(steps * kReciprocal >> (kShift + 1 - bit));
-  }
 };
 
 /// A ray as contours see it, mirrored.
