@@ -55,7 +55,7 @@ inline std::size_t PacketWalk::begin(Rays all, Visit* stack) const {
       for (int axis = 0; axis < 3; ++axis)
         visit.corner[axis] = level == 0 ? kOne : starts.corner[axis] & ~0u << (child_bit + 1);
       visit.level = static_cast<std::uint32_t>(level);
-      visit.skipped = descends ? 1u << index : 0u;
+      visit.skipped = descends ? 1u << index : stop_level_ < nodes_.levels() ? kOctantsMayEnd : 0u;
     }
     if (!descends) return top;
     node = nodes_.child(node, level, static_cast<int>(index ^ rays_.mirrored));
@@ -79,7 +79,10 @@ inline void PacketWalk::walk() {
     if (visit.skipped == kEndsHere)
       end(visit.rays, visit.corner, static_cast<int>(visit.level));
     else if (static_cast<int>(visit.level) == nodes_.levels() - 2)
-      cast_in_block(visit);
+      if ((visit.skipped & kOctantsEnd) != 0)
+        end_at_octants(visit);
+      else
+        cast_in_block(visit);
     else
       visit_children(visit, stack, top);
     if (searching_ == 0) return;

@@ -47,6 +47,30 @@ HWY_INLINE void PacketWalk::set_planes(const std::uint32_t corner[3], int level,
   }
 }
 
+/// Says at which of the children rays end that enter and leave them in these ranges of T, with the
+/// least and the most of their levels of detail.
+HWY_INLINE void PacketWalk::set_ends(int child_level, hn::Vec<DPlane> enter, hn::Vec<DPlane> exit,
+                                     const float start[2], const float per_t[2],
+                                     Children& children) const {
+  const DPlane d;
+  children.all_end = children.some_end = 0;
+  children.octants_end = children.octants_may_end = 0;
+  const int levels = nodes_.levels();
+  const auto ends = [&](int level, int of, hn::Vec<DPlane> t) HWY_ATTR {
+    const auto limit = hn::Add(hn::Set(d, start[of]), hn::Mul(hn::Set(d, per_t[of]), t));
+    return bits_of_lanes(hn::Le(hn::Set(d, side_of(level)), limit));
+  };
+  // From stop_level_ on the boxes are the cells.
+  if (child_level >= stop_level_) {
+    children.all_end = ends(child_level, 0, enter);
+    children.some_end = ends(child_level, 1, exit);
+  }
+  if (child_level == levels - 2 && stop_level_ < levels) {
+    children.octants_end = ends(levels - 1, 0, enter);
+    children.octants_may_end = ends(levels - 1, 1, exit);
+  }
+}
+
 /// What the ranges that the rays are in say of the boxes. The bounds of T hold in float arithmetic
 /// too, since rounding is monotone.
 HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) const {
@@ -63,16 +87,21 @@ HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) cons
   }
   Children children;
   children.met = bits_of_lanes(hn::Lt(enter, hn::Min(exit, hn::Set(d, t_range_[1]))));
-  children.all_end = children.some_end = 0;
-  if (child_level < stop_level_ || child_level >= nodes_.levels()) return children;
-  // The boxes are the cells here.
-  const auto side = hn::Set(d, side_of(child_level));
-  const auto limit = [&](int of, hn::Vec<DPlane> t) HWY_ATTR {
-    return hn::Add(hn::Set(d, stop_start_[of]), hn::Mul(hn::Set(d, stop_per_t_[of]), t));
-  };
-  children.all_end = bits_of_lanes(hn::Le(side, limit(0, enter)));
-  children.some_end = bits_of_lanes(hn::Le(side, limit(1, exit)));
+  set_ends(child_level, enter, exit, stop_start_, stop_per_t_, children);
   return children;
+}
+
+/// Which boxes ray i meets.
+HWY_INLINE std::uint32_t PacketWalk::boxes_met_by(int i) const {
+  const DPlane d;
+  auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, rays_.t_end[i]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto origin = hn::Set(d, rays_.origin[axis][i]),
+               inverse = hn::Set(d, rays_.inverse[axis][i]);
+    enter = hn::Max(enter, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis + 3])), inverse));
+    exit = hn::Min(exit, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis])), inverse));
+  }
+  return bits_of_lanes(hn::Lt(enter, exit));
 }
 
 /// Which boxes ray i meets, and at which cells it ends that it meets.
@@ -87,12 +116,9 @@ HWY_INLINE PacketWalk::Children PacketWalk::children_met_by(int i, int child_lev
   }
   Children children;
   children.met = bits_of_lanes(hn::Lt(enter, hn::Min(exit, hn::Set(d, rays_.t_end[i]))));
-  children.all_end = children.some_end = 0;
-  if (child_level < stop_level_ || child_level >= nodes_.levels()) return children;
-  const auto limit =
-      hn::Add(hn::Set(d, rays_.stop_start[i]), hn::Mul(hn::Set(d, rays_.stop_per_t[i]), exit));
-  children.all_end = children.some_end =
-      bits_of_lanes(hn::Le(hn::Set(d, side_of(child_level)), limit)) & children.met;
+  const float start[2] = {rays_.stop_start[i], rays_.stop_start[i]};
+  const float per_t[2] = {rays_.stop_per_t[i], rays_.stop_per_t[i]};
+  set_ends(child_level, enter, exit, start, per_t, children);
   return children;
 }
 
@@ -149,8 +175,22 @@ inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::si
   const bool is_single = (visit.rays & (visit.rays - 1)) == 0;
   const Children children =
       is_single ? children_met_by(lowest_bit64(visit.rays), level + 1) : bound_children(level + 1);
-  const std::uint32_t met = children.met & not_skipped;
+  std::uint32_t met = children.met & not_skipped;
   if (met == 0) return;
+  // Few rays are faster one by one, at all boxes at once.
+  constexpr int kFew = 6;
+  const bool are_few = !is_single && (met & (met - 1)) != 0 && popcount64(visit.rays) <= kFew;
+  std::uint32_t met_by[kFew];
+  if (are_few) {
+    std::uint32_t met_by_any = 0;
+    int at = 0;
+    for (Rays rest = visit.rays; rest != 0; rest &= rest - 1) {
+      met_by[at] = boxes_met_by(lowest_bit64(rest));
+      met_by_any |= met_by[at++];
+    }
+    met &= met_by_any;
+    if (met == 0) return;
+  }
   if ((met & ~children.all_end) == 0) {
     end_at_children(visit, met);
     return;
@@ -161,8 +201,16 @@ inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::si
     const auto child = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const bool may_end = (children.some_end >> child & 1u) != 0;
     Visit& next = stack[top];
-    next.rays = are_as_one && !may_end ? visit.rays : rays_meeting(child, visit.rays);
-    next.skipped = 0;
+    if (are_few) {
+      next.rays = 0;
+      int at = 0;
+      for (Rays left = visit.rays; left != 0; left &= left - 1)
+        next.rays |= (met_by[at++] >> child & 1u) != 0 ? left & -left : 0;
+    } else {
+      next.rays = are_as_one && !may_end ? visit.rays : rays_meeting(child, visit.rays);
+    }
+    next.skipped = ((children.octants_end >> child & 1u) != 0 ? kOctantsEnd : 0u) |
+                   ((children.octants_may_end >> child & 1u) != 0 ? kOctantsMayEnd : 0u);
     next.node = pointers[rank_of[child]];
     hwy::Prefetch(level == nodes_.levels() - 3
                       ? static_cast<const std::uint32_t*>(nodes_.address(next.node, level + 1))

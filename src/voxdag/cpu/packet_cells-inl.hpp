@@ -6,6 +6,7 @@
 #define VOXDAG_PACKET_CELLS_INL
 #endif
 
+#include "voxdag/cpu/packet_boxes-inl.hpp"
 #include "voxdag/cpu/packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,7 +21,7 @@ inline void PacketWalk::cast_in_block(const Visit& visit) {
   const int levels = nodes_.levels();
   const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
   const std::uint32_t* corner = visit.corner;
-  const bool may_end_at_octants = stop_level_ < levels;
+  const bool may_end_at_octants = (visit.skipped & kOctantsMayEnd) != 0;
   // Whoever meets an octant meets a voxel's place in it.
   const std::uint64_t octants = may_end_at_octants ? filled_octants(block) : block;
   const hn::CappedTag<float, 8> d;
@@ -92,6 +93,14 @@ inline void PacketWalk::cast_in_block(const Visit& visit) {
       break;
     }
   }
+}
+
+/// Ends rays at the octants of a block that they meet.
+inline void PacketWalk::end_at_octants(const Visit& visit) {
+  const int level = nodes_.levels() - 2;
+  set_planes(visit.corner, level, hn::Zero(DChild()));
+  const std::uint32_t met = bound_children(level + 1).met;
+  end_at_children(visit, met & mirrored(nodes_.child_mask(visit.node, level)));
 }
 
 #endif  // VOXDAG_PACKET_LANES

@@ -72,13 +72,16 @@ class PacketWalk {
     std::uint32_t corner[3];  ///< Float bits.
     std::uint32_t level;
   };
-  /// In Visit::skipped: the rays end at this cell.
-  static constexpr std::uint32_t kEndsHere = 0x100;
+  /// In Visit::skipped: the rays end at this cell; of a leaf block, they end at its octants, or
+  /// some may.
+  static constexpr std::uint32_t kEndsHere = 0x100, kOctantsEnd = 0x200, kOctantsMayEnd = 0x400;
   /// Of the children of a node, by their mirrored index.
   struct Children {
     std::uint32_t met;       ///< Those that any ray can meet.
     std::uint32_t all_end;   ///< Those at which all rays end that meet them.
     std::uint32_t some_end;  ///< Those at which any ray can end.
+    std::uint32_t octants_end,
+        octants_may_end;  ///< Leaf blocks of which the same holds for octants.
   };
   /// The cells, named by the bits that positions in them share.
   struct CommonCell {
@@ -186,12 +189,16 @@ class PacketWalk {
   static_assert(hn::MaxLanes(DChild()) == 8);
   HWY_INLINE void set_planes(const std::uint32_t corner[3], int level, hn::Vec<DChild> boxes);
   HWY_INLINE Children bound_children(int child_level) const;
+  HWY_INLINE std::uint32_t boxes_met_by(int i) const;
   HWY_INLINE Children children_met_by(int i, int child_level) const;
   HWY_INLINE Rays rays_meeting(std::uint32_t child, Rays rays) const;
   Rays rays_ending(std::uint32_t child, int child_level, Rays rays) const;
   void visit_children(const Visit& visit, Visit* stack, std::size_t& top);
   void end_at_children(const Visit& visit, std::uint32_t met);
   void cast_in_block(const Visit& visit);
+  void end_at_octants(const Visit& visit);
+  HWY_INLINE void set_ends(int child_level, hn::Vec<DPlane> enter, hn::Vec<DPlane> exit,
+                           const float start[2], const float per_t[2], Children& children) const;
   /// Whether ray i ends at the cell of this level with the lower corner `low`, which it meets.
   bool ends_at(int i, const float low[3], int level) const {
     if (level < rays_.coarsest) return false;

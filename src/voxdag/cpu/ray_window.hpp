@@ -34,17 +34,17 @@ class RayWindow {
   void fill(int size, const MakeRay& make_ray) {
     size_ = size;
     ordered_ = 0;
-    int changes = 0;
-    std::uint32_t last = 0;
+    std::uint32_t octants = 0;
     for (int i = 0; i < size; ++i) {
       const CastRay& ray = *::new (static_cast<void*>(rays() + i)) CastRay(make_ray(i));
       if (ray.ray.misses()) continue;
       order_[ordered_++] = static_cast<std::uint16_t>(i);
-      changes += ray.ray.mirrored != last ? 1 : 0;
-      last = ray.ray.mirrored;
+      octants |= 1u << ray.ray.mirrored;
     }
-    const bool are_alike = changes <= ordered_ / 8;
-    if (changes > 1) sort(are_alike ? kCellBits : 0);
+    if (are_unlike())
+      sort(0);
+    else if ((octants & (octants - 1)) != 0)
+      sort(kCellBits);
   }
 
  private:
@@ -64,6 +64,15 @@ class RayWindow {
       key |= ((cell & 1u) | (cell & 2u) << 2) << axis;
     }
     return key;
+  }
+
+  /// Whether neighbours are often in different octants, going by some of them.
+  bool are_unlike() const {
+    constexpr int kStep = 16;
+    int unlike = 0, pairs = 0;
+    for (int i = 1; i < ordered_; i += kStep, ++pairs)
+      unlike += (*this)[order_[i]].ray.mirrored != (*this)[order_[i - 1]].ray.mirrored ? 1 : 0;
+    return 4 * unlike > pairs;
   }
 
   /// By all of the key but its lowest bits; equal ones stay in order.
