@@ -86,7 +86,7 @@ std::vector<std::uint8_t> hits_of(const VoxelScene& voxels, const std::vector<Ca
   return hits;
 }
 
-TraceRow row_of(const TraceScene& scene, const std::string& layout_name, const TraceLayout& layout,
+TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::uint64_t layout_bytes,
                 RayClass rays, const RowSums& sums) {
   TraceRow row;
   row.scene = scene.name;
@@ -94,7 +94,7 @@ TraceRow row_of(const TraceScene& scene, const std::string& layout_name, const T
   row.levels = scene.grid.levels;
   row.rays = rays;
   row.count = static_cast<std::uint64_t>(sums.rays);
-  row.layout_bytes = layout.bytes();
+  row.layout_bytes = layout_bytes;
   row.view_mrays_per_second = sums.view_rates;
   row.mrays_per_second = sums.rays / sums.ours.seconds * 1e-6;
   row.hit_part = sums.hits / sums.rays;
@@ -181,11 +181,13 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
             answers[i].seconds * scale, same * scale);
     }
   }
-  for (std::size_t i = 0; i < layouts.size(); ++i)
+  for (std::size_t i = 0; i < layouts.size(); ++i) {
+    const std::uint64_t bytes = device_dags[i] ? layouts[i]->device_bytes() : layouts[i]->bytes();
     for (const RayClass rays : kRayClasses) {
       const RowSums& s = sums[i][static_cast<std::size_t>(rays)];
-      if (s.rays > 0) results.rows.push_back(row_of(scene, names[i], *layouts[i], rays, s));
+      if (s.rays > 0) results.rows.push_back(row_of(scene, names[i], bytes, rays, s));
     }
+  }
 }
 
 }  // namespace voxdag

@@ -66,17 +66,16 @@ class PaperScalarLayout : public TraceLayout {
 /// The same layout and what packets need beside it, by packets of rays.
 class PaperLayout : public PaperScalarLayout {
  public:
-  explicit PaperLayout(const SvdagView& dag) : PaperScalarLayout(dag), caster_(SvdagNodes(dag)) {}
+  explicit PaperLayout(const SvdagView& dag) : PaperScalarLayout(dag), dag_(SvdagNodes(dag)) {}
 
-  std::uint64_t bytes() const override {
-    return PaperScalarLayout::bytes() + caster_.dag().bytes();
-  }
+  std::uint64_t bytes() const override { return PaperScalarLayout::bytes() + dag_.bytes(); }
+  std::uint64_t device_bytes() const override { return PaperScalarLayout::bytes(); }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(caster_, rays, casts);
+    return runner_of(PacketCaster<BoundedDag>(dag_), rays, casts);
   }
 
  private:
-  PacketCaster caster_;
+  BoundedDag dag_;
 };
 
 /// Counts the bytes that a walk through the wide layout reads.

@@ -23,8 +23,9 @@ class TraceLayout {
   virtual ~TraceLayout() = default;
 
   virtual std::uint64_t bytes() const = 0;
-  /// The same on a CUDA device, where there is one.
+  /// The same on a CUDA device, where there is one, and what it takes there.
   virtual std::optional<DeviceLayout> device_layout() const = 0;
+  virtual std::uint64_t device_bytes() const { return bytes(); }
   /// Casts with the fastest caster of the layout. `casts` must outlive the runner.
   virtual TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const = 0;
   virtual WalkCost cost(std::span<const CastRay> casts) const = 0;

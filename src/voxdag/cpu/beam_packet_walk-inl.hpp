@@ -7,25 +7,18 @@
 #define VOXDAG_BEAM_PACKET_WALK_INL
 #endif
 
-#include <hwy/highway.h>
-
 #include <cmath>
 
 #include "voxdag/cpu/beam_packet.hpp"
+#include "voxdag/cpu/packet_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 template <class Nodes>
-class BeamPacketWalk {
-  using DF = hn::CappedTag<float, 16>;
-  using VF = hn::Vec<DF>;
-  using Beams = std::uint64_t;  ///< Bit i: beam i.
-  static constexpr std::size_t kWidth = hn::MaxLanes(DF());
-  static constexpr Beams kVectorBeams = (Beams{1} << kWidth) - 1;
+class BeamPacketWalk : PacketLanes {
+  using Beams = Set;
   /// More, relatively, than what is rounded to float and in float.
   static constexpr float kRounding = 0x1p-20f;
 
@@ -61,13 +54,6 @@ class BeamPacketWalk {
   struct Slabs {
     float low[2], high[2];
   };
-
-  template <class M>
-  static HWY_INLINE Beams bits_of(M mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(DF(), mask, bytes);
-    return bytes[0] | static_cast<Beams>(bytes[1]) << 8;
-  }
 
   /// A beam overlaps [low, high] where t * lowest <= high and t * highest >= low, both from the
   /// apex: by the signs of its bounds, each says where it enters or where it leaves.
@@ -149,8 +135,7 @@ class BeamPacketWalk {
     VF least[8];
     for (VF& enter : least) enter = hn::Set(d, HUGE_VALF);
     for (Beams rest = visit.beams; rest != 0;) {
-      const std::size_t at = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
-      rest &= ~(kVectorBeams << at);
+      const std::size_t at = take_vector(rest);
       VF enters[3][2], leaves_at[3][2];
       for (int axis = 0; axis < 3; ++axis)
         for (int i = 0; i < 2; ++i)
@@ -190,8 +175,7 @@ class BeamPacketWalk {
     const DF d;
     Beams searching = 0;
     for (Beams rest = visit.beams; rest != 0;) {
-      const std::size_t at = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
-      rest &= ~(kVectorBeams << at);
+      const std::size_t at = take_vector(rest);
       searching |= bits_of(hn::Lt(hn::Set(d, visit.enter), hn::Load(d, packet_.first + at))) << at;
     }
     return searching & visit.beams;
@@ -200,9 +184,7 @@ class BeamPacketWalk {
   void walk() {
     Visit stack[8 * kMaxLevels];
     std::size_t top = 0;
-    const Beams all =
-        packet_.size == BeamPacket::kMaxBeams ? ~Beams{0} : (Beams{1} << packet_.size) - 1;
-    stack[top++] = {nodes_.root(), {}, 0, all, 0};
+    stack[top++] = {nodes_.root(), {}, 0, first(packet_.size), 0};
     while (top > 0) {
       Visit visit = stack[--top];
       visit.beams = still_searching(visit);

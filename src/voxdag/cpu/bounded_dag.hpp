@@ -24,13 +24,14 @@ struct CellBox {
 ///
 ///   child mask | box of the node | pointer, ... | box of the child, ...      32-bit words
 ///
-/// Pointers are those of the DAG.
+/// Pointers are those of the DAG. Copies share all this.
 class BoundedDag {
  public:
   /// Uses all threads; O(words) time.
   explicit BoundedDag(const SvdagNodes& nodes);
 
   const SvdagNodes& nodes() const { return nodes_; }
+  int levels() const { return nodes_.levels(); }
   /// Eight words may be read from every box on.
   const std::uint32_t* words() const { return words_.get(); }
   /// What it takes beside the DAG.
@@ -40,7 +41,7 @@ class BoundedDag {
   std::uint64_t word_count() const { return nodes_.view().node_words() * 2 + 7; }
 
   SvdagNodes nodes_;
-  std::unique_ptr<std::uint32_t[]> words_;
+  std::shared_ptr<std::uint32_t[]> words_;
 };
 
 }  // namespace voxdag

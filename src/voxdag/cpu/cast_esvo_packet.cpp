@@ -25,81 +25,39 @@ HWY_BEFORE_NAMESPACE();
 namespace voxdag {
 namespace HWY_NAMESPACE {
 
-#if VOXDAG_ESVO_PACKET_LANES
+#if VOXDAG_PACKET_LANES
 
-/// Fills the last vector with copies of the last ray.
+/// Sets spans 0, and the rays as ContourRay has them.
 template <bool kWithContours>
-void EsvoPacketWalk<kWithContours>::pad() {
-  for (std::size_t i = packet_.size; i % kWidth != 0; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      packet_.origin[axis][i] = packet_.origin[axis][packet_.size - 1];
-      packet_.inverse[axis][i] = packet_.inverse[axis][packet_.size - 1];
-    }
-    packet_.t_min[i] = packet_.t_min[packet_.size - 1];
-    packet_.t_end[i] = packet_.t_end[packet_.size - 1];
-    packet_.stop_start[i] = packet_.stop_per_t[i] = 0;
-  }
-}
-
-/// Sets what is known of the rays before the walk: the ranges that they are in.
-template <bool kWithContours>
-void EsvoPacketWalk<kWithContours>::bound() {
+void EsvoPacketWalk<kWithContours>::set_own_spans() {
   const DF d;
   const DI di;
-  const auto range = [&](const float* values, float out[2]) HWY_ATTR {
-    auto low = hn::Load(d, values), high = low;
-    for (std::size_t i = kWidth; i < packet_.size; i += kWidth) {
-      low = hn::Min(low, hn::Load(d, values + i));
-      high = hn::Max(high, hn::Load(d, values + i));
-    }
-    out[0] = hn::GetLane(hn::MinOfLanes(d, low));
-    out[1] = hn::GetLane(hn::MaxOfLanes(d, high));
-  };
-  width_at_start_ = width_per_t_ = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    range(packet_.origin[axis], origin_range_[axis]);
-    range(packet_.inverse[axis], inverse_range_[axis]);
-    const float apart = origin_range_[axis][1] - origin_range_[axis][0];
-    const float spread = 1 / inverse_range_[axis][0] - 1 / inverse_range_[axis][1];
-    width_at_start_ = apart > width_at_start_ ? apart : width_at_start_;
-    width_per_t_ = spread > width_per_t_ ? spread : width_per_t_;
-    if constexpr (kWithContours)
-      for (std::size_t i = 0; i < packet_.size; i += kWidth) {
-        const auto bits = hn::BitCast(di, hn::Load(d, packet_.origin[axis] + i));
+  if constexpr (kWithContours)
+    for (int axis = 0; axis < 3; ++axis)
+      for (std::size_t i = 0; i < rays_.size; i += kWidth) {
+        const auto bits = hn::BitCast(di, hn::Load(d, rays_.origin[axis] + i));
         hn::Store(hn::Sub(bits, hn::Set(di, static_cast<std::int32_t>(kOne))), di,
                   position_[axis] + i);
         const auto speed =
-            hn::Div(hn::Set(d, ContourRay::kDirectionOne), hn::Load(d, packet_.inverse[axis] + i));
+            hn::Div(hn::Set(d, ContourRay::kDirectionOne), hn::Load(d, rays_.inverse[axis] + i));
         hn::Store(hn::ConvertTo(di, speed), di, direction_[axis] + i);
       }
-  }
   Spans& own = spans_[0];
-  for (std::size_t i = 0; i < packet_.size; i += kWidth) {
-    hn::Store(hn::Load(d, packet_.t_min + i), d, own.enter + i);
-    hn::Store(hn::Load(d, packet_.t_end + i), d, own.leave + i);
+  for (std::size_t i = 0; i < rays_.size; i += kWidth) {
+    hn::Store(hn::Load(d, rays_.t_min + i), d, own.enter + i);
+    hn::Store(hn::Load(d, rays_.t_end + i), d, own.leave + i);
     hn::Store(hn::Zero(di), di, own.enter_level + i);
   }
-  float least[2], most[2];
-  range(packet_.t_min, least);
-  range(packet_.t_end, most);
-  own.first = least[0];
-  own.last = most[1];
+  own.first = t_range_[0];
+  own.last = t_range_[1];
   span_at_[0] = 0;
-  stop_level_ = kMaxLevels + 1;
-  if (!packet_.has_stop) return;
-  range(packet_.stop_start, least);
-  range(packet_.stop_per_t, most);
-  // T is at most 1 in the grid.
-  const float limit = (least[1] + most[1]) * (1 + 0x1p-10f);
-  stop_level_ = static_cast<std::uint32_t>(packet_.coarsest);
-  while (stop_level_ <= kMaxLevels && side_of(stop_level_) > limit) ++stop_level_;
 }
 
 template <bool kWithContours>
 typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::clip(const Visit& visit,
                                                                                  Rays rays,
                                                                                  Rays& stopped) {
-  const bool with_stop = visit.level >= stop_level_;
+  const bool with_stop = static_cast<int>(visit.level) >= stop_level_;
   if (kWithContours && visit.contour.bits != 0)
     return with_stop ? clip<true, true>(visit, rays, stopped)
                      : clip<true, false>(visit, rays, stopped);
@@ -118,21 +76,26 @@ HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours>::plane_at(std::uint32_t le
 
 template <bool kWithContours>
 HWY_INLINE void EsvoPacketWalk<kWithContours>::record(const Visit& visit, Rays rays) {
+  if (hits_ == nullptr) return;
   const Spans& spans = spans_below(visit.level);
-  const std::uint32_t size = 1u << (23 - visit.level);
+  const int bit = 23 - static_cast<int>(visit.level);
+  EsvoHits& hits = *hits_;
+  std::uint32_t child = 0;
+  for (int axis = 0; axis < 3; ++axis) child |= (visit.corner[axis] >> bit & 1u) << axis;
   for (; rays != 0; rays &= rays - 1) {
     const auto i = static_cast<std::size_t>(lowest_bit64(rays));
     float t = spans.enter[i];
     for (int axis = 0; axis < 3; ++axis) {
-      packet_.cell[i][axis] = visit.corner[axis];
-      const float upper = float_from_bits(visit.corner[axis] + size);
-      const float enter = (packet_.origin[axis][i] - upper) * packet_.inverse[axis][i];
+      hits.corner[axis][i] = visit.corner[axis];
+      const float upper = float_from_bits(visit.corner[axis] + (1u << bit));
+      const float enter = (rays_.origin[axis][i] - upper) * rays_.inverse[axis][i];
       t = enter > t ? enter : t;
     }
-    packet_.t[i] = t;
-    packet_.level[i] = static_cast<int>(visit.level);
-    packet_.slot[i] = slots_[visit.level - 1];
-    if constexpr (kWithContours) packet_.plane[i] = plane_at(visit.level, i, t);
+    hits.t[i] = t;
+    hits.level[i] = static_cast<int>(visit.level);
+    hits.slot[i] = slots_[visit.level - 1];
+    hits.child[i] = static_cast<std::uint8_t>(child ^ rays_.mirrored);
+    if constexpr (kWithContours) hits.plane[i] = plane_at(visit.level, i, t);
   }
 }
 
@@ -142,15 +105,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::push_children(const Visit& visit,
                                                              std::uint32_t met,
                                                              const ChildRays& children,
                                                              bool is_exact) {
-  // By the child's bits: whether half is added to the corner; and to the level after that.
-  alignas(16) static constexpr std::uint32_t kBits[8][4] = {
-      {0, 0, 0, 0},   {~0u, 0, 0, 0},   {0, ~0u, 0, 0},   {~0u, ~0u, 0, 0},
-      {0, 0, ~0u, 0}, {~0u, 0, ~0u, 0}, {0, ~0u, ~0u, 0}, {~0u, ~0u, ~0u, 0}};
-  alignas(16) static constexpr std::uint32_t kNextLevel[4] = {0, 0, 0, 1};
   if (met == 0) return;
-  const hn::CappedTag<std::uint32_t, 4> d4;
-  const auto half = hn::Set(d4, 1u << (22 - visit.level));
-  const auto corner = hn::Add(hn::LoadU(d4, visit.corner), hn::Load(d4, kNextLevel));
+  const std::uint32_t half = 1u << (22 - visit.level);
   const std::uint32_t inner = descriptor.inner_mask();
   const std::uint32_t with_contour = kWithContours ? descriptor.contour_mask() : 0;
   const auto& inner_before = kBefore[inner];
@@ -164,8 +120,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::push_children(const Visit& visit,
     Visit& next = stack_[top_];
     next.rays = children.meet[child];
     top_ += next.rays != 0 ? 1 : 0;
-    const std::uint32_t index = child ^ packet_.mirrored;
-    hn::StoreU(hn::Or(corner, hn::And(hn::Load(d4, kBits[child]), half)), d4, next.corner);
+    const std::uint32_t index = child ^ rays_.mirrored;
+    set_child_corner(visit.corner, child, half, next.corner);
     next.is_exact = is_exact;
     const bool is_inner = (inner >> index & 1u) != 0;
     next.slot = is_inner ? first_child + inner_before[index] : kLeaf;
@@ -193,7 +149,7 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::walk
     bool is_exact = visit.is_exact;
     if (level > 0) {
       Rays stopped = 0;
-      if (is_cut || level >= stop_level_ || (is_leaf && !is_exact)) {
+      if (is_cut || static_cast<int>(level) >= stop_level_ || (is_leaf && !is_exact)) {
         rays = clip(visit, rays, stopped);
         if (rays == 0) continue;
       }
@@ -214,7 +170,8 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::walk
     const std::uint32_t mask = mirrored(descriptor.valid_mask());
     const Spans& spans = spans_below(level);
     ChildRays children;
-    const bool by_hull = may_go_by_hull(rays) && is_narrow(visit, spans);
+    const bool by_hull =
+        are_many(rays) && are_narrow(visit.corner, static_cast<int>(level), spans.first);
     std::uint32_t met = mask;
     if (by_hull) {
       met &= children_met_by_hull(visit, spans);
@@ -230,56 +187,35 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::walk
 }
 
 template <bool kWithContours>
-typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::cast() {
-  if (packet_.size == 0 || esvo_.is_empty()) return 0;
-  pad();
-  bound();
-  return walk(packet_.size == RayPacket::kMaxRays ? ~Rays{0} : (Rays{1} << packet_.size) - 1);
+typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::cast(
+    const RayPacket& packet) {
+  if (packet.size == 0 || esvo_.is_empty()) return 0;
+  load(packet);
+  bound(kMaxLevels + 1);
+  set_own_spans();
+  return walk(first(packet.size));
 }
 
-template <bool kWithContours>
-std::uint64_t cast_packet_simd(const EsvoView& esvo, EsvoPacket& packet) {
-  return EsvoPacketWalk<kWithContours>(esvo, packet).cast();
+template <class Nodes>
+std::uint64_t cast_packet_simd(const Nodes& nodes, const RayPacket& packet, EsvoHits* hits) {
+  return EsvoPacketWalk<std::is_same_v<Nodes, ContourNodes>>(nodes.view(), hits).cast(packet);
 }
 
 #else
 
-template <bool kWithContours>
-std::uint64_t cast_packet_simd(const EsvoView& esvo, EsvoPacket& packet) {
-  std::uint64_t hits = 0;
-  for (std::size_t i = 0; i < packet.size; ++i) {
-    GridRay ray;
-    for (int axis = 0; axis < 3; ++axis) {
-      ray.origin[axis] = packet.origin[axis][i];
-      ray.inverse[axis] = packet.inverse[axis][i];
-    }
-    ray.t_min = packet.t_min[i];
-    ray.t_max = packet.t_end[i] < HUGE_VALF ? float_from_bits(bits_of_float(packet.t_end[i]) - 1)
-                                            : packet.t_end[i];
-    ray.mirrored = packet.mirrored;
-    const StopBelowSize stop{packet.stop_start[i], packet.stop_per_t[i], packet.coarsest};
-    EsvoHit hit;
-    using Nodes = std::conditional_t<kWithContours, ContourNodes, EsvoNodes>;
-    if (!voxdag::cast(Nodes(esvo), ray, stop, hit)) continue;
-    hits |= std::uint64_t{1} << i;
-    packet.cell[i][0] = hit.x;
-    packet.cell[i][1] = hit.y;
-    packet.cell[i][2] = hit.z;
-    packet.level[i] = hit.level;
-    packet.t[i] = hit.t;
-    packet.slot[i] = hit.voxel.slot;
-    packet.plane[i] = hit.plane;
-  }
-  return hits;
+template <class Nodes>
+std::uint64_t cast_packet_simd(const Nodes& nodes, const RayPacket& packet, EsvoHits* hits) {
+  return cast_one_by_one(nodes, packet, hits);
 }
 
 #endif
 
-std::uint64_t cast_cube_packet(const EsvoView& esvo, EsvoPacket& packet) {
-  return cast_packet_simd<false>(esvo, packet);
+std::uint64_t cast_cube_packet(const EsvoNodes& nodes, const RayPacket& packet, EsvoHits* hits) {
+  return cast_packet_simd(nodes, packet, hits);
 }
-std::uint64_t cast_contour_packet(const EsvoView& esvo, EsvoPacket& packet) {
-  return cast_packet_simd<true>(esvo, packet);
+std::uint64_t cast_contour_packet(const ContourNodes& nodes, const RayPacket& packet,
+                                  EsvoHits* hits) {
+  return cast_packet_simd(nodes, packet, hits);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -292,12 +228,20 @@ namespace voxdag {
 HWY_EXPORT(cast_cube_packet);
 HWY_EXPORT(cast_contour_packet);
 
-std::uint64_t cast_packet(const EsvoNodes& nodes, EsvoPacket& packet) {
-  return HWY_DYNAMIC_DISPATCH(cast_cube_packet)(nodes.view(), packet);
+void cast_packet(const EsvoNodes& nodes, const RayPacket& packet, EsvoHits& hits) {
+  hits.met = HWY_DYNAMIC_DISPATCH(cast_cube_packet)(nodes, packet, &hits);
 }
 
-std::uint64_t cast_packet(const ContourNodes& nodes, EsvoPacket& packet) {
-  return HWY_DYNAMIC_DISPATCH(cast_contour_packet)(nodes.view(), packet);
+void cast_packet(const ContourNodes& nodes, const RayPacket& packet, EsvoHits& hits) {
+  hits.met = HWY_DYNAMIC_DISPATCH(cast_contour_packet)(nodes, packet, &hits);
+}
+
+std::uint64_t cast_packet_any(const EsvoNodes& nodes, const RayPacket& packet) {
+  return HWY_DYNAMIC_DISPATCH(cast_cube_packet)(nodes, packet, nullptr);
+}
+
+std::uint64_t cast_packet_any(const ContourNodes& nodes, const RayPacket& packet) {
+  return HWY_DYNAMIC_DISPATCH(cast_contour_packet)(nodes, packet, nullptr);
 }
 
 }  // namespace voxdag

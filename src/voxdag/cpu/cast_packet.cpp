@@ -24,7 +24,6 @@
 #include "voxdag/cpu/packet_bounds-inl.hpp"
 #include "voxdag/cpu/packet_boxes-inl.hpp"
 #include "voxdag/cpu/packet_cells-inl.hpp"
-#include "voxdag/cpu/packet_load-inl.hpp"
 #include "voxdag/cpu/packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -89,38 +88,26 @@ inline void PacketWalk::walk() {
   }
 }
 
-inline PacketWalk::Rays PacketWalk::cast(const DagPacket& packet) {
+inline PacketWalk::Rays PacketWalk::cast(const RayPacket& packet) {
   if (packet.size == 0 || nodes_.is_empty()) return 0;
   load(packet);
-  bound();
-  const Rays all = packet.size == DagPacket::kMaxRays ? ~Rays{0} : (Rays{1} << packet.size) - 1;
+  bound(nodes_.levels());
+  const Rays all = first(packet.size);
   searching_ = all;
-  if (hits_ != nullptr) std::fill_n(hits_->level, DagPacket::kMaxRays, 0);
+  if (hits_ != nullptr) std::fill_n(hits_->level, RayPacket::kMaxRays, 0);
   walk();
   if (hits_ != nullptr) set_hit_t();
   return all & ~searching_;
 }
 
-std::uint64_t cast_packet_simd(const BoundedDag& dag, const DagPacket& packet, DagHits* hits) {
+std::uint64_t cast_packet_simd(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
   return PacketWalk(dag, hits).cast(packet);
 }
 
 #else
 
-std::uint64_t cast_packet_simd(const BoundedDag& dag, const DagPacket& packet, DagHits* hits) {
-  std::uint64_t met = 0;
-  for (std::size_t i = 0; i < packet.size; ++i) {
-    CellHit hit;
-    if (!voxdag::cast(dag.nodes(), packet.rays[i]->ray, packet.rays[i]->stop, hit)) continue;
-    met |= std::uint64_t{1} << i;
-    if (hits == nullptr) continue;
-    hits->t[i] = hit.t;
-    hits->corner[0][i] = hit.x;
-    hits->corner[1][i] = hit.y;
-    hits->corner[2][i] = hit.z;
-    hits->level[i] = hit.level;
-  }
-  return met;
+std::uint64_t cast_packet_simd(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
+  return cast_one_by_one(dag.nodes(), packet, hits);
 }
 
 #endif
@@ -134,11 +121,11 @@ namespace voxdag {
 
 HWY_EXPORT(cast_packet_simd);
 
-void cast_packet(const BoundedDag& dag, const DagPacket& packet, DagHits& hits) {
+void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hits) {
   hits.met = HWY_DYNAMIC_DISPATCH(cast_packet_simd)(dag, packet, &hits);
 }
 
-std::uint64_t cast_packet_any(const BoundedDag& dag, const DagPacket& packet) {
+std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet) {
   return HWY_DYNAMIC_DISPATCH(cast_packet_simd)(dag, packet, nullptr);
 }
 

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "voxdag/cpu/fast_caster.hpp"
-#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
@@ -25,7 +24,7 @@ class CpuScene {
     constexpr std::uint64_t kWordsPerRay = 16;
     if (const SvdagView* dag = voxels.dag();
         dag != nullptr && dag->node_words() / kWordsPerRay <= rays)
-      packets_.emplace(SvdagNodes(*dag));
+      packets_.emplace(BoundedDag(SvdagNodes(*dag)));
   }
 
   const VoxelScene& voxels() const { return voxels_; }
@@ -43,7 +42,7 @@ class CpuScene {
 
  private:
   VoxelScene voxels_;
-  std::optional<PacketCaster> packets_;
+  std::optional<PacketCaster<BoundedDag>> packets_;
 };
 
 }  // namespace voxdag

@@ -5,29 +5,40 @@
 
 namespace voxdag {
 
-/// A RayPacket, and what of an EsvoHit is more than a cell.
-struct EsvoPacket : RayPacket {
-  float t[kMaxRays];             ///< Of rays that met a shape: where they enter it.
-  std::uint64_t slot[kMaxRays];  ///< Likewise the voxel's EsvoVoxel::slot,
-  ContourPlane plane[kMaxRays];  ///< and EsvoHit::plane.
+/// And what of an EsvoHit is more than a cell.
+struct EsvoHits : PacketHits {
+  std::uint64_t slot[RayPacket::kMaxRays];  ///< EsvoVoxel::slot.
+  std::uint8_t child[RayPacket::kMaxRays];  ///< EsvoVoxel::child.
+  ContourPlane plane[RayPacket::kMaxRays];  ///< EsvoHit::plane.
 
-  /// What ray i, which met a shape, met first.
-  EsvoHit hit(std::size_t i) const {
+  EsvoHit operator[](std::size_t i) const {
     EsvoHit hit;
-    static_cast<CellHit&>(hit) = {t[i], cell[i][0], cell[i][1], cell[i][2], level[i]};
-    const int bit = 23 - level[i];
-    const std::uint32_t child =
-        (cell[i][0] >> bit & 1u) | (cell[i][1] >> bit & 1u) << 1 | (cell[i][2] >> bit & 1u) << 2;
-    hit.voxel = {slot[i], static_cast<int>(child ^ mirrored)};
+    static_cast<CellHit&>(hit) = PacketHits::operator[](i);
+    hit.voxel = {slot[i], child[i]};
     hit.plane = plane[i];
     return hit;
   }
+  void set(std::size_t i, const EsvoHit& hit) {
+    PacketHits::set(i, hit);
+    slot[i] = hit.voxel.slot;
+    child[i] = static_cast<std::uint8_t>(hit.voxel.child);
+    plane[i] = hit.plane;
+  }
 };
 
-/// Casts the packet's rays: sets what is said above of those that meet a shape, and returns them,
-/// bit i for ray i. What each meets is what cast() in trace/esvo_cast.hpp finds for it, to the bit,
-/// on any instruction set.
-std::uint64_t cast_packet(const EsvoNodes& nodes, EsvoPacket& packet);
-std::uint64_t cast_packet(const ContourNodes& nodes, EsvoPacket& packet);
+template <EsvoLayout Nodes>
+struct PacketTarget<Nodes> {
+  using Hits = EsvoHits;
+  static constexpr bool kByDirection = false;
+};
+
+/// Casts the packet's rays. What each meets is what cast() in trace/esvo_cast.hpp finds for it, to
+/// the bit, on any instruction set. The rays' levels of detail must agree in the coarsest level.
+void cast_packet(const EsvoNodes& nodes, const RayPacket& packet, EsvoHits& hits);
+void cast_packet(const ContourNodes& nodes, const RayPacket& packet, EsvoHits& hits);
+
+/// Which of the rays meet anything, as PacketHits::met.
+std::uint64_t cast_packet_any(const EsvoNodes& nodes, const RayPacket& packet);
+std::uint64_t cast_packet_any(const ContourNodes& nodes, const RayPacket& packet);
 
 }  // namespace voxdag

@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace voxdag {
 namespace HWY_NAMESPACE {
 
-#if VOXDAG_ESVO_PACKET_LANES
+#if VOXDAG_PACKET_LANES
 
 /// ContourRay::span: where rays with n.O = position and n.d = speed are between planes.
 template <bool kWithContours>
@@ -55,7 +55,7 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
   Spans& here = spans_[kCut ? level : 0];
   VI normal[3], low, high, length1;
   if constexpr (kCut) {
-    const ContourSlab slab = ContourSlab::make(visit.contour, packet_.mirrored, bit);
+    const ContourSlab slab = ContourSlab::make(visit.contour, rays_.mirrored, bit);
     std::int32_t centre = 0;
     for (int axis = 0; axis < 3; ++axis) {
       normal[axis] = hn::Set(di, slab.normal[axis]);
@@ -70,12 +70,11 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
   Rays met = 0;
   stopped = 0;
   for (Rays rest = rays; rest != 0;) {
-    const std::size_t at = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
-    rest &= ~(kVectorRays << at);
+    const std::size_t at = take_vector(rest);
     VF enters[3], exits[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const auto origin = hn::Load(d, packet_.origin[axis] + at),
-                 inverse = hn::Load(d, packet_.inverse[axis] + at);
+      const auto origin = hn::Load(d, rays_.origin[axis] + at),
+                 inverse = hn::Load(d, rays_.inverse[axis] + at);
       enters[axis] = hn::Mul(hn::Sub(origin, upper[axis]), inverse);
       exits[axis] = hn::Mul(hn::Sub(origin, lower[axis]), inverse);
     }
@@ -108,8 +107,8 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
     }
     met |= bits_of(hn::Lt(enter, leave)) << at;
     if constexpr (kWithStop) {
-      const auto limit = hn::Add(hn::Load(d, packet_.stop_start + at),
-                                 hn::Mul(hn::Load(d, packet_.stop_per_t + at), exit));
+      const auto limit = hn::Add(hn::Load(d, rays_.stop_start + at),
+                                 hn::Mul(hn::Load(d, rays_.stop_per_t + at), exit));
       stopped |= bits_of(hn::Le(hn::Set(d, side_of(level)), limit)) << at;
     }
   }
@@ -136,11 +135,10 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, con
   const auto z0 = plane(2, 0), z1 = plane(2, 1), z2 = plane(2, 2);
   Rays m0 = 0, m1 = 0, m2 = 0, m3 = 0, m4 = 0, m5 = 0, m6 = 0, m7 = 0;
   for (Rays rest = rays; rest != 0;) {
-    const std::size_t first = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
-    rest &= ~(kVectorRays << first);
+    const std::size_t first = take_vector(rest);
     const auto t = [&](int axis, VF position) HWY_ATTR {
-      return hn::Mul(hn::Sub(hn::Load(d, packet_.origin[axis] + first), position),
-                     hn::Load(d, packet_.inverse[axis] + first));
+      return hn::Mul(hn::Sub(hn::Load(d, rays_.origin[axis] + first), position),
+                     hn::Load(d, rays_.inverse[axis] + first));
     };
     const auto tx0 = t(0, x0), tx1 = t(0, x1), tx2 = t(0, x2);
     const auto ty0 = t(1, y0), ty1 = t(1, y1), ty2 = t(1, y2);
@@ -168,30 +166,13 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, con
   children.meet[7] = m7 & rays;
 }
 
-/// Whether the rays are close together for the voxel's children: not worth telling apart.
-template <bool kWithContours>
-inline bool EsvoPacketWalk<kWithContours>::is_narrow(const Visit& visit, const Spans& spans) const {
-  const std::uint32_t size = 1u << (23 - visit.level);
-  float enter = spans.first;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float t = (origin_range_[axis][0] - float_from_bits(visit.corner[axis] + size)) *
-                    inverse_range_[axis][0];
-    enter = t > enter ? t : enter;
-  }
-  return width_at_start_ + width_per_t_ * enter < kNarrow * side_of(visit.level + 1);
-}
-
 /// The children that any ray can meet. The bounds of T hold in float arithmetic too, since rounding
 /// is monotone.
 template <bool kWithContours>
 inline std::uint32_t EsvoPacketWalk<kWithContours>::children_met_by_hull(const Visit& visit,
                                                                          const Spans& spans) const {
-  const hn::CappedTag<float, 8> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  static_assert(hn::MaxLanes(d) == 8);
-  alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
-                                                             {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
-                                                             {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
+  const DF8 d;
+  const DU8 du;
   const auto half = hn::Set(du, 1u << (22 - visit.level));
   auto enter = hn::Set(d, spans.first), exit = hn::Set(d, spans.last);
   for (int axis = 0; axis < 3; ++axis) {
@@ -205,12 +186,10 @@ inline std::uint32_t EsvoPacketWalk<kWithContours>::children_met_by_hull(const V
     enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
     exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
   }
-  std::uint8_t bits[8];
-  hn::StoreMaskBits(d, hn::Lt(enter, exit), bits);
-  return bits[0];
+  return bits_of_children(hn::Lt(enter, exit));
 }
 
-#endif  // VOXDAG_ESVO_PACKET_LANES
+#endif  // VOXDAG_PACKET_LANES
 
 }  // namespace HWY_NAMESPACE
 }  // namespace voxdag

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace voxdag {
 namespace HWY_NAMESPACE {
 
-#if VOXDAG_ESVO_PACKET_LANES
+#if VOXDAG_PACKET_LANES
 
 /// The shapes of a voxel's children, which are numbered as in its descriptor.
 template <bool kWithContours>
@@ -27,16 +27,14 @@ template <bool kWithContours>
 HWY_INLINE void EsvoPacketWalk<kWithContours>::set_child_shapes(const Visit& visit,
                                                                 ChildDescriptor descriptor,
                                                                 ChildShapes& shapes) const {
-  alignas(32) static constexpr std::int32_t kUpper[3][8] = {
-      {0, -1, 0, -1, 0, -1, 0, -1}, {0, 0, -1, -1, 0, 0, -1, -1}, {0, 0, 0, 0, -1, -1, -1, -1}};
   const DF8 d;
   const DI8 di;
   const int bit = 22 - static_cast<int>(visit.level);
   const auto size = hn::Set(di, 1 << bit);
   VI8 corner[3], sign[3];
   for (int axis = 0; axis < 3; ++axis) {
-    sign[axis] = hn::Set(di, -static_cast<std::int32_t>(packet_.mirrored >> axis & 1u));
-    const auto is_upper = hn::Xor(hn::Load(di, kUpper[axis]), sign[axis]);
+    sign[axis] = hn::Set(di, -static_cast<std::int32_t>(rays_.mirrored >> axis & 1u));
+    const auto is_upper = hn::Xor(hn::BitCast(di, hn::Load(DU8(), kUpper[axis])), sign[axis]);
     corner[axis] = hn::Add(hn::Set(di, static_cast<std::int32_t>(visit.corner[axis])),
                            hn::And(is_upper, size));
     shapes.lower[axis] = hn::BitCast(d, corner[axis]);
@@ -89,16 +87,11 @@ EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescript
                                                Rays rays, ChildRays& children) {
   const DF8 d;
   const DI8 di;
-  const auto bits8 = [](auto mask) HWY_ATTR {
-    std::uint8_t bytes[8];
-    hn::StoreMaskBits(DF8(), mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]);
-  };
   ChildShapes shapes;
   set_child_shapes(visit, descriptor, shapes);
   const Spans& spans = spans_below(visit.level);
   const std::uint32_t present = descriptor.valid_mask();
-  const bool with_stop = visit.level + 1 >= stop_level_;
+  const bool with_stop = static_cast<int>(visit.level) + 1 >= stop_level_;
   const auto side = hn::Set(d, side_of(visit.level + 1));
   const auto has_contour =
       hn::RebindMask(d, hn::Ne(hn::And(hn::Set(di, static_cast<std::int32_t>(shapes.with_contour)),
@@ -109,8 +102,8 @@ EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescript
   for (Rays rest = rays; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(lowest_bit64(rest));
     const auto t = [&](int axis, VF8 position) HWY_ATTR {
-      return hn::Mul(hn::Sub(hn::Set(d, packet_.origin[axis][i]), position),
-                     hn::Set(d, packet_.inverse[axis][i]));
+      return hn::Mul(hn::Sub(hn::Set(d, rays_.origin[axis][i]), position),
+                     hn::Set(d, rays_.inverse[axis][i]));
     };
     const auto exit =
         hn::Min(hn::Min(t(0, shapes.lower[0]), t(1, shapes.lower[1])), t(2, shapes.lower[2]));
@@ -129,47 +122,50 @@ EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescript
       cut(along(position_), along(direction_), exit, shapes.low, shapes.high, shapes.length1,
           cut_enter, cut_leave);
       const auto is_later = hn::And(has_contour, hn::Gt(cut_enter, enter));
-      through_contour = bits8(is_later);
+      through_contour = bits_of_children(is_later);
       enter = hn::IfThenElse(is_later, cut_enter, enter);
       leave = hn::IfThenElse(has_contour, hn::Min(leave, cut_leave), leave);
     }
-    const std::uint32_t met = bits8(hn::Lt(enter, leave)) & present;
+    const std::uint32_t met = bits_of_children(hn::Lt(enter, leave)) & present;
     if (met == 0) continue;
     std::uint32_t ends = descriptor.leaf_mask();
     if (with_stop) {
-      const auto limit = hn::Add(hn::Set(d, packet_.stop_start[i]),
-                                 hn::Mul(hn::Set(d, packet_.stop_per_t[i]), exit));
-      ends |= bits8(hn::Le(side, limit));
+      const auto limit =
+          hn::Add(hn::Set(d, rays_.stop_start[i]), hn::Mul(hn::Set(d, rays_.stop_per_t[i]), exit));
+      ends |= bits_of_children(hn::Le(side, limit));
     }
     std::uint32_t in_order = mirrored(met);
     const auto child = static_cast<std::uint32_t>(highest_bit(in_order));
-    const std::uint32_t index = child ^ packet_.mirrored;
+    const std::uint32_t index = child ^ rays_.mirrored;
     if ((ends >> index & 1u) == 0) {
       for (; in_order != 0; in_order &= in_order - 1)
         children.meet[lowest_bit64(in_order)] |= Rays{1} << i;
       continue;
     }
     ended |= Rays{1} << i;
+    if (hits_ == nullptr) continue;
     alignas(32) float enters[8];
     hn::Store(enter, d, enters);
+    EsvoHits& hits = *hits_;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
-      packet_.cell[i][axis] =
+      hits.corner[axis][i] =
           visit.corner[axis] | ((child >> axis & 1u) != 0 ? 1u << (22 - visit.level) : 0u);
-    packet_.t[i] = enters[index];
-    packet_.level[i] = static_cast<int>(visit.level + 1);
-    packet_.slot[i] = visit.slot;
+    hits.t[i] = enters[index];
+    hits.level[i] = static_cast<int>(visit.level + 1);
+    hits.slot[i] = visit.slot;
+    hits.child[i] = static_cast<std::uint8_t>(index);
     if constexpr (kWithContours) {
       if ((through_contour >> index & 1u) != 0)
-        packet_.plane[i] = {esvo_.contour(visit.slot, descriptor, static_cast<int>(index)),
-                            packet_.level[i]};
+        hits.plane[i] = {esvo_.contour(visit.slot, descriptor, static_cast<int>(index)),
+                         hits.level[i]};
       else
-        packet_.plane[i] = plane_at(visit.level, i, enters[index]);
+        hits.plane[i] = plane_at(visit.level, i, enters[index]);
     }
   }
   return ended;
 }
 
-#endif  // VOXDAG_ESVO_PACKET_LANES
+#endif  // VOXDAG_PACKET_LANES
 
 }  // namespace HWY_NAMESPACE
 }  // namespace voxdag

@@ -1,13 +1,13 @@
 #pragma once
 /// The fastest caster of the CPU for each layout but DAGs, for which CpuScene keeps one.
-#include "voxdag/cpu/esvo_packet_caster.hpp"
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/streamed_nodes.hpp"
 
 namespace voxdag {
 
 template <EsvoLayout Nodes>
-EsvoPacketCaster<Nodes> fast_caster(const Nodes& nodes) {
-  return EsvoPacketCaster<Nodes>(nodes);
+PacketCaster<Nodes> fast_caster(const Nodes& nodes) {
+  return PacketCaster<Nodes>(nodes);
 }
 
 /// Packets do not say which leaves rays end at.

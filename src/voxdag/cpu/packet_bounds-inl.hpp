@@ -1,5 +1,4 @@
-// What is known of all rays of a packet together: the ranges that they are in, the children that
-// any of them can meet, the cells that hold all of them.
+// Where the walk of a packet may begin: the cells that hold all of its rays.
 #if defined(VOXDAG_PACKET_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_PACKET_BOUNDS_INL
 #undef VOXDAG_PACKET_BOUNDS_INL
@@ -14,57 +13,6 @@ namespace voxdag {
 namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
-
-/// Finds the ranges that the rays are in.
-inline void PacketWalk::bound() {
-  const DF d;
-  const auto range = [&](const float* values, float out[2]) HWY_ATTR {
-    auto low = hn::Load(d, values), high = low;
-    for (std::size_t i = kWidth; i < rays_.size; i += kWidth) {
-      low = hn::Min(low, hn::Load(d, values + i));
-      high = hn::Max(high, hn::Load(d, values + i));
-    }
-    out[0] = hn::GetLane(hn::MinOfLanes(d, low));
-    out[1] = hn::GetLane(hn::MaxOfLanes(d, high));
-  };
-  width_at_start_ = width_per_t_ = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    range(rays_.origin[axis], origin_range_[axis]);
-    range(rays_.inverse[axis], inverse_range_[axis]);
-    const float apart = origin_range_[axis][1] - origin_range_[axis][0];
-    const float spread = 1 / inverse_range_[axis][0] - 1 / inverse_range_[axis][1];
-    width_at_start_ = apart > width_at_start_ ? apart : width_at_start_;
-    width_per_t_ = spread > width_per_t_ ? spread : width_per_t_;
-  }
-  float least[2], longest[2];
-  range(rays_.t_min, least);
-  range(rays_.t_end, longest);
-  t_range_[0] = least[0];
-  t_range_[1] = longest[1];
-  last_t_min_ = least[1];
-  stop_level_ = nodes_.levels();
-  if (!rays_.has_stop) return;
-  range(rays_.stop_start, stop_start_);
-  range(rays_.stop_per_t, stop_per_t_);
-  // T is at most 1 in the grid.
-  const float most =
-      stop_per_t_[1] > 0 ? (stop_start_[1] + stop_per_t_[1]) * (1 + 0x1p-10f) : stop_start_[1];
-  stop_level_ = rays_.coarsest;
-  while (stop_level_ < nodes_.levels() && side_of(stop_level_) > most) ++stop_level_;
-}
-
-/// Whether the rays are close together for the children of this node: not worth telling apart.
-inline bool PacketWalk::is_narrow(const std::uint32_t corner[3], int level) const {
-  const std::uint32_t size = 1u << (23 - level);
-  float enter = t_range_[0];
-  for (int axis = 0; axis < 3; ++axis) {
-    const float t =
-        (origin_range_[axis][0] - float_from_bits(corner[axis] + size)) * inverse_range_[axis][0];
-    enter = t > enter ? t : enter;
-  }
-  const float side = float_from_bits(static_cast<std::uint32_t>(126 - level) << 23);
-  return width_at_start_ + width_per_t_ * enter < kNarrow * side;
-}
 
 /// The lowest cells, of level `finest` at most, that hold the starts of all rays, and starts and
 /// ends. A position p here is in the cell with lower < p <= upper, as the voxel rule has it.

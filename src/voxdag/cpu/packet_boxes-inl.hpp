@@ -17,12 +17,9 @@ namespace HWY_NAMESPACE {
 /// Sets the planes of the boxes of the children of the node of `level` at `corner`, one box a lane,
 /// rounded outwards to the cells that rays may end at.
 HWY_INLINE void PacketWalk::set_planes(const std::uint32_t corner[3], int level,
-                                       hn::Vec<DChild> boxes) {
-  const DChild d;
-  const DPlane df;
-  alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
-                                                             {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
-                                                             {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
+                                       hn::Vec<DU8> boxes) {
+  const DU8 d;
+  const DF8 df;
   int below = CellBox::kBits - (stop_level_ - (level + 1));
   below = below < 0 ? 0 : below > CellBox::kBits ? CellBox::kBits : below;
   const std::uint32_t rounded = (1u << below) - 1;
@@ -49,16 +46,16 @@ HWY_INLINE void PacketWalk::set_planes(const std::uint32_t corner[3], int level,
 
 /// Says at which of the children rays end that enter and leave them in these ranges of T, with the
 /// least and the most of their levels of detail.
-HWY_INLINE void PacketWalk::set_ends(int child_level, hn::Vec<DPlane> enter, hn::Vec<DPlane> exit,
+HWY_INLINE void PacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
                                      const float start[2], const float per_t[2],
                                      Children& children) const {
-  const DPlane d;
+  const DF8 d;
   children.all_end = children.some_end = 0;
   children.octants_end = children.octants_may_end = 0;
   const int levels = nodes_.levels();
-  const auto ends = [&](int level, int of, hn::Vec<DPlane> t) HWY_ATTR {
+  const auto ends = [&](int level, int of, hn::Vec<DF8> t) HWY_ATTR {
     const auto limit = hn::Add(hn::Set(d, start[of]), hn::Mul(hn::Set(d, per_t[of]), t));
-    return bits_of_lanes(hn::Le(hn::Set(d, side_of(level)), limit));
+    return bits_of_children(hn::Le(hn::Set(d, side_of(level)), limit));
   };
   // From stop_level_ on the boxes are the cells.
   if (child_level >= stop_level_) {
@@ -74,7 +71,7 @@ HWY_INLINE void PacketWalk::set_ends(int child_level, hn::Vec<DPlane> enter, hn:
 /// What the ranges that the rays are in say of the boxes. The bounds of T hold in float arithmetic
 /// too, since rounding is monotone.
 HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) const {
-  const DPlane d;
+  const DF8 d;
   auto enter = hn::Set(d, t_range_[0]), exit = hn::Set(d, HUGE_VALF);
   for (int axis = 0; axis < 3; ++axis) {
     const auto slow = hn::Set(d, inverse_range_[axis][1]),
@@ -86,14 +83,14 @@ HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) cons
     exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
   }
   Children children;
-  children.met = bits_of_lanes(hn::Lt(enter, hn::Min(exit, hn::Set(d, t_range_[1]))));
+  children.met = bits_of_children(hn::Lt(enter, hn::Min(exit, hn::Set(d, t_range_[1]))));
   set_ends(child_level, enter, exit, stop_start_, stop_per_t_, children);
   return children;
 }
 
 /// Which boxes ray i meets.
 HWY_INLINE std::uint32_t PacketWalk::boxes_met_by(int i) const {
-  const DPlane d;
+  const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, rays_.t_end[i]);
   for (int axis = 0; axis < 3; ++axis) {
     const auto origin = hn::Set(d, rays_.origin[axis][i]),
@@ -101,12 +98,12 @@ HWY_INLINE std::uint32_t PacketWalk::boxes_met_by(int i) const {
     enter = hn::Max(enter, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis + 3])), inverse));
     exit = hn::Min(exit, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis])), inverse));
   }
-  return bits_of_lanes(hn::Lt(enter, exit));
+  return bits_of_children(hn::Lt(enter, exit));
 }
 
 /// Which boxes ray i meets, and at which cells it ends that it meets.
 HWY_INLINE PacketWalk::Children PacketWalk::children_met_by(int i, int child_level) const {
-  const DPlane d;
+  const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, HUGE_VALF);
   for (int axis = 0; axis < 3; ++axis) {
     const auto origin = hn::Set(d, rays_.origin[axis][i]),
@@ -115,7 +112,7 @@ HWY_INLINE PacketWalk::Children PacketWalk::children_met_by(int i, int child_lev
     exit = hn::Min(exit, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis])), inverse));
   }
   Children children;
-  children.met = bits_of_lanes(hn::Lt(enter, hn::Min(exit, hn::Set(d, rays_.t_end[i]))));
+  children.met = bits_of_children(hn::Lt(enter, hn::Min(exit, hn::Set(d, rays_.t_end[i]))));
   const float start[2] = {rays_.stop_start[i], rays_.stop_start[i]};
   const float per_t[2] = {rays_.stop_per_t[i], rays_.stop_per_t[i]};
   set_ends(child_level, enter, exit, start, per_t, children);
@@ -130,8 +127,7 @@ HWY_INLINE PacketWalk::Rays PacketWalk::rays_meeting(std::uint32_t child, Rays r
   const auto z0 = hn::Set(d, planes_[2][child]), z1 = hn::Set(d, planes_[5][child]);
   Rays met = 0;
   for (Rays rest = rays; rest != 0;) {
-    const std::size_t first = static_cast<std::size_t>(lowest_bit64(rest)) & ~(kWidth - 1);
-    rest &= ~(kVectorRays << first);
+    const std::size_t first = take_vector(rest);
     const auto t = [&](int axis, VF position) HWY_ATTR {
       return hn::Mul(hn::Sub(hn::Load(d, rays_.origin[axis] + first), position),
                      hn::Load(d, rays_.inverse[axis] + first));
@@ -165,9 +161,9 @@ inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::si
   const std::uint32_t* node = words_ + 2 * std::size_t{visit.node};
   const std::uint32_t present = node[0];
   const std::uint32_t* pointers = node + 2;
-  const DChild d;
+  const DU8 d;
   const std::uint8_t* rank_of = ranks_of(present);
-  const auto ranks = hn::PromoteTo(d, hn::Load(hn::Rebind<std::uint8_t, DChild>(), rank_of));
+  const auto ranks = hn::PromoteTo(d, hn::Load(hn::Rebind<std::uint8_t, DU8>(), rank_of));
   const auto boxes = hn::TableLookupLanes(hn::LoadU(d, pointers + popcount8(present)),
                                           hn::IndicesFromVec(d, ranks));
   set_planes(visit.corner, level, boxes);
@@ -177,8 +173,6 @@ inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::si
       is_single ? children_met_by(lowest_bit64(visit.rays), level + 1) : bound_children(level + 1);
   std::uint32_t met = children.met & not_skipped;
   if (met == 0) return;
-  // Few rays are faster one by one, at all boxes at once.
-  constexpr int kFew = 6;
   const bool are_few = !is_single && (met & (met - 1)) != 0 && popcount64(visit.rays) <= kFew;
   std::uint32_t met_by[kFew];
   if (are_few) {
@@ -196,7 +190,7 @@ inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::si
     return;
   }
   const bool are_as_one =
-      is_single || ((visit.rays >> (2 * kWidth - 1) >> 1) != 0 && is_narrow(visit.corner, level));
+      is_single || (are_many(visit.rays) && are_narrow(visit.corner, level, t_range_[0]));
   for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const auto child = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const bool may_end = (children.some_end >> child & 1u) != 0;

@@ -1,54 +1,56 @@
 #pragma once
 /// The caster of the CPU: sorts a stream of rays into packets of like direction.
 #include <algorithm>
-#include <memory>
+#include <utility>
 
 #include "voxdag/cpu/dag_packet.hpp"
+#include "voxdag/cpu/esvo_packet.hpp"
 #include "voxdag/cpu/ray_window.hpp"
 
 namespace voxdag {
 
-/// A caster (see trace/scalar_caster.hpp) on the paper's layout and what is made from it. Fast
-/// where rays that come within thousands of one another are near each other, as those of a tile of
-/// a picture are. Copies share what they point to.
+/// A caster (see trace/scalar_caster.hpp) on a BoundedDag, EsvoNodes or ContourNodes. Fast where
+/// rays that come within thousands of one another are near each other, as those of a tile of a
+/// picture are.
+template <class Target>
 class PacketCaster {
  public:
-  /// Takes time and memory in proportion to the DAG: see BoundedDag.
-  explicit PacketCaster(const SvdagNodes& nodes)
-      : dag_(std::make_shared<const BoundedDag>(nodes)) {}
+  explicit PacketCaster(const Target& target) : target_(target) {}
 
-  int levels() const { return dag_->nodes().levels(); }
-  const BoundedDag& dag() const { return *dag_; }
+  int levels() const { return target_.levels(); }
 
   template <class MakeRay, class OnResult>
   void closest(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     run<true>(
         count, make_ray,
-        [&](int i, const GridRay& ray, const DagHits& hits, std::size_t at) {
+        [&](int i, const GridRay& ray, const Hits& hits, std::size_t at) {
           const bool is_hit = hits.is_hit(at);
-          on_result(i, ray, is_hit ? hits[at] : CellHit{}, is_hit);
+          on_result(i, ray, is_hit ? hits[at] : Hit{}, is_hit);
         },
-        [&](int i, const GridRay& ray) { on_result(i, ray, CellHit{}, false); });
+        [&](int i, const GridRay& ray) { on_result(i, ray, Hit{}, false); });
   }
 
   template <class MakeRay, class OnResult>
   void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     run<false>(
         count, make_ray,
-        [&](int i, const GridRay&, const DagHits& hits, std::size_t at) {
+        [&](int i, const GridRay&, const Hits& hits, std::size_t at) {
           on_result(i, hits.is_hit(at));
         },
         [&](int i, const GridRay&) { on_result(i, false); });
   }
 
  private:
+  using Hits = typename PacketTarget<Target>::Hits;
+  using Hit = decltype(std::declval<const Hits&>()[0]);
+
   template <bool kClosest, class MakeRay, class OnCast, class OnMiss>
   void run(int count, const MakeRay& make_ray, const OnCast& on_cast, const OnMiss& on_miss) const {
     RayWindow window;
-    DagPacket packet;
-    DagHits hits;
+    RayPacket packet;
+    Hits hits;
     for (int first = 0; first < count; first += RayWindow::kMaxRays) {
-      window.fill(std::min(RayWindow::kMaxRays, count - first),
+      window.fill(std::min(RayWindow::kMaxRays, count - first), PacketTarget<Target>::kByDirection,
                   [&](int i) { return make_ray(first + i); });
       if (window.ordered() < window.size())
         for (int i = 0; i < window.size(); ++i)
@@ -60,12 +62,12 @@ class PacketCaster {
         do {
           packet.rays[packet.size++] = &window[window.at(place)];
           ++place;
-        } while (place < window.ordered() && packet.size < DagPacket::kMaxRays &&
+        } while (place < window.ordered() && packet.size < RayPacket::kMaxRays &&
                  window[window.at(place)].ray.mirrored == mirrored);
         if constexpr (kClosest)
-          cast_packet(*dag_, packet, hits);
+          cast_packet(target_, packet, hits);
         else
-          hits.met = cast_packet_any(*dag_, packet);
+          hits.met = cast_packet_any(target_, packet);
         for (std::size_t at = 0; at < packet.size; ++at) {
           const int i = window.at(begin + static_cast<int>(at));
           on_cast(first + i, window[i].ray, hits, at);
@@ -74,7 +76,7 @@ class PacketCaster {
     }
   }
 
-  std::shared_ptr<const BoundedDag> dag_;
+  Target target_;
 };
 
 }  // namespace voxdag

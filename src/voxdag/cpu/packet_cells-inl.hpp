@@ -61,7 +61,7 @@ inline void PacketWalk::cast_in_block(const Visit& visit) {
       const auto enter_xy = hn::Max(enter[0][xy & 1], enter[1][xy >> 1]);
       const auto exit_xy = hn::Min(exit[0][xy & 1], exit[1][xy >> 1]);
       for (int z = 0; z < 2; ++z)
-        met |= static_cast<std::uint64_t>(bits_of_lanes(
+        met |= static_cast<std::uint64_t>(bits_of_children(
                    hn::Lt(hn::Max(enter_xy, enter[2][z]), hn::Min(exit_xy, exit[2][z]))))
                << (8 * (xy + 4 * z));
     }
@@ -98,9 +98,27 @@ inline void PacketWalk::cast_in_block(const Visit& visit) {
 /// Ends rays at the octants of a block that they meet.
 inline void PacketWalk::end_at_octants(const Visit& visit) {
   const int level = nodes_.levels() - 2;
-  set_planes(visit.corner, level, hn::Zero(DChild()));
+  set_planes(visit.corner, level, hn::Zero(DU8()));
   const std::uint32_t met = bound_children(level + 1).met;
   end_at_children(visit, met & mirrored(nodes_.child_mask(visit.node, level)));
+}
+
+/// Sets T of the hits, as entered_face() in trace/cast.hpp finds it.
+inline void PacketWalk::set_hit_t() {
+  const DF d;
+  const hn::RebindToUnsigned<DF> du;
+  const hn::RebindToSigned<DF> di;
+  for (std::size_t i = 0; i < rays_.size; i += kWidth) {
+    const auto shift = hn::Sub(hn::Set(di, 23), hn::LoadU(di, hits_->level + i));
+    const auto side = hn::Shl(hn::Set(du, 1), hn::BitCast(du, shift));
+    auto t = hn::Load(d, rays_.t_min + i);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto upper = hn::BitCast(d, hn::Add(hn::LoadU(du, hits_->corner[axis] + i), side));
+      t = hn::Max(t, hn::Mul(hn::Sub(hn::Load(d, rays_.origin[axis] + i), upper),
+                             hn::Load(d, rays_.inverse[axis] + i)));
+    }
+    hn::Store(t, d, hits_->t + i);
+  }
 }
 
 #endif  // VOXDAG_PACKET_LANES

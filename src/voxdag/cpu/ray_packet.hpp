@@ -1,5 +1,5 @@
 #pragma once
-/// Rays of like direction that are cast together.
+/// Rays of like direction that are cast together, and what they meet.
 #include <cstddef>
 #include <cstdint>
 
@@ -7,43 +7,52 @@
 
 namespace voxdag {
 
-/// Up to 64 rays that are mirrored alike, and what they met. Arrays are by axis, then by ray.
+/// Up to 64 rays that are mirrored alike.
 struct RayPacket {
   static constexpr std::size_t kMaxRays = 64;
 
-  alignas(64) float origin[3][kMaxRays], inverse[3][kMaxRays];
-  alignas(64) float t_min[kMaxRays];
-  /// The next float after t_max: a cell is met if it is entered before that.
-  alignas(64) float t_end[kMaxRays];
-  alignas(64) float stop_start[kMaxRays], stop_per_t[kMaxRays];
-  std::uint32_t cell[kMaxRays][3];  ///< Of rays that met one: the float bits of its lower corner.
-  int level[kMaxRays];              ///< Likewise.
+  const CastRay* rays[kMaxRays];  ///< With misses() false.
   std::size_t size = 0;
-  std::uint32_t mirrored = 0;
-  int coarsest = 2;  ///< Of the rays' levels of detail, which must agree in it.
-  bool has_stop = false;
+};
 
-  void clear() {
-    size = 0;
-    has_stop = false;
+/// What the rays of a packet met. Arrays are by ray, those of rays that met nothing undefined.
+struct PacketHits {
+  std::uint64_t met = 0;  ///< Bit i: ray i met a cell.
+  alignas(64) float t[RayPacket::kMaxRays];
+  std::uint32_t corner[3][RayPacket::kMaxRays];  ///< By axis: the float bits.
+  int level[RayPacket::kMaxRays];
+
+  bool is_hit(std::size_t i) const { return (met >> i & 1u) != 0; }
+  CellHit operator[](std::size_t i) const {
+    return {t[i], corner[0][i], corner[1][i], corner[2][i], level[i]};
   }
-
-  /// Adds a ray with misses() false; the packet must not be full and its rays be mirrored like it.
-  void add(const CastRay& cast_ray) {
-    const GridRay& ray = cast_ray.ray;
-    const std::size_t i = size++;
-    mirrored = ray.mirrored;
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis][i] = ray.origin[axis];
-      inverse[axis][i] = ray.inverse[axis];
-    }
-    t_min[i] = ray.t_min;
-    t_end[i] = ray.t_max < HUGE_VALF ? float_from_bits(bits_of_float(ray.t_max) + 1) : ray.t_max;
-    stop_start[i] = cast_ray.stop.at_start;
-    stop_per_t[i] = cast_ray.stop.per_t;
-    coarsest = cast_ray.stop.coarsest_level;
-    has_stop |= cast_ray.stop.at_start > 0 || cast_ray.stop.per_t > 0;
+  void set(std::size_t i, const CellHit& hit) {
+    met |= std::uint64_t{1} << i;
+    t[i] = hit.t;
+    corner[0][i] = hit.x;
+    corner[1][i] = hit.y;
+    corner[2][i] = hit.z;
+    level[i] = hit.level;
   }
 };
+
+/// Casts the packet's rays one by one: for machines whose vectors are too small. Returns which meet
+/// anything, bit i for ray i; `hits` may be null.
+template <class Nodes, class Hits>
+std::uint64_t cast_one_by_one(const Nodes& nodes, const RayPacket& packet, Hits* hits) {
+  std::uint64_t met = 0;
+  for (std::size_t i = 0; i < packet.size; ++i) {
+    typename FoundBy<Nodes>::Type hit;
+    if (!cast(nodes, packet.rays[i]->ray, packet.rays[i]->stop, hit)) continue;
+    met |= std::uint64_t{1} << i;
+    if (hits != nullptr) hits->set(i, hit);
+  }
+  return met;
+}
+
+/// Of what packets are cast at: the type of its PacketHits, and whether rays of many neighbouring
+/// points that run the same way make the better packet (true), or all rays of a few (false).
+template <class Target>
+struct PacketTarget {};
 
 }  // namespace voxdag

@@ -12,9 +12,9 @@ namespace voxdag {
 
 /// Up to kMaxRays rays. Rays of a packet must be mirrored alike; more likeness makes it faster.
 /// Neighbours in a stream of primary or shadow rays are alike as they are. Those of ambient
-/// occlusion are not: they are put in the order of their directions, in cells of about a hundredth
-/// of the sphere, so that a packet has rays of many neighbouring pixels that run about the same
-/// way.
+/// occlusion are not: they may be put in the order of their directions, in cells of about a
+/// hundredth of the sphere, so that a packet has rays of many neighbouring pixels that run about
+/// the same way.
 class RayWindow {
  public:
   static constexpr int kMaxRays = 4096;
@@ -29,9 +29,10 @@ class RayWindow {
   int ordered() const { return ordered_; }
   int at(int place) const { return order_[place]; }
 
-  /// Takes make_ray(0) to make_ray(size - 1).
+  /// Takes make_ray(0) to make_ray(size - 1). Without `by_direction` all keep their order but for
+  /// what mirrors them.
   template <class MakeRay>
-  void fill(int size, const MakeRay& make_ray) {
+  void fill(int size, bool by_direction, const MakeRay& make_ray) {
     size_ = size;
     ordered_ = 0;
     std::uint32_t octants = 0;
@@ -41,7 +42,7 @@ class RayWindow {
       order_[ordered_++] = static_cast<std::uint16_t>(i);
       octants |= 1u << ray.ray.mirrored;
     }
-    if (are_unlike())
+    if (by_direction && are_unlike())
       sort(0);
     else if ((octants & (octants - 1)) != 0)
       sort(kCellBits);

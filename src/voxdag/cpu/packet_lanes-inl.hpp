@@ -1,0 +1,61 @@
+// What the walks of packets share: lanes of rays or beams. Included once for each instruction set.
+#if defined(VOXDAG_PACKET_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_PACKET_LANES_INL
+#undef VOXDAG_PACKET_LANES_INL
+#else
+#define VOXDAG_PACKET_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "voxdag/core/bits.hpp"
+
+// Whether vectors have 8 lanes at least: rays, or children or voxels of one ray.
+#undef VOXDAG_PACKET_LANES
+#if HWY_MAX_BYTES >= 32 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+#define VOXDAG_PACKET_LANES 1
+#else
+#define VOXDAG_PACKET_LANES 0
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Up to 64 rays or beams, in vectors of up to 16.
+class PacketLanes {
+ protected:
+  using DF = hn::CappedTag<float, 16>;
+  using VF = hn::Vec<DF>;
+  using Set = std::uint64_t;  ///< Bit i: ray or beam i.
+  static constexpr std::size_t kWidth = hn::MaxLanes(DF());
+  static constexpr Set kVector = (Set{1} << kWidth) - 1;
+
+  static Set first(std::size_t count) { return count == 64 ? ~Set{0} : (Set{1} << count) - 1; }
+
+  /// Where the vector of the first of them begins, which is taken off the set.
+  static HWY_INLINE std::size_t take_vector(Set& set) {
+    const std::size_t at = static_cast<std::size_t>(lowest_bit64(set)) & ~(kWidth - 1);
+    set &= ~(kVector << at);
+    return at;
+  }
+
+  template <class M>
+  static HWY_INLINE Set bits_of(M mask) {
+    std::uint8_t bytes[8];
+    hn::StoreMaskBits(DF(), mask, bytes);
+    if constexpr (kWidth <= 8) return bytes[0];
+    return bytes[0] | static_cast<Set>(bytes[1]) << 8;
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#endif
