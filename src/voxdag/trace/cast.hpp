@@ -9,10 +9,9 @@
 /// The walk visits, in order of T, the cells that the ray is in as grid_ray.hpp defines it: from a
 /// present cell it descends to the child that the ray is in (PUSH), from an absent one it steps
 /// over all planes that the cell's exit T reaches, within the parent (ADVANCE) or, where a step
-/// leaves the parent, from the highest level at which the positions differ (POP). Rays run down
-/// along every axis, so a cell is left through its lower corner, and a position bit may only fall.
-/// Invariant: the current cell is the cell of its level that the ray is in at `t`.
-#include "voxdag/trace/grid_ray.hpp"
+/// leaves the parent, from the highest level at which the positions differ (POP). Invariant: the
+/// current cell is the cell of its level that the ray is in at `t`.
+#include "voxdag/trace/cell_walk.hpp"
 #include "voxdag/trace/hit.hpp"
 
 namespace voxdag {
@@ -47,91 +46,41 @@ struct StopAtVoxels {
 /// if there is one within the ray's range. O(cells on the way) time, one stack entry per level.
 template <class Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
-  constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
-  constexpr int kTopBit = 22;  // the position bit that the root's children differ in
   static_assert(
       !requires { typename Nodes::Found; }, "the layout has a cast of its own");
   if (ray.misses() || nodes.is_empty()) return false;
 
-  const float ox = ray.origin.x, oy = ray.origin.y, oz = ray.origin.z;
-  const float ix = ray.inverse.x, iy = ray.inverse.y, iz = ray.inverse.z;
   const int levels = nodes.levels();
   const std::uint32_t mirrored = ray.mirrored;
-
   float t = ray.t_min;
-  if ((ox - 1.0f) * ix <= t || (oy - 1.0f) * iy <= t || (oz - 1.0f) * iz <= t) return false;
+  if (ray.exit_t() <= t) return false;
 
   typename Nodes::Node stack[kMaxLevels];
   typename Nodes::Node node = nodes.root();
   std::uint32_t mask = nodes.child_mask(node, 0);
-  std::uint32_t x = kOne, y = kOne,
-                z = kOne;   // lower corner of the current cell, a child of `node`
-  std::uint32_t child = 0;  // which child, mirrored
-  int bit = kTopBit;        // kTopBit - level of `node`
-
-  // The child of the cell at (x,y,z) that the ray is in at t.
-  const auto select_child = [&] {
-    const std::uint32_t half = 1u << bit;
-    const std::uint32_t up_x = (ox - float_from_bits(x | half)) * ix > t ? 1u : 0u;
-    const std::uint32_t up_y = (oy - float_from_bits(y | half)) * iy > t ? 1u : 0u;
-    const std::uint32_t up_z = (oz - float_from_bits(z | half)) * iz > t ? 1u : 0u;
-    x |= up_x << bit;
-    y |= up_y << bit;
-    z |= up_z << bit;
-    child = up_x | up_y << 1 | up_z << 2;
-  };
-  select_child();
-
+  CellWalk cell(ray, t);
   for (;;) {
     if constexpr (requires { nodes.on_step(); }) nodes.on_step();
-    const float tx = (ox - float_from_bits(x)) * ix;
-    const float ty = (oy - float_from_bits(y)) * iy;
-    const float tz = (oz - float_from_bits(z)) * iz;
-    const float txy = tx < ty ? tx : ty;
-    const float t_exit = txy < tz ? txy : tz;
-
-    const std::uint32_t index = child ^ mirrored;
+    const CellWalk::Exit exit = cell.exit();
+    const std::uint32_t index = cell.child() ^ mirrored;
     if ((mask >> index & 1u) != 0) {
-      const int level = kTopBit - bit;
-      if (level + 1 == levels || stop(level + 1, t, t_exit)) {
-        hit = {t, x, y, z, level + 1};
+      const int level = cell.level();
+      if (level == levels || stop(level, t, exit.t)) {
+        hit = {t, cell.x(), cell.y(), cell.z(), level};
         return true;
       }
-      // PUSH
-      stack[level] = node;
-      node = nodes.child(node, level, static_cast<int>(index));
-      mask = nodes.child_mask(node, level + 1);
-      --bit;
-      select_child();
+      stack[level - 1] = node;
+      node = nodes.child(node, level - 1, static_cast<int>(index));
+      mask = nodes.child_mask(node, level);
+      cell.push(t);
       continue;
     }
-
-    // ADVANCE
-    if (t_exit > ray.t_max) return false;
-    t = t_exit;
-    const std::uint32_t step_x = tx == t_exit ? 1u : 0u;
-    const std::uint32_t step_y = ty == t_exit ? 1u : 0u;
-    const std::uint32_t step_z = tz == t_exit ? 1u : 0u;
-    const std::uint32_t next_x = x - (step_x << bit);
-    const std::uint32_t next_y = y - (step_y << bit);
-    const std::uint32_t next_z = z - (step_z << bit);
-    const std::uint32_t changed = (x ^ next_x) | (y ^ next_y) | (z ^ next_z);
-    x = next_x;
-    y = next_y;
-    z = next_z;
-    child ^= step_x | step_y << 1 | step_z << 2;
-    if (changed >> bit == 1) continue;
-
-    // POP
-    bit = highest_bit(changed);
-    if (bit > kTopBit) return false;
-    const std::uint32_t above = ~0u << bit;
-    x &= above;
-    y &= above;
-    z &= above;
-    child = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
-    node = stack[kTopBit - bit];
-    mask = nodes.child_mask(node, kTopBit - bit);
+    if (exit.t > ray.t_max) return false;
+    t = exit.t;
+    if (cell.advance(exit)) continue;
+    if (!cell.pop()) return false;
+    node = stack[cell.level() - 1];
+    mask = nodes.child_mask(node, cell.level() - 1);
   }
 }
 

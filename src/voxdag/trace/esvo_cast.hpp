@@ -40,16 +40,11 @@ struct EsvoHit : CellHit {
 /// True if there is one within the ray's range.
 template <EsvoLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit& hit) {
-  constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
-  constexpr int kTopBit = 22;  // the position bit that the root's children differ in
   constexpr bool kWithContours = Nodes::kWithContours;
   if (ray.misses() || nodes.is_empty()) return false;
 
   const EsvoView& esvo = nodes.view();
-  const float ox = ray.origin.x, oy = ray.origin.y, oz = ray.origin.z;
-  const float ix = ray.inverse.x, iy = ray.inverse.y, iz = ray.inverse.z;
   const std::uint32_t mirrored = ray.mirrored;
-  const auto least = [](float a, float b) { return a < b ? a : b; };
   const auto descriptor_at = [&](std::uint64_t at) {
     if constexpr (requires { nodes.on_read(8u); }) nodes.on_read(8u);
     return esvo.descriptor(at);
@@ -59,7 +54,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   float t = ray.t_min;
   const float t_end = end_of_range(ray.t_max);
   float t_max = t_end;
-  float h = least(least((ox - 1.0f) * ix, (oy - 1.0f) * iy), (oz - 1.0f) * iz);
+  float h = ray.exit_t();
   if (h <= t) return false;
   const ContourRay contour_ray(ray);
   std::uint64_t slots[kMaxLevels];
@@ -67,65 +62,45 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   std::uint64_t slot = esvo.root;
   ChildDescriptor parent = descriptor_at(slot);
   ContourPlane plane;  // by which the ray came to t, if by one
-  std::uint32_t x = kOne, y = kOne,
-                z = kOne;   // lower corner of the current voxel's cube, a child of the parent
-  std::uint32_t child = 0;  // which child, mirrored
-  int bit = kTopBit;        // kTopBit - level of the parent
-
-  // The child of the voxel at (x,y,z) that the ray is in at t.
-  const auto select_child = [&] {
-    const std::uint32_t half = 1u << bit;
-    const std::uint32_t up_x = (ox - float_from_bits(x | half)) * ix > t ? 1u : 0u;
-    const std::uint32_t up_y = (oy - float_from_bits(y | half)) * iy > t ? 1u : 0u;
-    const std::uint32_t up_z = (oz - float_from_bits(z | half)) * iz > t ? 1u : 0u;
-    x |= up_x << bit;
-    y |= up_y << bit;
-    z |= up_z << bit;
-    child = up_x | up_y << 1 | up_z << 2;
-  };
-  select_child();
-
+  CellWalk cell(ray, t);
   for (;;) {
     if constexpr (requires { nodes.on_step(); }) nodes.on_step();
-    float tx = (ox - float_from_bits(x)) * ix;
-    float ty = (oy - float_from_bits(y)) * iy;
-    float tz = (oz - float_from_bits(z)) * iz;
-    float t_exit = least(least(tx, ty), tz);
-
-    const std::uint32_t index = child ^ mirrored;
+    CellWalk::Exit exit = cell.exit();
+    const std::uint32_t index = cell.child() ^ mirrored;
     if ((parent.valid_mask() >> index & 1u) != 0 && (!kWithContours || t < t_max)) {
       // INTERSECT
-      float tv_min = t, tv_max = least(t_exit, t_max);
+      const int level = cell.level();
+      float tv_min = t, tv_max = exit.t < t_max ? exit.t : t_max;
       ContourPlane entered = plane;
       if constexpr (kWithContours) {
         if ((parent.contour_mask() >> index & 1u) != 0) {
           if constexpr (requires { nodes.on_read(4u); }) nodes.on_read(4u);
           const Contour contour = esvo.contour(slot, parent, static_cast<int>(index));
-          const ContourSpan span = contour_ray.span(contour, x, y, z, bit, t_exit);
+          const ContourSpan span =
+              contour_ray.span(contour, cell.x(), cell.y(), cell.z(), cell.bit(), exit.t);
           if (span.t_enter > tv_min) {
             tv_min = span.t_enter;
-            entered = {contour, kTopBit - bit + 1};
+            entered = {contour, level};
           }
-          tv_max = least(span.t_leave, tv_max);
+          tv_max = span.t_leave < tv_max ? span.t_leave : tv_max;
         }
       }
       if (!kWithContours || tv_min < tv_max) {
-        const int level = kTopBit - bit + 1;
         const bool is_leaf = (parent.leaf_mask() >> index & 1u) != 0;
-        if (is_leaf || stop(level, t, t_exit)) {
+        if (is_leaf || stop(level, t, exit.t)) {
           if constexpr (requires { nodes.on_leaf(slot); })
-            if (is_leaf && !stop(level, t, t_exit)) nodes.on_leaf(slot);
-          static_cast<CellHit&>(hit) = {tv_min, x, y, z, level};
+            if (is_leaf && !stop(level, t, exit.t)) nodes.on_leaf(slot);
+          static_cast<CellHit&>(hit) = {tv_min, cell.x(), cell.y(), cell.z(), level};
           hit.voxel = {slot, static_cast<int>(index)};
           hit.plane = entered;
           return true;
         }
         // PUSH
-        if (t_exit < h) {
-          slots[kTopBit - bit] = slot;
-          if constexpr (kWithContours) t_maxes[kTopBit - bit] = t_max;
+        if (exit.t < h) {
+          slots[level - 1] = slot;
+          if constexpr (kWithContours) t_maxes[level - 1] = t_max;
         }
-        h = t_exit;
+        h = exit.t;
         slot = esvo.child(slot, parent, static_cast<int>(index));
         parent = descriptor_at(slot);
         if constexpr (kWithContours) {
@@ -133,55 +108,27 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
           t_max = tv_max;
           plane = entered;
         }
-        --bit;
-        select_child();
+        cell.push(t);
         continue;
       }
     }
 
-    // ADVANCE
-    if (t_exit >= t_end) return false;
+    if (exit.t >= t_end) return false;
     bool leaves_parent = false;
     if constexpr (kWithContours) {
       plane = {};
-      leaves_parent = t_exit >= t_max;  // never the root's: its span is the ray's range
+      leaves_parent = exit.t >= t_max;  // never the root's: its span is the ray's range
       if (leaves_parent) {
-        ++bit;
-        const std::uint32_t above = ~0u << bit;
-        x &= above;
-        y &= above;
-        z &= above;
-        tx = (ox - float_from_bits(x)) * ix;
-        ty = (oy - float_from_bits(y)) * iy;
-        tz = (oz - float_from_bits(z)) * iz;
-        t_exit = least(least(tx, ty), tz);
-        if (t_exit >= t_end) return false;
+        cell.ascend();
+        exit = cell.exit();
+        if (exit.t >= t_end) return false;
       }
     }
-    t = t_exit;
-    const std::uint32_t step_x = tx == t_exit ? 1u : 0u;
-    const std::uint32_t step_y = ty == t_exit ? 1u : 0u;
-    const std::uint32_t step_z = tz == t_exit ? 1u : 0u;
-    const std::uint32_t next_x = x - (step_x << bit);
-    const std::uint32_t next_y = y - (step_y << bit);
-    const std::uint32_t next_z = z - (step_z << bit);
-    const std::uint32_t changed = (x ^ next_x) | (y ^ next_y) | (z ^ next_z);
-    x = next_x;
-    y = next_y;
-    z = next_z;
-    child ^= step_x | step_y << 1 | step_z << 2;
-    if (changed >> bit == 1 && !leaves_parent) continue;
-
-    // POP
-    bit = highest_bit(changed);
-    if (bit > kTopBit) return false;
-    const std::uint32_t above = ~0u << bit;
-    x &= above;
-    y &= above;
-    z &= above;
-    child = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
-    slot = slots[kTopBit - bit];
-    if constexpr (kWithContours) t_max = t_maxes[kTopBit - bit];
+    t = exit.t;
+    if (cell.advance(exit) && !leaves_parent) continue;
+    if (!cell.pop()) return false;
+    slot = slots[cell.level() - 1];
+    if constexpr (kWithContours) t_max = t_maxes[cell.level() - 1];
     parent = descriptor_at(slot);
     h = 0;
   }

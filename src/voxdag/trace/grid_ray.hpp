@@ -57,6 +57,13 @@ struct GridRay {
     return (origin[axis] - position) * inverse[axis];
   }
 
+  /// T at which it leaves the grid.
+  VOXDAG_HD float exit_t() const {
+    const float x = plane_t(0, 1), y = plane_t(1, 1), z = plane_t(2, 1);
+    const float xy = x < y ? x : y;
+    return xy < z ? xy : z;
+  }
+
   /// T of the world ray's parameter t, and back.
   VOXDAG_HD double to_grid_t(double t) const { return (t - t_start) / t_scale; }
   VOXDAG_HD double to_world_t(double grid_t) const { return std::fma(grid_t, t_scale, t_start); }

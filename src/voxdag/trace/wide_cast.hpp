@@ -21,7 +21,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   const std::uint32_t mirror = wide_mirror(ray.mirrored);
 
   float t = ray.t_min;
-  if ((ox - 1.0f) * ix <= t || (oy - 1.0f) * iy <= t || (oz - 1.0f) * iz <= t) return false;
+  if (ray.exit_t() <= t) return false;
 
   std::uint32_t stack[kMaxWideDepth];
   int bit = range.root_bit;

@@ -1,0 +1,115 @@
+#pragma once
+/// The cells that a ray is in, one after the other: what the casts at all octrees share.
+///
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4 and Figure 8.
+#include "voxdag/trace/grid_ray.hpp"
+
+namespace voxdag {
+
+/// The cell of some level that a ray is in at some T as grid_ray.hpp defines it. Rays run down
+/// along every axis, so a cell is left through its lower corner, and a position bit may only fall.
+class CellWalk {
+ public:
+  /// T at the planes of the cell's lower corner, and the least of them: where the ray leaves it.
+  struct Exit {
+    float x, y, z, t;
+  };
+
+  /// Begins at the root, which the ray must be in at `t`, with the child where it is then.
+  VOXDAG_HD CellWalk(const GridRay& ray, float t)
+      : ox_(ray.origin.x),
+        oy_(ray.origin.y),
+        oz_(ray.origin.z),
+        ix_(ray.inverse.x),
+        iy_(ray.inverse.y),
+        iz_(ray.inverse.z) {
+    select_child(t);
+  }
+
+  /// The float bits of the cell's lower corner.
+  VOXDAG_HD std::uint32_t x() const { return x_; }
+  VOXDAG_HD std::uint32_t y() const { return y_; }
+  VOXDAG_HD std::uint32_t z() const { return z_; }
+  VOXDAG_HD int level() const { return kTopBit + 1 - bit_; }
+  /// Which of its parent's children it is, mirrored.
+  VOXDAG_HD std::uint32_t child() const { return child_; }
+  /// The position bit that siblings of this level differ in.
+  VOXDAG_HD int bit() const { return bit_; }
+
+  VOXDAG_HD Exit exit() const {
+    Exit exit;
+    exit.x = (ox_ - float_from_bits(x_)) * ix_;
+    exit.y = (oy_ - float_from_bits(y_)) * iy_;
+    exit.z = (oz_ - float_from_bits(z_)) * iz_;
+    const float xy = exit.x < exit.y ? exit.x : exit.y;
+    exit.t = xy < exit.z ? xy : exit.z;
+    return exit;
+  }
+
+  /// PUSH: goes to the child that the ray is in at `t`.
+  VOXDAG_HD void push(float t) {
+    --bit_;
+    select_child(t);
+  }
+
+  /// Goes to the parent.
+  VOXDAG_HD void ascend() {
+    ++bit_;
+    keep_bits_above();
+  }
+
+  /// ADVANCE: steps over all planes that the ray reaches where it leaves the cell. True if it stays
+  /// in the parent; else pop() must follow.
+  VOXDAG_HD bool advance(const Exit& exit) {
+    const std::uint32_t step_x = exit.x == exit.t ? 1u : 0u;
+    const std::uint32_t step_y = exit.y == exit.t ? 1u : 0u;
+    const std::uint32_t step_z = exit.z == exit.t ? 1u : 0u;
+    const std::uint32_t next_x = x_ - (step_x << bit_);
+    const std::uint32_t next_y = y_ - (step_y << bit_);
+    const std::uint32_t next_z = z_ - (step_z << bit_);
+    changed_ = (x_ ^ next_x) | (y_ ^ next_y) | (z_ ^ next_z);
+    x_ = next_x;
+    y_ = next_y;
+    z_ = next_z;
+    child_ ^= step_x | step_y << 1 | step_z << 2;
+    return changed_ >> bit_ == 1;
+  }
+
+  /// POP: goes to the cell of the highest level at which advance() changed the position. False if
+  /// the ray has left the root.
+  VOXDAG_HD bool pop() {
+    bit_ = highest_bit(changed_);
+    if (bit_ > kTopBit) return false;
+    keep_bits_above();
+    child_ = (x_ >> bit_ & 1u) | (y_ >> bit_ & 1u) << 1 | (z_ >> bit_ & 1u) << 2;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
+  static constexpr int kTopBit = 22;  // the position bit that the root's children differ in
+
+  VOXDAG_HD void select_child(float t) {
+    const std::uint32_t half = 1u << bit_;
+    const std::uint32_t up_x = (ox_ - float_from_bits(x_ | half)) * ix_ > t ? 1u : 0u;
+    const std::uint32_t up_y = (oy_ - float_from_bits(y_ | half)) * iy_ > t ? 1u : 0u;
+    const std::uint32_t up_z = (oz_ - float_from_bits(z_ | half)) * iz_ > t ? 1u : 0u;
+    x_ |= up_x << bit_;
+    y_ |= up_y << bit_;
+    z_ |= up_z << bit_;
+    child_ = up_x | up_y << 1 | up_z << 2;
+  }
+  VOXDAG_HD void keep_bits_above() {
+    const std::uint32_t above = ~0u << bit_;
+    x_ &= above;
+    y_ &= above;
+    z_ &= above;
+  }
+
+  float ox_, oy_, oz_, ix_, iy_, iz_;
+  std::uint32_t x_ = kOne, y_ = kOne, z_ = kOne;
+  std::uint32_t child_ = 0, changed_ = 0;
+  int bit_ = kTopBit;
+};
+
+}  // namespace voxdag
