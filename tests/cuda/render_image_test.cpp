@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 
 #include "cuda/cuda_device.hpp"
 #include "cuda/pictures.hpp"
 #include "support/test_esvo.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/image/color.hpp"
 
@@ -76,6 +78,31 @@ TEST_F(CudaRender, TakesPointsFromASource) {
   expect_like(
       render_image(DeviceScene(device_, dag.view()), picture_grid(), options, nullptr, &source),
       render_image(dag.view(), picture_grid(), options, nullptr, &source));
+}
+
+/// Fails at the second sample of a pixel.
+class FailingSource : public PlaneSource {
+ public:
+  void sample(const Camera& camera, const ViewTile& tile,
+              std::span<ViewSample> samples) const override {
+    if ((given_ += tile.pixels()) > camera.width * camera.height)
+      throw Error("the mesh", "", "is gone");
+    PlaneSource::sample(camera, tile, samples);
+  }
+
+ private:
+  mutable std::atomic<int> given_ = 0;
+};
+
+TEST_F(CudaRender, WorksAgainAfterASourceFailedWhileTheDeviceRendered) {
+  const Svdag dag = picture_scene();
+  const DeviceScene scene(device_, dag.view());
+  RenderOptions options = pictures(2)[0].options;
+  options.samples_per_pixel = 2;
+  const FailingSource failing;
+  EXPECT_THROW(render_image(scene, picture_grid(), options, nullptr, &failing), Error);
+  expect_like(render_image(scene, picture_grid(), options),
+              render_image(dag.view(), picture_grid(), options));
 }
 
 TEST_F(CudaRender, AnEmptySceneIsSky) {

@@ -63,8 +63,8 @@ void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& s
   });
 }
 
-void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, const CudaStream& stream,
-                   Progress* progress, const ViewSource* source) {
+void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* progress,
+                   const ViewSource* source) {
   const RenderSetup& setup = frame.setup();
   const bool has_source = source != nullptr;
   LaunchPlan plan(block_count(setup.camera.width, setup.camera.height),
@@ -78,6 +78,7 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, const Cuda
     part.device = make_device_buffer<ViewSample>(kSourceBlocks * kBlockPixels, "view samples");
   }
   const CudaEvent begin, end;
+  const CudaStream stream;  // last: destroyed before the memory that it works on
   int turn = 0;
   auto range = plan.next();
   if (has_source && range) fill(samples[turn], *source, setup, *range);
@@ -118,7 +119,7 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
       launch_beams(scene.view(), setup, first, last, frame.beam_starts(), stream.get());
     });
-  render_pixels(scene.view(), frame, stream, progress, source);
+  render_pixels(scene.view(), frame, progress, source);
   if (options.with_steps)
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
       launch_steps(scene.view(), setup, first, last, stream.get());

@@ -11,7 +11,11 @@ class CudaStream {
   CudaStream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "queue"); }
   CudaStream(const CudaStream&) = delete;
   CudaStream& operator=(const CudaStream&) = delete;
-  ~CudaStream() { cudaStreamDestroy(stream_); }
+  /// Waits: memory that work left behind by an exception uses may be freed next.
+  ~CudaStream() {
+    cudaStreamSynchronize(stream_);
+    cudaStreamDestroy(stream_);
+  }
 
   cudaStream_t get() const { return stream_; }
   /// Waits until all is done; `doing` names it for errors.
