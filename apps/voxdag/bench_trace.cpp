@@ -185,7 +185,9 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
     const std::uint64_t bytes = device_dags[i] ? layouts[i]->device_bytes() : layouts[i]->bytes();
     for (const RayClass rays : kRayClasses) {
       const RowSums& s = sums[i][static_cast<std::size_t>(rays)];
-      if (s.rays > 0) results.rows.push_back(row_of(scene, names[i], bytes, rays, s));
+      if (s.rays == 0) continue;
+      results.rows.push_back(row_of(scene, names[i], bytes, rays, s));
+      results.rows.back().on_cuda = device_dags[i].has_value();
     }
   }
 }

@@ -48,11 +48,12 @@ struct TraceRow {
   std::uint64_t layout_bytes = 0;
   std::vector<double> view_mrays_per_second;
   std::vector<RivalRate> rivals;
+  bool on_cuda = false;  ///< Not every layout has kernels.
 };
 
 struct TraceResults {
   int threads = 0;
-  std::string cuda_device;            ///< Where our casts ran; empty: on the CPU.
+  std::string cuda_device;            ///< Of the rows on it; empty: all are the CPU's.
   std::vector<TraceRow> rows;         ///< By scene, resolution, layout, class.
   std::vector<std::string> failures;  ///< Scenes that could not be measured, and why.
 };

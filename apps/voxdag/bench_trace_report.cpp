@@ -43,13 +43,12 @@ double rate_of(const TraceRow& row, const std::string& rival) {
 
 Json trace_json(const TraceResults& results, const Json& machine) {
   Json array = Json::array();
-  const bool is_cuda = !results.cuda_device.empty();
   for (const TraceRow& row : results.rows) {
     Json object{{"program", program_name()},
                 {"scene", row.scene},
                 {"resolution", std::int64_t{1} << row.levels},
-                {"device", is_cuda ? "cuda" : "cpu"},
-                {"device_name", is_cuda ? Json(results.cuda_device) : machine.at("processor")},
+                {"device", row.on_cuda ? "cuda" : "cpu"},
+                {"device_name", row.on_cuda ? Json(results.cuda_device) : machine.at("processor")},
                 {"threads", results.threads},
                 {"layout", row.layout},
                 {"layout_bytes", row.layout_bytes},
@@ -79,11 +78,13 @@ Json trace_json(const TraceResults& results, const Json& machine) {
 std::string trace_table(const TraceResults& results) {
   std::string text;
   const std::vector<std::string> rivals = rivals_of(results);
+  const bool has_device = !results.cuda_device.empty();
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
     const TraceRow& row = results.rows[i];
     if (i == 0 || !is_same_dag(row, results.rows[i - 1])) {
-      text += fmt::format("{}{} {}, layout {}, {}\n", i == 0 ? "" : "\n", row.scene,
-                          resolution_of(row), row.layout, human_bytes(row.layout_bytes));
+      text += fmt::format("{}{} {}, layout {}, {}{}\n", i == 0 ? "" : "\n", row.scene,
+                          resolution_of(row), row.layout, human_bytes(row.layout_bytes),
+                          has_device && !row.on_cuda ? ", on the CPU" : "");
       text += fmt::format("  {:<14}{:>12}{:>8}{:>8}{:>8}{:>10}", "rays", "count", "hit", "cells",
                           "bytes", "Mrays/s");
       for (const std::string& rival : rivals) text += fmt::format("{:>24}", rival);
