@@ -83,7 +83,7 @@ void render_streamed(const RenderArguments& arguments, const std::vector<RenderP
   write(image);
   session.bar.clear();
   if (session.quiet) return;
-  print_summary(arguments, image, seconds, "cpu");
+  print_summary(arguments, image, seconds, device_name(std::nullopt));
   const EsvoStreamCounts& counts = blocks.stream().counts();
   std::uint64_t all = 0;
   for (const EsvoBlockEntry& entry : blocks.stream().directory()) all += entry.slots * 8ull;
@@ -288,8 +288,9 @@ void add_render_command(CLI::App& app, Session& session) {
   command.callback([arguments, &session] {
     check_mesh_options(arguments->mesh);
     if (arguments->stream_memory != 0 &&
-        (!arguments->path.file.empty() || !arguments->mesh.file.empty()))
-      throw CLI::ValidationError("--memory", "not with --path or --mesh");
+        (!arguments->path.file.empty() || !arguments->mesh.file.empty() ||
+         arguments->device.kind == DeviceChoice::Kind::kCuda))
+      throw CLI::ValidationError("--memory", "not with --path, --mesh or --device cuda");
     if (!arguments->path.file.empty())
       for (const RenderPass& pass : all_passes(*arguments)) check_frame_pattern(pass.path);
     check_output("--output", arguments->output);
