@@ -1,85 +1,150 @@
 #!/usr/bin/env bash
 # Builds voxdag for the CUDA device of this machine, runs the tests that need one, and measures rays
-# per second into bench/results/DEVICE-NAME/. One call of under 8 minutes; no network where
-# the packages are there. Needs the CUDA toolkit and a device.
+# per second. One call of under 8 minutes; no network where the packages are there.
 #
-#   scripts/gpu-check.sh           build, tests, measurements
-#   scripts/gpu-check.sh --tests   build and tests
+#   scripts/gpu-check.sh [OPTION...]
+#     --tests        build and tests, no measurements
+#     --sanitize     the tests under compute-sanitizer, too
+#     --out FOLDER   where the results go (default: bench/results/DEVICE-NAME)
+#     --pack FILE    needs the CUDA toolkit, but no device: builds for all devices and packs the
+#                    programs, the libraries that they need and the scenes into FILE, a .tar.gz
+#     --packed FILE  checks what was packed: needs the driver alone, and no older a C library
 #
 # Crytek Sponza is measured where VOXDAG_SCENES names a folder with sponza.obj, or the scenes lie
 # packed beside the checkout; a procedural courtyard always.
 set -euo pipefail
+
+usage() { sed -n '2,16s/^# \{0,1\}//p' "$0"; }
+die() { echo "gpu-check: $*" >&2; exit 1; }
+
+measure=yes sanitize=no folder='' pack='' packed=''
+while [ $# -gt 0 ]; do
+  case $1 in
+    --tests) measure=no ;;
+    --sanitize) sanitize=yes ;;
+    --out | --pack | --packed)
+      [ $# -ge 2 ] || { usage >&2; exit 2; }
+      file=$(realpath -m -- "$2")
+      case $1 in --out) folder=$file ;; --pack) pack=$file ;; *) packed=$file ;; esac
+      shift ;;
+    -h | --help) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+  esac
+  shift
+done
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
-measure=yes
-case "${1-}" in
-  "") ;;
-  --tests) measure=no ;;
-  *) sed -n '2,12s/^# \{0,1\}//p' "$0"; [ "$1" = --help ] && exit 0; exit 2 ;;
-esac
-
 # What is left of the time, for the commands that may take long.
 deadline=$((SECONDS + 470))
+[ -z "$pack" ] || deadline=$((SECONDS + 7200))
 within() { timeout --foreground $((deadline - SECONDS > 5 ? deadline - SECONDS : 5)) "$@"; }
 
-export PATH="$PATH:/usr/local/cuda/bin"
-command -v nvcc >/dev/null || { echo "gpu-check: there is no nvcc" >&2; exit 1; }
-device=$(nvidia-smi --query-gpu=name --format=csv,noheader | head -n 1)
-capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader | head -n 1)
-[ -n "$device" ] || { echo "gpu-check: nvidia-smi finds no device" >&2; exit 1; }
-folder=bench/results/$(tr '[:upper:]' '[:lower:]' <<<"$device" | tr -cs 'a-z0-9\n' -)
-echo "== $device, compute capability $capability"
-
-echo "== build"
-build=build/cuda-check
-configure() {
-  cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Release -DVOXDAG_CUDA=ON \
-    -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_BENCH=OFF \
-    -DCMAKE_CUDA_ARCHITECTURES="${capability/./}-real" >$build-configure.log 2>&1
+# build FOLDER [CMAKE-OPTION...]: leaves the programs in there.
+build() {
+  local build=$1
+  local configure=(cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVOXDAG_CUDA=ON
+    -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_BENCH=OFF "${@:2}")
+  export PATH="$PATH:/usr/local/cuda/bin"
+  command -v nvcc >/dev/null || die "there is no nvcc; see --pack"
+  echo "== build"
+  mkdir -p build
+  if ! "${configure[@]}" >"$build-configure.log" 2>&1; then
+    install_packages "${voxdag_packages[@]}" libgtest-dev zstd ||
+      die "packages are missing that cannot be installed; see --pack"
+    "${configure[@]}" >"$build-configure.log" 2>&1 ||
+      { cat "$build-configure.log" >&2; exit 1; }
+  fi
+  within cmake --build "$build" --target voxdag_app cuda_tests -- -j "$(nproc)"
 }
-mkdir -p build
-if ! configure; then
-  install_packages "${voxdag_packages[@]}" libgtest-dev zstd
-  configure || { cat $build-configure.log >&2; exit 1; }
+
+# Prints where sponza.obj is, if anywhere.
+find_sponza() {
+  local scenes=${VOXDAG_SCENES-}
+  if [ -z "$scenes" ] && [ -f ../shared/scenes/unpack.sh ]; then
+    scenes=build/scenes
+    within bash ../shared/scenes/unpack.sh $scenes >&2
+  fi
+  [ -z "$scenes" ] || find "$scenes" -name sponza.obj -print -quit
+}
+
+if [ -n "$pack" ]; then
+  build build/cuda-pack
+  content=build/cuda-pack/content
+  rm -rf $content
+  mkdir -p $content/lib
+  cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests $content
+  strip $content/voxdag $content/cuda_tests
+  # All but the C library, which belongs to the machine's loader.
+  ldd $content/voxdag $content/cuda_tests | awk '$3 ~ "^/" { print $3 }' | sort -u |
+    grep -vE '/(lib(c|m|dl|rt|pthread|resolv|mvec)|ld-linux[^/]*)\.so' | xargs cp -Lt $content/lib
+  sponza=$(find_sponza)
+  [ -z "$sponza" ] || cp "$sponza" $content
+  tar -C $content -czf "$pack" .
+  echo "== done: $(du -h "$pack" | cut -f 1) in $pack"
+  exit 0
 fi
-within cmake --build $build --target voxdag_app cuda_tests -- -j "$(nproc)"
-voxdag() { within $build/apps/voxdag/voxdag "$@"; }
+
+device=$(nvidia-smi --query-gpu=name --format=csv,noheader | head -n 1) || true
+capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader | head -n 1) || true
+[ -n "$device" ] || die "nvidia-smi finds no device"
+echo "== $device, compute capability $capability"
+: "${folder:=bench/results/$(tr '[:upper:]' '[:lower:]' <<<"$device" | tr -cs 'a-z0-9\n' -)}"
+
+work=build/cuda-check
+if [ -n "$packed" ]; then
+  work=build/cuda-packed
+  rm -rf $work
+  mkdir -p $work
+  tar -C $work -xzf "$packed"
+  program=$work/voxdag tests=$work/cuda_tests libraries=$PWD/$work/lib
+else
+  build $work -DCMAKE_CUDA_ARCHITECTURES="${capability/./}-real"
+  program=$work/apps/voxdag/voxdag tests=$work/tests/cuda/cuda_tests libraries=
+fi
+[ -z "${LD_LIBRARY_PATH-}" ] || libraries=${libraries:+$libraries:}$LD_LIBRARY_PATH
+ours() { within env LD_LIBRARY_PATH="$libraries" "$@"; }
+voxdag() { ours $program "$@"; }
+
+# attempt COMMAND...: what fails does not keep the rest from being seen.
+failures=0
+attempt() { "$@" || { echo "gpu-check: FAILED: $*" >&2; failures=$((failures + 1)); }; }
 
 echo "== tests"
-within $build/tests/cuda/cuda_tests --gtest_brief=1
-scene=$build/courtyard
+attempt ours $tests --gtest_brief=1
+if [ $sanitize = yes ]; then
+  command -v compute-sanitizer >/dev/null || die "there is no compute-sanitizer"
+  attempt ours compute-sanitizer --error-exitcode 1 $tests --gtest_brief=1 \
+    --gtest_filter='CudaTimedCasts.*:CudaTrace.Stops*:CudaRender.Filters*:CudaRender.AnEmpty*'
+fi
+scene=$work/courtyard
 voxdag scene courtyard -o $scene.ply
 voxdag build $scene.ply -r 2048 -o $scene.vdag
 for where in cpu cuda; do
-  voxdag render $scene.vdag -o $scene-$where.png --size 960x540 --device $where
+  attempt voxdag render $scene.vdag -o $scene-$where.png --size 960x540 --device $where
 done
-[ $measure = yes ] || exit 0
 
 # bench NAME FILE MESH LAYOUTS
 bench() {
   echo "== $1"
-  voxdag bench trace "$2" --mesh "$3" --device cuda --layout "$4" --size 1920x1080 --rays 8000000 \
-    -o "$folder/$1.json"
+  attempt voxdag bench trace "$2" --mesh "$3" --device cuda --layout "$4" --size 1920x1080 \
+    --rays 8000000 -o "$folder/$1.json"
 }
-mkdir -p "$folder"
-bench courtyard-2048 $scene.vdag $scene.ply paper,wide
-
-scenes=${VOXDAG_SCENES-}
-if [ -z "$scenes" ] && [ -f ../shared/scenes/unpack.sh ]; then
-  within bash ../shared/scenes/unpack.sh build/scenes
-  scenes=build/scenes
+if [ $measure = yes ]; then
+  mkdir -p "$folder"
+  bench courtyard-2048 $scene.vdag $scene.ply paper,wide
+  if [ -n "$packed" ]; then sponza=$(find $work -name sponza.obj); else sponza=$(find_sponza); fi
+  if [ -z "$sponza" ]; then
+    echo "Crytek Sponza is not measured: VOXDAG_SCENES names no folder with sponza.obj" >&2
+  else
+    for resolution in 4096 32768; do
+      attempt voxdag build "$sponza" -r $resolution -o $work/sponza.vdag
+      bench sponza-$resolution $work/sponza.vdag "$sponza" paper,wide
+    done
+    attempt voxdag build "$sponza" -r 1024 -o $work/sponza.esvo
+    bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours
+  fi
+  echo "== results: $folder"
 fi
-sponza=
-[ -z "$scenes" ] || sponza=$(find "$scenes" -name sponza.obj -print -quit)
-if [ -z "$sponza" ]; then
-  echo "Crytek Sponza is not measured: VOXDAG_SCENES names no folder with sponza.obj" >&2
-else
-  for resolution in 4096 32768; do
-    voxdag build "$sponza" -r $resolution -o $build/sponza.vdag
-    bench sponza-$resolution $build/sponza.vdag "$sponza" paper,wide
-  done
-  voxdag build "$sponza" -r 1024 -o $build/sponza.esvo
-  bench sponza-1024-esvo $build/sponza.esvo "$sponza" contours
-fi
-echo "== done in $SECONDS s: $folder"
+echo "== done in $SECONDS s, $failures failures"
+[ $failures -eq 0 ]
