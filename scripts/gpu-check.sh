@@ -34,6 +34,7 @@ while [ $# -gt 0 ]; do
 done
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
+export PATH="$PATH:/usr/local/cuda/bin"
 
 # What is left of the time, for the commands that may take long.
 deadline=$((SECONDS + 470))
@@ -45,7 +46,6 @@ build() {
   local build=$1
   local configure=(cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVOXDAG_CUDA=ON
     -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_BENCH=OFF "${@:2}")
-  export PATH="$PATH:/usr/local/cuda/bin"
   command -v nvcc >/dev/null || die "there is no nvcc; see --pack"
   echo "== build"
   mkdir -p build
@@ -113,7 +113,6 @@ attempt() { "$@" || { echo "gpu-check: FAILED: $*" >&2; failures=$((failures + 1
 echo "== tests"
 attempt ours $tests --gtest_brief=1
 if [ $sanitize = yes ]; then
-  command -v compute-sanitizer >/dev/null || die "there is no compute-sanitizer"
   attempt ours compute-sanitizer --error-exitcode 1 $tests --gtest_brief=1 \
     --gtest_filter='CudaTimedCasts.*:CudaTrace.Stops*:CudaRender.Filters*:CudaRender.AnEmpty*'
 fi
