@@ -81,6 +81,25 @@ ContourCandidates CellBuilder::candidates(std::size_t begin) const {
   return result;
 }
 
+bool CellBuilder::is_too_thin(std::size_t begin, const ConvexPolyhedron& shape) const {
+  constexpr std::size_t kMost = 6;       // Where there are more it is not likely.
+  constexpr double kRounding = 0x1p-10;  // more than that of cutting shapes
+  if (items_.size() - begin > kMost) return false;
+  const auto is_thin = [&](const ContourDirection& across) {
+    return 2 * extent_of(shape, across.normal).size() <
+           (FittedContour::kLeastGain - kRounding) * static_cast<double>(across.length);
+  };
+  Vec3i known{};
+  for (std::size_t i = begin; i < items_.size(); ++i) {
+    const SurfaceTriangle& triangle = triangles_[items_[i].triangle];
+    if (!triangle.across.exists() || triangle.open_edges != 0) return false;
+    if (triangle.across.normal == known) continue;
+    known = triangle.across.normal;
+    if (!is_thin(triangle.across)) return false;
+  }
+  return true;
+}
+
 VoxelDecision CellBuilder::decide(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                                   ConvexPolyhedron& shape, SurfaceSum& sum) const {
   VoxelDecision decision;
@@ -222,6 +241,8 @@ CellBuilder::Visited CellBuilder::visit_children(std::size_t begin, int log2_siz
     classified_.push_back(classify(item, log2_size, cell));
     alive |= classified_.back().alive;
   }
+  // Leaves that have no contours need no shapes.
+  if (settings_.contours && !is_near && log2_size == 1) is_near = is_too_thin(begin, shape);
   Visited children[8];
   visit_halves(begin, {log2_size, cell, is_near, 2, 0xFF, begin, first_classified}, alive, shape,
                children);

@@ -115,7 +115,7 @@ class CellBuilder {
   struct Part {
     int log2_size;
     Vec3i cell;
-    bool is_near;  ///< The shape of the cell: what becomes of it does not matter.
+    bool is_near;  ///< What becomes of the cell's shape does not matter.
     int axis;
     std::uint32_t children;  ///< A mask.
     std::size_t items;       ///< Where the cell's are, those that are classified from...
@@ -137,6 +137,9 @@ class CellBuilder {
   bool is_uniform(std::size_t begin, int log2_size, Vec3i cell, SurfaceSum& sum) const;
   bool is_of_one_look(std::size_t begin) const;
   ContourCandidates candidates(std::size_t begin) const;
+  /// Whether no voxel of half the side can have a contour that pays: the shape is too thin across
+  /// each direction that it might have.
+  bool is_too_thin(std::size_t begin, const ConvexPolyhedron& shape) const;
   /// The mean of what is baked in over the cell's polygons, or nothing if it differs among them
   /// more than a leaf above the finest level allows.
   std::optional<float> light_of(std::size_t begin, int log2_size, Vec3i cell) const;

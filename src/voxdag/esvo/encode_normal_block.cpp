@@ -7,8 +7,10 @@
 #include "voxdag/esvo/encode_normal_block.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "voxdag/core/bits.hpp"
 #include "voxdag/esvo/normal_fit.hpp"
 #include "voxdag/esvo/principal_axis.hpp"
 
@@ -211,20 +213,40 @@ void move_integers(const NormalValues& values, NormalFit& fit) {
 }
 
 /// One normal: the base, and an axis from it to the normal itself.
-NormalFit one_normal(const NormalValues& values) {
+NormalFit fit_one_normal(Vec3f normal) {
+  NormalValues values;
+  values.count = 1;
+  values.normal[0] = normal;
+  values.x[0] = normal.x, values.y[0] = normal.y, values.z[0] = normal.z;
+  values.weight[0] = values.total_weight = 1.0f;
   NormalFit plain;
-  plain.base = nearest_cube_point(values.normal[0]);
+  plain.base = nearest_cube_point(normal);
   fit_points(values, plain);
   NormalFit fit = plain;
   // At the point that both axes are added to: one is zero.
-  const Vec3f base = plain.base.position(), normal = values.normal[0];
+  const Vec3f base = plain.base.position();
   fit.u = nearest_axis(normal * dot(normal, base) - base, normal, 0.0f);
   fit_points(values, fit);
   return fit.error < plain.error ? fit : plain;
 }
 
+/// The same, and kept: flat surfaces have one normal block after block, and not many of them.
+const NormalFit& one_normal(Vec3f normal) {
+  struct Known {
+    Vec3f normal{};  // no unit vector
+    NormalFit fit;
+  };
+  constexpr std::size_t kKnown = 64;
+  thread_local std::array<Known, kKnown> all;
+  const std::uint32_t hash =
+      bits_of_float(normal.x) * 31 + bits_of_float(normal.y) * 17 + bits_of_float(normal.z);
+  Known& known = all[hash * 2654435761u >> 26];
+  if (known.normal != normal) known = {normal, fit_one_normal(normal)};
+  return known.fit;
+}
+
 NormalFit fit_grid(const NormalValues& values) {
-  if (values.count == 1) return one_normal(values);
+  if (values.count == 1) return one_normal(values.normal[0]);
   NormalFit best;
   best.base = nearest_cube_point(values.normal[0]);
   fit_points(values, best);

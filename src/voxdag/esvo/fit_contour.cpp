@@ -4,8 +4,6 @@
 #include <cmath>
 
 namespace voxdag {
-namespace {
-
 Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
   const auto n = static_cast<Vec3f>(normal);
   FloatLanes low = all_lanes(HUGE_VALF), high = -low;
@@ -23,8 +21,6 @@ Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal) {
   }
   return extent;
 }
-
-}  // namespace
 
 ContourDirection ContourDirection::nearest(Vec3d direction) {
   const double largest =

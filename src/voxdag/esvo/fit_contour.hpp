@@ -53,10 +53,14 @@ struct FittedContour {
   /// By how much the shape becomes thinner across it, in the voxel's coordinates: its side is 2.
   double gain = 0;
 
-  /// A contour that saves less of the voxel's side does not pay for its four bytes, unless it lets
-  /// the subdivision end here, where each child would have to have one of its own.
-  bool pays() const { return gain > 0.15; }
+  /// A contour that saves less does not pay for its four bytes, unless it lets the subdivision end
+  /// here, where each child would have to have one of its own.
+  static constexpr double kLeastGain = 0.15;
+  bool pays() const { return gain > kLeastGain; }
 };
+
+/// The least and the greatest dot(normal, p) of the shape's points p.
+Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal);
 
 /// The least and the greatest dot(normal, p) of some points p, by direction.
 using ContourExtents = std::array<Interval, ContourCandidates::kMost>;

@@ -115,7 +115,7 @@ class PolygonDistance {
 bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
                      float distance) {
   if (shape.is_empty()) return true;
-  if (surface.empty() || surface.size() > kMostNearPolygons) return false;
+  if (surface.empty() || surface.size() > kMostNearPolygons || !(distance > 0)) return false;
   const PointGroups points(shape);
   // Most shapes that reach too far do so by their points' heights over all of the planes.
   for (int i = 0; i < points.count; ++i) {

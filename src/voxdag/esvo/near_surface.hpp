@@ -18,7 +18,8 @@ struct PlanarPolygon {
 inline constexpr std::size_t kMostNearPolygons = 24;
 
 /// Whether the shape's vertices and their mean are each no farther than `distance` from one of the
-/// polygons. An empty shape is; any other is not where there are more than kMostNearPolygons.
+/// polygons. An empty shape is; any other is not where there are more than kMostNearPolygons, or
+/// the distance is 0.
 bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
                      float distance);
 
