@@ -57,6 +57,8 @@ struct EsvoBuildRun {
     return voxels == 0 ? 0 : static_cast<double>(bytes) / static_cast<double>(voxels);
   }
   double voxels_per_second() const { return static_cast<double>(voxels) / build_seconds; }
+  /// Parsing and writing included.
+  double voxels_per_cpu_second() const { return static_cast<double>(voxels) / cost.cpu_seconds(); }
 };
 
 /// Primary rays of all views of a scene at one size; NaN for a form that was not measured.

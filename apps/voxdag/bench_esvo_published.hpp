@@ -85,4 +85,13 @@ inline double esvo_of_levels(const std::array<double, 7>& values, int levels) {
   return column < 0 || column >= 7 ? kNone : values[static_cast<std::size_t>(column)];
 }
 
+/// How many voxels a core built in a second; NaN where the paper has no such octree. Its megabytes
+/// are taken for 2^20 bytes, and its bytes per voxel, of the largest octree, for those of all.
+inline double esvo_voxels_per_core_second(const EsvoScene* scene, int levels) {
+  constexpr double kCores = 4;
+  if (scene == nullptr) return kNone;
+  return esvo_of_levels(scene->megabytes, levels) * 0x1p20 / scene->bytes_per_voxel /
+         (esvo_of_levels(scene->seconds, levels) * kCores);
+}
+
 }  // namespace voxdag::published

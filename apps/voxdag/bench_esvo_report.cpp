@@ -28,17 +28,20 @@ std::string build_row(const EsvoBuildRun& run) {
   const std::string name = fmt::format("{:>10}  {:<9}", resolution_of(run.levels),
                                        run.with_contours ? "contours" : "cubes");
   if (!run.failure.empty()) return fmt::format("  {} failed: {}\n", name, run.failure);
-  const published::EsvoScene* paper =
-      run.with_contours ? published::esvo_scene(run.scene) : nullptr;
+  const published::EsvoScene* scene = published::esvo_scene(run.scene);
+  const double times_paper =
+      run.voxels_per_cpu_second() / published::esvo_voxels_per_core_second(scene, run.levels);
+  const published::EsvoScene* paper = run.with_contours ? scene : nullptr;
   const double megabytes =
       paper != nullptr ? published::esvo_of_levels(paper->megabytes, run.levels) : NAN;
   const double seconds =
       paper != nullptr ? published::esvo_of_levels(paper->seconds, run.levels) : NAN;
-  return fmt::format("  {}{:>15}{:>10}{:>8}{:>10}{:>10}{:>10}{:>12}{:>10}{:>9}\n", name,
+  return fmt::format("  {}{:>15}{:>10}{:>8}{:>10}{:>10}{:>14}{:>9}{:>12}{:>10}{:>9}\n", name,
                      with_commas(run.voxels), number(run.megabytes(), 1),
                      number(run.bytes_per_voxel(), 2), number(run.build_seconds, 2),
-                     number(run.cost.cpu_seconds(), 2), human_count(run.voxels_per_second()),
-                     human_bytes(run.cost.peak_bytes), number(megabytes, 0), number(seconds, 0));
+                     number(run.cost.cpu_seconds(), 2), human_count(run.voxels_per_cpu_second()),
+                     number(times_paper, 1), human_bytes(run.cost.peak_bytes), number(megabytes, 0),
+                     number(seconds, 0));
 }
 
 std::string builds_table(const Builds& builds) {
@@ -50,9 +53,10 @@ std::string builds_table(const Builds& builds) {
                           paper == nullptr ? ""
                                            : fmt::format(" (the paper: {:.2f} bytes per voxel)",
                                                          paper->bytes_per_voxel));
-      text += fmt::format("  {:>10}  {:<9}{:>15}{:>10}{:>8}{:>10}{:>10}{:>10}{:>12}{:>10}{:>9}\n",
-                          "grid", "form", "voxels", "MB", "B/voxel", "build s", "CPU s", "voxels/s",
-                          "peak mem", "paper MB", "paper s");
+      text +=
+          fmt::format("  {:>10}  {:<9}{:>15}{:>10}{:>8}{:>10}{:>10}{:>14}{:>9}{:>12}{:>10}{:>9}\n",
+                      "grid", "form", "voxels", "MB", "B/voxel", "build s", "CPU s", "voxels/CPU s",
+                      "x paper", "peak mem", "paper MB", "paper s");
     }
     text += build_row(builds[i]);
   }
@@ -173,13 +177,16 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
     object["wall_seconds"] = run.cost.wall_seconds;
     object["cpu_seconds"] = run.cost.cpu_seconds();
     object["voxels_per_second"] = run.voxels_per_second();
+    object["voxels_per_cpu_second"] = run.voxels_per_cpu_second();
     object["peak_memory_bytes"] = run.cost.peak_bytes;
     const published::EsvoScene* paper = published::esvo_scene(run.scene);
     if (paper != nullptr && run.with_contours)
       object["paper"] = {
           {"megabytes", json_number(published::esvo_of_levels(paper->megabytes, run.levels))},
           {"build_seconds", json_number(published::esvo_of_levels(paper->seconds, run.levels))},
-          {"bytes_per_voxel", paper->bytes_per_voxel}};
+          {"bytes_per_voxel", paper->bytes_per_voxel},
+          {"voxels_per_core_second",
+           json_number(published::esvo_voxels_per_core_second(paper, run.levels))}};
     json["builds"].push_back(object);
   }
   json["rays"] = Json::array();
