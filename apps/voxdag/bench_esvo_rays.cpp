@@ -10,7 +10,7 @@
 #include "caster_runner.hpp"
 #include "trace_measure.hpp"
 #include "trace_rays.hpp"
-#include "voxdag/cpu/fast_caster.hpp"
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/mesh/read_mesh.hpp"
 
@@ -69,7 +69,7 @@ struct PrimaryRays {
 
 template <class Nodes>
 TraceRunner esvo_runner(const EsvoView& esvo, const std::vector<CastRay>& casts) {
-  return runner_of(fast_caster(Nodes(esvo)), RayClass::kPrimary, casts);
+  return runner_of(PacketCaster(Nodes(esvo)), RayClass::kPrimary, casts);
 }
 
 struct FormSums {

@@ -2,7 +2,6 @@
 
 #include "caster_runner.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/cpu/fast_caster.hpp"
 #include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
@@ -71,7 +70,7 @@ class PaperLayout : public PaperScalarLayout {
   std::uint64_t bytes() const override { return PaperScalarLayout::bytes() + dag_.bytes(); }
   std::uint64_t device_bytes() const override { return PaperScalarLayout::bytes(); }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(PacketCaster<BoundedDag>(dag_), rays, casts);
+    return runner_of(PacketCaster(dag_), rays, casts);
   }
 
  private:
@@ -144,7 +143,7 @@ class EsvoTraceLayout : public TraceLayout {
     return std::nullopt;
   }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
-    return runner_of(fast_caster(Nodes(esvo_)), rays, casts);
+    return runner_of(PacketCaster(Nodes(esvo_)), rays, casts);
   }
   WalkCost cost(std::span<const CastRay> casts) const override {
     std::uint64_t steps = 0, read = 0;

@@ -1,6 +1,11 @@
 // Packets at an ESVO against the scalar cast, ray by ray.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <utility>
+
 #include "support/caster_checks.hpp"
 #include "support/test_esvo.hpp"
 #include "support/voxel_sets.hpp"
@@ -89,6 +94,37 @@ TEST(EsvoPacketCaster, ShortRaysOfOnePointMeetTheSame) {
   for (unsigned of = 1; of <= 4; ++of) {
     const Esvo esvo = random_esvo(of, 5);
     expect_same_results(ContourNodes(esvo.view()), rays, "contours");
+  }
+}
+
+/// How often rays ended at the leaves of each descriptor.
+class CountedLeaves : public LeafListener {
+ public:
+  void on_leaf(std::uint64_t slot) const override { ++counts_[slot]; }
+  std::map<std::uint64_t, int> take() const { return std::exchange(counts_, {}); }
+
+ private:
+  mutable std::map<std::uint64_t, int> counts_;
+};
+
+TEST(EsvoPacketCaster, TellsOfTheSameLeavesWhereBlocksMayBeMissing) {
+  const int levels = 5;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const Esvo esvo = random_esvo(seed, levels);
+    auto rays = rays_of_every_kind(grid_of(levels), 300, seed);
+    set_random_stops(rays, 0x1p-4f, 0x1p-3f, seed);
+    const CountedLeaves leaves;
+    const StreamedNodes nodes(esvo.view(), leaves);
+    const auto hits = closest_hits<EsvoHit>(ScalarCaster<StreamedNodes>(nodes), rays);
+    const auto expected = leaves.take();
+    std::ptrdiff_t told = 0;
+    for (const auto& [slot, count] : expected) told += count;
+    EXPECT_GT(told, 30);
+    EXPECT_LT(told, std::count(hits.is_hit.begin(), hits.is_hit.end(), 1)) << "none is too small";
+    closest_hits<EsvoHit>(PacketCaster<StreamedNodes>(nodes), rays);
+    EXPECT_EQ(leaves.take(), expected) << "closest, seed " << seed;
+    any_hits(PacketCaster<StreamedNodes>(nodes), rays);
+    EXPECT_EQ(leaves.take(), expected) << "any, seed " << seed;
   }
 }
 

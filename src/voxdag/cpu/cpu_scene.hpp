@@ -5,7 +5,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "voxdag/cpu/fast_caster.hpp"
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
@@ -36,7 +36,7 @@ class CpuScene {
       if constexpr (std::is_same_v<std::remove_cvref_t<decltype(nodes)>, SvdagNodes>)
         return packets_ ? body(nodes, *packets_) : body(nodes, ScalarCaster<SvdagNodes>(nodes));
       else
-        return body(nodes, fast_caster(nodes));
+        return body(nodes, PacketCaster(nodes));
     });
   }
 

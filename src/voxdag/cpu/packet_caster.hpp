@@ -9,9 +9,9 @@
 
 namespace voxdag {
 
-/// A caster (see trace/scalar_caster.hpp) on a BoundedDag, EsvoNodes or ContourNodes. Fast where
-/// rays that come within thousands of one another are near each other, as those of a tile of a
-/// picture are.
+/// A caster (see trace/scalar_caster.hpp) on a BoundedDag, EsvoNodes, ContourNodes or
+/// StreamedNodes. Fast where rays that come within thousands of one another are near each other, as
+/// those of a tile of a picture are.
 template <class Target>
 class PacketCaster {
  public:
@@ -43,6 +43,8 @@ class PacketCaster {
  private:
   using Hits = typename PacketTarget<Target>::Hits;
   using Hit = decltype(std::declval<const Hits&>()[0]);
+  /// Whether it is to be told of the leaves that rays end at.
+  static constexpr bool kTellsOfLeaves = requires(const Target& target) { target.on_leaf(0u); };
 
   template <bool kClosest, class MakeRay, class OnCast, class OnMiss>
   void run(int count, const MakeRay& make_ray, const OnCast& on_cast, const OnMiss& on_miss) const {
@@ -64,12 +66,14 @@ class PacketCaster {
           ++place;
         } while (place < window.ordered() && packet.size < RayPacket::kMaxRays &&
                  window[window.at(place)].ray.mirrored == mirrored);
-        if constexpr (kClosest)
+        if constexpr (kClosest || kTellsOfLeaves)
           cast_packet(target_, packet, hits);
         else
           hits.met = cast_packet_any(target_, packet);
         for (std::size_t at = 0; at < packet.size; ++at) {
           const int i = window.at(begin + static_cast<int>(at));
+          if constexpr (kTellsOfLeaves)
+            if (hits.is_hit(at)) tell_of_leaf(target_, window[i], hits[at]);
           on_cast(first + i, window[i].ray, hits, at);
         }
       }

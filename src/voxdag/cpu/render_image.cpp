@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "voxdag/cpu/packet_caster.hpp"
 #include "voxdag/cpu/post_filter.hpp"
 #include "voxdag/cpu/streamed_image.hpp"
 #include "voxdag/cpu/tile_renderer.hpp"
@@ -47,7 +48,7 @@ RenderedImage render_streamed(BlockSource& source, const Grid& grid, const Rende
                          plan.image().view.vertical_fov_degrees};
     const Vec3d eye = plan.image().view.eye;
     const StreamedNodes nodes(source.view(), source.listener());
-    const TileRenderer renderer(nodes, fast_caster(nodes), plan.setup(), options.beams, nullptr);
+    const TileRenderer renderer(nodes, PacketCaster(nodes), plan.setup(), options.beams, nullptr);
     rays += renderer.render(tiles, progress);
     const BlockSource::Loaded loaded = source.load_missing(eye, false);
     if (loaded.missed > 0 && loaded.loaded > 0) {
