@@ -10,6 +10,7 @@
 #include "support/test_esvo.hpp"
 #include "support/voxel_sets.hpp"
 #include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/trace/streamed_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -29,12 +30,6 @@ Esvo random_esvo(unsigned seed, int levels) {
   std::mt19937 rng(seed);
   const auto root = random_octree(rng, 0, levels);
   return TestEsvoAssembler(1 + seed % 5, seed).assemble(*root, levels);
-}
-
-Grid grid_of(int levels) {
-  Grid grid;
-  grid.levels = levels;
-  return grid;
 }
 
 TEST(EsvoPacketCaster, MeetsTheShapesThatTheScalarCastMeets) {

@@ -18,12 +18,6 @@ void expect_same_results(int levels, unsigned seed, const std::vector<CastRay>& 
   }
 }
 
-Grid grid_of(int levels) {
-  Grid grid;
-  grid.levels = levels;
-  return grid;
-}
-
 TEST(PacketCaster, MeetsWhatTheScalarCastMeets) {
   for (const int levels : {2, 3, 5, 6})
     expect_same_results(levels, 3, rays_of_every_kind(grid_of(levels), 300, 7));

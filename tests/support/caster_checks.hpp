@@ -77,6 +77,13 @@ CastResults<typename FoundBy<Nodes>::Type> expect_same_hits(const Nodes& nodes,
   return expected;
 }
 
+/// Of unit voxels.
+inline Grid grid_of(int levels) {
+  Grid grid;
+  grid.levels = levels;
+  return grid;
+}
+
 /// Rays of every kind, each with t_max and t_min in and out of the grid.
 inline std::vector<CastRay> rays_of_every_kind(const Grid& grid, int count, unsigned seed) {
   TestRays make(grid, seed);

@@ -1,11 +1,11 @@
 // Casts up to 64 rays of like direction at an ESVO together. Compiled once for each instruction
 // set; the best that the machine has is chosen at run time.
 //
-// As in cast_packet.cpp the rays run down the same way along every axis once mirrored, so that one
-// depth-first walk, nearest children first, serves all of them: a descriptor is read, and a contour
-// decoded, once for all rays in the voxel. A ray meets a voxel's shape just when the range of T
-// that the contours of its ancestors, its cube and its own contour leave is not empty; that is what
-// the walk of one ray in trace/esvo_cast.hpp finds, to the bit, whose products these are.
+// As in cast_dag_packet.cpp the rays run down the same way along every axis once mirrored, so that
+// one depth-first walk, nearest children first, serves all of them: a descriptor is read, and a
+// contour decoded, once for all rays in the voxel. A ray meets a voxel's shape just when the range
+// of T that the contours of its ancestors, its cube and its own contour leave is not empty; that is
+// what the walk of one ray in trace/esvo_cast.hpp finds, to the bit, whose products these are.
 //
 // A contour is looked at when its voxel is visited, not when its parent is: by then rays that end
 // nearer by are gone. What it leaves of the rays' ranges is kept for its level, as the voxels below

@@ -2,7 +2,6 @@
 /// Rays of like direction that are cast at an ESVO together.
 #include "voxdag/cpu/ray_packet.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
-#include "voxdag/trace/streamed_nodes.hpp"
 
 namespace voxdag {
 
@@ -41,18 +40,5 @@ void cast_packet(const ContourNodes& nodes, const RayPacket& packet, EsvoHits& h
 /// Which of the rays meet anything, as PacketHits::met.
 std::uint64_t cast_packet_any(const EsvoNodes& nodes, const RayPacket& packet);
 std::uint64_t cast_packet_any(const ContourNodes& nodes, const RayPacket& packet);
-
-/// Tells the nodes' listener where the ray ended, if it is to know, as cast() does.
-inline void tell_of_leaf(const StreamedNodes& nodes, const CastRay& ray, const EsvoHit& hit) {
-  const ChildDescriptor descriptor = nodes.view().descriptor(hit.voxel.slot);
-  if ((descriptor.leaf_mask() >> hit.voxel.child & 1u) == 0) return;
-  float t_exit = HUGE_VALF;
-  const std::uint32_t corner[3] = {hit.x, hit.y, hit.z};
-  for (int axis = 0; axis < 3; ++axis) {
-    const float t = ray.ray.plane_t(axis, float_from_bits(corner[axis]));
-    t_exit = t < t_exit ? t : t_exit;
-  }
-  if (!ray.stop(hit.level, hit.t, t_exit)) nodes.on_leaf(hit.voxel.slot);
-}
 
 }  // namespace voxdag

@@ -166,8 +166,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, con
   children.meet[7] = m7 & rays;
 }
 
-/// The children that any ray can meet. The bounds of T hold in float arithmetic too, since rounding
-/// is monotone.
+/// The children that any ray can meet.
 template <bool kWithContours>
 inline std::uint32_t EsvoPacketWalk<kWithContours>::children_met_by_hull(const Visit& visit,
                                                                          const Spans& spans) const {
@@ -179,12 +178,7 @@ inline std::uint32_t EsvoPacketWalk<kWithContours>::children_met_by_hull(const V
     const auto low =
         hn::Or(hn::Set(du, visit.corner[axis]), hn::And(hn::Load(du, kUpper[axis]), half));
     const auto high = hn::Add(low, half);
-    const auto slow = hn::Set(d, inverse_range_[axis][1]),
-               fast = hn::Set(d, inverse_range_[axis][0]);
-    const auto to_high = hn::Sub(hn::Set(d, origin_range_[axis][0]), hn::BitCast(d, high));
-    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), hn::BitCast(d, low));
-    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
-    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
+    bound_by_sides(axis, hn::BitCast(d, low), hn::BitCast(d, high), enter, exit);
   }
   return bits_of_children(hn::Lt(enter, exit));
 }

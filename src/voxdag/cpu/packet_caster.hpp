@@ -43,8 +43,11 @@ class PacketCaster {
  private:
   using Hits = typename PacketTarget<Target>::Hits;
   using Hit = decltype(std::declval<const Hits&>()[0]);
-  /// Whether it is to be told of the leaves that rays end at.
-  static constexpr bool kTellsOfLeaves = requires(const Target& target) { target.on_leaf(0u); };
+  /// Whether the target is to be told of hits.
+  static constexpr bool kTells =
+      requires(const Target& target, const CastRay& ray, const Hit& hit) {
+    target.on_hit(ray.ray, ray.stop, hit);
+  };
 
   template <bool kClosest, class MakeRay, class OnCast, class OnMiss>
   void run(int count, const MakeRay& make_ray, const OnCast& on_cast, const OnMiss& on_miss) const {
@@ -66,14 +69,14 @@ class PacketCaster {
           ++place;
         } while (place < window.ordered() && packet.size < RayPacket::kMaxRays &&
                  window[window.at(place)].ray.mirrored == mirrored);
-        if constexpr (kClosest || kTellsOfLeaves)
+        if constexpr (kClosest || kTells)
           cast_packet(target_, packet, hits);
         else
           hits.met = cast_packet_any(target_, packet);
         for (std::size_t at = 0; at < packet.size; ++at) {
           const int i = window.at(begin + static_cast<int>(at));
-          if constexpr (kTellsOfLeaves)
-            if (hits.is_hit(at)) tell_of_leaf(target_, window[i], hits[at]);
+          if constexpr (kTells)
+            if (hits.is_hit(at)) target_.on_hit(window[i].ray, window[i].stop, hits[at]);
           on_cast(first + i, window[i].ray, hits, at);
         }
       }

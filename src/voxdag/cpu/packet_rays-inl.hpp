@@ -54,6 +54,19 @@ class PacketRays : protected PacketLanes {
   /// Whether they fill more than two vectors: fewer are told apart as fast.
   static bool are_many(Rays rays) { return (rays >> (2 * kWidth - 1) >> 1) != 0; }
 
+  /// Moves the bounds on where the rays enter and leave boxes, one a lane, to between the boxes'
+  /// sides across an axis. They hold in float arithmetic too, since rounding is monotone.
+  HWY_INLINE void bound_by_sides(int axis, hn::Vec<DF8> low, hn::Vec<DF8> high, hn::Vec<DF8>& enter,
+                                 hn::Vec<DF8>& exit) const {
+    const DF8 d;
+    const auto slow = hn::Set(d, inverse_range_[axis][1]),
+               fast = hn::Set(d, inverse_range_[axis][0]);
+    const auto to_high = hn::Sub(hn::Set(d, origin_range_[axis][0]), high);
+    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), low);
+    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
+    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
+  }
+
   /// Bit i of the result is bit i ^ mirrored of the mask.
   static constexpr std::uint32_t mirrored_mask(std::uint32_t mask, std::uint32_t mirrored) {
     if ((mirrored & 1u) != 0) mask = (mask & 0x55u) << 1 | (mask >> 1 & 0x55u);

@@ -88,11 +88,10 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
       if (!kWithContours || tv_min < tv_max) {
         const bool is_leaf = (parent.leaf_mask() >> index & 1u) != 0;
         if (is_leaf || stop(level, t, exit.t)) {
-          if constexpr (requires { nodes.on_leaf(slot); })
-            if (is_leaf && !stop(level, t, exit.t)) nodes.on_leaf(slot);
           static_cast<CellHit&>(hit) = {tv_min, cell.x(), cell.y(), cell.z(), level};
           hit.voxel = {slot, static_cast<int>(index)};
           hit.plane = entered;
+          if constexpr (requires { nodes.on_hit(ray, stop, hit); }) nodes.on_hit(ray, stop, hit);
           return true;
         }
         // PUSH

@@ -1,6 +1,8 @@
 #pragma once
 /// How walks read an ESVO of which only some blocks are loaded, and say what they miss.
-#include "voxdag/trace/esvo_nodes.hpp"
+#include <algorithm>
+
+#include "voxdag/trace/esvo_cast.hpp"
 
 namespace voxdag {
 
@@ -18,7 +20,16 @@ class StreamedNodes : public ContourNodes {
   StreamedNodes(const EsvoView& esvo, const LeafListener& listener)
       : ContourNodes(esvo), listener_(&listener) {}
 
-  void on_leaf(std::uint64_t slot) const { listener_->on_leaf(slot); }
+  /// What casters call for each hit, the stop being that of the cast.
+  template <class Stop>
+  void on_hit(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
+    const ChildDescriptor descriptor = view().descriptor(hit.voxel.slot);
+    if ((descriptor.leaf_mask() >> hit.voxel.child & 1u) == 0) return;
+    const float x = ray.plane_t(0, float_from_bits(hit.x)),
+                y = ray.plane_t(1, float_from_bits(hit.y)),
+                z = ray.plane_t(2, float_from_bits(hit.z));
+    if (!stop(hit.level, hit.t, std::min({x, y, z}))) listener_->on_leaf(hit.voxel.slot);
+  }
 
  private:
   const LeafListener* listener_;

@@ -1,10 +1,10 @@
 // The walk of up to 64 rays of like direction: what its parts share. Included once for each
-// instruction set, by cast_packet.cpp, which says how it goes.
-#if defined(VOXDAG_PACKET_WALK_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef VOXDAG_PACKET_WALK_INL
-#undef VOXDAG_PACKET_WALK_INL
+// instruction set, by cast_dag_packet.cpp, which says how it goes.
+#if defined(VOXDAG_DAG_PACKET_WALK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_DAG_PACKET_WALK_INL
+#undef VOXDAG_DAG_PACKET_WALK_INL
 #else
-#define VOXDAG_PACKET_WALK_INL
+#define VOXDAG_DAG_PACKET_WALK_INL
 #endif
 
 #include <hwy/cache_control.h>
@@ -25,10 +25,10 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-class PacketWalk : PacketRays {
+class DagPacketWalk : PacketRays {
  public:
   /// `hits` is null where it is only asked which rays meet anything.
-  PacketWalk(const BoundedDag& dag, PacketHits* hits)
+  DagPacketWalk(const BoundedDag& dag, PacketHits* hits)
       : nodes_(dag.nodes()), words_(dag.words()), hits_(hits) {}
 
   Rays cast(const RayPacket& packet);

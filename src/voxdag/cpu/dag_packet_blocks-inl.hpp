@@ -1,13 +1,13 @@
 // The rays of a packet against the voxels of a leaf block.
-#if defined(VOXDAG_PACKET_CELLS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef VOXDAG_PACKET_CELLS_INL
-#undef VOXDAG_PACKET_CELLS_INL
+#if defined(VOXDAG_DAG_PACKET_BLOCKS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_DAG_PACKET_BLOCKS_INL
+#undef VOXDAG_DAG_PACKET_BLOCKS_INL
 #else
-#define VOXDAG_PACKET_CELLS_INL
+#define VOXDAG_DAG_PACKET_BLOCKS_INL
 #endif
 
-#include "voxdag/cpu/packet_boxes-inl.hpp"
-#include "voxdag/cpu/packet_walk-inl.hpp"
+#include "voxdag/cpu/dag_packet_boxes-inl.hpp"
+#include "voxdag/cpu/dag_packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 /// Casts rays, one by one, at the 4³ voxels of a block; lane i of a vector is voxel i of an octant.
 /// Ends those that meet one, or an octant that they end at.
-inline void PacketWalk::cast_in_block(const Visit& visit) {
+inline void DagPacketWalk::cast_in_block(const Visit& visit) {
   const int levels = nodes_.levels();
   const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
   const std::uint32_t* corner = visit.corner;
@@ -96,7 +96,7 @@ inline void PacketWalk::cast_in_block(const Visit& visit) {
 }
 
 /// Ends rays at the octants of a block that they meet.
-inline void PacketWalk::end_at_octants(const Visit& visit) {
+inline void DagPacketWalk::end_at_octants(const Visit& visit) {
   const int level = nodes_.levels() - 2;
   set_planes(visit.corner, level, hn::Zero(DU8()));
   const std::uint32_t met = bound_children(level + 1).met;
@@ -104,7 +104,7 @@ inline void PacketWalk::end_at_octants(const Visit& visit) {
 }
 
 /// Sets T of the hits, as entered_face() in trace/cast.hpp finds it.
-inline void PacketWalk::set_hit_t() {
+inline void DagPacketWalk::set_hit_t() {
   const DF d;
   const hn::RebindToUnsigned<DF> du;
   const hn::RebindToSigned<DF> di;

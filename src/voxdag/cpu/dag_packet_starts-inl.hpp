@@ -1,12 +1,12 @@
 // Where the walk of a packet may begin: the cells that hold all of its rays.
-#if defined(VOXDAG_PACKET_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef VOXDAG_PACKET_BOUNDS_INL
-#undef VOXDAG_PACKET_BOUNDS_INL
+#if defined(VOXDAG_DAG_PACKET_STARTS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_DAG_PACKET_STARTS_INL
+#undef VOXDAG_DAG_PACKET_STARTS_INL
 #else
-#define VOXDAG_PACKET_BOUNDS_INL
+#define VOXDAG_DAG_PACKET_STARTS_INL
 #endif
 
-#include "voxdag/cpu/packet_walk-inl.hpp"
+#include "voxdag/cpu/dag_packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 
 /// The lowest cells, of level `finest` at most, that hold the starts of all rays, and starts and
 /// ends. A position p here is in the cell with lower < p <= upper, as the voxel rule has it.
-inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int finest) const {
+inline void DagPacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int finest) const {
   const DF d;
   const hn::RebindToUnsigned<DF> du;
   // More than the rounding of T, of the quotient and of the difference here.
@@ -71,7 +71,7 @@ inline void PacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int 
 
 /// The finest level above the blocks down to which no ray may end at the cell where it starts: it
 /// leaves a cell of this side no later than at t_min + side, as T grows by 1 across the grid.
-inline int PacketWalk::finest_without_stop() const {
+inline int DagPacketWalk::finest_without_stop() const {
   int level = 0;
   for (; level < nodes_.levels() - 2; ++level) {
     if (level + 1 < stop_level_) continue;

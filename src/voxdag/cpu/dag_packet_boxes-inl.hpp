@@ -1,12 +1,12 @@
 // The rays of a packet against the boxes of a node's children.
-#if defined(VOXDAG_PACKET_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef VOXDAG_PACKET_BOXES_INL
-#undef VOXDAG_PACKET_BOXES_INL
+#if defined(VOXDAG_DAG_PACKET_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_DAG_PACKET_BOXES_INL
+#undef VOXDAG_DAG_PACKET_BOXES_INL
 #else
-#define VOXDAG_PACKET_BOXES_INL
+#define VOXDAG_DAG_PACKET_BOXES_INL
 #endif
 
-#include "voxdag/cpu/packet_walk-inl.hpp"
+#include "voxdag/cpu/dag_packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -16,8 +16,8 @@ namespace HWY_NAMESPACE {
 
 /// Sets the planes of the boxes of the children of the node of `level` at `corner`, one box a lane,
 /// rounded outwards to the cells that rays may end at.
-HWY_INLINE void PacketWalk::set_planes(const std::uint32_t corner[3], int level,
-                                       hn::Vec<DU8> boxes) {
+HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int level,
+                                          hn::Vec<DU8> boxes) {
   const DU8 d;
   const DF8 df;
   int below = CellBox::kBits - (stop_level_ - (level + 1));
@@ -46,9 +46,9 @@ HWY_INLINE void PacketWalk::set_planes(const std::uint32_t corner[3], int level,
 
 /// Says at which of the children rays end that enter and leave them in these ranges of T, with the
 /// least and the most of their levels of detail.
-HWY_INLINE void PacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
-                                     const float start[2], const float per_t[2],
-                                     Children& children) const {
+HWY_INLINE void DagPacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
+                                        const float start[2], const float per_t[2],
+                                        Children& children) const {
   const DF8 d;
   children.all_end = children.some_end = 0;
   children.octants_end = children.octants_may_end = 0;
@@ -68,20 +68,12 @@ HWY_INLINE void PacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn::Ve
   }
 }
 
-/// What the ranges that the rays are in say of the boxes. The bounds of T hold in float arithmetic
-/// too, since rounding is monotone.
-HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) const {
+/// What the ranges that the rays are in say of the boxes.
+HWY_INLINE DagPacketWalk::Children DagPacketWalk::bound_children(int child_level) const {
   const DF8 d;
   auto enter = hn::Set(d, t_range_[0]), exit = hn::Set(d, HUGE_VALF);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto slow = hn::Set(d, inverse_range_[axis][1]),
-               fast = hn::Set(d, inverse_range_[axis][0]);
-    const auto to_high =
-        hn::Sub(hn::Set(d, origin_range_[axis][0]), hn::Load(d, planes_[axis + 3]));
-    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), hn::Load(d, planes_[axis]));
-    enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
-    exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    bound_by_sides(axis, hn::Load(d, planes_[axis]), hn::Load(d, planes_[axis + 3]), enter, exit);
   Children children;
   children.met = bits_of_children(hn::Lt(enter, hn::Min(exit, hn::Set(d, t_range_[1]))));
   set_ends(child_level, enter, exit, stop_start_, stop_per_t_, children);
@@ -89,7 +81,7 @@ HWY_INLINE PacketWalk::Children PacketWalk::bound_children(int child_level) cons
 }
 
 /// Which boxes ray i meets.
-HWY_INLINE std::uint32_t PacketWalk::boxes_met_by(int i) const {
+HWY_INLINE std::uint32_t DagPacketWalk::boxes_met_by(int i) const {
   const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, rays_.t_end[i]);
   for (int axis = 0; axis < 3; ++axis) {
@@ -102,7 +94,7 @@ HWY_INLINE std::uint32_t PacketWalk::boxes_met_by(int i) const {
 }
 
 /// Which boxes ray i meets, and at which cells it ends that it meets.
-HWY_INLINE PacketWalk::Children PacketWalk::children_met_by(int i, int child_level) const {
+HWY_INLINE DagPacketWalk::Children DagPacketWalk::children_met_by(int i, int child_level) const {
   const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, HUGE_VALF);
   for (int axis = 0; axis < 3; ++axis) {
@@ -120,7 +112,7 @@ HWY_INLINE PacketWalk::Children PacketWalk::children_met_by(int i, int child_lev
 }
 
 /// Which of `rays` meet the box of child `child`.
-HWY_INLINE PacketWalk::Rays PacketWalk::rays_meeting(std::uint32_t child, Rays rays) const {
+HWY_INLINE DagPacketWalk::Rays DagPacketWalk::rays_meeting(std::uint32_t child, Rays rays) const {
   const DF d;
   const auto x0 = hn::Set(d, planes_[0][child]), x1 = hn::Set(d, planes_[3][child]);
   const auto y0 = hn::Set(d, planes_[1][child]), y1 = hn::Set(d, planes_[4][child]);
@@ -142,8 +134,8 @@ HWY_INLINE PacketWalk::Rays PacketWalk::rays_meeting(std::uint32_t child, Rays r
 }
 
 /// Which of `rays`, that all meet the cell of child `child` of level `child_level`, end there.
-inline PacketWalk::Rays PacketWalk::rays_ending(std::uint32_t child, int child_level,
-                                                Rays rays) const {
+inline DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child, int child_level,
+                                                      Rays rays) const {
   Rays ending = 0;
   for (Rays rest = rays; rest != 0; rest &= rest - 1) {
     const int i = lowest_bit64(rest);
@@ -155,7 +147,7 @@ inline PacketWalk::Rays PacketWalk::rays_ending(std::uint32_t child, int child_l
 
 /// Puts the children that rays meet on the stack, the nearest on top; those at which rays end with
 /// these rays alone.
-inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::size_t& top) {
+inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std::size_t& top) {
   const auto level = static_cast<int>(visit.level);
   const std::uint32_t side = 1u << (22 - level);
   const std::uint32_t* node = words_ + 2 * std::size_t{visit.node};
@@ -227,7 +219,7 @@ inline void PacketWalk::visit_children(const Visit& visit, Visit* stack, std::si
 }
 
 /// Ends rays at the children `met`, at which all rays end that meet them.
-inline void PacketWalk::end_at_children(const Visit& visit, std::uint32_t met) {
+inline void DagPacketWalk::end_at_children(const Visit& visit, std::uint32_t met) {
   const std::uint32_t side = 1u << (22 - visit.level);
   Rays rays = visit.rays;
   while (met != 0 && rays != 0) {

@@ -14,17 +14,17 @@
 // The walk starts at the lowest node that holds the starts of all rays, and climbs from there only
 // as far as the rays reach.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "voxdag/cpu/cast_packet.cpp"
+#define HWY_TARGET_INCLUDE "voxdag/cpu/cast_dag_packet.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 
 #include "voxdag/cpu/dag_packet.hpp"
-#include "voxdag/cpu/packet_bounds-inl.hpp"
-#include "voxdag/cpu/packet_boxes-inl.hpp"
-#include "voxdag/cpu/packet_cells-inl.hpp"
-#include "voxdag/cpu/packet_walk-inl.hpp"
+#include "voxdag/cpu/dag_packet_blocks-inl.hpp"
+#include "voxdag/cpu/dag_packet_boxes-inl.hpp"
+#include "voxdag/cpu/dag_packet_starts-inl.hpp"
+#include "voxdag/cpu/dag_packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -33,7 +33,7 @@ namespace HWY_NAMESPACE {
 #if VOXDAG_PACKET_LANES
 
 /// Puts the nodes to visit first on the stack; returns how many.
-inline std::size_t PacketWalk::begin(Rays all, Visit* stack) const {
+inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) const {
   CommonCell starts, reach;
   common_cells(starts, reach, rays_.has_stop ? finest_without_stop() : nodes_.levels() - 2);
   std::size_t top = 0;
@@ -61,7 +61,7 @@ inline std::size_t PacketWalk::begin(Rays all, Visit* stack) const {
   }
 }
 
-inline void PacketWalk::walk() {
+inline void DagPacketWalk::walk() {
   Visit stack[16 * kMaxLevels];
   std::size_t top = begin(searching_, stack);
   while (top > 0) {
@@ -88,7 +88,7 @@ inline void PacketWalk::walk() {
   }
 }
 
-inline PacketWalk::Rays PacketWalk::cast(const RayPacket& packet) {
+inline DagPacketWalk::Rays DagPacketWalk::cast(const RayPacket& packet) {
   if (packet.size == 0 || nodes_.is_empty()) return 0;
   load(packet);
   bound(nodes_.levels());
@@ -100,13 +100,13 @@ inline PacketWalk::Rays PacketWalk::cast(const RayPacket& packet) {
   return all & ~searching_;
 }
 
-std::uint64_t cast_packet_simd(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
-  return PacketWalk(dag, hits).cast(packet);
+std::uint64_t cast_dag_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
+  return DagPacketWalk(dag, hits).cast(packet);
 }
 
 #else
 
-std::uint64_t cast_packet_simd(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
+std::uint64_t cast_dag_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
   return cast_one_by_one(dag.nodes(), packet, hits);
 }
 
@@ -119,14 +119,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace voxdag {
 
-HWY_EXPORT(cast_packet_simd);
+HWY_EXPORT(cast_dag_packet);
 
 void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hits) {
-  hits.met = HWY_DYNAMIC_DISPATCH(cast_packet_simd)(dag, packet, &hits);
+  hits.met = HWY_DYNAMIC_DISPATCH(cast_dag_packet)(dag, packet, &hits);
 }
 
 std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet) {
-  return HWY_DYNAMIC_DISPATCH(cast_packet_simd)(dag, packet, nullptr);
+  return HWY_DYNAMIC_DISPATCH(cast_dag_packet)(dag, packet, nullptr);
 }
 
 }  // namespace voxdag
