@@ -14,13 +14,15 @@ TraceRunner runner_of(const Caster& caster, RayClass rays, std::span<const CastR
   runner.cast = [caster, casts, closest = is_closest(rays)](std::size_t first, std::size_t last,
                                                             std::uint8_t* hits) {
     const auto count = static_cast<int>(last - first);
-    const auto make_ray = [&](int i) { return casts[first + static_cast<std::size_t>(i)]; };
-    const auto set = [&](int i, bool is_hit) {
-      hits[first + static_cast<std::size_t>(i)] = is_hit ? 1 : 0;
+    const auto make_ray = [rays = casts.data() + first](int i) -> const CastRay& {
+      return rays[i];
+    };
+    const auto set = [of = hits + first](int i, bool is_hit) {
+      of[i] = static_cast<std::uint8_t>(is_hit);
     };
     if (closest)
       caster.closest(count, make_ray,
-                     [&](int i, const GridRay&, const CellHit&, bool is_hit) { set(i, is_hit); });
+                     [set](int i, const GridRay&, const CellHit&, bool is_hit) { set(i, is_hit); });
     else
       caster.any(count, make_ray, set);
   };

@@ -33,6 +33,11 @@ TEST(PacketCaster, RaysThatStartOnTheirWayEndAtTheSameLevelOfDetail) {
   expect_same_results(7, 9, ray_bundles(grid_of(7), 0.002, 0.01));
 }
 
+TEST(PacketCaster, RaysThatShareTheirVoxelsMeetTheSame) {
+  for (const double width : {0.003, 0.0002})
+    expect_same_results(5, 10, ray_bundles(grid_of(5), width, 0));
+}
+
 TEST(PacketCaster, ShortRaysOfOnePointMeetTheSame) {
   expect_same_results(7, 6, short_rays_of_points(grid_of(7), 100));
 }

@@ -43,11 +43,13 @@ CastResults<Found> closest_hits(const Caster& caster, const std::vector<CastRay>
   return results;
 }
 
+/// The caster is given references, where closest_hits() gives copies.
 template <class Caster>
 std::vector<char> any_hits(const Caster& caster, const std::vector<CastRay>& rays) {
   std::vector<char> results(rays.size());
   caster.any(
-      static_cast<int>(rays.size()), [&](int i) { return rays[static_cast<std::size_t>(i)]; },
+      static_cast<int>(rays.size()),
+      [&](int i) -> const CastRay& { return rays[static_cast<std::size_t>(i)]; },
       [&](int i, bool is_hit) { results[static_cast<std::size_t>(i)] = is_hit ? 1 : 0; });
   return results;
 }

@@ -9,7 +9,7 @@
 //
 // A child is visited only by rays that meet the box of its voxels (bounded_dag.hpp). The boxes of
 // eight children are tried first for the ranges that the rays are in, then for the rays. In a leaf
-// block the lanes are the voxels, and all 64 are tried for one ray.
+// block the lanes are rays, or, where there are few, the voxels, and all 64 are tried for one ray.
 //
 // The walk starts at the lowest node that holds the starts of all rays, and climbs from there only
 // as far as the rays reach.
@@ -94,7 +94,6 @@ inline DagPacketWalk::Rays DagPacketWalk::cast(const RayPacket& packet) {
   bound(nodes_.levels());
   const Rays all = first(packet.size);
   searching_ = all;
-  if (hits_ != nullptr) std::fill_n(hits_->level, RayPacket::kMaxRays, 0);
   walk();
   if (hits_ != nullptr) set_hit_t();
   return all & ~searching_;

@@ -15,11 +15,89 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Casts rays, one by one, at the 4³ voxels of a block; lane i of a vector is voxel i of an octant.
-/// Ends those that meet one, or an octant that they end at.
+/// Casts rays at the 4³ voxels of a block: a vector of rays at one voxel after the other where
+/// there are many rays for the voxels, else one ray at all of them. Ends those that meet one, or an
+/// octant that they end at.
 inline void DagPacketWalk::cast_in_block(const Visit& visit) {
-  const int levels = nodes_.levels();
   const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
+  Rays others = visit.rays;
+  if ((visit.skipped & kOctantsMayEnd) == 0) {
+    // What a vector costs for itself and for a voxel, and a ray, as measured.
+    constexpr int kVectorCost = 12, kRayCost = 12;
+    const int cost = kVectorCost + popcount64(block);
+    for (Rays rest = visit.rays; rest != 0;) {
+      const std::size_t first = take_vector(rest);
+      const Rays lanes = visit.rays & kVector << first;
+      if (kRayCost * popcount64(lanes) <= cost) continue;
+      cast_vector_in_block(visit.corner, block, first, lanes);
+      others &= ~lanes;
+    }
+  }
+  if (others != 0) cast_one_by_one_in_block(visit, block, others);
+}
+
+/// Casts `rays`, all of one vector, at the voxels of a block at `corner`.
+inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], std::uint64_t block,
+                                                std::size_t first, Rays rays) {
+  const DF d;
+  const hn::RebindToUnsigned<DF> du;
+  const hn::RebindToSigned<DF> di;
+  const std::uint32_t size = 1u << (23 - nodes_.levels());
+  // Where rays enter and leave the planes of voxels: by axis, then by place along it, then by ray.
+  alignas(64) float enter[12 * kWidth], exit[12 * kWidth];
+  const auto t_min = hn::Load(d, rays_.t_min + first), t_end = hn::Load(d, rays_.t_end + first);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto origin = hn::Load(d, rays_.origin[axis] + first),
+               inverse = hn::Load(d, rays_.inverse[axis] + first);
+    for (std::uint32_t i = 0; i <= 4; ++i) {
+      const auto plane = hn::Set(d, float_from_bits(corner[axis] + i * size));
+      const auto t = hn::Mul(hn::Sub(origin, plane), inverse);
+      const std::size_t at = (4 * static_cast<std::size_t>(axis) + i) * kWidth;
+      if (i > 0) hn::Store(axis == 0 ? hn::Max(t, t_min) : t, d, enter + at - kWidth);
+      if (i < 4) hn::Store(axis == 0 ? hn::Min(t, t_end) : t, d, exit + at);
+    }
+  }
+  // Of a voxel, by axis: where the lanes of its place begin.
+  static constexpr auto kLanes = [] {
+    std::array<std::array<std::uint8_t, 3>, 64> lanes{};
+    for (std::uint32_t voxel = 0; voxel < 64; ++voxel)
+      for (std::uint32_t axis = 0; axis < 3; ++axis)
+        lanes[voxel][axis] = static_cast<std::uint8_t>((4 * axis + place_of(voxel, axis)) * kWidth);
+    return lanes;
+  }();
+  // The farthest first, so that the nearest one stays.
+  auto nearest = hn::Set(di, -1);
+  for (std::uint64_t rest = block; rest != 0; rest &= rest - 1) {
+    const auto voxel = static_cast<std::uint32_t>(lowest_bit64(rest));
+    const std::uint8_t* at = kLanes[voxel].data();
+    const auto of = [&](const float* t, int axis) HWY_ATTR { return hn::Load(d, t + at[axis]); };
+    const auto in = hn::Max(hn::Max(of(enter, 0), of(enter, 1)), of(enter, 2));
+    const auto out = hn::Min(hn::Min(of(exit, 0), of(exit, 1)), of(exit, 2));
+    nearest = hn::IfThenElse(hn::RebindMask(di, hn::Lt(in, out)),
+                             hn::Set(di, static_cast<std::int32_t>(voxel)), nearest);
+  }
+  const auto is_met = hn::Gt(nearest, hn::Set(di, -1));
+  const Rays met = bits_of(hn::RebindMask(d, is_met)) << first & rays;
+  searching_ &= ~met;
+  if (hits_ == nullptr || met == 0) return;
+  const auto voxel = hn::BitCast(du, nearest);
+  const auto one = hn::Set(du, 1), two = hn::Set(du, 2);
+  const auto ends = hn::And(is_met, lanes_of(di, rays >> first));
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto place = hn::Or(hn::And(hn::ShiftRightSame(voxel, axis), one),
+                              hn::And(hn::ShiftRightSame(voxel, axis + 2), two));
+    const auto low = hn::Add(hn::Set(du, corner[axis]), hn::Mul(place, hn::Set(du, size)));
+    std::uint32_t* corners = hits_->corner[axis] + first;
+    hn::Store(hn::IfThenElse(hn::RebindMask(du, ends), low, hn::Load(du, corners)), du, corners);
+  }
+  std::int32_t* levels = hits_->level + first;
+  hn::Store(hn::IfThenElse(ends, hn::Set(di, nodes_.levels()), hn::Load(di, levels)), di, levels);
+}
+
+/// Casts rays, one by one, at the voxels of a block; lane i of a vector is voxel i of an octant.
+inline void DagPacketWalk::cast_one_by_one_in_block(const Visit& visit, std::uint64_t block,
+                                                    Rays rays) {
+  const int levels = nodes_.levels();
   const std::uint32_t* corner = visit.corner;
   const bool may_end_at_octants = (visit.skipped & kOctantsMayEnd) != 0;
   // Whoever meets an octant meets a voxel's place in it.
@@ -40,7 +118,7 @@ inline void DagPacketWalk::cast_in_block(const Visit& visit) {
       upper[axis][octant] = hn::BitCast(d, hn::Add(low, hn::Set(du, size)));
     }
 
-  for (Rays rest = visit.rays; rest != 0; rest &= rest - 1) {
+  for (Rays rest = rays; rest != 0; rest &= rest - 1) {
     const int i = lowest_bit64(rest);
     hn::Vec<decltype(d)> enter[3][2], exit[3][2];
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,7 +148,7 @@ inline void DagPacketWalk::cast_in_block(const Visit& visit) {
       auto first = static_cast<std::uint32_t>(63 - __builtin_clzll(met));
       const std::uint64_t octant = std::uint64_t{0xFF} << (first & 56u);
       const auto at = [&](std::uint32_t axis) {
-        return corner[axis] + ((first >> axis & 1u) | (first >> (2 + axis) & 2u)) * size;
+        return corner[axis] + place_of(first, axis) * size;
       };
       if (may_end_at_octants) {
         first &= 56u;

@@ -82,6 +82,10 @@ class DagPacketWalk : PacketRays {
     block |= block >> 1 & 0x5555555555555555u;
     return (block & 0x0101010101010101u) * 0xFF;
   }
+  /// Of a voxel of a leaf block: its place along an axis, in [0,4).
+  static constexpr std::uint32_t place_of(std::uint32_t voxel, std::uint32_t axis) {
+    return (voxel >> axis & 1u) | (voxel >> (2 + axis) & 2u);
+  }
   /// The same for both levels of a leaf block.
   static std::uint64_t mirrored_block(std::uint64_t m, std::uint32_t mirrored) {
     const auto swap = [&m](int by, std::uint64_t low) { m = (m & low) << by | (m >> by & low); };
@@ -117,6 +121,9 @@ class DagPacketWalk : PacketRays {
   void visit_children(const Visit& visit, Visit* stack, std::size_t& top);
   void end_at_children(const Visit& visit, std::uint32_t met);
   void cast_in_block(const Visit& visit);
+  void cast_vector_in_block(const std::uint32_t corner[3], std::uint64_t block, std::size_t first,
+                            Rays rays);
+  void cast_one_by_one_in_block(const Visit& visit, std::uint64_t block, Rays rays);
   void end_at_octants(const Visit& visit);
   HWY_INLINE void set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
                            const float start[2], const float per_t[2], Children& children) const;

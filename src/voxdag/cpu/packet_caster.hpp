@@ -23,8 +23,7 @@ class PacketCaster {
   void closest(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     run<true>(
         count, make_ray,
-        [&](int i, const GridRay& ray, const Hits& hits, std::size_t at) {
-          const bool is_hit = hits.is_hit(at);
+        [&](int i, const GridRay& ray, const Hits& hits, std::size_t at, bool is_hit) {
           on_result(i, ray, is_hit ? hits[at] : Hit{}, is_hit);
         },
         [&](int i, const GridRay& ray) { on_result(i, ray, Hit{}, false); });
@@ -34,9 +33,7 @@ class PacketCaster {
   void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     run<false>(
         count, make_ray,
-        [&](int i, const GridRay&, const Hits& hits, std::size_t at) {
-          on_result(i, hits.is_hit(at));
-        },
+        [&](int i, const GridRay&, const Hits&, std::size_t, bool is_hit) { on_result(i, is_hit); },
         [&](int i, const GridRay&) { on_result(i, false); });
   }
 
@@ -54,30 +51,26 @@ class PacketCaster {
     RayWindow window;
     RayPacket packet;
     Hits hits;
-    for (int first = 0; first < count; first += RayWindow::kMaxRays) {
-      window.fill(std::min(RayWindow::kMaxRays, count - first), PacketTarget<Target>::kByDirection,
-                  [&](int i) { return make_ray(first + i); });
-      if (window.ordered() < window.size())
-        for (int i = 0; i < window.size(); ++i)
-          if (window[i].ray.misses()) on_miss(first + i, window[i].ray);
-      for (int place = 0; place < window.ordered();) {
-        const int begin = place;
-        const std::uint32_t mirrored = window[window.at(begin)].ray.mirrored;
-        packet.size = 0;
-        do {
-          packet.rays[packet.size++] = &window[window.at(place)];
-          ++place;
-        } while (place < window.ordered() && packet.size < RayPacket::kMaxRays &&
-                 window[window.at(place)].ray.mirrored == mirrored);
+    for (int first = 0; first < count; first += window.taken()) {
+      window.fill(
+          count - first, PacketTarget<Target>::kByDirection,
+          [&](int i) -> decltype(auto) { return make_ray(first + i); },
+          [&](int i, const GridRay& ray) { on_miss(first + i, ray); });
+      for (int place = 0; place < window.size();) {
+        window.set_packet(place, packet);
         if constexpr (kClosest || kTells)
           cast_packet(target_, packet, hits);
         else
           hits.met = cast_packet_any(target_, packet);
-        for (std::size_t at = 0; at < packet.size; ++at) {
-          const int i = window.at(begin + static_cast<int>(at));
+        // Held here, where results that are written cannot change them.
+        const std::size_t size = packet.size;
+        const std::uint64_t met = hits.met;
+        for (std::size_t at = 0; at < size; ++at, ++place) {
+          const CastRay& ray = *packet.rays[at];
+          const bool is_hit = (met >> at & 1u) != 0;
           if constexpr (kTells)
-            if (hits.is_hit(at)) target_.on_hit(window[i].ray, window[i].stop, hits[at]);
-          on_cast(first + i, window[i].ray, hits, at);
+            if (is_hit) target_.on_hit(ray.ray, ray.stop, hits[at]);
+          on_cast(first + window.index(place), ray.ray, hits, at, is_hit);
         }
       }
     }

@@ -45,6 +45,13 @@ class PacketLanes {
     return at;
   }
 
+  /// The lanes of a vector whose bits are set, lane 0's the lowest.
+  template <class D>
+  static HWY_INLINE hn::Mask<D> lanes_of(D d, Set bits) {
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                   static_cast<std::uint8_t>(bits >> 8)};
+    return hn::LoadMaskBits(d, bytes);
+  }
   template <class M>
   static HWY_INLINE Set bits_of(M mask) {
     std::uint8_t bytes[8];

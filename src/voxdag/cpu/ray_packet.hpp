@@ -15,12 +15,13 @@ struct RayPacket {
   std::size_t size = 0;
 };
 
-/// What the rays of a packet met. Arrays are by ray, those of rays that met nothing undefined.
+/// What the rays of a packet met. Arrays are by ray, those of rays that met nothing undefined, but
+/// levels are always those of a cell.
 struct PacketHits {
   std::uint64_t met = 0;  ///< Bit i: ray i met a cell.
   alignas(64) float t[RayPacket::kMaxRays];
   std::uint32_t corner[3][RayPacket::kMaxRays];  ///< By axis: the float bits.
-  int level[RayPacket::kMaxRays];
+  int level[RayPacket::kMaxRays] = {};
 
   bool is_hit(std::size_t i) const { return (met >> i & 1u) != 0; }
   CellHit operator[](std::size_t i) const {

@@ -5,16 +5,17 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <type_traits>
 
-#include "voxdag/trace/scalar_caster.hpp"
+#include "voxdag/cpu/ray_packet.hpp"
 
 namespace voxdag {
 
 /// Up to kMaxRays rays. Rays of a packet must be mirrored alike; more likeness makes it faster.
-/// Neighbours in a stream of primary or shadow rays are alike as they are. Those of ambient
-/// occlusion are not: they may be put in the order of their directions, in cells of about a
-/// hundredth of the sphere, so that a packet has rays of many neighbouring pixels that run about
-/// the same way.
+/// Neighbours in a stream of primary or shadow rays are alike as they are: of those it takes few,
+/// so that they stay in the nearest cache. Those of ambient occlusion are not: they may be put in
+/// the order of their directions, in cells of about a hundredth of the sphere, so that a packet has
+/// rays of many neighbouring pixels that run about the same way.
 class RayWindow {
  public:
   static constexpr int kMaxRays = 4096;
@@ -23,36 +24,75 @@ class RayWindow {
   RayWindow(const RayWindow&) = delete;
   RayWindow& operator=(const RayWindow&) = delete;
 
-  int size() const { return size_; }
-  const CastRay& operator[](int i) const { return rays()[i]; }
-  /// Rays that miss are not in the order.
-  int ordered() const { return ordered_; }
-  int at(int place) const { return order_[place]; }
+  /// Takes make_ray(0), make_ray(1) and so on, one at least and `available` at most. Where it
+  /// returns references, they must outlive what the window holds. Those that miss are told to
+  /// on_miss(i, ray). Without `by_direction` the others keep their order but for what mirrors them.
+  template <class MakeRay, class OnMiss>
+  void fill(int available, bool by_direction, const MakeRay& make_ray, const OnMiss& on_miss) {
+    constexpr bool kRefers = std::is_lvalue_reference_v<std::invoke_result_t<const MakeRay&, int>>;
+    taken_ = size_ = 0;
+    octants_ = 0;
+    has_copies_ = !kRefers;
+    const auto make = [&](int i) { ::new (static_cast<void*>(copies() + i)) CastRay(make_ray(i)); };
+    take(std::min(available, kAlike), on_miss, [&](int i) {
+      if constexpr (kRefers)
+        references_[i] = &make_ray(i);
+      else
+        make(i);
+    });
+    if (is_mirrored_alike()) return;
+    for (int i = 0; kRefers && i < taken_; ++i)
+      ::new (static_cast<void*>(copies() + i)) CastRay(*references_[i]);
+    has_copies_ = true;
+    take(std::min(available, kMaxRays), on_miss, make);
+    sort(by_direction && are_unlike() ? 0 : kCellBits);
+  }
 
-  /// Takes make_ray(0) to make_ray(size - 1). Without `by_direction` all keep their order but for
-  /// what mirrors them.
-  template <class MakeRay>
-  void fill(int size, bool by_direction, const MakeRay& make_ray) {
-    size_ = size;
-    ordered_ = 0;
-    std::uint32_t octants = 0;
-    for (int i = 0; i < size; ++i) {
-      const CastRay& ray = *::new (static_cast<void*>(rays() + i)) CastRay(make_ray(i));
-      if (ray.ray.misses()) continue;
-      order_[ordered_++] = static_cast<std::uint16_t>(i);
-      octants |= 1u << ray.ray.mirrored;
+  /// How many rays fill() took.
+  int taken() const { return taken_; }
+  /// How many of them do not miss: these are in the window.
+  int size() const { return size_; }
+  /// The i of the ray at this place, 0 <= place < size().
+  int index(int place) const { return order_[place]; }
+  /// Sets the rays from this place on that make a packet.
+  void set_packet(int place, RayPacket& packet) const {
+    const int most = std::min(size_ - place, static_cast<int>(RayPacket::kMaxRays));
+    const std::uint32_t mirrored = ray(order_[place]).ray.mirrored;
+    packet.size = 0;
+    for (int end = place + most; place < end; ++place) {
+      const CastRay& next = ray(order_[place]);
+      if (next.ray.mirrored != mirrored) return;
+      packet.rays[packet.size++] = &next;
     }
-    if (by_direction && are_unlike())
-      sort(0);
-    else if ((octants & (octants - 1)) != 0)
-      sort(kCellBits);
   }
 
  private:
   static constexpr int kCellBits = 6, kKeys = 8 << kCellBits;
+  /// How many are taken of those that are alike.
+  static constexpr int kAlike = 256;
 
-  CastRay* rays() { return reinterpret_cast<CastRay*>(bytes_); }
-  const CastRay* rays() const { return std::launder(reinterpret_cast<const CastRay*>(bytes_)); }
+  CastRay* copies() { return reinterpret_cast<CastRay*>(copies_); }
+  const CastRay& ray(int i) const {
+    return has_copies_ ? std::launder(reinterpret_cast<const CastRay*>(copies_))[i]
+                       : *references_[i];
+  }
+
+  /// Takes rays, which take_one(i) puts in their place, until there are `end`.
+  template <class OnMiss, class TakeOne>
+  void take(int end, const OnMiss& on_miss, const TakeOne& take_one) {
+    for (; taken_ < end; ++taken_) {
+      take_one(taken_);
+      const GridRay& taken = ray(taken_).ray;
+      if (taken.misses()) {
+        on_miss(taken_, taken);
+        continue;
+      }
+      octants_ |= 1u << taken.mirrored;
+      order_[size_++] = static_cast<std::uint16_t>(taken_);
+    }
+  }
+
+  bool is_mirrored_alike() const { return (octants_ & (octants_ - 1)) == 0; }
 
   /// The octant, then along a Morton curve the cell of the direction in the cube [0,1]³, where its
   /// largest component is 1.
@@ -71,28 +111,31 @@ class RayWindow {
   bool are_unlike() const {
     constexpr int kStep = 16;
     int unlike = 0, pairs = 0;
-    for (int i = 1; i < ordered_; i += kStep, ++pairs)
-      unlike += (*this)[order_[i]].ray.mirrored != (*this)[order_[i - 1]].ray.mirrored ? 1 : 0;
+    for (int i = 1; i < size_; i += kStep, ++pairs)
+      unlike += ray(order_[i]).ray.mirrored != ray(order_[i - 1]).ray.mirrored ? 1 : 0;
     return 4 * unlike > pairs;
   }
 
   /// By all of the key but its lowest bits; equal ones stay in order.
   void sort(int ignored_bits) {
     std::uint16_t begin[kKeys + 1] = {}, keys[kMaxRays];
-    for (int i = 0; i < ordered_; ++i) {
-      keys[i] = static_cast<std::uint16_t>(key_of(rays()[order_[i]].ray) >> ignored_bits);
+    for (int i = 0; i < size_; ++i) {
+      keys[i] = static_cast<std::uint16_t>(key_of(ray(order_[i]).ray) >> ignored_bits);
       ++begin[keys[i] + 1];
     }
     for (int key = 0; key < kKeys >> ignored_bits; ++key)
       begin[key + 1] = static_cast<std::uint16_t>(begin[key + 1] + begin[key]);
     std::uint16_t sorted[kMaxRays];
-    for (int i = 0; i < ordered_; ++i) sorted[begin[keys[i]]++] = order_[i];
-    std::copy_n(sorted, ordered_, order_);
+    for (int i = 0; i < size_; ++i) sorted[begin[keys[i]]++] = order_[i];
+    std::copy_n(sorted, size_, order_);
   }
 
-  alignas(CastRay) std::byte bytes_[kMaxRays * sizeof(CastRay)];  // made as they come
+  alignas(CastRay) std::byte copies_[kMaxRays * sizeof(CastRay)];  // made as they come
+  const CastRay* references_[kAlike];
   std::uint16_t order_[kMaxRays];
-  int size_ = 0, ordered_ = 0;
+  int taken_ = 0, size_ = 0;
+  std::uint32_t octants_ = 0;  ///< Bit m: there is a ray with `mirrored` m.
+  bool has_copies_ = false;    ///< Else rays are those referred to.
 };
 
 }  // namespace voxdag
