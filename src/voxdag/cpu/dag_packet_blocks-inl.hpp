@@ -177,8 +177,9 @@ inline void DagPacketWalk::cast_one_by_one_in_block(const Visit& visit, std::uin
 inline void DagPacketWalk::end_at_octants(const Visit& visit) {
   const int level = nodes_.levels() - 2;
   set_planes(visit.corner, level, hn::Zero(DU8()));
-  const std::uint32_t met = bound_children(level + 1).met;
-  end_at_children(visit, met & mirrored(nodes_.child_mask(visit.node, level)));
+  std::uint32_t met = mirrored(nodes_.child_mask(visit.node, level));
+  if (popcount64(visit.rays) > kFew) met &= bound_children(level + 1).met;
+  end_at_children(visit, met);
 }
 
 /// Sets T of the hits, as entered_face() in trace/cast.hpp finds it.

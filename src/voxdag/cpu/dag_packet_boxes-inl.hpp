@@ -221,15 +221,24 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
 /// Ends rays at the children `met`, at which all rays end that meet them.
 inline void DagPacketWalk::end_at_children(const Visit& visit, std::uint32_t met) {
   const std::uint32_t side = 1u << (22 - visit.level);
+  const auto end_at = [&](std::uint32_t child, Rays hits) {
+    Visit cell;
+    set_child(cell, visit, child, side);
+    end(hits, cell.corner, static_cast<int>(cell.level));
+  };
   Rays rays = visit.rays;
+  if (popcount64(rays) <= kFew) {
+    for (; rays != 0; rays &= rays - 1) {
+      const std::uint32_t met_by = boxes_met_by(lowest_bit64(rays)) & met;
+      if (met_by != 0) end_at(static_cast<std::uint32_t>(highest_bit(met_by)), rays & -rays);
+    }
+    return;
+  }
   while (met != 0 && rays != 0) {
     const auto child = static_cast<std::uint32_t>(highest_bit(met));
     met ^= 1u << child;
     const Rays hits = rays_meeting(child, rays);
-    if (hits == 0) continue;
-    Visit cell;
-    set_child(cell, visit, child, side);
-    end(hits, cell.corner, static_cast<int>(cell.level));
+    if (hits != 0) end_at(child, hits);
     rays ^= hits;
   }
 }
