@@ -17,8 +17,8 @@ TraceRunner runner_of(const Caster& caster, RayClass rays, std::span<const CastR
     const auto make_ray = [rays = casts.data() + first](int i) -> const CastRay& {
       return rays[i];
     };
-    const auto set = [of = hits + first](int i, bool is_hit) {
-      of[i] = static_cast<std::uint8_t>(is_hit);
+    const auto set = [out = hits + first](int i, bool is_hit) {
+      out[i] = static_cast<std::uint8_t>(is_hit);
     };
     if (closest)
       caster.closest(count, make_ray,

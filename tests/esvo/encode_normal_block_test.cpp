@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "voxdag/esvo/encode_pair.hpp"
@@ -181,6 +182,26 @@ TEST(EncodeNormalBlock, UnusedValuesDoNotMatter) {
     for (std::size_t i = 0; i < normals.size(); ++i)
       if ((used >> i & 1u) == 0) normals[i] = {NAN, -7.0f, 1e30f};
     EXPECT_EQ(encode_normal_block(normals, used), block);
+  }
+}
+
+TEST(EncodeNormalBlock, WhatWasEncodedBeforeDoesNotMatter) {
+  // Blocks of one normal each; a thread keeps what it found for some of them. The first are equal
+  // as numbers, not to the bit.
+  std::vector<Vec3f> directions = {{0, 0, 1},         {-0.0f, 0, 1},   {0, -0.0f, 1},
+                                   {-0.0f, -0.0f, 1}, {0.6f, 0, 0.8f}, {0.6f, -0.0f, 0.8f}};
+  std::mt19937 random(11);
+  while (directions.size() < 300) directions.push_back(random_direction(random));
+  const auto encode = [](Vec3f direction) {
+    Normals normals;
+    normals.fill(direction);
+    return encode_normal_block(normals, 0xFFFF);
+  };
+  for (const Vec3f& direction : directions) {
+    const NormalBlock after_others = encode(direction);
+    NormalBlock alone;
+    std::thread([&] { alone = encode(direction); }).join();
+    EXPECT_EQ(after_others, alone);
   }
 }
 

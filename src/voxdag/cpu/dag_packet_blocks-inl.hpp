@@ -22,7 +22,8 @@ inline void DagPacketWalk::cast_in_block(const Visit& visit) {
   const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
   Rays others = visit.rays;
   if ((visit.skipped & kOctantsMayEnd) == 0) {
-    // What a vector costs for itself and for a voxel, and a ray, as measured.
+    // In units of a voxel at which a vector is tried, as measured: what a vector costs beside its
+    // voxels, and a ray that is tried by itself.
     constexpr int kVectorCost = 12, kRayCost = 12;
     const int cost = kVectorCost + popcount64(block);
     for (Rays rest = visit.rays; rest != 0;) {
@@ -84,6 +85,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
   const auto one = hn::Set(du, 1), two = hn::Set(du, 2);
   const auto ends = hn::And(is_met, lanes_of(di, rays >> first));
   for (int axis = 0; axis < 3; ++axis) {
+    // place_of()
     const auto place = hn::Or(hn::And(hn::ShiftRightSame(voxel, axis), one),
                               hn::And(hn::ShiftRightSame(voxel, axis + 2), two));
     const auto low = hn::Add(hn::Set(du, corner[axis]), hn::Mul(place, hn::Set(du, size)));

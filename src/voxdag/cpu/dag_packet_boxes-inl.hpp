@@ -80,16 +80,22 @@ HWY_INLINE DagPacketWalk::Children DagPacketWalk::bound_children(int child_level
   return children;
 }
 
-/// Which boxes ray i meets.
-HWY_INLINE std::uint32_t DagPacketWalk::boxes_met_by(int i) const {
+/// Moves the bounds on where ray i enters and leaves the boxes to between their sides.
+HWY_INLINE void DagPacketWalk::cut_by_boxes(int i, hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const {
   const DF8 d;
-  auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, rays_.t_end[i]);
   for (int axis = 0; axis < 3; ++axis) {
     const auto origin = hn::Set(d, rays_.origin[axis][i]),
                inverse = hn::Set(d, rays_.inverse[axis][i]);
     enter = hn::Max(enter, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis + 3])), inverse));
     exit = hn::Min(exit, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis])), inverse));
   }
+}
+
+/// Which boxes ray i meets.
+HWY_INLINE std::uint32_t DagPacketWalk::boxes_met_by(int i) const {
+  const DF8 d;
+  auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, rays_.t_end[i]);
+  cut_by_boxes(i, enter, exit);
   return bits_of_children(hn::Lt(enter, exit));
 }
 
@@ -97,12 +103,7 @@ HWY_INLINE std::uint32_t DagPacketWalk::boxes_met_by(int i) const {
 HWY_INLINE DagPacketWalk::Children DagPacketWalk::children_met_by(int i, int child_level) const {
   const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, HUGE_VALF);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto origin = hn::Set(d, rays_.origin[axis][i]),
-               inverse = hn::Set(d, rays_.inverse[axis][i]);
-    enter = hn::Max(enter, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis + 3])), inverse));
-    exit = hn::Min(exit, hn::Mul(hn::Sub(origin, hn::Load(d, planes_[axis])), inverse));
-  }
+  cut_by_boxes(i, enter, exit);
   Children children;
   children.met = bits_of_children(hn::Lt(enter, hn::Min(exit, hn::Set(d, rays_.t_end[i]))));
   const float start[2] = {rays_.stop_start[i], rays_.stop_start[i]};

@@ -86,7 +86,7 @@ class DagPacketWalk : PacketRays {
   static constexpr std::uint32_t place_of(std::uint32_t voxel, std::uint32_t axis) {
     return (voxel >> axis & 1u) | (voxel >> (2 + axis) & 2u);
   }
-  /// The same for both levels of a leaf block.
+  /// What mirrored_mask() does, on both levels of a leaf block.
   static std::uint64_t mirrored_block(std::uint64_t m, std::uint32_t mirrored) {
     const auto swap = [&m](int by, std::uint64_t low) { m = (m & low) << by | (m >> by & low); };
     if ((mirrored & 1u) != 0) {
@@ -114,6 +114,7 @@ class DagPacketWalk : PacketRays {
   }
   HWY_INLINE void set_planes(const std::uint32_t corner[3], int level, hn::Vec<DU8> boxes);
   HWY_INLINE Children bound_children(int child_level) const;
+  HWY_INLINE void cut_by_boxes(int i, hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const;
   HWY_INLINE std::uint32_t boxes_met_by(int i) const;
   HWY_INLINE Children children_met_by(int i, int child_level) const;
   HWY_INLINE Rays rays_meeting(std::uint32_t child, Rays rays) const;

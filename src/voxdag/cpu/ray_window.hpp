@@ -30,21 +30,23 @@ class RayWindow {
   template <class MakeRay, class OnMiss>
   void fill(int available, bool by_direction, const MakeRay& make_ray, const OnMiss& on_miss) {
     constexpr bool kRefers = std::is_lvalue_reference_v<std::invoke_result_t<const MakeRay&, int>>;
+    const auto copy = [&](int i, const auto& ray_of) {
+      ::new (static_cast<void*>(copies_ + sizeof(CastRay) * i)) CastRay(ray_of(i));
+    };
     taken_ = size_ = 0;
-    octants_ = 0;
     has_copies_ = !kRefers;
-    const auto make = [&](int i) { ::new (static_cast<void*>(copies() + i)) CastRay(make_ray(i)); };
-    take(std::min(available, kAlike), on_miss, [&](int i) {
+    const bool are_alike = take(std::min(available, kAlike), on_miss, [&](int i) {
       if constexpr (kRefers)
         references_[i] = &make_ray(i);
       else
-        make(i);
+        copy(i, make_ray);
     });
-    if (is_mirrored_alike()) return;
-    for (int i = 0; kRefers && i < taken_; ++i)
-      ::new (static_cast<void*>(copies() + i)) CastRay(*references_[i]);
+    if (are_alike) return;
+    if constexpr (kRefers)
+      for (int i = 0; i < taken_; ++i)
+        copy(i, [this](int at) -> const CastRay& { return *references_[at]; });
     has_copies_ = true;
-    take(std::min(available, kMaxRays), on_miss, make);
+    take(std::min(available, kMaxRays), on_miss, [&](int i) { copy(i, make_ray); });
     sort(by_direction && are_unlike() ? 0 : kCellBits);
   }
 
@@ -71,15 +73,16 @@ class RayWindow {
   /// How many are taken of those that are alike.
   static constexpr int kAlike = 256;
 
-  CastRay* copies() { return reinterpret_cast<CastRay*>(copies_); }
   const CastRay& ray(int i) const {
     return has_copies_ ? std::launder(reinterpret_cast<const CastRay*>(copies_))[i]
                        : *references_[i];
   }
 
-  /// Takes rays, which take_one(i) puts in their place, until there are `end`.
+  /// Takes rays, which take_one(i) puts in their place, until there are `end`. Returns whether
+  /// those taken are all mirrored alike.
   template <class OnMiss, class TakeOne>
-  void take(int end, const OnMiss& on_miss, const TakeOne& take_one) {
+  bool take(int end, const OnMiss& on_miss, const TakeOne& take_one) {
+    std::uint32_t octants = 0;  // bit m: there is a ray with `mirrored` m
     for (; taken_ < end; ++taken_) {
       take_one(taken_);
       const GridRay& taken = ray(taken_).ray;
@@ -87,12 +90,11 @@ class RayWindow {
         on_miss(taken_, taken);
         continue;
       }
-      octants_ |= 1u << taken.mirrored;
+      octants |= 1u << taken.mirrored;
       order_[size_++] = static_cast<std::uint16_t>(taken_);
     }
+    return (octants & (octants - 1)) == 0;
   }
-
-  bool is_mirrored_alike() const { return (octants_ & (octants_ - 1)) == 0; }
 
   /// The octant, then along a Morton curve the cell of the direction in the cube [0,1]³, where its
   /// largest component is 1.
@@ -134,8 +136,7 @@ class RayWindow {
   const CastRay* references_[kAlike];
   std::uint16_t order_[kMaxRays];
   int taken_ = 0, size_ = 0;
-  std::uint32_t octants_ = 0;  ///< Bit m: there is a ray with `mirrored` m.
-  bool has_copies_ = false;    ///< Else rays are those referred to.
+  bool has_copies_ = false;  ///< Else rays are those referred to.
 };
 
 }  // namespace voxdag

@@ -232,16 +232,18 @@ NormalFit fit_one_normal(Vec3f normal) {
 
 /// The same, and kept: flat surfaces have one normal block after block, and not many of them.
 const NormalFit& one_normal(Vec3f normal) {
+  // By their bits: 0 and -0 must not be taken for each other, lest what a thread did before shows.
+  using Bits = std::array<std::uint32_t, 3>;
   struct Known {
-    Vec3f normal{};  // no unit vector
+    Bits normal{};  // no unit vector
     NormalFit fit;
   };
-  constexpr std::size_t kKnown = 64;
-  thread_local std::array<Known, kKnown> all;
-  const std::uint32_t hash =
-      bits_of_float(normal.x) * 31 + bits_of_float(normal.y) * 17 + bits_of_float(normal.z);
-  Known& known = all[hash * 2654435761u >> 26];
-  if (known.normal != normal) known = {normal, fit_one_normal(normal)};
+  constexpr int kLog2Known = 6;
+  thread_local std::array<Known, 1u << kLog2Known> all;
+  const Bits bits{bits_of_float(normal.x), bits_of_float(normal.y), bits_of_float(normal.z)};
+  const std::uint32_t hash = bits[0] * 31 + bits[1] * 17 + bits[2];
+  Known& known = all[hash * 2654435761u >> (32 - kLog2Known)];
+  if (known.normal != bits) known = {bits, fit_one_normal(normal)};
   return known.fit;
 }
 
