@@ -34,10 +34,19 @@ struct EsvoBenchPlan {
   bool silhouettes = true;
 };
 
-/// What is compared, in the order of the paper's Table 2.
-enum class EsvoForm { kTriangles, kCubes, kContours, kContoursBeams };
-inline constexpr std::array kEsvoForms{EsvoForm::kTriangles, EsvoForm::kCubes, EsvoForm::kContours,
-                                       EsvoForm::kContoursBeams};
+/// What is compared, in the order of the paper's Table 2; then contours on a coarser grid whose
+/// silhouettes are as good as those of the cubes.
+enum class EsvoForm {
+  kTriangles,
+  kCubes,
+  kContours,
+  kContoursBeams,
+  kCoarseContours,
+  kCoarseContoursBeams
+};
+inline constexpr std::array kEsvoForms{EsvoForm::kTriangles,      EsvoForm::kCubes,
+                                       EsvoForm::kContours,       EsvoForm::kContoursBeams,
+                                       EsvoForm::kCoarseContours, EsvoForm::kCoarseContoursBeams};
 std::string name_of(EsvoForm form);  ///< "contours_beams".
 
 /// One build, from the mesh's file to the octree's.
@@ -65,6 +74,7 @@ struct EsvoBuildRun {
 struct EsvoRateRow {
   std::string scene;
   int levels = 0;
+  int coarse_levels = 0;  ///< Of the coarse forms; 0: there are none.
   ImageSize size;
   std::uint64_t rays = 0;
   std::array<double, kEsvoForms.size()> mrays_per_second{};
@@ -97,6 +107,10 @@ EsvoBenchResults bench_esvo(const EsvoBenchPlan& plan, Progress& progress);
 void bench_esvo_rays(const EsvoBenchPlan& plan, const EsvoBenchScene& scene,
                      const std::filesystem::path& mesh, Progress& progress,
                      EsvoBenchResults& results);
+
+/// The coarsest grid of the scene on which the silhouettes of contours are as good as those of
+/// cubes on the finest; 0 where none but the finest is.
+int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& scene);
 
 /// How many levels of cubes the contours of a row are worth.
 struct LevelsSaved {

@@ -15,6 +15,8 @@ inline constexpr std::string_view kEsvoSource =
     "Laine and Karras 2010, Tables 1 and 2 (builds: Core2 Quad Q9300, 4 cores; rays: Quadro FX "
     "5800)";
 inline constexpr int kEsvoFirstLevels = 10;
+/// Columns of Table 2: triangles, cubes, contours, contours with beams.
+inline constexpr std::size_t kEsvoRates = 4;
 inline constexpr std::array<std::array<int, 2>, 3> kEsvoSizes{
     {{512, 384}, {1024, 768}, {2048, 1536}}};
 
@@ -23,8 +25,7 @@ struct EsvoScene {
   std::string_view name;
   std::array<double, 7> megabytes, seconds;  ///< Of 10 levels and more.
   double bytes_per_voxel;
-  /// Million rays per second by size: of triangles, cubes, contours, contours with beams.
-  std::array<std::array<double, 4>, 3> mrays;
+  std::array<std::array<double, kEsvoRates>, 3> mrays;  ///< Million rays per second, by size.
 };
 
 inline constexpr double kNone = NAN;
@@ -74,7 +75,7 @@ inline const EsvoScene* esvo_scene(std::string_view name) {
 }
 
 /// Of kEsvoSizes, the rates of that size; NaN where the paper has none.
-inline std::array<double, 4> esvo_mrays(const EsvoScene* scene, int width, int height) {
+inline std::array<double, kEsvoRates> esvo_mrays(const EsvoScene* scene, int width, int height) {
   for (std::size_t i = 0; scene != nullptr && i < kEsvoSizes.size(); ++i)
     if (kEsvoSizes[i] == std::array<int, 2>{width, height}) return scene->mrays[i];
   return {kNone, kNone, kNone, kNone};

@@ -21,6 +21,8 @@ constexpr auto kTriangles = static_cast<std::size_t>(EsvoForm::kTriangles);
 constexpr auto kCubes = static_cast<std::size_t>(EsvoForm::kCubes);
 constexpr auto kContours = static_cast<std::size_t>(EsvoForm::kContours);
 constexpr auto kContoursBeams = static_cast<std::size_t>(EsvoForm::kContoursBeams);
+constexpr auto kCoarseContours = static_cast<std::size_t>(EsvoForm::kCoarseContours);
+constexpr auto kCoarseContoursBeams = static_cast<std::size_t>(EsvoForm::kCoarseContoursBeams);
 
 /// Both forms of a scene at one resolution.
 struct BuiltPair {
@@ -89,27 +91,37 @@ class SceneRays {
     views_ = bench_views(finest.view(), finest.grid(), 4.0 / 3, plan.views);
   }
 
+  /// Takes the coarse grid by the silhouettes that are known.
   void rates() {
     if (pairs_.empty()) return;
     const BuiltPair& pair = pairs_.back();
     const EsvoFile contours(pair.contours->file), cubes(pair.cubes->file);
+    const int coarse_at = coarse_levels(results_.silhouettes, scene_.name);
+    std::optional<EsvoFile> coarse;
+    for (const BuiltPair& other : pairs_)
+      if (other.levels == coarse_at) coarse.emplace(other.contours->file);
     for (const ImageSize size : plan_.sizes) {
       EsvoRateRow row;
       row.scene = scene_.name;
       row.levels = pair.levels;
+      row.coarse_levels = coarse_at;
       row.size = size;
       std::array<FormSums, kEsvoForms.size()> sums;
       for (const View& view : views_) {
         step("casting at " + scene_.name);
         PrimaryRays rays(contours.view(), contours.grid(), view, size, plan_.lod_pixels);
         row.rays += rays.plain.size();
-        add_view(contours, cubes, rays, sums);
+        std::optional<PrimaryRays> coarse_rays;
+        if (coarse)
+          coarse_rays.emplace(coarse->view(), coarse->grid(), view, size, plan_.lod_pixels);
+        add_view(contours, cubes, rays, coarse, coarse_rays, sums);
       }
       const auto count = static_cast<double>(row.rays);
       for (std::size_t form = 0; form < kEsvoForms.size(); ++form) {
-        const bool is_measured = form != kTriangles || embree_;
+        const bool is_measured =
+            form == kTriangles ? embree_.has_value() : form < kCoarseContours || coarse;
         row.mrays_per_second[form] = is_measured ? count / sums[form].seconds * 1e-6 : NAN;
-        row.agreement[form] = embree_ ? sums[form].agreeing / count : NAN;
+        row.agreement[form] = embree_ && is_measured ? sums[form].agreeing / count : NAN;
       }
       if (row.rays > 0) results_.rates.push_back(row);
     }
@@ -141,7 +153,9 @@ class SceneRays {
   }
 
  private:
+  /// All grids are the same cube: so are their rays, but for where beams let them start.
   void add_view(const EsvoFile& contours, const EsvoFile& cubes, PrimaryRays& rays,
+                const std::optional<EsvoFile>& coarse, std::optional<PrimaryRays>& coarse_rays,
                 std::array<FormSums, kEsvoForms.size()>& sums) {
     std::vector<TraceRunner> runners;
     std::vector<std::size_t> forms;
@@ -154,9 +168,16 @@ class SceneRays {
         add(std::move(runner), kTriangles);
     add(esvo_runner<EsvoNodes>(cubes.view(), rays.plain), kCubes);
     add(esvo_runner<ContourNodes>(contours.view(), rays.plain), kContours);
-    TraceRunner with_beams = esvo_runner<ContourNodes>(contours.view(), rays.with_beams);
-    with_beams.before = [&rays] { rays.beams.run(); };
-    add(std::move(with_beams), kContoursBeams);
+    const auto add_with_beams = [&](const EsvoFile& file, PrimaryRays& own, std::size_t form) {
+      TraceRunner runner = esvo_runner<ContourNodes>(file.view(), own.with_beams);
+      runner.before = [&own] { own.beams.run(); };
+      add(std::move(runner), form);
+    };
+    add_with_beams(contours, rays, kContoursBeams);
+    if (coarse) {
+      add(esvo_runner<ContourNodes>(coarse->view(), coarse_rays->plain), kCoarseContours);
+      add_with_beams(*coarse, *coarse_rays, kCoarseContoursBeams);
+    }
 
     const std::vector<Measured> measured = measure(runners, rays.plain.size(), plan_.repeat);
     std::array<FormSums, kEsvoForms.size()> best;
@@ -191,8 +212,8 @@ void bench_esvo_rays(const EsvoBenchPlan& plan, const EsvoBenchScene& scene,
                      const std::filesystem::path& mesh, Progress& progress,
                      EsvoBenchResults& results) {
   SceneRays rays(plan, scene, mesh, progress, results);
-  rays.rates();
   if (plan.silhouettes) rays.silhouettes();
+  rays.rates();
 }
 
 }  // namespace voxdag

@@ -63,23 +63,57 @@ std::string builds_table(const Builds& builds) {
   return text;
 }
 
+std::string size_of(const EsvoRateRow& row) {
+  return fmt::format("{}x{}", row.size.width, row.size.height);
+}
+
+/// NaN where the paper has none.
+double paper_mrays(const EsvoRateRow& row, std::size_t form) {
+  if (form >= published::kEsvoRates) return NAN;
+  return published::esvo_mrays(published::esvo_scene(row.scene), row.size.width,
+                               row.size.height)[form];
+}
+
 std::string rates_table(const std::vector<EsvoRateRow>& rates) {
   if (rates.empty()) return "";
   std::string text = fmt::format(
       "\nMillion primary rays per second (in brackets: the paper's)\n  {:<16}{:>10}{:>12}", "scene",
       "grid", "size");
-  for (const EsvoForm form : kEsvoForms) text += fmt::format("{:>20}", name_of(form));
+  for (std::size_t form = 0; form < published::kEsvoRates; ++form)
+    text += fmt::format("{:>20}", name_of(kEsvoForms[form]));
   text += "\n";
   for (const EsvoRateRow& row : rates) {
-    text += fmt::format("  {:<16}{:>11}{:>12}", row.scene, resolution_of(row.levels),
-                        fmt::format("{}x{}", row.size.width, row.size.height));
-    const std::array<double, 4> paper =
-        published::esvo_mrays(published::esvo_scene(row.scene), row.size.width, row.size.height);
-    for (std::size_t form = 0; form < kEsvoForms.size(); ++form)
-      text += fmt::format("{:>20}",
-                          number(row.mrays_per_second[form], 2) +
-                              (std::isnan(paper[form]) ? "" : " (" + number(paper[form], 1) + ")"));
+    text += fmt::format("  {:<16}{:>11}{:>12}", row.scene, resolution_of(row.levels), size_of(row));
+    for (std::size_t form = 0; form < published::kEsvoRates; ++form) {
+      const double paper = paper_mrays(row, form);
+      text += fmt::format("{:>20}", number(row.mrays_per_second[form], 2) +
+                                        (std::isnan(paper) ? "" : " (" + number(paper, 1) + ")"));
+    }
     text += "\n";
+  }
+  return text;
+}
+
+/// The coarse forms, as multiples of the cubes' rate.
+std::string coarse_table(const std::vector<EsvoRateRow>& rates) {
+  const auto has_coarse = [](const EsvoRateRow& row) { return row.coarse_levels != 0; };
+  if (std::none_of(rates.begin(), rates.end(), has_coarse)) return "";
+  std::string text = fmt::format(
+      "\nThe same where silhouettes are as good: contours on a coarser grid, as multiples of "
+      "cubes\n"
+      "  {:<16}{:>16}{:>12}{:>12}{:>18}{:>18}{:>14}\n",
+      "scene", "grid of cubes", "contours", "size", "contours", "with beams", "x cubes");
+  for (const EsvoRateRow& row : rates) {
+    if (!has_coarse(row)) continue;
+    const auto rate = [&row](EsvoForm form) {
+      return row.mrays_per_second[static_cast<std::size_t>(form)];
+    };
+    const double cubes = rate(EsvoForm::kCubes), contours = rate(EsvoForm::kCoarseContours),
+                 beams = rate(EsvoForm::kCoarseContoursBeams);
+    text += fmt::format("  {:<16}{:>17}{:>13}{:>12}{:>18}{:>18}{:>14}\n", row.scene,
+                        resolution_of(row.levels), resolution_of(row.coarse_levels), size_of(row),
+                        number(contours, 2), number(beams, 2),
+                        number(contours / cubes, 2) + ", " + number(beams / cubes, 2));
   }
   return text;
 }
@@ -133,8 +167,20 @@ void add_paper_lines(const Builds& builds, std::array<double, 7> published::Esvo
 }  // namespace
 
 std::string name_of(EsvoForm form) {
-  static constexpr std::array kNames{"triangles", "cubes", "contours", "contours_beams"};
+  static constexpr std::array kNames{"triangles",      "cubes",           "contours",
+                                     "contours_beams", "coarse_contours", "coarse_contours_beams"};
+  static_assert(kNames.size() == kEsvoForms.size());
   return kNames[static_cast<std::size_t>(form)];
+}
+
+int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& scene) {
+  const SilhouetteRow* finest = nullptr;
+  for (const SilhouetteRow& row : rows)
+    if (row.scene == scene) finest = &row;
+  for (const SilhouetteRow& row : rows)
+    if (row.scene == scene && row.contours <= finest->cubes)
+      return row.levels < finest->levels ? row.levels : 0;
+  return 0;
 }
 
 LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row) {
@@ -191,10 +237,10 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
   }
   json["rays"] = Json::array();
   for (const EsvoRateRow& row : results.rates) {
-    const std::array<double, 4> paper =
-        published::esvo_mrays(published::esvo_scene(row.scene), row.size.width, row.size.height);
     Json object{{"scene", row.scene},
                 {"resolution", std::int64_t{1} << row.levels},
+                {"coarse_resolution",
+                 row.coarse_levels == 0 ? Json() : Json(std::int64_t{1} << row.coarse_levels)},
                 {"width", row.size.width},
                 {"height", row.size.height},
                 {"ray_count", row.rays}};
@@ -202,7 +248,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
       const auto at = static_cast<std::size_t>(form);
       object[name_of(form)] = {{"mrays_per_s", json_number(row.mrays_per_second[at])},
                                {"agreement_with_triangles", json_number(row.agreement[at])},
-                               {"paper_mrays_per_s", json_number(paper[at])}};
+                               {"paper_mrays_per_s", json_number(paper_mrays(row, at))}};
     }
     json["rays"].push_back(object);
   }
@@ -220,7 +266,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
 }
 
 std::string esvo_bench_table(const EsvoBenchResults& results) {
-  return builds_table(results.builds) + rates_table(results.rates) +
+  return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results.rates) +
          silhouettes_table(results.silhouettes);
 }
 
@@ -267,8 +313,10 @@ std::string esvo_rays_svg(const EsvoBenchResults& results) {
     const EsvoRateRow& row = results.rates[i];
     if (i == 0 || row.scene != results.rates[i - 1].scene) {
       BarDiagram diagram;
-      diagram.title = fmt::format("{} {}: million primary rays per second", row.scene,
-                                  resolution_of(row.levels));
+      diagram.title = fmt::format(
+          "{} {}{}: million primary rays per second", row.scene, resolution_of(row.levels),
+          row.coarse_levels == 0 ? ""
+                                 : fmt::format(", coarse: {}", resolution_of(row.coarse_levels)));
       diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
       for (const EsvoForm form : kEsvoForms) diagram.series.push_back({name_of(form), {}});
       diagrams.push_back(diagram);

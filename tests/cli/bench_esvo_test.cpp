@@ -41,6 +41,9 @@ TEST_F(BenchEsvo, JsonHasBothFormsOfEveryResolution) {
     EXPECT_GT(row.at("ray_count"), 0);
     for (const char* form : {"cubes", "contours", "contours_beams"})
       EXPECT_GT(row.at(form).at("mrays_per_s"), 0) << form;
+    // It is not known which grid would be as good.
+    EXPECT_TRUE(row.at("coarse_resolution").is_null());
+    EXPECT_TRUE(row.at("coarse_contours").at("mrays_per_s").is_null());
   }
 }
 
@@ -67,6 +70,17 @@ TEST_F(BenchEsvo, TheMeshIsTheMeasureOfSilhouettes) {
   ASSERT_EQ(rows.size(), 3u);
   for (const Json& row : rows) EXPECT_LE(row.at("contours_wrong"), row.at("cubes_wrong"));
   EXPECT_LT(rows[2].at("cubes_wrong"), rows[0].at("cubes_wrong"));
+
+  // The coarsest that is as good as the finest cubes.
+  std::size_t coarse = 0;
+  while (rows[coarse].at("contours_wrong") > rows[2].at("cubes_wrong")) ++coarse;
+  ASSERT_LT(coarse, 2u);
+  for (const Json& row : json.at("rays")) {
+    EXPECT_EQ(row.at("resolution"), 64);
+    EXPECT_EQ(row.at("coarse_resolution"), rows[coarse].at("resolution"));
+    for (const char* form : {"coarse_contours", "coarse_contours_beams"})
+      EXPECT_GT(row.at(form).at("mrays_per_s"), 0) << form;
+  }
 }
 
 TEST_F(BenchEsvo, TablesAndDiagramsAreWritten) {
