@@ -87,10 +87,12 @@ void render_streamed(const RenderArguments& arguments, const std::vector<RenderP
   const EsvoStreamCounts& counts = blocks.stream().counts();
   std::uint64_t all = 0;
   for (const EsvoBlockEntry& entry : blocks.stream().directory()) all += entry.slots * 8ull;
-  fmt::print("  first picture after {}; {} of {} loaded, {} read, {} of {} blocks\n",
+  fmt::print("  first picture after {}; {} of {} blocks used, {} of {} in memory at the end\n",
              human_seconds(first_seconds > 0 ? first_seconds : seconds),
-             human_bytes(counts.bytes_loaded), human_bytes(all), human_bytes(counts.bytes_read),
-             with_commas(counts.blocks_read), with_commas(blocks.stream().directory().size()));
+             with_commas(counts.blocks_used), with_commas(blocks.stream().directory().size()),
+             human_bytes(counts.bytes_loaded), human_bytes(all));
+  fmt::print("  {} read, {} blocks a second time or more\n", human_bytes(counts.bytes_read),
+             with_commas(counts.blocks_read - counts.blocks_used));
 }
 
 void render(RenderArguments& arguments, Session& session) {

@@ -83,13 +83,41 @@ TEST_F(StreamImage, IsTheSameWithLessMemoryThanItsBlocksTake) {
   test::expect_same_picture(image, whole());
 }
 
-TEST_F(StreamImage, WithHardlyAnyMemoryItIsCoarseButThere) {
+/// Of a block and those above it, at most.
+std::uint64_t least_memory(const EsvoStream& stream) {
+  std::uint64_t least = 0;
+  for (std::size_t i = 0; i < stream.directory().size(); ++i) {
+    std::uint64_t bytes = 0;
+    for (auto at = static_cast<std::int64_t>(i); at >= 0;
+         at = stream.parent(static_cast<std::size_t>(at)))
+      bytes += stream.directory()[static_cast<std::size_t>(at)].slots * 8ull;
+    least = std::max(least, bytes);
+  }
+  return least;
+}
+
+TEST_F(StreamImage, IsTheSameWhereOneBlockFitsAtATime) {
   const EsvoStream probe(path(), bytes);
-  StreamBlocks blocks(path(), probe.counts().bytes_loaded);  // the root's block
-  const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
-  int hits = 0;
-  for (const float depth : image.depth) hits += depth < HUGE_VALF ? 1 : 0;
-  EXPECT_GT(hits, 1000);
+  options.width = 48;
+  options.height = 32;
+  LightSpec lamp;
+  lamp.kind = LightKind::kSphere;
+  lamp.position = {0.5, 0.6, 0.4};
+  lamp.radius = 0.1;
+  lamp.color = {1, 1, 1};
+  options.lights = {lamp};
+  for (const int samples : {1, 2}) {
+    options.samples_per_pixel = samples;
+    StreamBlocks blocks(path(), least_memory(probe));
+    const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
+    EXPECT_GT(blocks.stream().counts().blocks_evicted, 100u);
+    test::expect_same_picture(image, whole());
+  }
+}
+
+TEST_F(StreamImage, LessMemoryThanABlockTakesIsAnError) {
+  const EsvoStream probe(path(), bytes);
+  EXPECT_THROW(StreamBlocks(path(), least_memory(probe) - 1), Error);
 }
 
 }  // namespace

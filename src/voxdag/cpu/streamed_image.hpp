@@ -7,12 +7,15 @@
 
 namespace voxdag {
 
-/// Where blocks come from. Nothing is called while rays are cast.
+/// Where blocks come from. Nothing is loaded while rays are cast.
 class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
+  /// Notes which missing blocks rays want.
   virtual const LeafListener& listener() const = 0;
+  /// The block that is missing below a leaf of the descriptor in `slot`, or -1. Thread-safe.
+  virtual std::int64_t missing_block(std::uint64_t slot) const = 0;
   /// What is loaded; stays valid while blocks come and go.
   virtual EsvoView view() const = 0;
 
@@ -25,14 +28,16 @@ class BlockSource {
   virtual Loaded load_missing(Vec3d eye, bool may_evict) = 0;
   /// From here on, what is loaded is for a part of the picture.
   virtual void begin_part() = 0;
+  /// Loads a block and those above it; those that were wanted longest ago make room.
+  virtual void load(std::size_t block) = 0;
 };
 
-/// The picture that render_image makes of the whole octree, as long as the blocks that the rays of
-/// one tile for each thread need fit into memory together. The whole picture is rendered again and
-/// again, each time with what the rays missed before: the first one, of what is loaded at the
-/// start, is there at once. When no more fits, each 32×32 pixels by themselves load what they need,
-/// and stay coarse where even that does not fit. `on_pass` gets each whole picture but the last.
-/// Throws as render_image does, and what the source throws.
+/// The picture that render_image makes of the whole octree. The first one, of what is loaded at the
+/// start, is there at once; then the tiles whose rays missed blocks are rendered again and again,
+/// each time with what they missed before. When no more fits, a tile for each thread at a time
+/// loads what it needs, and where even that does not fit its rays wait for one block after the
+/// other (paged_caster.hpp). `on_pass` gets each whole picture but the last. Throws as render_image
+/// does, and what the source throws.
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
                               Progress* progress = nullptr);

@@ -72,12 +72,7 @@ class TileRenderer {
     std::atomic<std::size_t> done{0};
     parallel_for(tiles.size(), [&](std::size_t at) {
       if (progress != nullptr && progress->cancelled()) return;
-      const auto scratch = std::make_unique<Scratch>();
-      const auto find = [&](const ViewTile& tile, Scratch& tile_scratch) {
-        return find_samples(tile, tile_scratch);
-      };
-      const auto tile_rays = static_cast<std::uint64_t>(
-          render_tile(nodes_, caster_, setup_, tiles[at], *scratch, find));
+      const std::uint64_t tile_rays = render_one(nodes_, caster_, tiles[at]);
       const std::uint64_t rays_so_far = rays.fetch_add(tile_rays) + tile_rays;
       const std::size_t tiles_so_far = done.fetch_add(1) + 1;
       if (progress != nullptr)
@@ -87,6 +82,18 @@ class TileRenderer {
     });
     if (progress != nullptr) progress->throw_if_cancelled();
     return rays;
+  }
+
+  /// Renders a tile in this thread, with another caster at the same voxels. Returns the number of
+  /// rays.
+  template <class TileNodes, class TileCaster>
+  std::uint64_t render_one(const TileNodes& nodes, const TileCaster& caster,
+                           const ViewTile& tile) const {
+    const auto scratch = std::make_unique<Scratch>();
+    const auto find = [&](const ViewTile& sample_tile, Scratch& tile_scratch) {
+      return find_samples(nodes, caster, sample_tile, tile_scratch);
+    };
+    return static_cast<std::uint64_t>(render_tile(nodes, caster, setup_, tile, *scratch, find));
   }
 
   /// Fills the steps of primary rays, each cast by itself, as are their beams.
@@ -104,8 +111,10 @@ class TileRenderer {
  private:
   using Scratch = TileScratch<kMaxTileSize * kMaxTileSize>;
 
-  int find_samples(const ViewTile& tile, Scratch& scratch) const {
-    if (source_ == nullptr) return trace_view_samples(nodes_, caster_, setup_, tile, scratch);
+  template <class TileNodes, class TileCaster>
+  int find_samples(const TileNodes& nodes, const TileCaster& caster, const ViewTile& tile,
+                   Scratch& scratch) const {
+    if (source_ == nullptr) return trace_view_samples(nodes, caster, setup_, tile, scratch);
     const auto pixels = static_cast<std::size_t>(tile.pixels());
     std::vector<ViewSample> rows(pixels);
     find_source_samples(*source_, setup_, tile, rows);

@@ -55,9 +55,9 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
       std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.parent < 0; }) -
       blocks_.begin());
   if (root == blocks_.size()) fail("directory", "no block is the root's");
-  if (!has_room(root))
-    fail("", "the memory given is less than the " + std::to_string(directory_[root].slots * 8) +
-                 " bytes of the root's block");
+  if (const std::uint64_t least = most_slots_of_a_path(); pool_.size() < least)
+    fail("", "the memory given is less than the " + std::to_string(least * 8) +
+                 " bytes of a block and those above it");
   blocks_[root].siblings = {Vec3i{}};
   load(root);
   const std::uint64_t at = blocks_[root].position;
@@ -96,6 +96,22 @@ void EsvoStream::find_children() {
     blocks_[i].parent_slot = static_cast<std::uint32_t>(parent - directory_[above].begin);
     blocks_[above].children.push_back(static_cast<std::uint32_t>(i));
   }
+}
+
+/// Of a block and those above it. Throws if they go round in a circle.
+std::uint64_t EsvoStream::most_slots_of_a_path() const {
+  std::uint64_t most = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    std::uint64_t slots = 0;
+    int blocks = 0;
+    for (auto at = static_cast<std::int64_t>(i); at >= 0;
+         at = blocks_[static_cast<std::size_t>(at)].parent) {
+      slots += directory_[static_cast<std::size_t>(at)].slots;
+      if (++blocks > kMaxLevels) fail("block " + std::to_string(i), "too many blocks above it");
+    }
+    most = std::max(most, slots);
+  }
+  return most;
 }
 
 bool EsvoStream::can_load(std::size_t block) const {
@@ -195,6 +211,8 @@ void EsvoStream::load(std::size_t block) {
     ++blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
   }
   ++counts_.blocks_loaded;
+  counts_.blocks_used += b.was_loaded ? 0 : 1;
+  b.was_loaded = true;
   ++counts_.blocks_read;
   counts_.bytes_loaded += slots.size_bytes();
   counts_.bytes_read += slots.size_bytes();

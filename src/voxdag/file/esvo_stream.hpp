@@ -24,7 +24,8 @@ namespace voxdag {
 struct EsvoStreamCounts {
   std::uint64_t blocks_loaded = 0;  ///< Now in memory.
   std::uint64_t bytes_loaded = 0;   ///< Likewise.
-  std::uint64_t blocks_read = 0;    ///< Since the file was opened, those read again included.
+  std::uint64_t blocks_used = 0;    ///< Different ones, since the file was opened.
+  std::uint64_t blocks_read = 0;    ///< Likewise, those read again included.
   std::uint64_t bytes_read = 0;
   std::uint64_t blocks_evicted = 0;
 };
@@ -34,7 +35,7 @@ struct EsvoStreamCounts {
 class EsvoStream {
  public:
   /// Reads the directory and loads the root's block. `memory` is what blocks may take, in bytes;
-  /// throws if that block alone takes more.
+  /// throws if any block and those above it take more.
   EsvoStream(const std::filesystem::path& path, std::uint64_t memory);
   ~EsvoStream();
   EsvoStream(const EsvoStream&) = delete;
@@ -77,6 +78,7 @@ class EsvoStream {
     std::int64_t parent = -1;           ///< Block.
     std::uint32_t parent_slot = 0;      ///< Of the descriptor, from the parent block's begin.
     std::uint32_t loaded_children = 0;
+    bool was_loaded = false;
     std::vector<std::uint32_t> children;
     std::vector<Vec3i> siblings;   ///< Cells of its first group, known once the parent is loaded.
     std::uint32_t descriptor = 0;  ///< The children word of the descriptor above, as in the file.
@@ -85,6 +87,7 @@ class EsvoStream {
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
   void read(std::uint64_t offset, void* data, std::size_t bytes) const;
   void find_children();
+  std::uint64_t most_slots_of_a_path() const;
   std::uint64_t allocate(std::uint32_t slots);
   void release(std::uint64_t position, std::uint32_t slots);
   void cut(std::size_t block);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/render/exposure.hpp"
@@ -129,11 +128,11 @@ RenderPlan::RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderO
     setup_.lights[setup_.light_count++] = make_light(light, grid);
 }
 
-RenderedImage RenderPlan::finish() {
-  image_.exposure = exposure_ > 0 ? exposure_ : automatic_exposure(image_.radiance, image_.depth);
-  for (std::size_t i = 0; i < image_.rgb.size(); ++i)
-    image_.rgb[i] = tone_map(image_.radiance[i] * image_.exposure);
-  return std::move(image_);
+RenderedImage RenderPlan::finish(RenderedImage image) const {
+  image.exposure = exposure_ > 0 ? exposure_ : automatic_exposure(image.radiance, image.depth);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = tone_map(image.radiance[i] * image.exposure);
+  return image;
 }
 
 }  // namespace voxdag

@@ -1,5 +1,7 @@
 #pragma once
 /// From what is asked of a picture to what kernels take, and from what they make to the picture.
+#include <utility>
+
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/sample_tables.hpp"
 
@@ -20,8 +22,10 @@ class RenderPlan {
   /// Filled by whoever renders, through setup().image; `rays` too.
   RenderedImage& image() { return image_; }
 
-  /// Exposes and tone maps the radiance, and gives the image away.
-  RenderedImage finish();
+  /// Exposes and tone maps an image's radiance.
+  RenderedImage finish(RenderedImage image) const;
+  /// Does so with the plan's own, and gives it away.
+  RenderedImage finish() { return finish(std::move(image_)); }
 
  private:
   SampleSets samples_;

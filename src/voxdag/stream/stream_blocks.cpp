@@ -38,6 +38,39 @@ bool StreamBlocks::make_room(std::size_t block) {
   return true;
 }
 
+void StreamBlocks::mark_above(std::size_t block) {
+  for (std::int64_t above = stream_.parent(block); above >= 0;
+       above = stream_.parent(static_cast<std::size_t>(above)))
+    loaded_in_[static_cast<std::size_t>(above)] = part_;
+}
+
+void StreamBlocks::evict_all() {
+  for (bool has_evicted = true; has_evicted;) {
+    has_evicted = false;
+    for (std::size_t i = 0; i < loaded_in_.size(); ++i) {
+      if (!stream_.can_evict(i)) continue;
+      stream_.evict(i);
+      has_evicted = true;
+    }
+  }
+}
+
+void StreamBlocks::load(std::size_t block) {
+  ++part_;
+  mark_above(block);
+  while (!stream_.is_loaded(block)) {
+    std::size_t next = block;
+    while (!stream_.can_load(next)) next = static_cast<std::size_t>(stream_.parent(next));
+    // Without the others a block fits beside those above it, if all of them lie side by side.
+    if (!make_room(next)) {
+      evict_all();
+      continue;
+    }
+    stream_.load(next);
+    loaded_in_[next] = part_;
+  }
+}
+
 BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye, bool may_evict) {
   std::vector<std::size_t> wanted = listener_.take();
   Loaded result{wanted.size(), 0};
@@ -46,10 +79,7 @@ BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye, bool may_evict) {
   std::stable_sort(wanted.begin(), wanted.end(),
                    [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
   for (const std::size_t block : wanted) {
-    // What is above a block of this part is of this part, too.
-    for (std::int64_t above = stream_.parent(block); above >= 0;
-         above = stream_.parent(static_cast<std::size_t>(above)))
-      loaded_in_[static_cast<std::size_t>(above)] = part_;
+    mark_above(block);
     // Making room for one may have taken what is above another.
     if (!stream_.can_load(block)) continue;
     if (!stream_.has_room(block) && !(may_evict && make_room(block))) continue;

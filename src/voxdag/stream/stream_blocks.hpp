@@ -21,6 +21,10 @@ class StreamBlocks : public BlockSource {
   EsvoView view() const override { return stream_.view(); }
   Loaded load_missing(Vec3d eye, bool may_evict) override;
   void begin_part() override { ++part_; }
+  std::int64_t missing_block(std::uint64_t slot) const override {
+    return stream_.missing_block(slot);
+  }
+  void load(std::size_t block) override;
 
  private:
   /// Notes which missing blocks were wanted.
@@ -45,6 +49,10 @@ class StreamBlocks : public BlockSource {
 
   /// How large the voxels of the block look from `eye`, more or less.
   double apparent_size(std::size_t block, Vec3d eye) const;
+  /// What is above a block of this part is of this part, too.
+  void mark_above(std::size_t block);
+  /// Evicts all blocks but the root's.
+  void evict_all();
   /// Evicts blocks of earlier parts until `block` has room; false if that is not enough.
   bool make_room(std::size_t block);
 

@@ -14,6 +14,17 @@ class LeafListener {
   virtual void on_leaf(std::uint64_t slot) const = 0;
 };
 
+/// Whether the ray ended at a leaf and would have gone on into smaller voxels, if there were any.
+template <class Stop>
+bool would_go_on(const EsvoView& esvo, const GridRay& ray, const Stop& stop, const EsvoHit& hit) {
+  const ChildDescriptor descriptor = esvo.descriptor(hit.voxel.slot);
+  if ((descriptor.leaf_mask() >> hit.voxel.child & 1u) == 0) return false;
+  const float x = ray.plane_t(0, float_from_bits(hit.x)),
+              y = ray.plane_t(1, float_from_bits(hit.y)),
+              z = ray.plane_t(2, float_from_bits(hit.z));
+  return !stop(hit.level, hit.t, std::min({x, y, z}));
+}
+
 /// ContourNodes that tell a listener of the leaves that rays end at. Host only.
 class StreamedNodes : public ContourNodes {
  public:
@@ -23,12 +34,7 @@ class StreamedNodes : public ContourNodes {
   /// What casters call for each hit, the stop being that of the cast.
   template <class Stop>
   void on_hit(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
-    const ChildDescriptor descriptor = view().descriptor(hit.voxel.slot);
-    if ((descriptor.leaf_mask() >> hit.voxel.child & 1u) == 0) return;
-    const float x = ray.plane_t(0, float_from_bits(hit.x)),
-                y = ray.plane_t(1, float_from_bits(hit.y)),
-                z = ray.plane_t(2, float_from_bits(hit.z));
-    if (!stop(hit.level, hit.t, std::min({x, y, z}))) listener_->on_leaf(hit.voxel.slot);
+    if (would_go_on(view(), ray, stop, hit)) listener_->on_leaf(hit.voxel.slot);
   }
 
  private:
