@@ -151,6 +151,34 @@ TEST(RenderEsvo, TheLitSideOfTheBallHasNoShadowsOfItsOwn) {
   EXPECT_LT(dark, seen / 200);
 }
 
+TEST(RenderEsvo, AFloorSeenAlongItFacesUpWhicheverWayItsNormalsPoint) {
+  std::vector<Vec3i> voxels;
+  const int side = 1 << kPictureLevels, middle = side / 2;
+  for (int z = 0; z < side; ++z)
+    for (int x = 0; x < side; ++x) voxels.push_back({x, middle - 1, z});
+  for (const float up : {1.0f, -1.0f}) {
+    const Esvo floor =
+        pack_with_values(*test_octree(kPictureLevels, voxels), kPictureLevels, [up](Vec3d) {
+          VoxelValue value;
+          value.normal = {0, up, 0};
+          return value;
+        });
+    RenderOptions options = small_picture();
+    options.width = 200;
+    options.height = 120;
+    options.view.eye = {0, 0.2, 3};  // 4 degrees above
+    options.lod_pixels = 0;
+    const RenderedImage image = render_image(floor.view(), picture_grid(), options);
+    int seen = 0;
+    for (std::size_t i = 0; i < image.depth.size(); ++i) {
+      if (!(image.depth[i] < HUGE_VALF) || image.depth[i] < 2.2f) continue;  // not its edge
+      EXPECT_GT(image.normal[i].y, 0.9f);
+      ++seen;
+    }
+    EXPECT_GT(seen, 100);
+  }
+}
+
 TEST(RenderEsvo, WithoutViewOrAttributesItStillMakesAPicture) {
   RenderOptions options = small_picture();
   options.view = {};

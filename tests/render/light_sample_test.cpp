@@ -24,14 +24,15 @@ Grid test_grid() {
 }
 
 /// The irradiance at the origin on a surface that faces up, from a light of the colour 1, and that
-/// every sample lies within the light's bounds.
-double irradiance(LightSpec spec) {
+/// every sample lies within the light's bounds. Rays start so high above.
+double irradiance(LightSpec spec, double lift = 0) {
   spec.color = Vec3f{1, 1, 1};
   const SampleSets sets(kSamples, 1);
   const Grid grid = test_grid();
   const Light light = make_light(spec, grid);
   SurfacePoint point;
-  point.start = make_grid_point(grid, {});
+  point.start = make_grid_point(grid, {0, lift, 0});
+  point.surface = make_grid_point(grid, {});
   point.normal = point.face = {0, 1, 0};
   const DirectionBounds bounds = directions_to(light, point.start.position);
   double sum = 0;
@@ -65,6 +66,18 @@ TEST(LightSample, ASphereGivesPiTimesTheSquareOfItsSine) {
     spec.radius = radius;
     const double sine = radius / 5;
     EXPECT_NEAR(irradiance(spec) / (kPi * sine * sine * 0.8), 1, 1e-4) << radius;
+  }
+}
+
+TEST(LightSample, ArrivesAtTheSurfaceNotWhereRaysStart) {
+  LightSpec spec;
+  spec.position = {0.3, 1, 0.2};
+  for (const LightKind kind : {LightKind::kPoint, LightKind::kSphere, LightKind::kDisc}) {
+    spec.kind = kind;
+    spec.radius = 0.3;
+    const double at_surface = irradiance(spec);
+    EXPECT_GT(at_surface, 0);
+    EXPECT_EQ(irradiance(spec, 0.2), at_surface);
   }
 }
 

@@ -33,7 +33,7 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   // How far the shapes of neighbours may stand out above the plane that is seen, in units of how
   // thick its slab is and of the cells that stand for a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;
-  constexpr float kLeaning = 0.2f, kTrusted = 0.5f;  // cosines
+  constexpr float kLeaning = 0.2f, kOpposite = 0.5f, kTrusted = 0.5f;  // cosines
   const EsvoView& esvo = nodes.view();
   const double depth = ray.to_world_t(static_cast<double>(hit.t));
   const auto side = static_cast<float>(setup.side());
@@ -51,10 +51,13 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   stored_color(esvo, hit.voxel, sample.albedo);
   sample.normal = plane;
   if (stored_normal(esvo, hit.voxel, sample.normal)) {
-    // Surfaces are seen from both sides. A side of a cube does not tell which one this is, and at
-    // an outline, where most sides are seen, the normal may lean away from the viewer a little.
-    const bool is_back = hit.is_through_contour() ? dot(sample.normal, plane) < 0
-                                                  : dot(sample.normal, view) < -kLeaning;
+    // Surfaces are seen from both sides. A side of a cube hardly tells which one this is, and at an
+    // outline, where most sides are seen, the normal may lean away from the viewer a little: not if
+    // that is the side it looks out of.
+    const float facing = dot(sample.normal, view), through = dot(sample.normal, plane);
+    const bool is_back = hit.is_through_contour()
+                             ? through < 0
+                             : facing < -kLeaning || (facing < 0 && through < -kOpposite);
     if (is_back) sample.normal = -sample.normal;
     // The mean of both sides of a cloth is no side's: the less it agrees with the plane that is
     // seen, the less it counts.

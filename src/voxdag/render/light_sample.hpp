@@ -13,17 +13,19 @@
 namespace voxdag {
 
 struct LightSample {
-  Vec3f direction;   ///< The light is at start + direction; the sun at any multiple of it.
-  float weight = 0;  ///< Irradiance per unit of the light's colour; 0 where none can arrive.
+  /// From where rays start: the light is at start + direction, the sun at any multiple of it.
+  Vec3f direction;
+  /// Irradiance of the surface per unit of the light's colour; 0 where none can arrive.
+  float weight = 0;
 };
 
-/// Sample `i` of a pixel as seen from `point`. The mean of the weights over all samples is what
+/// Sample `i` of a pixel as seen from the point's surface. The mean of the weights over all samples is what
 /// arrives with nothing in the way.
 VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Light& light,
                                           const SurfacePoint& point, const PixelSamples& pixel,
                                           int i) {
   constexpr float kPi = 3.14159265f;
-  const Vec3f to_light = light.position - point.start.position;
+  const Vec3f to_light = light.position - point.surface.position;
   const int at = pixel.set * tables.light_count + i;
   LightSample sample;
   float emitted = 1;  // times the cosine at the surface and over the square of the distance below
@@ -77,6 +79,12 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
   }
   const float above = dot(point.normal, sample.direction);
   if (!(above > 0) || !(dot(point.face, sample.direction) > 0)) return sample;
+  if (light.kind != LightKind::kSun) {
+    // Rays start a little above the surface, which a light may be that is very near.
+    sample.direction = sample.direction + (point.surface.position - point.start.position);
+    if (!(dot(point.normal, sample.direction) > 0) || !(dot(point.face, sample.direction) > 0))
+      return sample;
+  }
   sample.weight = emitted * above / (distance2 * std::sqrt(distance2));
   return sample;
 }

@@ -15,8 +15,9 @@
 namespace voxdag {
 
 struct SurfacePoint {
-  GridPoint start;  ///< Clear of the surface's own cells.
-  Vec3f normal{};   ///< As of the view sample.
+  GridPoint start;    ///< Clear of the surface's own cells.
+  GridPoint surface;  ///< As of the view sample: what light arrives at.
+  Vec3f normal{};     ///< Likewise.
   Vec3f face{};
   float cell_side = 0;  ///< Of the cell met, in units of the grid's side; 0 where nothing is.
 
@@ -55,6 +56,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
                                                  const ViewSample& sample, Vec3d direction) {
   constexpr float kSlack = 0.25f;  // cells: normals are estimates, surfaces bend
   SurfacePoint point;
+  point.surface = make_grid_point(setup.grid, sample.point);
   point.normal = sample.normal;
   point.face = sample.face;
   const double cell_size =
