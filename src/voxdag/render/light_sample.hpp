@@ -19,8 +19,8 @@ struct LightSample {
   float weight = 0;
 };
 
-/// Sample `i` of a pixel as seen from the point's surface. The mean of the weights over all samples is what
-/// arrives with nothing in the way.
+/// Sample `i` of a pixel as seen from the point's surface. The mean of the weights over all samples
+/// is what arrives with nothing in the way.
 VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Light& light,
                                           const SurfacePoint& point, const PixelSamples& pixel,
                                           int i) {
