@@ -33,7 +33,7 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   // How far the shapes of neighbours may stand out above the plane that is seen, in units of how
   // thick its slab is and of the cells that stand for a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;
-  constexpr float kLeaning = 0.2f, kOpposite = 0.5f, kTrusted = 0.5f;  // cosines
+  constexpr float kLeaning = 0.2f, kOpposite = 0.8f, kTrusted = 0.5f;  // cosines
   const EsvoView& esvo = nodes.view();
   const double depth = ray.to_world_t(static_cast<double>(hit.t));
   const auto side = static_cast<float>(setup.side());
@@ -52,8 +52,8 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   sample.normal = plane;
   if (stored_normal(esvo, hit.voxel, sample.normal)) {
     // Surfaces are seen from both sides. A side of a cube hardly tells which one this is, and at an
-    // outline, where most sides are seen, the normal may lean away from the viewer a little: not if
-    // that is the side it looks out of.
+    // outline, where most sides are seen, the normal may lean away from the viewer a little, but
+    // not point straight into the cube from the side that is entered.
     const float facing = dot(sample.normal, view), through = dot(sample.normal, plane);
     const bool is_back = hit.is_through_contour()
                              ? through < 0
