@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "number_check.hpp"
 #include "parse.hpp"
 #include "session.hpp"
 
@@ -21,18 +22,20 @@ Grid coarser(Grid grid, int levels) {
 
 void add_bake_options(CLI::App& command, BakeArguments& arguments) {
   constexpr int kRays = 64;
-  command
-      .add_option("--bake-ao", arguments.rays,
-                  fmt::format("Darken colours by ambient occlusion, by RAYS rays of each point "
-                              "({} where no number is given)",
-                              kRays))
-      ->expected(0, 1)
-      ->default_str(std::to_string(kRays))
-      ->check(CLI::Range(1, 4096))
-      ->type_name("RAYS")
-      ->group("ESVO");
+  CLI::Option* const bake =
+      command
+          .add_option("--bake-ao", arguments.rays,
+                      fmt::format("Darken colours by ambient occlusion, by RAYS rays of each point "
+                                  "({} where no number is given)",
+                                  kRays))
+          ->expected(0, 1)
+          ->default_str(std::to_string(kRays))
+          ->check(whole_number(1, 4096))
+          ->type_name("RAYS")
+          ->group("ESVO");
   add_parsed_option(command, "--ao-distance", arguments.distance, parse_positive, "LENGTH",
                     "How far --bake-ao reaches, in world units (default: 0.15 of the grid)")
+      ->needs(bake)
       ->group("ESVO");
 }
 

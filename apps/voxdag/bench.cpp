@@ -10,6 +10,7 @@
 #include "bench_output.hpp"
 #include "bench_report.hpp"
 #include "commands.hpp"
+#include "number_check.hpp"
 #include "parse.hpp"
 #include "voxdag/mesh/scenes.hpp"
 
@@ -88,10 +89,10 @@ void add_build(CLI::App& parent, Session& session) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("NAME=COMMAND");
   command.add_option("--rival-seconds", plan.rival_seconds, "End a rival after so long")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->type_name("S");
   command.add_option("--repeat", plan.repeat, "Measure so often and take the fastest")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->type_name("N");
   command.add_option("-o,--output", arguments->output.json_file, "Write the JSON to a file, too")
       ->type_name("FILE.json");
@@ -104,6 +105,7 @@ void add_build(CLI::App& parent, Session& session) {
   add_json_option(command, session);
   command.callback([arguments, &session] {
     finish_plan(*arguments);
+    arguments->output.check_distinct();
     session.work = [arguments, &session] {
       arguments->plan.threads = session.threads;
       bench(*arguments, session);

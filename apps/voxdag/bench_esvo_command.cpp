@@ -8,6 +8,7 @@
 #include "bench_machine.hpp"
 #include "bench_output.hpp"
 #include "commands.hpp"
+#include "number_check.hpp"
 #include "parse.hpp"
 
 namespace voxdag {
@@ -65,15 +66,15 @@ void add_bench_esvo_command(CLI::App& parent, Session& session) {
       ->delimiter(',')
       ->type_name("WxH,WxH...");
   command.add_option("--views", plan.views, "Cameras")
-      ->check(CLI::Range(1, 64))
+      ->check(whole_number(1, 64))
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--repeat", plan.repeat, "Cast so often and take the fastest")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--lod", plan.lod_pixels, "Rays end at cells of so many pixels; 0: voxels")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number_from(0, 1000))
       ->type_name("PIXELS")
       ->capture_default_str();
   command.add_flag_callback(
@@ -96,6 +97,7 @@ void add_bench_esvo_command(CLI::App& parent, Session& session) {
     parse_all("--resolution", arguments->resolutions, parse_levels, arguments->plan.levels);
     parse_all("--size", arguments->sizes, parse_image_size, arguments->plan.sizes);
     std::sort(arguments->plan.levels.begin(), arguments->plan.levels.end());
+    arguments->output.check_distinct();
     session.work = [arguments, &session] {
       arguments->plan.threads = session.threads;
       run(*arguments, session);

@@ -2,9 +2,15 @@
 
 #include <fmt/core.h>
 
+#include "output_files.hpp"
 #include "voxdag/core/atomic_file.hpp"
 
 namespace voxdag {
+
+void BenchOutput::check_distinct() const {
+  voxdag::check_distinct(
+      {{"--output", json_file}, {"--plot", plot_files[0]}, {"--rays-plot", plot_files[1]}});
+}
 
 void BenchOutput::check_writable() const {
   if (!json_file.empty()) voxdag::check_writable(json_file);

@@ -14,6 +14,8 @@ struct BenchOutput {
   std::string json_file;  ///< Or empty.
   std::array<std::string, 2> plot_files;
 
+  /// Throws CLI::ValidationError where two files are the same.
+  void check_distinct() const;
   /// Throws Error unless all files can be made: called before the work.
   void check_writable() const;
   /// Writes the files and prints JSON or `text`. `drawings` draw the plots that are wanted.

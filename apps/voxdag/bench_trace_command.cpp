@@ -9,7 +9,9 @@
 #include "bench_output.hpp"
 #include "bench_trace.hpp"
 #include "commands.hpp"
+#include "number_check.hpp"
 #include "parse.hpp"
+#include "render_mesh.hpp"
 #include "scene_file.hpp"
 #include "scratch_folder.hpp"
 #include "trace_casters.hpp"
@@ -95,7 +97,10 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
   if (file.scene().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
     throw Error("--openvdb", "", "takes the voxels of a DAG, not of an ESVO");
   Mesh mesh;
-  if (!arguments.mesh_file.empty()) mesh = read_mesh(arguments.mesh_file, &session.progress);
+  if (!arguments.mesh_file.empty()) {
+    mesh = read_mesh(arguments.mesh_file, &session.progress);
+    check_is_mesh_of(arguments.mesh_file, mesh, file.scene(), file.grid());
+  }
   const std::string& name = file.source_name();
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
                    file.scene(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
@@ -140,16 +145,21 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
   command.footer(
       "Example:\n  voxdag bench trace sponza.vdag --mesh sponza.obj --plot rays.svg\n"
       "Without a file: Crytek Sponza, Sibenik, San Miguel, Lucy and hairball, built in memory.");
-  command.add_option("file", session.subject, "A .vdag or .esvo file")->type_name("FILE");
-  command.add_option("--mesh", arguments->mesh_file, "Its mesh, for Embree")->type_name("MESH");
+  CLI::Option* const file =
+      command.add_option("file", session.subject, "A .vdag or .esvo file")->type_name("FILE");
+  command.add_option("--mesh", arguments->mesh_file, "Its mesh, for Embree")
+      ->needs(file)
+      ->type_name("MESH");
   command
       .add_option("--scenes", arguments->scenes,
                   "Without a file: where the meshes are (default: VOXDAG_SCENES)")
+      ->excludes(file)
       ->type_name("DIR");
   command
       .add_option("-r,--resolution", arguments->resolutions,
                   "Without a file: voxels a side, several with commas (default: 4K,32K)")
       ->delimiter(',')
+      ->excludes(file)
       ->type_name("N,N...");
   command
       .add_option("--layout", plan.layouts,
@@ -162,30 +172,30 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
   add_parsed_option(command, "--size", arguments->size, parse_image_size, "WxH",
                     "Pixels of each view (default 1024x768)");
   command.add_option("--views", plan.views, "Cameras")
-      ->check(CLI::Range(1, 64))
+      ->check(whole_number(1, 64))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--shadow-samples", plan.rays.shadow_samples, "Rays to the lamp for each pixel")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number(1, 4096))
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--ao", plan.rays.occlusion_samples, "Rays of occlusion for each pixel")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number(1, 4096))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--rays", plan.rays.most_rays, "Most rays of a set of shadow or occlusion rays")
-      ->check(CLI::Range(1'000, 1'000'000'000))
+      ->check(whole_number(1'000, 1'000'000'000))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--lod", plan.rays.lod_pixels, "Rays end at cells of so many pixels; 0: voxels")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number_from(0, 1000))
       ->type_name("PIXELS")
       ->capture_default_str();
   command.add_option("--repeat", plan.repeat, "Cast so often and take the fastest")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   command
@@ -202,6 +212,7 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
   add_json_option(command, session);
   command.callback([arguments, &session] {
     finish_plan(*arguments, session);
+    arguments->output.check_distinct();
     session.work = [arguments, &session] { run(*arguments, session); };
   });
 }

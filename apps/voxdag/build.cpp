@@ -56,7 +56,30 @@ std::map<std::string, std::string> settings_of(const BuildArguments& arguments) 
           {"scale_from", arguments.levels ? "resolution" : "voxel_size"}};
 }
 
+/// Groups of options that the other kind of file has no use for.
+constexpr const char *kOfDags = "DAG", *kOfEsvos = "ESVO";
+
+/// Throws CLI::ValidationError where an option of the group was given.
+void check_none_of(const CLI::App& command, const std::string& group) {
+  const auto is_wrong = [&](const CLI::Option* option) {
+    return option->get_group() == group && option->count() > 0;
+  };
+  for (const CLI::Option* option : command.get_options(is_wrong))
+    throw CLI::ValidationError(
+        option->get_name(),
+        fmt::format("is for {}, and the output is {}", group == kOfDags ? "a DAG" : "an ESVO",
+                    group == kOfDags ? "an ESVO" : "a DAG (see --as)"));
+}
+
+/// An ESVO is written piece by piece, its beginning last, and read again. Throws Error.
+void check_regular(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
+    throw Error(path, "", "an ESVO can only be written to a regular file");
+}
+
 void build_as_esvo(const BuildArguments& arguments, Session& session) {
+  check_regular(arguments.output);
   check_writable(arguments.output);
   EsvoBuild build;
   build.output = arguments.output;
@@ -172,7 +195,8 @@ void add_build_command(CLI::App& app, Session& session) {
                   "hash: depth-first with a hash of nodes; sort: the paper's. Same result")
       ->transform(CLI::Transformer(std::map<std::string, BuildMethod>{
           {"hash", BuildMethod::kHashConsed}, {"sort", BuildMethod::kSort}}))
-      ->type_name("hash|sort");
+      ->type_name("hash|sort")
+      ->group(kOfDags);
   add_parsed_option(command, "--memory", arguments->options.memory_limit, parse_memory, "LIMIT",
                     "Stop instead of using more memory: 512M, 16GiB");
   command.add_flag("--stats", arguments->stats, "Show the nodes of each level too");
@@ -180,8 +204,9 @@ void add_build_command(CLI::App& app, Session& session) {
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);
-  command.callback([arguments, as, &session] {
+  command.callback([arguments, as, &command, &session] {
     if (as->empty()) arguments->as_esvo = arguments->output.ends_with(".esvo");
+    check_none_of(command, arguments->as_esvo ? kOfDags : kOfEsvos);
     if (arguments->levels.has_value() == arguments->voxel_size.has_value())
       throw CLI::ValidationError("exactly one of -r/--resolution and --voxel-size is needed");
     session.work = [arguments, &session] {

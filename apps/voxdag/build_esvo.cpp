@@ -7,6 +7,7 @@
 
 #include "esvo_report.hpp"
 #include "human.hpp"
+#include "number_check.hpp"
 #include "process_usage.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_writer.hpp"
@@ -86,7 +87,7 @@ void add_esvo_options(CLI::App& command, EsvoArguments& arguments) {
   const auto add = [&](const std::string& name, auto& value, double most, const std::string& shape,
                        const std::string& help) {
     command.add_option(name, value, help)
-        ->check(CLI::Range(0.0, most))
+        ->check(number_from(0, most))
         ->type_name(shape)
         ->capture_default_str()
         ->group("ESVO");
@@ -97,7 +98,8 @@ void add_esvo_options(CLI::App& command, EsvoArguments& arguments) {
       "How much colours may differ in a leaf: greatest difference of a channel, 0 to 1 (sRGB)");
   add("--normal-error", arguments.normal_degrees, 180.0, "DEGREES",
       "How much normals may differ in a leaf");
-  add_displace_options(command, arguments.displace);
+  add_displace_option(command, arguments.displace);
+  add_no_displacement_option(command, arguments.displace);
   add_bake_options(command, arguments.bake);
   command
       .add_flag_callback(
@@ -108,6 +110,7 @@ void add_esvo_options(CLI::App& command, EsvoArguments& arguments) {
       .add_flag_callback(
           "--no-attributes", [&settings] { settings.attributes = false; },
           "The shape alone: no colours, no normals")
+      ->excludes("--bake-ao")
       ->group("ESVO");
 }
 

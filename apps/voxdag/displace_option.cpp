@@ -43,7 +43,7 @@ void parse_displace(const std::string& text, DisplaceArguments& arguments) {
   if (arguments.texture.empty()) throw std::invalid_argument("not TEXTURE:AMOUNT[:SCALE]");
 }
 
-void add_displace_options(CLI::App& command, DisplaceArguments& arguments) {
+CLI::Option* add_displace_option(CLI::App& command, DisplaceArguments& arguments) {
   const auto store = [&arguments](const std::string& text) {
     try {
       parse_displace(text, arguments);
@@ -51,7 +51,7 @@ void add_displace_options(CLI::App& command, DisplaceArguments& arguments) {
       throw CLI::ValidationError("--displace", wrong.what());
     }
   };
-  command
+  return command
       .add_option_function<std::string>(
           "--displace", store,
           "Move the surface by a height texture (PNG, JPEG, or \"stone\" for a built-in wall) of "
@@ -59,7 +59,11 @@ void add_displace_options(CLI::App& command, DisplaceArguments& arguments) {
           "say)")
       ->type_name("TEXTURE:AMOUNT[:SCALE]")
       ->group("ESVO");
+}
+
+void add_no_displacement_option(CLI::App& command, DisplaceArguments& arguments) {
   command.add_flag("--no-displacement", arguments.is_off, "Leave the materials' height maps out")
+      ->excludes("--displace")
       ->group("ESVO");
 }
 

@@ -22,7 +22,8 @@ struct DisplaceArguments {
 /// Throws std::invalid_argument.
 void parse_displace(const std::string& text, DisplaceArguments& arguments);
 
-void add_displace_options(CLI::App& command, DisplaceArguments& arguments);
+CLI::Option* add_displace_option(CLI::App& command, DisplaceArguments& arguments);
+void add_no_displacement_option(CLI::App& command, DisplaceArguments& arguments);
 
 /// The mesh displaced as asked, or nothing where nothing moves.
 std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,

@@ -54,6 +54,8 @@ void add_export_command(CLI::App& app, Session& session) {
   command.add_flag("--faces", arguments->faces, "For .ply: the outer faces of the voxels");
   add_quiet_option(command, session);
   command.callback([arguments, &session] {
+    if (arguments->faces && !arguments->output.ends_with(".ply"))
+      throw CLI::ValidationError("--faces", "is for an output that ends in .ply");
     session.work = [arguments, &session] { export_file(*arguments, session); };
   });
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <iterator>
 #include <regex>
 
 namespace voxdag {
@@ -13,6 +14,15 @@ const std::regex kPattern("([^%]*)%(?:0([1-9]))?d([^%]*)");
 }  // namespace
 
 bool is_frame_pattern(const std::string& pattern) { return std::regex_match(pattern, kPattern); }
+
+std::string frame_pattern_fault(const std::string& text) {
+  if (is_frame_pattern(text)) return "";
+  static const std::regex kPlace("%(0[1-9])?d");
+  const auto places = std::distance(std::sregex_iterator(text.begin(), text.end(), kPlace), {});
+  if (places > 1) return fmt::format("has {} places for a number, not one", places);
+  if (places == 1) return "has a % that is no place for a number, such as %04d";
+  return "has no place for a number, such as %04d";
+}
 
 std::string frame_name(const std::string& pattern, int frame) {
   std::smatch parts;

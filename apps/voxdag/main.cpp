@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <optional>
@@ -89,6 +90,8 @@ int run(int argc, char** argv) {
     return fail(subject + cancelled.what(), kSignalBase + cancelling_signal());
   } catch (const Error& error) {
     return fail(error.file().empty() ? subject + error.what() : error.what(), kFailure);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(fmt::format("{}: {}", error.path1().string(), error.code().message()), kFailure);
   } catch (const std::bad_alloc&) {
     return fail(subject + "out of memory", kFailure);
   } catch (const std::exception& error) {

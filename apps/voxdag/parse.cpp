@@ -6,6 +6,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,33 +17,53 @@ namespace {
 
 constexpr int kMaxImageSide = 1 << 15;
 
-/// The number that the whole of `text` is, or throws with `expected`.
+/// The finite number that the whole of `text` is, if it is one.
 template <class T>
-T parse_number(std::string_view text, const char* expected) {
+std::optional<T> number_of(std::string_view text) {
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   bool good = error == std::errc() && end == text.data() + text.size() && !text.empty();
   if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(value);
-  if (!good) throw std::invalid_argument(fmt::format("\"{}\" is not {}", text, expected));
-  return value;
+  return good ? std::optional(value) : std::nullopt;
+}
+
+/// Likewise, or throws with `expected`.
+template <class T>
+T parse_number(std::string_view text, const char* expected) {
+  const std::optional<T> value = number_of<T>(text);
+  if (!value) throw std::invalid_argument(fmt::format("\"{}\" is not {}", text, expected));
+  return *value;
+}
+
+/// As parse_number, of a list.
+template <class T>
+T parse_element(std::string_view text) {
+  if constexpr (std::is_integral_v<T>) {
+    return parse_number<T>(text, "a whole number");
+  } else {
+    const T value = parse_number<T>(text, "a number");
+    if (std::fabs(value) > std::numeric_limits<float>::max())
+      throw std::invalid_argument(fmt::format("\"{}\" is too large", text));
+    return value;
+  }
 }
 
 template <class T, std::size_t N>
-std::array<T, N> parse_list(std::string_view text, const char* expected) {
+std::array<T, N> parse_list(std::string_view text) {
   std::array<T, N> values{};
   for (std::size_t i = 0; i < N; ++i) {
     const std::size_t comma = text.find(',');
     if ((comma == std::string_view::npos) != (i + 1 == N))
       throw std::invalid_argument(fmt::format("needs {} numbers with commas between", N));
-    values[i] = parse_number<T>(text.substr(0, comma), expected);
+    values[i] = parse_element<T>(text.substr(0, comma));
     text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
   }
   return values;
 }
 
 template <class T>
-Box<T> parse_box_of(const std::string& text, const char* expected) {
-  const auto v = parse_list<T, 6>(text, expected);
+Box<T> parse_box_of(const std::string& text) {
+  const auto v = parse_list<T, 6>(text);
   const Box<T> box{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
   for (int axis = 0; axis < 3; ++axis)
     if (!(box.lo[axis] < box.hi[axis]))
@@ -52,27 +73,38 @@ Box<T> parse_box_of(const std::string& text, const char* expected) {
 
 }  // namespace
 
+std::optional<double> read_number(std::string_view text) { return number_of<double>(text); }
+
+std::optional<std::int64_t> read_whole_number(std::string_view text) {
+  return number_of<std::int64_t>(text);
+}
+
 std::vector<double> parse_numbers(const std::string& text) {
   std::vector<double> values;
   std::string_view rest = text;
   for (;;) {
     const std::size_t comma = rest.find(',');
-    values.push_back(parse_number<double>(rest.substr(0, comma), "a number"));
+    values.push_back(parse_element<double>(rest.substr(0, comma)));
     if (comma == std::string_view::npos) return values;
     rest.remove_prefix(comma + 1);
   }
 }
 
 Vec3d parse_vec3(const std::string& text) {
-  const auto v = parse_list<double, 3>(text, "a number");
+  const auto v = parse_list<double, 3>(text);
   return {v[0], v[1], v[2]};
 }
 
-Box3d parse_box(const std::string& text) { return parse_box_of<double>(text, "a number"); }
-
-Box3i parse_window(const std::string& text) {
-  return parse_box_of<std::int32_t>(text, "a whole number");
+Vec3d parse_direction(const std::string& text) {
+  const Vec3d direction = parse_vec3(text);
+  if (!(dot(direction, direction) > 0))
+    throw std::invalid_argument(fmt::format("\"{}\" is no direction", text));
+  return direction;
 }
+
+Box3d parse_box(const std::string& text) { return parse_box_of<double>(text); }
+
+Box3i parse_window(const std::string& text) { return parse_box_of<std::int32_t>(text); }
 
 double parse_positive(const std::string& text) {
   const double value = parse_number<double>(text, "a number");

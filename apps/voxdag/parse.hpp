@@ -2,7 +2,9 @@
 /// Texts of command line options to values. Every function throws std::invalid_argument with the
 /// reason where the text is not what it should be.
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "voxdag/core/box.hpp"
@@ -14,8 +16,14 @@ struct ImageSize {
   int width = 0, height = 0;
 };
 
-std::vector<double> parse_numbers(const std::string& text);  ///< "1,2.5": finite, at least one.
-Vec3d parse_vec3(const std::string& text);                   ///< "1.5,-2,0": three finite numbers.
+/// Nothing where the whole of the text is not a finite number, or a whole one.
+std::optional<double> read_number(std::string_view text);
+std::optional<std::int64_t> read_whole_number(std::string_view text);
+
+/// The numbers of lists are coordinates and the like: those that floats reach, as in meshes.
+std::vector<double> parse_numbers(const std::string& text);  ///< "1,2.5": at least one.
+Vec3d parse_vec3(const std::string& text);                   ///< "1.5,-2,0".
+Vec3d parse_direction(const std::string& text);              ///< As parse_vec3, but not zero.
 Box3d parse_box(const std::string& text);  ///< "x0,y0,z0,x1,y1,z1", the second corner above.
 Box3i parse_window(
     const std::string& text);  ///< As parse_box, of voxels: `hi` is one past the last.

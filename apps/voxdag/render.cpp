@@ -10,6 +10,7 @@
 #include "device.hpp"
 #include "frame_names.hpp"
 #include "human.hpp"
+#include "number_check.hpp"
 #include "parse.hpp"
 #include "process_usage.hpp"
 #include "render_light.hpp"
@@ -36,7 +37,7 @@ struct RenderArguments {
   std::uint64_t stream_memory = 0;  ///< Of an ESVO's blocks, bytes; 0: all are loaded.
 };
 
-/// Every file to write.
+/// Every picture to write.
 std::vector<RenderPass> all_passes(const RenderArguments& arguments) {
   std::vector<RenderPass> passes = {{"picture", arguments.output}};
   if (!arguments.depth.empty()) passes.push_back({"depth", arguments.depth});
@@ -45,17 +46,49 @@ std::vector<RenderPass> all_passes(const RenderArguments& arguments) {
   return passes;
 }
 
+/// Throws CLI::ValidationError for names of outputs that are wrong, alone or together.
+void check_outputs(const RenderArguments& arguments) {
+  std::vector<OutputFile> outputs = {{"--output", arguments.output}};
+  if (!arguments.depth.empty()) outputs.push_back({"--depth", arguments.depth});
+  if (!arguments.normal.empty()) outputs.push_back({"--normal", arguments.normal});
+  for (const RenderPass& pass : arguments.passes)
+    outputs.push_back({"--pass " + pass.name, pass.path});
+  for (const OutputFile& output : outputs) {
+    try {
+      check_picture_path(output.path);
+    } catch (const std::invalid_argument& wrong) {
+      throw CLI::ValidationError(output.option, wrong.what());
+    }
+    check_frame_pattern(output, arguments.path);
+  }
+  if (!arguments.path.timings.empty()) {
+    outputs.push_back({"--timings", arguments.path.timings});
+    outputs.push_back({"the plot of --timings", timings_plot(arguments.path.timings)});
+  }
+  check_distinct(outputs);
+}
+
+/// Throws CLI::ValidationError for a view that no scene has.
+void check_view(const ViewRequest& view) {
+  if (!view.eye || !view.target) return;
+  const Vec3d forward = *view.target - *view.eye;
+  if (!(dot(forward, forward) > 0))
+    throw CLI::ValidationError("--target", "is the same point as --eye");
+  if (!view.up) return;
+  const Vec3d aside = cross(normalized(forward), normalized(*view.up));
+  if (!(dot(aside, aside) > 1e-12)) throw CLI::ValidationError("--up", "points along the view");
+}
+
 void print_summary(const RenderArguments& arguments, const RenderedImage& image, double seconds,
                    const std::string& device) {
   fmt::print("{}: {} x {} pixels in {}, {} rays/s on {}\n", arguments.output, image.width,
              image.height, human_seconds(seconds),
              human_count(static_cast<double>(image.rays) / seconds), device);
   const View& view = image.view;
-  fmt::print(
-      "  --eye {:.6g},{:.6g},{:.6g} --target {:.6g},{:.6g},{:.6g} --up {:.6g},{:.6g},{:.6g} --fov "
-      "{:.6g} --exposure {:.4g}\n",
-      view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z, view.up.x,
-      view.up.y, view.up.z, view.vertical_fov_degrees, static_cast<double>(image.exposure));
+  // The shortest numbers that read back as the same: the options make the same picture.
+  fmt::print("  --eye {},{},{} --target {},{},{} --up {},{},{} --fov {} --exposure {}\n",
+             view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z,
+             view.up.x, view.up.y, view.up.z, view.vertical_fov_degrees, image.exposure);
   if (image.steps.empty()) return;
   const double sum = std::accumulate(image.steps.begin(), image.steps.end(), 0.0);
   fmt::print("  steps per primary ray: {:.1f} on average, {:.0f} at most\n",
@@ -102,6 +135,8 @@ void render(RenderArguments& arguments, Session& session) {
     if (pass.name == "steps") arguments.options.with_steps = true;
   }
   if (arguments.stream_memory != 0) {
+    if (!is_esvo_file(session.subject))
+      throw Error(session.subject, "", "--memory is for an ESVO, and this is a DAG");
     arguments.options.width = arguments.size.width;
     arguments.options.height = arguments.size.height;
     arguments.options.filter = arguments.filter.value_or(true);
@@ -126,8 +161,10 @@ void render(RenderArguments& arguments, Session& session) {
       for (const RenderPass& pass : passes)
         write_pass({pass.name, frame_name(pass.path, frame)}, image);
     };
+    std::vector<std::string> patterns;
+    for (const RenderPass& pass : passes) patterns.push_back(pass.path);
     return render_path(scene, file.grid(), arguments.options, arguments.path,
-                       {render_frame, write_frame}, session);
+                       {render_frame, write_frame, patterns}, session);
   }
   const auto start = std::chrono::steady_clock::now();
   const RenderedImage image = render_frame(arguments.options, &session.progress);
@@ -164,30 +201,23 @@ void add_off_switch(CLI::App& command, const std::string& name, bool& value,
       name, [&value] { value = false; }, help);
 }
 
-void check_output(const std::string& option, const std::string& path) {
-  try {
-    check_picture_path(path);
-  } catch (const std::invalid_argument& wrong) {
-    throw CLI::ValidationError(option, wrong.what());
-  }
-}
-
 void add_view_options(CLI::App& command, ViewRequest& view) {
   add_parsed_option(command, "--eye", view.eye, parse_vec3, "X,Y,Z",
                     "Where the camera is (default: where the scene shows well)");
   add_parsed_option(command, "--target", view.target, parse_vec3, "X,Y,Z",
                     "The point in the middle of the picture");
-  add_parsed_option(command, "--up", view.up, parse_vec3, "X,Y,Z",
+  add_parsed_option(command, "--up", view.up, parse_direction, "X,Y,Z",
                     "What is up (default: y, or z where the scene rests on it)");
-  add_parsed_option(command, "--fov", view.vertical_fov_degrees, parse_positive, "DEGREES",
-                    "Vertical angle of view");
+  command.add_option("--fov", view.vertical_fov_degrees, "Vertical angle of view")
+      ->check(number_between(0, 180))
+      ->type_name("DEGREES");
 }
 
 void add_light_options(CLI::App& command, RenderOptions& options) {
-  add_parsed_option(command, "--sun", options.sun, parse_vec3, "X,Y,Z",
+  add_parsed_option(command, "--sun", options.sun, parse_direction, "X,Y,Z",
                     "Direction towards the sun (default: over the viewer's left shoulder)");
   command.add_option("--sun-angle", options.sun_degrees, "The sun's angle across; 0: hard shadows")
-      ->check(CLI::Range(0.0, 89.0))
+      ->check(number_from(0, 89))
       ->type_name("DEGREES")
       ->capture_default_str();
   add_off_switch(command, "--no-sun", options.with_sun, "Leave the sun out");
@@ -195,7 +225,7 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
                   "A light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
                   "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, and ,R,G,B for its colour; may be repeated");
   command.add_option("--sky", options.sky, "Factor on the sky's light; 0: black")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_from(0, 1e6))
       ->type_name("FACTOR")
       ->capture_default_str();
   add_off_switch(command, "--no-shadows", options.shadows,
@@ -203,12 +233,12 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--shadow-samples", options.shadow_samples,
                   "Shadow rays per pixel and light with soft edges")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number(1, 4096))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--ao", options.occlusion_samples, "Rays of ambient occlusion per pixel; 0: none")
-      ->check(CLI::Range(0, 4096))
+      ->check(whole_number(0, 4096))
       ->type_name("N")
       ->capture_default_str();
   add_parsed_option(command, "--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
@@ -216,7 +246,7 @@ void add_light_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--ao-cone", options.occlusion_cone,
                   "End its rays at cells of this solid angle, such as 0.07; 0: never")
-      ->check(CLI::Range(0.0, 6.0))
+      ->check(number_from(0, 6))
       ->type_name("SR")
       ->capture_default_str();
 }
@@ -225,19 +255,21 @@ void add_filter_options(CLI::App& command, std::optional<bool>& filter) {
   command.add_flag_callback(
       "--filter", [&filter] { filter = true; },
       "Smooth what voxels larger than pixels show (default: for an ESVO)");
-  command.add_flag_callback(
-      "--no-filter", [&filter] { filter = false; }, "Show every voxel as it is");
+  command
+      .add_flag_callback(
+          "--no-filter", [&filter] { filter = false; }, "Show every voxel as it is")
+      ->excludes("--filter");
 }
 
 void add_quality_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--spp,--samples", options.samples_per_pixel, "Samples per pixel")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number(1, 4096))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--lod", options.lod_pixels,
                   "Stop at cells of this many pixels; 0: always at voxels")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number_from(0, 1000))
       ->type_name("PIXELS")
       ->capture_default_str();
   add_off_switch(command, "--no-beams", options.beams,
@@ -245,7 +277,7 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--exposure", options.exposure,
                   "Factor on the light before tone mapping (default: what suits the picture)")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->type_name("FACTOR");
 }
 
@@ -293,11 +325,13 @@ void add_render_command(CLI::App& app, Session& session) {
         (!arguments->path.file.empty() || !arguments->mesh.file.empty() ||
          arguments->device.kind == DeviceChoice::Kind::kCuda))
       throw CLI::ValidationError("--memory", "not with --path, --mesh or --device cuda");
-    if (!arguments->path.file.empty())
-      for (const RenderPass& pass : all_passes(*arguments)) check_frame_pattern(pass.path);
-    check_output("--output", arguments->output);
-    if (!arguments->depth.empty()) check_output("--depth", arguments->depth);
-    if (!arguments->normal.empty()) check_output("--normal", arguments->normal);
+    check_outputs(*arguments);
+    check_view(arguments->options.view);
+    constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // besides the sun
+    if (arguments->options.lights.size() > kMostLights)
+      throw CLI::ValidationError(
+          "--light", fmt::format("there are {}, the most are {}", arguments->options.lights.size(),
+                                 kMostLights));
     session.work = [arguments, &session] { render(*arguments, session); };
   });
 }

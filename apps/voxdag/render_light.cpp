@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "parse.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
@@ -21,6 +22,15 @@ constexpr LightForm kForms[] = {{"point", LightKind::kPoint, 3},
                                 {"sphere", LightKind::kSphere, 4},
                                 {"disc", LightKind::kDisc, 7},
                                 {"rect", LightKind::kRectangle, 9}};
+
+/// Throws std::invalid_argument for what the renderer would refuse, wherever the grid is.
+void check(const LightSpec& light) {
+  try {
+    make_light(light, Grid{});
+  } catch (const Error& error) {
+    throw std::invalid_argument(error.reason());
+  }
+}
 
 Vec3d vector_at(const std::vector<double>& v, std::size_t at) {
   return {v[at], v[at + 1], v[at + 2]};
@@ -49,6 +59,7 @@ LightSpec parse_light(const std::string& text) {
       light.edge_v = vector_at(v, 6);
     }
     if (v.size() > form.numbers) light.color = static_cast<Vec3f>(vector_at(v, form.numbers));
+    check(light);
     return light;
   }
   throw std::invalid_argument("begins with none of point:, sphere:, disc:, rect:");

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <unordered_set>
 
 #include "frame_names.hpp"
 #include "frame_timings.hpp"
@@ -34,6 +35,9 @@ CameraPath camera_path(const PathFile& path, const std::string& file, const Voxe
       CameraKey next;
       next.time = key.time;
       if (keys.empty()) {
+        if ((key.up && options.view.up) || (key.fov_degrees && options.view.vertical_fov_degrees))
+          throw Error(fmt::format("it has its own \"{0}\", which leaves --{0} without effect",
+                                  key.up && options.view.up ? "up" : "fov"));
         const ViewRequest request{
             key.eye, key.target, key.up ? key.up : options.view.up,
             key.fov_degrees ? key.fov_degrees : options.view.vertical_fov_degrees};
@@ -93,30 +97,57 @@ std::vector<float> exposures(const CameraPath& path, const std::vector<double>& 
   return smooth;
 }
 
-std::string plot_beside(const std::string& csv) {
-  return std::filesystem::path(csv).replace_extension(".svg").string();
+/// Throws Error where two files of the film would have the same name: of f%d.png and f1%d.png
+/// that is frame 11 of the one and frame 1 of the other.
+void check_frame_names(const std::vector<std::string>& patterns, int frames,
+                       const std::string& timings) {
+  std::unordered_set<std::string> names;
+  const auto add = [&](const std::string& path) {
+    const auto name = std::filesystem::path(path).lexically_normal().string();
+    if (!names.insert(name).second) throw Error(path, "", "two files of the film have this name");
+  };
+  if (!timings.empty()) {
+    add(timings);
+    add(timings_plot(timings));
+  }
+  for (const std::string& pattern : patterns)
+    for (int frame = 0; frame < frames; ++frame) add(frame_name(pattern, frame));
 }
 
 }  // namespace
 
+std::string timings_plot(const std::string& csv) {
+  return std::filesystem::path(csv).replace_extension(".svg").string();
+}
+
 void add_path_options(CLI::App& command, PathArguments& arguments) {
-  command
-      .add_option("--path", arguments.file,
-                  "Make a film: camera keys as JSON (see `voxdag scene NAME --path`); the names of "
-                  "the files then hold a number, such as frame_%04d.png")
-      ->type_name("KEYS.json");
+  CLI::Option* const path =
+      command
+          .add_option(
+              "--path", arguments.file,
+              "Make a film: camera keys as JSON (see `voxdag scene NAME --path`); the names of "
+              "the files then hold a number, such as frame_%04d.png")
+          ->excludes("--eye")
+          ->excludes("--target")
+          ->type_name("KEYS.json");
   add_parsed_option(command, "--fps", arguments.fps, parse_positive, "N",
-                    "Frames of the film for each second (default 30)");
+                    "Frames of the film for each second (default 30)")
+      ->needs(path);
   command
       .add_option("--timings", arguments.timings,
                   "Write what each frame took, and a plot beside it as .svg")
+      ->needs(path)
       ->type_name("OUT.csv");
 }
 
-void check_frame_pattern(const std::string& path) {
-  if (!is_frame_pattern(path))
-    throw CLI::ValidationError("--path",
-                               fmt::format("\"{}\" has no place for a number, such as %04d", path));
+void check_frame_pattern(const OutputFile& output, const PathArguments& arguments) {
+  const auto refuse = [&](const std::string& reason) {
+    throw CLI::ValidationError(output.option, fmt::format("\"{}\" {}", output.path, reason));
+  };
+  const std::string fault = frame_pattern_fault(output.path);
+  if (!arguments.file.empty() && !fault.empty()) refuse(fault);
+  if (arguments.file.empty() && fault.empty())
+    refuse("has a place for a frame's number, which needs --path");
 }
 
 void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions& given,
@@ -127,7 +158,8 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
   const CameraPath path = camera_path(file, arguments.file, scene, grid, options);
   const double count = std::floor((path.end() - path.start()) * arguments.fps + 1e-6) + 1;
   if (!(count <= kMostFrames)) throw Error(arguments.file, "", "a million frames are too many");
-  for (const std::string& out : {arguments.timings, plot_beside(arguments.timings)})
+  check_frame_names(maker.patterns, static_cast<int>(count), arguments.timings);
+  for (const std::string& out : {arguments.timings, timings_plot(arguments.timings)})
     if (!arguments.timings.empty()) check_writable(out);
   if (!options.sun) options.sun = file.sun;
   if (!options.sun) {
@@ -162,7 +194,7 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
   }
   if (!arguments.timings.empty()) {
     write_whole_file(arguments.timings, timings_csv(timings));
-    write_whole_file(plot_beside(arguments.timings), timings_svg(timings));
+    write_whole_file(timings_plot(arguments.timings), timings_svg(timings));
   }
   session.bar.clear();
   if (session.quiet) return;

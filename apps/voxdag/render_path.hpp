@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "output_files.hpp"
 #include "session.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/render/render_options.hpp"
@@ -17,16 +19,22 @@ struct PathArguments {
   double fps = 30;
 };
 
+/// The command has --eye and --target already, which a path replaces.
 void add_path_options(CLI::App& command, PathArguments& arguments);
 
-/// Throws CLI::ValidationError for a name of an output that has no place for a frame's number.
-void check_frame_pattern(const std::string& path);
+/// Throws CLI::ValidationError where the name of an option's output has no place for a frame's
+/// number and there is a path, or has one and there is none.
+void check_frame_pattern(const OutputFile& output, const PathArguments& arguments);
+
+/// The drawing beside the CSV of --timings.
+std::string timings_plot(const std::string& csv);
 
 /// How a frame is made and saved.
 struct FrameMaker {
   /// The picture of these options; `progress` may be null.
   std::function<RenderedImage(const RenderOptions&, Progress*)> render;
   std::function<void(const RenderedImage&, int frame)> write;
+  std::vector<std::string> patterns;  ///< Of the files that it writes.
 };
 
 /// Renders the path's frames, from its first key to its last one. The sun stands still: where

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "human.hpp"
+#include "number_check.hpp"
 #include "parse.hpp"
 #include "path_file.hpp"
 #include "voxdag/mesh/ply_writer.hpp"
@@ -82,15 +83,28 @@ void add_scene_command(CLI::App& app, Session& session) {
   CLI::App& command = add_command(app, "scene", "Make a procedural scene as a PLY mesh",
                                   "voxdag scene courtyard -o courtyard.ply");
   command.add_option("name", arguments->name, "The scene; --list shows them")->type_name("NAME");
-  command.add_option("-o,--output", arguments->output, "The mesh to write")->type_name("FILE.ply");
-  command.add_flag("--list", arguments->list, "List the scenes and what their size counts");
-  command.add_flag("--view", arguments->view,
-                   "Only print the options with which `voxdag render` shows the scene well");
-  command.add_flag("--path", arguments->path,
-                   "Only print a flight through the scene for `voxdag render --path`");
+  CLI::Option* const output =
+      command.add_option("-o,--output", arguments->output, "The mesh to write")
+          ->type_name("FILE.ply");
+  CLI::Option* const list =
+      command.add_flag("--list", arguments->list, "List the scenes and what their size counts")
+          ->excludes(output);
+  CLI::Option* const view =
+      command
+          .add_flag("--view", arguments->view,
+                    "Only print the options with which `voxdag render` shows the scene well")
+          ->excludes(output)
+          ->excludes(list);
+  command
+      .add_flag("--path", arguments->path,
+                "Only print a flight through the scene for `voxdag render --path`")
+      ->excludes(output)
+      ->excludes(list)
+      ->excludes(view);
   add_parsed_option(command, "--size", arguments->options.size, parse_positive, "SIZE",
                     "How large or fine the scene is; see --list");
   command.add_option("--seed", arguments->options.seed, "Another seed gives another scene")
+      ->check(whole_number(0, 0xffff'ffff))
       ->type_name("N")
       ->capture_default_str();
   add_json_option(command, session);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "number_check.hpp"
 #include "voxdag/core/atomic_file.hpp"
 
 namespace voxdag {
@@ -15,7 +16,7 @@ CLI::App& add_command(CLI::App& app, const std::string& name, const std::string&
 
 void add_threads_option(CLI::App& command, Session& session) {
   command.add_option("--threads", session.threads, "Threads to use (default: one per processor)")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number(1, 4096))
       ->type_name("N");
 }
 

@@ -1,12 +1,14 @@
 /// `voxdag verify`: every check of a .vdag file, and of its voxels against the mesh.
 #include <fmt/core.h>
 
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "displace_option.hpp"
 #include "human.hpp"
+#include "number_check.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/check_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"
@@ -32,6 +34,8 @@ const char* result_name(Result result) {
 }
 
 VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
+  if (!arguments.displace.texture.empty())
+    throw Error(session.subject, "", "--displace is for an ESVO, and this is a DAG");
   const VdagFile file(session.subject);
   const Mesh mesh = read_mesh(arguments.mesh, &session.progress);
   const CoverCheck cover = check_cover(file.view(), file.grid(), mesh, arguments.samples,
@@ -142,17 +146,23 @@ void add_verify_command(CLI::App& app, Session& session) {
   command.add_option("file", session.subject, "The .vdag or .esvo file")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--mesh", arguments->mesh,
-                  "Compare with this mesh, in a sample of cells or of points")
-      ->type_name("MESH");
+  CLI::Option* const mesh =
+      command
+          .add_option("--mesh", arguments->mesh,
+                      "Compare with this mesh, in a sample of cells or of points")
+          ->type_name("MESH");
+  const CLI::Validator any_count = whole_number(0, std::numeric_limits<std::int64_t>::max());
   command.add_option("--samples", arguments->samples, "Cells or points of the sample")
+      ->check(any_count)
+      ->needs(mesh)
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "Another seed takes another sample")
+      ->check(any_count)
+      ->needs(mesh)
       ->type_name("N")
       ->capture_default_str();
-  add_displace_options(command, arguments->displace);
+  add_displace_option(command, arguments->displace)->needs(mesh);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);

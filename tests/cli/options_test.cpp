@@ -1,0 +1,184 @@
+/// What the command line refuses: values that are none, options without effect, outputs that
+/// overwrite each other.
+#include <filesystem>
+#include <sstream>
+
+#include "frame_names.hpp"
+#include "sponge.hpp"
+
+namespace voxdag {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class Options : public Sponge {
+ protected:
+  static ProcessResult render(Words more, const std::string& name = "bad.png") {
+    more.insert(more.begin(), {"render", path("in.vdag"), "-o", path(name), "--size", "48x32"});
+    return run_voxdag(more);
+  }
+  static ProcessResult build(Words more, const std::string& name) {
+    more.insert(more.begin(), {"build", path("sponge.ply"), "-r", "16", "-o", path(name)});
+    return run_voxdag(more);
+  }
+  static ProcessResult film(Words more) {
+    write_text(path("keys.json"), R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0]}]})");
+    more.insert(more.begin(), {"--path", path("keys.json")});
+    return render(more, "f%d.png");
+  }
+  /// Every one of these, alone, is bad usage whose line names the option.
+  template <class Command>
+  static void expect_refused(const std::vector<Words>& cases, const Command& command) {
+    for (const Words& words : cases) {
+      SCOPED_TRACE(testing::PrintToString(words));
+      expect_failure(command(words), 2, words[0]);
+    }
+    EXPECT_EQ(files_like("bad"), 0);
+  }
+};
+
+TEST_F(Options, NumbersAreFiniteAndInTheirRange) {
+  expect_refused({{"--exposure", "0"},
+                  {"--exposure", "nan"},
+                  {"--exposure", "inf"},
+                  {"--exposure", "1e300"},
+                  {"--lod", "nan"},
+                  {"--sky", "nan"},
+                  {"--ao-cone", "nan"},
+                  {"--sun-angle", "nan"},
+                  {"--fov", "180"},
+                  {"--fov", "360"},
+                  {"--fov", "0"},
+                  {"--spp", "1.5"}},
+                 [](const Words& words) { return render(words); });
+  expect_refused({{"--max-error", "nan"}, {"--color-error", "nan"}, {"--normal-error", "nan"}},
+                 [](const Words& words) { return build(words, "bad.esvo"); });
+  expect_failure(render({"--exposure", "0"}), 2,
+                 "--exposure: \"0\" is not a number greater than 0 and finite");
+  expect_failure(render({"--spp", "1.5"}), 2, "\"1.5\" is not a whole number from 1 to 4096");
+  expect_failure(run_voxdag({"scene", "sponge", "-o", path("bad.ply"), "--seed", "-1"}), 2,
+                 "--seed: \"-1\" is not a whole number");
+}
+
+TEST_F(Options, ViewsAndLightsAreCheckedAtOnce) {
+  expect_refused({{"--up", "0,0,0"},
+                  {"--sun", "0,0,0"},
+                  {"--target", "1,1,1", "--eye", "1,1,1"},
+                  {"--up", "0,1,0", "--eye", "0,5,0", "--target", "0,0,0"},
+                  {"--eye", "1e300,0,0"},
+                  {"--light", "sphere:1,2,3,0"},
+                  {"--light", "disc:1,2,3,0,0,0,1"},
+                  {"--light", "point:1,2,3,1,-1,1"},
+                  {"--light", "rect:1,2,3,1,0,0,2,0,0"}},
+                 [](const Words& words) { return render(words); });
+  Words lamps;
+  for (int i = 0; i < 16; ++i) lamps.insert(lamps.end(), {"--light", "point:1,2,3"});
+  expect_failure(render(lamps), 2, "--light: there are 16, the most are 15");
+}
+
+TEST_F(Options, FilesThatAreTheSameAreRefused) {
+  const std::string roundabout = (std::filesystem::path(path(".")) / "." / "bad.png").string();
+  expect_refused({{"--pass depth", "--pass", "depth=" + roundabout}}, [](const Words& words) {
+    return render({words.begin() + 1, words.end()});
+  });
+  expect_refused({{"--depth", path("bad.png")}, {"--normal", path("bad.png")}},
+                 [](const Words& words) { return render(words); });
+  expect_failure(film({"--pass", "depth=" + path("f%d.png")}), 2, "--pass depth: would overwrite");
+  expect_failure(film({"--pass", "depth=" + path("f%02d.png"), "--timings", path("f0.svg")}), 2,
+                 "the plot of --timings: would overwrite");
+  const std::string both = path("bad.json");
+  expect_failure(run_voxdag({"bench", "trace", path("in.vdag"), "-o", both, "--plot", both}), 2,
+                 "--plot: would overwrite");
+  EXPECT_EQ(files_like("f0"), 0);
+}
+
+TEST_F(Options, FramesOfAFilmHaveNamesOfTheirOwn) {
+  write_text(path("long.json"), R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0]},
+                                             {"time": 3, "eye": [2,2,2], "target": [0,0,0]}]})");
+  expect_failure(
+      run_voxdag({"render", path("in.vdag"), "--path", path("long.json"), "--fps", "4", "-o",
+                  path("g%d.png"), "--size", "48x32", "--pass", "depth=" + path("g1%d.png")}),
+      1, "two files of the film have this name");
+  EXPECT_EQ(files_like("g"), 0);
+}
+
+TEST_F(Options, WhatHasNoEffectIsRefused) {
+  expect_refused({{"--filter", "--no-filter"},
+                  {"--fps", "5"},
+                  {"--timings", path("bad.csv")},
+                  {"--grey"},
+                  {"--eye", "1,2,3", "--path", "keys.json"},
+                  {"--target", "1,2,3", "--path", "keys.json"}},
+                 [](const Words& words) { return render(words); });
+  expect_failure(render({}, "bad%d.png"), 2, "needs --path");
+  for (const Words& option : std::vector<Words>{{"--displace", "stone:1"},
+                                                {"--no-displacement"},
+                                                {"--max-error", "1"},
+                                                {"--color-error", "1"},
+                                                {"--normal-error", "1"},
+                                                {"--bake-ao"},
+                                                {"--no-contours"},
+                                                {"--no-attributes"}})
+    expect_failure(build(option, "bad.vdag"), 2, option[0] + ": is for an ESVO");
+  expect_failure(build({"--method", "sort"}, "bad.esvo"), 2, "--method: is for a DAG");
+  expect_failure(build({"--ao-distance", "1"}, "bad.esvo"), 2, "--ao-distance requires --bake-ao");
+  expect_failure(build({"--bake-ao", "8", "--no-attributes"}, "bad.esvo"), 2, "--no-attributes");
+  expect_failure(run_voxdag({"scene", "sponge", "--view", "-o", path("bad.ply")}), 2, "--view");
+  expect_failure(run_voxdag({"verify", path("in.vdag"), "--samples", "10"}), 2, "--mesh");
+  expect_failure(run_voxdag({"export", path("in.vdag"), "--faces", "-o", path("bad.npy")}), 2,
+                 "--faces");
+  expect_failure(run_voxdag({"bench", "trace", path("in.vdag"), "-r", "64"}), 2, "--resolution");
+  EXPECT_EQ(files_like("bad"), 0);
+}
+
+TEST_F(Options, AFilmsUpIsThatOfItsPath) {
+  write_text(path("up.json"),
+             R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0], "up": [0,1,0]}]})");
+  expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("up.json"), "-o",
+                             path("bad%d.png"), "--up", "0,0,1"}),
+                 1, "up.json: key 0: it has its own \"up\"");
+}
+
+TEST_F(Options, MemoryIsForEsvos) {
+  expect_failure(render({"--memory", "1M"}), 1, "in.vdag: --memory is for an ESVO");
+}
+
+TEST_F(Options, PatternsSayWhatIsWrongWithThem) {
+  EXPECT_EQ(frame_pattern_fault("a%04d.png"), "");
+  for (const char* none : {"a.png", "a%s.png", "a%4d.png"})
+    EXPECT_NE(frame_pattern_fault(none).find("no place"), std::string::npos) << none;
+  EXPECT_NE(frame_pattern_fault("%d%d.png").find("2 places"), std::string::npos);
+  EXPECT_NE(frame_pattern_fault("100%_%d.png").find("a % that is no place"), std::string::npos);
+}
+
+TEST_F(Options, ABenchedMeshIsThatOfTheVoxels) {
+  ASSERT_EQ(run_voxdag({"scene", "hairball", "--size", "1", "-o", path("hair.ply")}).status, 0);
+  expect_failure(run_voxdag({"bench", "trace", path("in.vdag"), "--mesh", path("hair.ply"),
+                             "--size", "40x32", "--repeat", "1", "--views", "1"}),
+                 1, "hair.ply: the ");
+}
+
+TEST_F(Options, AFolderOfScenesThatIsNotThereIsNamed) {
+  expect_failure(run_voxdag({"bench", "trace", "--scenes", path("absent"), "-r", "64"}), 1,
+                 path("absent") + ": No such file");
+}
+
+TEST_F(Options, AnEsvoIsWrittenToAFile) {
+  expect_failure(
+      run_voxdag({"build", path("absent.ply"), "-r", "16", "-o", "/dev/null", "--as", "esvo"}), 1,
+      "/dev/null: an ESVO can only be written to a regular file");
+}
+
+TEST_F(Options, ThePrintedViewMakesTheSamePicture) {
+  const ProcessResult first = render({"--ao", "4"}, "first.png");
+  ASSERT_EQ(first.status, 0) << first.err;
+  Words words = {"--ao", "4"};
+  std::istringstream printed(first.out.substr(first.out.find("  --eye")));
+  for (std::string word; printed >> word;) words.push_back(word);
+  ASSERT_EQ(words.size(), 12u) << first.out;
+  ASSERT_EQ(render(words, "second.png").status, 0);
+  EXPECT_EQ(read_text(path("first.png")), read_text(path("second.png")));
+}
+
+}  // namespace
+}  // namespace voxdag
