@@ -29,8 +29,8 @@ void check_distinct(const std::vector<OutputFile>& outputs) {
     if (output.path.empty() || is_device(output.path)) continue;
     const auto [writer, is_new] = writers.emplace(place_of(output.path), output.option);
     if (!is_new)
-      throw CLI::ValidationError(
-          output.option, "would overwrite " + output.path + ", which is of " + writer->second);
+      throw CLI::ValidationError(output.option,
+                                 "would overwrite " + output.path + " of " + writer->second);
   }
 }
 
