@@ -1,6 +1,7 @@
 #include "voxdag/image/decode.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "support/test_png.hpp"
 #include "temp_dir.hpp"
@@ -69,6 +70,20 @@ TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
       EXPECT_FALSE(decode_image(damaged, "damaged").pixels.empty());
     } catch (const Error& error) {
       EXPECT_EQ(error.file(), "damaged");
+    }
+  }
+}
+
+TEST(DecodeImage, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
+  const TempDir dir;
+  ASSERT_EQ(::mkfifo((dir.path / "pipe.png").c_str(), 0600), 0);
+  for (const auto& [path, reason] :
+       {std::pair(dir.path / "pipe.png", "is not a regular file"), {dir.path, "is a directory"}}) {
+    try {
+      read_image(path);
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.reason(), reason);
     }
   }
 }

@@ -137,6 +137,55 @@ TEST_F(ReadAppearance, MissingMaterialFilesAndMaterialsAreWarnings) {
               {srgb_to_linear(0.8f), srgb_to_linear(0.8f), srgb_to_linear(0.8f)});
 }
 
+TEST_F(ReadAppearance, MalformedMtlStatementsAreWarningsThatSayWhatStandsIn) {
+  const std::string grey = "the material's colour is grey", opaque = "the material is opaque",
+                    numbers = "not one or three finite numbers: " + grey,
+                    mm = "-mm takes two finite numbers: the surface stays without displacement",
+                    clamped = "outside of 0 to 1: it is clamped";
+  const std::vector<std::pair<std::string, std::string>> lines = {
+      {"Kd nan 0 0", numbers},
+      {"Kd foo bar", numbers},
+      {"Kd 0.5 0.5", numbers},
+      {"Kd", numbers},
+      {"Kd xyz 1 1 1", "spectral curves and CIEXYZ are not read: " + grey},
+      {"Kd spectral f.rfl", "spectral curves and CIEXYZ are not read: " + grey},
+      {"Kd 5 -3 0", clamped},
+      {"d foo", "not a finite number: " + opaque},
+      {"Tr inf", "not a finite number: " + opaque},
+      {"d 1.5", clamped},
+      {"map_Kd", "it names no file: the material's colour stands in for the texture"},
+      {"map_Kd -s x 1 a.png",
+       "-s takes one to three finite numbers: the material's colour stands in for the texture"},
+      {"map_d -clamp on", "it names no file: the material is opaque without its alpha map"},
+      {"norm -bm 1e300 n.png",
+       "-bm takes a finite number: the mesh's own normals stand in for the normal map"},
+      {"bump -clamp maybe n.png",
+       "-clamp takes on or off: the mesh's own normals stand in for the normal map"},
+      {"disp -mm nan nan B.JPG", mm},
+      {"disp -mm 1 B.JPG", mm}};
+  for (const auto& [line, expected] : lines) {
+    write("a.mtl", "# colours\nnewmtl m\n" + line + "\n");
+    const auto result = read_mesh_with_appearance(
+        write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\n"));
+    EXPECT_EQ(result.warnings,
+              std::vector{path("a.mtl") + ": line 3: '" + line + "': " + expected});
+    const Material& m = result.appearance.materials[0];
+    EXPECT_EQ(m.base_color, expected.ends_with(grey) ? kDefaultColor
+                            : line == "Kd 5 -3 0"    ? (Vec3f{1, 0, 0})
+                                                     : (Vec3f{1, 1, 1}));
+    EXPECT_EQ(m.alpha, 1);
+    EXPECT_FALSE(m.color_map.exists() || m.alpha_map.exists() || m.normal_map.exists() ||
+                 m.displacement_map.exists());
+    EXPECT_EQ(m.alpha_mode, AlphaMode::kOpaque);
+  }
+}
+
+TEST_F(ReadAppearance, OneNumberOfKdIsForAllChannels) {
+  write("a.mtl", "newmtl m\nKd 1 # white\nnewmtl n\nKd 0\n");
+  const auto result = read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl n\nf 1 2 3\n");
+  EXPECT_EQ(result.appearance.materials[0].base_color, (Vec3f{0, 0, 0}));
+}
+
 TEST_F(ReadAppearance, ReferencesToNothingAreAWarning) {
   const auto result =
       read_mesh_with_appearance(write("a.obj", kSquare + "vt 1 1\nf 1/1 2/2 3/-7\n"));

@@ -12,8 +12,12 @@
 namespace voxdag {
 
 std::vector<std::uint8_t> read_image_bytes(const std::filesystem::path& path) {
+  // Before it is opened: that would wait for the writer of a named pipe.
   std::error_code ec;
-  if (std::filesystem::is_directory(path, ec)) throw Error(path.string(), "", "is a directory");
+  const std::filesystem::file_status status = std::filesystem::status(path, ec);
+  if (std::filesystem::is_directory(status)) throw Error(path.string(), "", "is a directory");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw Error(path.string(), "", "is not a regular file");
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) throw Error(path.string(), "", std::string("cannot open: ") + std::strerror(errno));
   const std::streamoff size = in.tellg();

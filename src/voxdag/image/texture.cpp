@@ -28,6 +28,9 @@ Texture::Texel pack_normal(float x, float y, float z) {
           65535};
 }
 
+/// Scales of slopes beyond this are no steeper; floats stay in their range.
+float in_range(float scale) { return std::clamp(scale, -1e6f, 1e6f); }
+
 std::uint16_t grey(const std::uint16_t* pixel) {
   return static_cast<std::uint16_t>((pixel[0] + pixel[1] + pixel[2]) / 3);
 }
@@ -75,6 +78,7 @@ Texture make_color_texture(const ImageRgba16& image, float visible_alpha, Textur
 }
 
 Texture make_normal_texture(const ImageRgba16& image, float scale, TextureWraps wraps) {
+  scale = in_range(scale);
   return make<Texture>(image, wraps, [&](int x, int y) {
     const std::uint16_t* p = image.pixel(x, y);
     return pack_normal(scale * unpack_component(p[0]), scale * unpack_component(p[1]),
@@ -90,7 +94,7 @@ Texture make_bump_texture(const ImageRgba16& image, float scale, TextureWraps wr
                0, {(static_cast<float>(x) + 0.5f) / w, (static_cast<float>(y) + 0.5f) / h})[0] /
            65535;
   };
-  const float slope = scale * std::max(w, h) / 100 / 2;  // of differences over two texels
+  const float slope = in_range(scale) * std::max(w, h) / 100 / 2;  // of differences over two texels
   return make<Texture>(image, wraps, [&](int x, int y) {
     return pack_normal(slope * (height(x - 1, y) - height(x + 1, y)),
                        slope * (height(x, y + 1) - height(x, y - 1)), 1);

@@ -69,6 +69,9 @@ enum class AlphaMode : std::uint8_t {
 };
 inline constexpr float kBlendCutoff = 0.1f;
 
+/// Of materials that nothing describes: sRGB 0.8.
+inline constexpr Vec3f kDefaultColor{0.603827f, 0.603827f, 0.603827f};
+
 /// What Material::normal_map holds.
 enum class NormalMapKind : std::uint8_t {
   kTangentSpace,  ///< Normals, green towards the image's upper edge (OpenGL, glTF).

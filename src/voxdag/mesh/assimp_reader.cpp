@@ -1,12 +1,15 @@
 #include "voxdag/mesh/assimp_reader.hpp"
 
 #if VOXDAG_HAS_ASSIMP
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <filesystem>
 #include <limits>
+#include <memory>
 
 #include "voxdag/mesh/mesh_checks.hpp"
 #endif
@@ -23,6 +26,18 @@ std::string one_line(std::string text) {
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
   return text.substr(0, 200);
 }
+
+/// For the files beside the mesh, too: opening a named pipe would wait for its writer.
+class RegularFiles : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* file) const override {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(file, ignored);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+};
 
 void add_mesh(const MeshBytes& source, const aiMesh& part, Mesh& mesh) {
   const std::size_t start = mesh.vertices.size();
@@ -56,6 +71,7 @@ Mesh read_with_assimp(const MeshBytes& source, const std::string& extension) {
   Assimp::Importer importer;
   if (!extension.empty() && !importer.IsExtensionSupported(extension))
     throw source.error("unknown mesh format '" + extension + "'");
+  importer.SetIOHandler(std::make_unique<RegularFiles>().release());  // The importer deletes it.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(

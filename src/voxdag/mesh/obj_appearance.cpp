@@ -273,14 +273,12 @@ class ObjAppearanceReader {
     const std::filesystem::path path = path_of(name);
     try {
       const InputFile file(path);
-      for (std::string& material : read_mtl(file.bytes(), path.parent_path(), appearance_))
+      for (std::string& material : read_mtl(file.bytes(), path, appearance_, warnings_))
         described.insert(std::move(material));
     } catch (const Error& error) {
       warnings_.push_back(std::string(error.what()) + ": its materials are grey");
     }
   }
-
-  static constexpr Vec3f kDefaultColor{0.603827f, 0.603827f, 0.603827f};  // sRGB 0.8
 
   const MeshBytes& source_;
   const Mesh& mesh_;

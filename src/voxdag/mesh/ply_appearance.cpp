@@ -133,7 +133,7 @@ class PlyAppearanceReader {
       if (is_textured) material.color_map.image = 0;
       const std::size_t components = std::max(colors_.size(), face_colors_.size());
       if (components == 4) material.alpha_mode = AlphaMode::kBlend;
-      if (components == 0) material.base_color = {0.603827f, 0.603827f, 0.603827f};  // sRGB 0.8
+      if (components == 0) material.base_color = kDefaultColor;
     }
   }
 

@@ -13,13 +13,11 @@
 namespace voxdag {
 namespace {
 
-constexpr Vec3f kGrey{0.603827f, 0.603827f, 0.603827f};  // sRGB 0.8
-
 /// Of a format that gives names of materials at most.
 Appearance grey(const Mesh& mesh) {
   Appearance appearance;
   appearance.materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
-  for (Material& material : appearance.materials) material.base_color = kGrey;
+  for (Material& material : appearance.materials) material.base_color = kDefaultColor;
   for (std::size_t i = 0; i < mesh.materials.size(); ++i)
     appearance.materials[i].name = mesh.materials[i];
   return appearance;
