@@ -152,6 +152,7 @@ void build(const BuildArguments& arguments, Session& session) {
   report.file_bytes = std::filesystem::file_size(arguments.output, unknown);
   if (unknown) report.file_bytes = 0;  // written to a pipe or a device
 
+  warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
   session.bar.clear();
   if (session.json) {
     fmt::print("{}\n", json_of(report, result.report, seconds).dump(2));

@@ -159,6 +159,7 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
     writer.finish(std::move(result.directory), metadata);
   }
   seconds.build = watch.lap();
+  warn_if_empty(metadata.counts.voxels(), build.output, session);
   session.bar.clear();
   print_summary(report_of(EsvoFile(build.output)), seconds, build, session);
 }

@@ -78,7 +78,7 @@ std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& argume
                                      : make_height_texture(read_image(arguments.texture)));
     displacements = displace_all(mesh, appearance, heights, arguments.amount, arguments.scale);
   } else if (!arguments.is_off) {
-    displacements = load_displacements(appearance, warnings, &progress);
+    displacements = load_displacements(mesh, appearance, warnings, &progress);
   }
   if (std::none_of(displacements.begin(), displacements.end(),
                    [](const Displacement& d) { return d.moves(); }))

@@ -33,6 +33,12 @@ void print_warnings(const std::vector<std::string>& warnings, Session& session) 
   for (const std::string& warning : warnings) fmt::print(stderr, "voxdag: warning: {}\n", warning);
 }
 
+void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session) {
+  if (voxels == 0)
+    print_warnings({output + ": no voxels: none of the mesh's surface is seen in the grid"},
+                   session);
+}
+
 void check_writable(const std::string& path) { AtomicFile{path}; }
 
 }  // namespace voxdag

@@ -67,6 +67,9 @@ void parse_all(const std::string& option, const std::vector<std::string>& texts,
 /// On stderr, a line each.
 void print_warnings(const std::vector<std::string>& warnings, Session& session);
 
+/// A warning if what was built into `output` has nothing in it.
+void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session);
+
 /// Throws Error unless a file can be made at `path`: called before long work, not after it.
 void check_writable(const std::string& path);
 

@@ -26,10 +26,10 @@ RTCIntersectContext context(bool is_coherent) {
   return result;
 }
 
-RTCRay embree_ray(const Grid& grid, const Vec3d& center, const GridRay& cast) {
+RTCRay embree_ray(const Grid& grid, const EmbreeScene& scene, const GridRay& cast) {
   const WorldRay world = to_world_ray(grid, cast);
-  const Vec3f o = static_cast<Vec3f>(world.origin - center);
-  const Vec3f d = static_cast<Vec3f>(world.direction);
+  const Vec3f o = static_cast<Vec3f>(scene.from_world(world.origin));
+  const Vec3f d = static_cast<Vec3f>(world.direction * scene.scale());
   RTCRay ray{};
   ray.org_x = o.x;
   ray.org_y = o.y;
@@ -68,7 +68,7 @@ class EmbreeRival::Scene {
     singles_.resize(casts.size());
     packets_.resize((casts.size() + kPacket - 1) / kPacket);
     for (std::size_t i = 0; i < casts.size(); ++i) {
-      singles_[i] = embree_ray(grid, embree_.center(), casts[i].ray);
+      singles_[i] = embree_ray(grid, embree_, casts[i].ray);
       set_lane(packets_[i / kPacket].value, i % kPacket, singles_[i]);
     }
   }

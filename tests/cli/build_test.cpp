@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "json.hpp"
+#include "npy_rays.hpp"
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 
@@ -97,6 +98,28 @@ TEST_F(Build, BoundsPlaceTheGrid) {
   const Json info = Json::parse(run_voxdag({"info", output_, "--json"}).out);
   EXPECT_EQ(info.at("transform").at("origin"), Json::array({-1, -2, -3}));
   EXPECT_GT(info.at("voxels"), 0);
+}
+
+TEST_F(Build, ABuildWithoutVoxelsIsAWarningAndAFileThatAllCommandsTake) {
+  // Its point has no sides that would keep it out of a grid that lies elsewhere.
+  write_text(mesh_, std::string(kMesh) + "f 1 1 1\n");
+  for (const std::string output : {dir_ / "none.vdag", dir_ / "none.esvo"}) {
+    const ProcessResult built = build({"-r", "16", "--bounds", "9,9,9,10,10,10"}, output);
+    EXPECT_EQ(built.status, 0);
+    EXPECT_EQ(built.err, "voxdag: warning: " + output +
+                             ": no voxels: none of the mesh's surface is seen in the grid\n");
+    EXPECT_EQ(Json::parse(run_voxdag({"info", output, "--json"}).out).at("voxels"), 0);
+    const std::string picture = dir_ / "none.png", points = dir_ / "none.ply";
+    const std::string rays = dir_ / "rays.npy", hits = dir_ / "hits.npy";
+    write_text(rays, rays_npy({{9.5f, 9.5f, 8, 0, 0, 0, 1, 100}}));
+    for (const auto& command : {std::vector<std::string>{"verify", output, "--mesh", mesh_},
+                                {"render", output, "--size", "16x12", "-o", picture},
+                                {"trace", output, "--rays", rays, "-o", hits},
+                                {"export", output, "-o", points}}) {
+      const ProcessResult result = run_voxdag(command);
+      EXPECT_EQ(result.status, 0) << command[0] << ": " << result.err;
+    }
+  }
 }
 
 TEST_F(Build, BothMethodsWriteTheSameBytes) {

@@ -122,6 +122,23 @@ TEST_F(MeshViewSourceTest, IsAsExactForADistantViewer) {
   expect_brute_force(random_mesh(800, 4), camera_at({3000, 4000, 2000}, {}, 0.014), 1);
 }
 
+TEST_F(MeshViewSourceTest, SizesAreOfNoConsequence) {
+  const Camera near = camera_at({0.1, 0.4, 2.5}, {});
+  const auto expected = samples_of(MeshViewSource(random_mesh(800, 5)), near);
+  for (const int exponent : {-120, -60, 61, 120}) {
+    const double scale = std::ldexp(1.0, exponent);
+    Mesh mesh = random_mesh(800, 5);
+    for (Vec3f& vertex : mesh.vertices) vertex = vertex * static_cast<float>(scale);
+    const Camera camera = camera_at(Vec3d{0.1, 0.4, 2.5} * scale, {});
+    const auto samples = samples_of(MeshViewSource(mesh), camera);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      ASSERT_EQ(samples[i].is_hit(), expected[i].is_hit()) << exponent << " " << i;
+      const Vec3d off = samples[i].point * (1 / scale) - expected[i].point;
+      EXPECT_LT(dot(off, off), 1e-20);
+    }
+  }
+}
+
 TEST_F(MeshViewSourceTest, ASphereLooksRoundFromInsideAndOutside) {
   const MeshViewSource source(disordered_sphere_mesh(32));
   for (const double distance : {3.0, 0.1}) {

@@ -191,5 +191,27 @@ TEST(BuildEsvo, AMeshOutsideOfTheGridGivesAnEmptyOctree) {
   EXPECT_TRUE(build_esvo(mesh, unit_grid(4)).view().is_empty());
 }
 
+TEST(BuildEsvo, PointsAndNeedlesOutsideOfTheGridGiveNothing) {
+  // They have no sides that would keep them off a voxel at the grid's face, only their boxes.
+  Mesh mesh;
+  mesh.vertices = {{-3, 5, 5}, {5, -9, 5}, {5, 5, 20}, {-3, 5, 5.5f}};
+  mesh.triangles = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 3, 3}};
+  EXPECT_TRUE(build_esvo(mesh, unit_grid(4)).view().is_empty());
+  EXPECT_TRUE(build_esvo(mesh, unit_grid(4), cubes()).view().is_empty());
+}
+
+TEST(BuildEsvo, AGridThatCutsTheMeshHasTheVoxelsOfTheExactCover) {
+  for (std::uint64_t seed = 300; seed < 330; ++seed) {
+    const int levels = 3 + static_cast<int>(seed % 4);
+    const Mesh mesh = random_mesh(seed, levels, 60);
+    const double n = static_cast<double>(std::int64_t{1} << levels);
+    const Grid grid{levels, {n / 3, n / 5, -n / 4}, 0.5, 2 * kSubvoxels};
+    std::vector<std::uint64_t> codes;
+    for (const Leaf& leaf : leaves_of(build_esvo(mesh, grid, cubes()).view()))
+      codes.push_back(morton_encode(leaf.cell));
+    EXPECT_EQ(codes, codes_of_voxels(build_svdag(mesh, grid).dag.view())) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace voxdag

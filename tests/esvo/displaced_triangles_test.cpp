@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "support/displaced_crate.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/esvo/build_esvo.hpp"
 #include "voxdag/esvo/check_esvo.hpp"
 #include "voxdag/layout/validate_esvo.hpp"
@@ -154,6 +155,21 @@ TEST(DisplacedTriangles, EdgesAreNotLongerThanTheLimit) {
       const Vec3d d = m.positions[i] - m.positions[(i + 1) % 3];
       EXPECT_LE(std::sqrt(dot(d, d)), 0.3 + 1e-8);
     }
+}
+
+TEST(Displacement, AmountsBesideWhichTheMeshIsNothingAreRefused) {
+  Crate crate;
+  crate.appearance.images = {{"h.png", "h.png", {}}};
+  Material& material = crate.appearance.materials[0];
+  material.displacement_map.image = 0;
+  material.displacement_gain = 1e30f;
+  std::vector<std::string> warnings;
+  for (const Displacement& d : load_displacements(crate.mesh, crate.appearance, warnings))
+    EXPECT_FALSE(d.moves());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("h.png: a displacement by 1e+30 units is too much"))
+      << warnings[0];
+  EXPECT_THROW(displace_all(crate.mesh, crate.appearance, stones(), -1e30), Error);
 }
 
 TEST(DisplacedTriangles, BarycentricsNameThePlaceInTheBaseTriangle) {

@@ -12,8 +12,10 @@ enum class EmbreeMode {
 };
 
 /// Owns device, scene and mesh; Embree reads the mesh's own buffers. Rays may be cast from any
-/// number of threads. Embree computes in float, so the vertices are moved to have the centre of
-/// their bounds at the origin: rounding is by at most 2^-25 of the bounds' longest side.
+/// number of threads. Embree computes in float and takes no coordinates beyond 2^60, so it gets the
+/// vertices in coordinates of its own: the centre of their bounds is the origin, and a power of two
+/// is the unit, in which the bounds' longest side is from 1 to 2. Rounding is by at most 2^-25 of
+/// that side.
 class EmbreeScene {
  public:
   /// Builds on the threads of the current TBB arena. Throws Error where Embree refuses, which it
@@ -24,15 +26,20 @@ class EmbreeScene {
   ~EmbreeScene();
 
   RTCScene scene() const { return scene_; }
-  Vec3d center() const { return center_; }   ///< Of the bounds, world units.
-  double radius() const { return radius_; }  ///< Of a sphere around it that holds the mesh.
-  /// Vertices relative to center(); those of no triangle have no meaning.
+  /// In the scene's coordinates; vertices of no triangle have no meaning.
   const Mesh& mesh() const { return mesh_; }
+  double radius() const { return radius_; }  ///< Of a sphere that holds it; the same units.
+
+  /// The scene's units in a world unit.
+  double scale() const { return scale_; }
+  /// A point of the world, in the scene's coordinates, and back.
+  Vec3d from_world(Vec3d world) const { return (world - center_) * scale_; }
+  Vec3d to_world(Vec3d point) const { return point * (1 / scale_) + center_; }
 
  private:
   Mesh mesh_;
-  Vec3d center_{};
-  double radius_ = 0;
+  Vec3d center_{};  // of the bounds, world units
+  double scale_ = 1, radius_ = 0;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };

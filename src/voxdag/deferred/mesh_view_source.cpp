@@ -61,16 +61,17 @@ class MeshViewSource::Scene {
                      std::span<ViewSample> samples) const;
 
  private:
-  /// Where the line comes near the mesh, relative to the mesh's centre: what is left of the ray
-  /// suits floats however far the viewer is.
+  /// Where the line comes near the mesh, in Embree's coordinates: what is left of the ray suits
+  /// floats however far the viewer is.
   Vec3d near_origin(Vec3d eye, Vec3d direction) const {
-    const Vec3d to_center = embree_.center() - eye;
+    const Vec3d from = embree_.from_world(eye);
     const double length2 = dot(direction, direction);
-    const double t = dot(to_center, direction) / length2 - embree_.radius() / std::sqrt(length2);
-    return direction * std::max(t, 0.0) - to_center;
+    const double t = -dot(from, direction) / length2 - embree_.radius() / std::sqrt(length2);
+    return direction * std::max(t, 0.0) + from;
   }
 
-  /// The ray's pixel is that at (x,y) in the picture; `guess` is what float arithmetic found.
+  /// The ray, in Embree's coordinates, is that of the place (x,y) in the picture; `guess` is what
+  /// float arithmetic found.
   ViewSample view_sample(const Camera& camera, double x, double y, Vec3d origin, Vec3d direction,
                          std::uint32_t triangle, Vec2d guess) const;
 
@@ -103,7 +104,7 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
   const Vec2d at = into_triangle(meet_plane(corners, origin, direction).value_or(guess));
   ViewSample sample;
   sample.point =
-      corners[0] * (1 - at.x - at.y) + corners[1] * at.x + corners[2] * at.y + embree_.center();
+      embree_.to_world(corners[0] * (1 - at.x - at.y) + corners[1] * at.x + corners[2] * at.y);
   sample.depth = static_cast<float>(dot(sample.point - camera.eye, camera.forward));
 
   // What the pixel covers of the triangle, more or less: where its corners' rays meet the plane.
@@ -111,7 +112,7 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
   for (int i = 0; i < 4; ++i) {
     const double dx = i == 0 || i == 3 ? -0.5 : 0.5, dy = i < 2 ? -0.5 : 0.5;
     const auto met =
-        meet_plane(corners, camera.eye - embree_.center(), camera.direction(x + dx, y + dy));
+        meet_plane(corners, embree_.from_world(camera.eye), camera.direction(x + dx, y + dy));
     footprint[static_cast<std::size_t>(i)] = to_float(into_triangle(met.value_or(at)));
   }
   sample.albedo = looks_.albedo(triangle, footprint);

@@ -22,15 +22,17 @@ struct Displacement {
   bool moves() const { return heights != nullptr && (base != 0 || gain != 0); }
 };
 
-/// By material: what displacement maps the materials have. What cannot be read is left out, with a
-/// line in `warnings`. Throws Cancelled.
-std::vector<Displacement> load_displacements(const Appearance& appearance,
+/// By material: what displacement maps the materials have. What cannot be read, or moves points by
+/// more than 2^kMaxLevels times the mesh's longest side, is left out, with a line in `warnings`.
+/// Throws Cancelled.
+std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
                                              std::vector<std::string>& warnings,
                                              Progress* progress = nullptr);
 
 /// By material: the same heights for all of them, up to `amount` world units (may be negative).
 /// With a positive `box_size` they are projected, as where the mesh has no texture coordinates:
-/// there 0 stands for a sixteenth of the mesh's longest side.
+/// there 0 stands for a sixteenth of the mesh's longest side. Throws Error for an amount of more
+/// than 2^kMaxLevels times that side.
 std::vector<Displacement> displace_all(const Mesh& mesh, const Appearance& appearance,
                                        std::shared_ptr<const HeightTexture> heights, double amount,
                                        double box_size = 0);

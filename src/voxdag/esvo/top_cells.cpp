@@ -116,6 +116,19 @@ void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cel
                   triangle);
 }
 
+namespace {
+
+/// What classify_children() takes for granted: that the triangle's box meets the cell's.
+bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
+  const std::int64_t side = grid.resolution() * kSubvoxels;
+  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
+  for (int axis = 0; axis < 3; ++axis)
+    if (hi[axis] < 0 || lo[axis] >= side) return false;
+  return true;
+}
+
+}  // namespace
+
 std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
                                     const SurfaceShading* shading, Progress* progress) {
   std::vector<TopCell> cells(1);
@@ -124,7 +137,9 @@ std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSett
     // What is displaced is clipped after that, not before.
     const bool is_piece = i >= source.mesh.mesh_triangle_count();
     const bool is_displaced = source.is_displaced(source.mesh.source(i));
-    if (is_displaced ? !is_piece : source.mesh.in_range(i))
+    if (is_displaced
+            ? !is_piece
+            : source.mesh.in_range(i) && box_meets_grid(source.mesh.triangle(i), source.grid))
       cells[0].triangles.push_back(static_cast<std::uint32_t>(i));
   }
 
