@@ -21,7 +21,9 @@ namespace voxdag {
 namespace {
 
 /// Assimp's message on one line.
-std::string one_line(std::string text) {
+std::string reason(const Assimp::Importer& importer) {
+  std::string text = importer.GetErrorString();
+  if (text.empty()) return "cannot read it, or a file that it refers to";
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
   return text.substr(0, 200);
@@ -77,7 +79,7 @@ Mesh read_with_assimp(const MeshBytes& source, const std::string& extension) {
   const aiScene* scene = importer.ReadFile(
       source.name, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
   if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
-    throw source.error("assimp: " + one_line(importer.GetErrorString()));
+    throw source.error("assimp: " + reason(importer));
   Mesh mesh;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) add_mesh(source, *scene->mMeshes[i], mesh);
   if (mesh.triangles.empty()) throw source.error("no triangles: there is no surface to read");
