@@ -125,7 +125,7 @@ TEST_F(MeshViewSourceTest, IsAsExactForADistantViewer) {
 TEST_F(MeshViewSourceTest, SizesAreOfNoConsequence) {
   const Camera near = camera_at({0.1, 0.4, 2.5}, {});
   const auto expected = samples_of(MeshViewSource(random_mesh(800, 5)), near);
-  for (const int exponent : {-120, -60, 61, 120}) {
+  for (const int exponent : {-90, -60, 61, 120}) {
     const double scale = std::ldexp(1.0, exponent);
     Mesh mesh = random_mesh(800, 5);
     for (Vec3f& vertex : mesh.vertices) vertex = vertex * static_cast<float>(scale);
