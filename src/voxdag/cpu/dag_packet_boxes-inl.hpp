@@ -167,11 +167,13 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
   std::uint32_t met = children.met & not_skipped;
   if (met == 0) return;
   const bool are_few = !is_single && (met & (met - 1)) != 0 && popcount64(visit.rays) <= kFew;
-  std::uint32_t met_by[kFew];
+  std::uint32_t met_by[kFew] = {};
+  Rays few[kFew] = {};  // each by itself
   if (are_few) {
     std::uint32_t met_by_any = 0;
     int at = 0;
     for (Rays rest = visit.rays; rest != 0; rest &= rest - 1) {
+      few[at] = rest & -rest;
       met_by[at] = boxes_met_by(lowest_bit64(rest));
       met_by_any |= met_by[at++];
     }
@@ -189,10 +191,9 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     const bool may_end = (children.some_end >> child & 1u) != 0;
     Visit& next = stack[top];
     if (are_few) {
+      // All of them, and without branches: how many there are is hard to foretell.
       next.rays = 0;
-      int at = 0;
-      for (Rays left = visit.rays; left != 0; left &= left - 1)
-        next.rays |= (met_by[at++] >> child & 1u) != 0 ? left & -left : 0;
+      for (int at = 0; at < kFew; ++at) next.rays |= few[at] & (0 - Rays{met_by[at] >> child & 1u});
     } else {
       next.rays = are_as_one && !may_end ? visit.rays : rays_meeting(child, visit.rays);
     }
