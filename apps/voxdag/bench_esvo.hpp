@@ -74,7 +74,6 @@ struct EsvoBuildRun {
 struct EsvoRateRow {
   std::string scene;
   int levels = 0;
-  int coarse_levels = 0;  ///< Of the coarse forms; 0: there are none.
   ImageSize size;
   std::uint64_t rays = 0;
   std::array<double, kEsvoForms.size()> mrays_per_second{};

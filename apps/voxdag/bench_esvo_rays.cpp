@@ -78,6 +78,12 @@ struct FormSums {
   double seconds = 0, agreeing = 0;
 };
 
+/// What is cast at; all on the same cube.
+struct Octrees {
+  EsvoFile contours, cubes;
+  std::optional<EsvoFile> coarse;  ///< Contours whose silhouettes are as good as the cubes'.
+};
+
 class SceneRays {
  public:
   SceneRays(const EsvoBenchPlan& plan, const EsvoBenchScene& scene,
@@ -95,31 +101,24 @@ class SceneRays {
   void rates() {
     if (pairs_.empty()) return;
     const BuiltPair& pair = pairs_.back();
-    const EsvoFile contours(pair.contours->file), cubes(pair.cubes->file);
+    Octrees octrees{EsvoFile(pair.contours->file), EsvoFile(pair.cubes->file), {}};
     const int coarse_at = coarse_levels(results_.silhouettes, scene_.name);
-    std::optional<EsvoFile> coarse;
     for (const BuiltPair& other : pairs_)
-      if (other.levels == coarse_at) coarse.emplace(other.contours->file);
+      if (other.levels == coarse_at) octrees.coarse.emplace(other.contours->file);
     for (const ImageSize size : plan_.sizes) {
       EsvoRateRow row;
       row.scene = scene_.name;
       row.levels = pair.levels;
-      row.coarse_levels = coarse_at;
       row.size = size;
       std::array<FormSums, kEsvoForms.size()> sums;
       for (const View& view : views_) {
         step("casting at " + scene_.name);
-        PrimaryRays rays(contours.view(), contours.grid(), view, size, plan_.lod_pixels);
-        row.rays += rays.plain.size();
-        std::optional<PrimaryRays> coarse_rays;
-        if (coarse)
-          coarse_rays.emplace(coarse->view(), coarse->grid(), view, size, plan_.lod_pixels);
-        add_view(contours, cubes, rays, coarse, coarse_rays, sums);
+        row.rays += add_view(octrees, view, size, sums);
       }
       const auto count = static_cast<double>(row.rays);
       for (std::size_t form = 0; form < kEsvoForms.size(); ++form) {
         const bool is_measured =
-            form == kTriangles ? embree_.has_value() : form < kCoarseContours || coarse;
+            form == kTriangles ? embree_.has_value() : form < kCoarseContours || octrees.coarse;
         row.mrays_per_second[form] = is_measured ? count / sums[form].seconds * 1e-6 : NAN;
         row.agreement[form] = embree_ && is_measured ? sums[form].agreeing / count : NAN;
       }
@@ -153,10 +152,13 @@ class SceneRays {
   }
 
  private:
-  /// All grids are the same cube: so are their rays, but for where beams let them start.
-  void add_view(const EsvoFile& contours, const EsvoFile& cubes, PrimaryRays& rays,
-                const std::optional<EsvoFile>& coarse, std::optional<PrimaryRays>& coarse_rays,
-                std::array<FormSums, kEsvoForms.size()>& sums) {
+  /// Returns how many rays there are: the same for all octrees, but for where beams let them start.
+  std::size_t add_view(const Octrees& octrees, const View& view, ImageSize size,
+                       std::array<FormSums, kEsvoForms.size()>& sums) {
+    const auto& [contours, cubes, coarse] = octrees;
+    PrimaryRays rays(contours.view(), contours.grid(), view, size, plan_.lod_pixels);
+    std::optional<PrimaryRays> coarse_rays;
+    if (coarse) coarse_rays.emplace(coarse->view(), coarse->grid(), view, size, plan_.lod_pixels);
     std::vector<TraceRunner> runners;
     std::vector<std::size_t> forms;
     const auto add = [&](TraceRunner runner, std::size_t form) {
@@ -190,6 +192,7 @@ class SceneRays {
       sums[form].seconds += best[form].seconds;
       sums[form].agreeing += best[form].agreeing;
     }
+    return rays.plain.size();
   }
 
   void step(const std::string& stage) {

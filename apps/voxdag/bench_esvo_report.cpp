@@ -95,23 +95,28 @@ std::string rates_table(const std::vector<EsvoRateRow>& rates) {
 }
 
 /// The coarse forms, as multiples of the cubes' rate.
-std::string coarse_table(const std::vector<EsvoRateRow>& rates) {
-  const auto has_coarse = [](const EsvoRateRow& row) { return row.coarse_levels != 0; };
-  if (std::none_of(rates.begin(), rates.end(), has_coarse)) return "";
+std::string coarse_table(const EsvoBenchResults& results) {
+  const auto coarse_of = [&](const EsvoRateRow& row) {
+    return coarse_levels(results.silhouettes, row.scene);
+  };
+  if (std::all_of(results.rates.begin(), results.rates.end(),
+                  [&](const EsvoRateRow& row) { return coarse_of(row) == 0; }))
+    return "";
   std::string text = fmt::format(
       "\nThe same where silhouettes are as good: contours on a coarser grid, as multiples of "
       "cubes\n"
       "  {:<16}{:>16}{:>12}{:>12}{:>18}{:>18}{:>14}\n",
       "scene", "grid of cubes", "contours", "size", "contours", "with beams", "x cubes");
-  for (const EsvoRateRow& row : rates) {
-    if (!has_coarse(row)) continue;
+  for (const EsvoRateRow& row : results.rates) {
+    const int coarse = coarse_of(row);
+    if (coarse == 0) continue;
     const auto rate = [&row](EsvoForm form) {
       return row.mrays_per_second[static_cast<std::size_t>(form)];
     };
     const double cubes = rate(EsvoForm::kCubes), contours = rate(EsvoForm::kCoarseContours),
                  beams = rate(EsvoForm::kCoarseContoursBeams);
     text += fmt::format("  {:<16}{:>17}{:>13}{:>12}{:>18}{:>18}{:>14}\n", row.scene,
-                        resolution_of(row.levels), resolution_of(row.coarse_levels), size_of(row),
+                        resolution_of(row.levels), resolution_of(coarse), size_of(row),
                         number(contours, 2), number(beams, 2),
                         number(contours / cubes, 2) + ", " + number(beams / cubes, 2));
   }
@@ -237,10 +242,10 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
   }
   json["rays"] = Json::array();
   for (const EsvoRateRow& row : results.rates) {
+    const int coarse = coarse_levels(results.silhouettes, row.scene);
     Json object{{"scene", row.scene},
                 {"resolution", std::int64_t{1} << row.levels},
-                {"coarse_resolution",
-                 row.coarse_levels == 0 ? Json() : Json(std::int64_t{1} << row.coarse_levels)},
+                {"coarse_resolution", coarse == 0 ? Json() : Json(std::int64_t{1} << coarse)},
                 {"width", row.size.width},
                 {"height", row.size.height},
                 {"ray_count", row.rays}};
@@ -266,7 +271,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
 }
 
 std::string esvo_bench_table(const EsvoBenchResults& results) {
-  return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results.rates) +
+  return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results) +
          silhouettes_table(results.silhouettes);
 }
 
@@ -312,11 +317,11 @@ std::string esvo_rays_svg(const EsvoBenchResults& results) {
   for (std::size_t i = 0; i < results.rates.size(); ++i) {
     const EsvoRateRow& row = results.rates[i];
     if (i == 0 || row.scene != results.rates[i - 1].scene) {
+      const int coarse = coarse_levels(results.silhouettes, row.scene);
       BarDiagram diagram;
       diagram.title = fmt::format(
           "{} {}{}: million primary rays per second", row.scene, resolution_of(row.levels),
-          row.coarse_levels == 0 ? ""
-                                 : fmt::format(", coarse: {}", resolution_of(row.coarse_levels)));
+          coarse == 0 ? "" : fmt::format(", coarse: {}", resolution_of(coarse)));
       diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
       for (const EsvoForm form : kEsvoForms) diagram.series.push_back({name_of(form), {}});
       diagrams.push_back(diagram);

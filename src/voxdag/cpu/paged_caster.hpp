@@ -5,7 +5,6 @@
 /// 1997: rays that reach what is not loaded wait there, and a part that is loaded serves all rays
 /// that wait for it.
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <vector>
 
@@ -49,14 +48,6 @@ bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit
     begin_at(hit, rest);
   }
   return false;
-}
-
-template <class Stop>
-bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
-  EsvoHit found;
-  if (!cast(nodes, ray, stop, found)) return false;
-  hit = found;
-  return true;
 }
 
 /// A caster (see trace/scalar_caster.hpp). All rays of a call are held: what they hit is told in

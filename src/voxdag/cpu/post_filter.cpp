@@ -17,4 +17,9 @@ std::vector<Vec3f> filter_picture(const FilterInput& input) {
   return filtered;
 }
 
+void filter_picture(RenderedImage& image) {
+  image.radiance = filter_picture(
+      FilterInput{image.radiance.data(), image.cell_pixels.data(), image.width, image.height});
+}
+
 }  // namespace voxdag

@@ -13,9 +13,7 @@ namespace {
 /// Filters the picture, if asked to, exposes and tone maps it.
 RenderedImage finish(const RenderPlan& plan, RenderedImage image, const RenderOptions& options,
                      const ViewSource* source) {
-  if (options.filter && source == nullptr)
-    image.radiance = filter_picture(
-        {image.radiance.data(), image.cell_pixels.data(), image.width, image.height});
+  if (options.filter && source == nullptr) filter_picture(image);
   return plan.finish(std::move(image));
 }
 

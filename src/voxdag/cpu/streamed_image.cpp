@@ -13,15 +13,16 @@
 namespace voxdag {
 namespace {
 
-/// Passes on what it hears, and knows whether any of it was of a missing block.
+/// Wants the blocks that rays miss, and knows whether there were any.
 class TileListener : public LeafListener {
  public:
   explicit TileListener(const BlockSource& source) : source_(source) {}
 
   void on_leaf(std::uint64_t slot) const override {
-    if (source_.missing_block(slot) < 0) return;
+    const std::int64_t block = source_.missing_block(slot);
+    if (block < 0) return;
     has_missed_ = true;
-    source_.listener().on_leaf(slot);
+    source_.want(static_cast<std::size_t>(block));
   }
   bool has_missed() const { return has_missed_; }
 
@@ -59,13 +60,13 @@ class StreamedPicture {
   }
 
  private:
-  using Renderer = TileRenderer<StreamedNodes, PacketCaster<StreamedNodes>>;
+  using Renderer = TileRenderer<ContourNodes, PacketCaster<ContourNodes>>;
 
   Vec3d eye() { return plan_.image().view.eye; }
 
   /// Its beams end at what is loaded.
   void make_renderer() {
-    const StreamedNodes nodes(source_.view(), source_.listener());
+    const ContourNodes nodes(source_.view());
     renderer_.emplace(nodes, PacketCaster(nodes), plan_.setup(), options_.beams, nullptr);
   }
 
@@ -112,9 +113,7 @@ class StreamedPicture {
   }
 
   RenderedImage finished(RenderedImage image) const {
-    if (options_.filter)
-      image.radiance = filter_picture(
-          {image.radiance.data(), image.cell_pixels.data(), image.width, image.height});
+    if (options_.filter) filter_picture(image);
     return plan_.finish(std::move(image));
   }
 

@@ -12,18 +12,18 @@ class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
-  /// Notes which missing blocks rays want.
-  virtual const LeafListener& listener() const = 0;
   /// The block that is missing below a leaf of the descriptor in `slot`, or -1. Thread-safe.
   virtual std::int64_t missing_block(std::uint64_t slot) const = 0;
+  /// Notes that rays want a missing block. Thread-safe.
+  virtual void want(std::size_t block) const = 0;
   /// What is loaded; stays valid while blocks come and go.
   virtual EsvoView view() const = 0;
 
   struct Loaded {
-    std::size_t missed = 0;  ///< Blocks that rays have missed since the last call.
+    std::size_t wanted = 0;  ///< Blocks that were wanted since the last call.
     std::size_t loaded = 0;  ///< Of these, those that are loaded now; the rest had no room.
   };
-  /// Loads what rays missed, the blocks that look largest from `eye` first. With `may_evict`,
+  /// Loads what was wanted, the blocks that look largest from `eye` first. With `may_evict`,
   /// blocks that were loaded before the last begin_part() make room.
   virtual Loaded load_missing(Vec3d eye, bool may_evict) = 0;
   /// From here on, what is loaded is for a part of the picture.

@@ -101,6 +101,15 @@ class CellSplitter {
   std::array<Box3d, 8> regions_;
 };
 
+/// What classify_children() takes for granted: that the triangle's box meets the cell's.
+bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
+  const std::int64_t side = grid.resolution() * kSubvoxels;
+  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
+  for (int axis = 0; axis < 3; ++axis)
+    if (hi[axis] < 0 || lo[axis] >= side) return false;
+  return true;
+}
+
 }  // namespace
 
 void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cell) {
@@ -115,19 +124,6 @@ void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cel
                                         source.mesh.source(triangle), source.open_edges[triangle]),
                   triangle);
 }
-
-namespace {
-
-/// What classify_children() takes for granted: that the triangle's box meets the cell's.
-bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
-  const std::int64_t side = grid.resolution() * kSubvoxels;
-  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
-  for (int axis = 0; axis < 3; ++axis)
-    if (hi[axis] < 0 || lo[axis] >= side) return false;
-  return true;
-}
-
-}  // namespace
 
 std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
                                     const SurfaceShading* shading, Progress* progress) {

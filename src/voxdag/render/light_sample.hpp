@@ -77,13 +77,15 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
     const float facing = -dot(light.normal, sample.direction);
     emitted = facing > 0 ? light.area * facing / std::sqrt(distance2) : 0.0f;
   }
+  const auto is_above = [&] {
+    return dot(point.normal, sample.direction) > 0 && dot(point.face, sample.direction) > 0;
+  };
+  if (!is_above()) return sample;
   const float above = dot(point.normal, sample.direction);
-  if (!(above > 0) || !(dot(point.face, sample.direction) > 0)) return sample;
   if (light.kind != LightKind::kSun) {
     // Rays start a little above the surface, which a light may be that is very near.
     sample.direction = sample.direction + (point.surface.position - point.start.position);
-    if (!(dot(point.normal, sample.direction) > 0) || !(dot(point.face, sample.direction) > 0))
-      return sample;
+    if (!is_above()) return sample;
   }
   sample.weight = emitted * above / (distance2 * std::sqrt(distance2));
   return sample;

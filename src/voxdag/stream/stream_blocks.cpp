@@ -6,9 +6,11 @@
 namespace voxdag {
 
 StreamBlocks::StreamBlocks(const std::filesystem::path& path, std::uint64_t memory)
-    : stream_(path, memory), listener_(stream_), loaded_in_(stream_.directory().size()) {}
+    : stream_(path, memory),
+      wanted_(std::make_unique<std::atomic<bool>[]>(stream_.directory().size())),
+      loaded_in_(stream_.directory().size()) {}
 
-std::vector<std::size_t> StreamBlocks::Listener::take() {
+std::vector<std::size_t> StreamBlocks::take_wanted() {
   std::vector<std::size_t> blocks;
   for (std::size_t i = 0; i < stream_.directory().size(); ++i)
     if (wanted_[i].exchange(false, std::memory_order_relaxed)) blocks.push_back(i);
@@ -72,7 +74,7 @@ void StreamBlocks::load(std::size_t block) {
 }
 
 BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye, bool may_evict) {
-  std::vector<std::size_t> wanted = listener_.take();
+  std::vector<std::size_t> wanted = take_wanted();
   Loaded result{wanted.size(), 0};
   std::vector<double> sizes(stream_.directory().size());
   for (const std::size_t block : wanted) sizes[block] = apparent_size(block, eye);

@@ -17,36 +17,20 @@ class StreamBlocks : public BlockSource {
 
   const EsvoStream& stream() const { return stream_; }
 
-  const LeafListener& listener() const override { return listener_; }
   EsvoView view() const override { return stream_.view(); }
   Loaded load_missing(Vec3d eye, bool may_evict) override;
   void begin_part() override { ++part_; }
   std::int64_t missing_block(std::uint64_t slot) const override {
     return stream_.missing_block(slot);
   }
+  void want(std::size_t block) const override {
+    wanted_[block].store(true, std::memory_order_relaxed);
+  }
   void load(std::size_t block) override;
 
  private:
-  /// Notes which missing blocks were wanted.
-  class Listener : public LeafListener {
-   public:
-    explicit Listener(const EsvoStream& stream)
-        : stream_(stream),
-          wanted_(std::make_unique<std::atomic<bool>[]>(stream.directory().size())) {}
-
-    void on_leaf(std::uint64_t slot) const override {
-      const std::int64_t block = stream_.missing_block(slot);
-      if (block >= 0)
-        wanted_[static_cast<std::size_t>(block)].store(true, std::memory_order_relaxed);
-    }
-    /// The blocks wanted since the last call, in order.
-    std::vector<std::size_t> take();
-
-   private:
-    const EsvoStream& stream_;
-    std::unique_ptr<std::atomic<bool>[]> wanted_;
-  };
-
+  /// The blocks wanted since the last call, in order.
+  std::vector<std::size_t> take_wanted();
   /// How large the voxels of the block look from `eye`, more or less.
   double apparent_size(std::size_t block, Vec3d eye) const;
   /// What is above a block of this part is of this part, too.
@@ -57,8 +41,8 @@ class StreamBlocks : public BlockSource {
   bool make_room(std::size_t block);
 
   EsvoStream stream_;
-  Listener listener_;
-  std::vector<std::uint64_t> loaded_in_;  ///< By block: the part that it was loaded for.
+  std::unique_ptr<std::atomic<bool>[]> wanted_;  ///< By block.
+  std::vector<std::uint64_t> loaded_in_;         ///< By block: the part that it was loaded for.
   std::uint64_t part_ = 1;
 };
 
