@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "voxdag/image/color.hpp"
+#include "voxdag/image/dither.hpp"
 #include "voxdag/image/exr.hpp"
 #include "voxdag/image/png.hpp"
 #include "voxdag/render/heat_map.hpp"
@@ -37,19 +38,22 @@ ImageF to_image(const RenderedImage& image, const std::vector<Vec3f>& values) {
   return out;
 }
 
-std::uint8_t to_byte(float value) {
+std::uint8_t nearest_code(float value, int, int) {
   return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
 }
 
-/// `color(value)` is what the display is to show, as codes from 0 to 1.
+/// `color(value)` is what the display is to show, as codes from 0 to 1, which `to_code` rounds.
 template <class Value, class Color>
 void write_colors(const RenderPass& pass, const RenderedImage& image,
-                  const std::vector<Value>& values, const Color& color) {
+                  const std::vector<Value>& values, const Color& color,
+                  std::uint8_t (*to_code)(float value, int x, int y) = nearest_code) {
   ImageRgb8 png(image.width, image.height);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const Vec3f rgb = color(values[i]);
-    for (int axis = 0; axis < 3; ++axis) png.pixels[3 * i + axis] = to_byte(rgb[axis]);
-  }
+  std::size_t i = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x, ++i) {
+      const Vec3f rgb = color(values[i]);
+      for (int axis = 0; axis < 3; ++axis) png.pixels[3 * i + axis] = to_code(rgb[axis], x, y);
+    }
   write_png(pass.path, png);
 }
 
@@ -92,8 +96,9 @@ void write_as_exr(const RenderPass& pass, const RenderedImage& image) {
 }
 
 void write_as_png(const RenderPass& pass, const RenderedImage& image) {
-  if (pass.name == "picture") return write_colors(pass, image, image.rgb, encoded);
-  if (pass.name == "radiance") return write_colors(pass, image, image.radiance, encoded);
+  if (pass.name == "picture") return write_colors(pass, image, image.rgb, encoded, dithered_code);
+  if (pass.name == "radiance")
+    return write_colors(pass, image, image.radiance, encoded, dithered_code);
   if (pass.name == "depth")
     return write_colors(pass, image, image.depth, depth_colors(image.depth));
   if (pass.name == "normal")
