@@ -2,13 +2,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "commands.hpp"
 #include "device.hpp"
+#include "hit_rows.hpp"
 #include "human.hpp"
 #include "scene_file.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
@@ -21,24 +20,10 @@ namespace {
 /// Rays in memory at once: enough for every thread of a CPU or GPU, little to hold.
 constexpr std::size_t kBatch = std::size_t{1} << 20;
 
-/// A row of hits.npy, 18 bytes without padding.
-constexpr const char* kHitType =
-    "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')]";
-constexpr std::size_t kHitBytes = 18;
-
 struct TraceArguments {
   std::string rays, output;
   DeviceChoice device;
 };
-
-void pack_hit(const Hit& hit, std::byte* row) {
-  const float t = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
-  const Vec3i voxel = hit.hit ? hit.voxel : Vec3i{-1, -1, -1};
-  std::memcpy(row, &t, sizeof t);
-  std::memcpy(row + 4, &voxel, sizeof voxel);
-  row[16] = static_cast<std::byte>(hit.hit ? hit.face : Face::kNone);
-  row[17] = static_cast<std::byte>(hit.hit);
-}
 
 void trace(const TraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
@@ -49,13 +34,14 @@ void trace(const TraceArguments& arguments, Session& session) {
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
   std::optional<CpuScene> cpu_scene;
   if (!cuda) cpu_scene.emplace(scene, reader.rows());
-  NpyWriter writer(arguments.output, kHitType, {}, kHitBytes, reader.rows());
+  const HitRows hit_rows(scene);
+  NpyWriter writer(arguments.output, hit_rows.dtype(), {}, hit_rows.row_bytes(), reader.rows());
 
   const std::size_t batch =
       static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
   std::vector<Ray> rays(batch);
   std::vector<Hit> hits(batch);
-  std::vector<std::byte> rows(batch * kHitBytes);
+  std::vector<std::byte> rows(batch * hit_rows.row_bytes());
   std::uint64_t hit_count = 0;
   while (const std::size_t count = reader.read_rows(rays.data(), batch)) {
     session.progress.throw_if_cancelled();
@@ -65,7 +51,7 @@ void trace(const TraceArguments& arguments, Session& session) {
       cuda->trace(batch_rays, batch_hits);
     else
       trace_batch(*cpu_scene, file.grid(), batch_rays, batch_hits);
-    for (std::size_t i = 0; i < count; ++i) pack_hit(hits[i], &rows[i * kHitBytes]);
+    hit_rows.pack(batch_hits, rows.data());
     hit_count += static_cast<std::uint64_t>(
         std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),
                       [](const Hit& hit) { return hit.hit; }));
@@ -99,7 +85,8 @@ void add_trace_command(CLI::App& app, Session& session) {
   command
       .add_option("-o,--output", arguments->output,
                   "Structured array of N: t, voxel, face (0..5 = -x,+x,-y,+y,-z,+z; -1 where the "
-                  "ray starts inside), hit")
+                  "ray starts inside), hit; of a .esvo also what it stores: normal (world space), "
+                  "color (sRGB, 0..255)")
       ->type_name("HITS.npy")
       ->required();
   add_device_option(command, arguments->device);

@@ -57,14 +57,10 @@ class PlyFile {
 
   /// What the last vertex looks like: to be called after each, if there are normals or colours.
   void write_look(const EsvoView& esvo, const EsvoVoxel& voxel) {
-    Vec3f normal, color;
+    Vec3f normal;
+    Vec3<std::uint8_t> color;
     if (content_.normals && stored_normal(esvo, voxel, normal)) file_.write(&normal, sizeof normal);
-    if (!content_.colors || !stored_color(esvo, voxel, color)) return;
-    std::array<std::uint8_t, 3> rgb;
-    for (std::size_t i = 0; i < 3; ++i)
-      rgb[i] =
-          static_cast<std::uint8_t>(std::lround(255 * linear_to_srgb(color[static_cast<int>(i)])));
-    file_.write(rgb.data(), rgb.size());
+    if (content_.colors && stored_srgb8(esvo, voxel, color)) file_.write(&color, sizeof color);
   }
 
   void write_quad(const std::array<std::uint32_t, 4>& corners) {
@@ -192,12 +188,9 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
     }
   };
   if (const EsvoView* esvo = voxels.esvo(); esvo != nullptr && !esvo->is_empty()) {
-    const auto has = [&](EsvoAttachmentKind kind) {
-      return esvo->attachment(esvo->root, kind) != nullptr;
-    };
-    PlyFile file(
-        path, grid,
-        {.normals = has(EsvoAttachmentKind::kNormals), .colors = has(EsvoAttachmentKind::kColors)});
+    PlyFile file(path, grid,
+                 {.normals = has_stored(*esvo, EsvoAttachmentKind::kNormals),
+                  .colors = has_stored(*esvo, EsvoAttachmentKind::kColors)});
     std::uint64_t parts = 0;
     for_each_leaf_part(*esvo, window, [&](Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) {
       write_voxels(file, origin, mask, [&] { file.write_look(*esvo, leaf); });

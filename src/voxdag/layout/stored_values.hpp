@@ -7,11 +7,32 @@
 
 namespace voxdag {
 
-/// Sets `color` to the voxel's, linear in [0,1]. False where none is stored.
-VOXDAG_HD inline bool stored_color(const EsvoView& esvo, const EsvoVoxel& voxel, Vec3f& color) {
+/// Whether there are values of this kind: of all voxels, or of none.
+VOXDAG_HD inline bool has_stored(const EsvoView& esvo, EsvoAttachmentKind kind) {
+  return !esvo.is_empty() && esvo.attachment(esvo.root, kind) != nullptr;
+}
+
+/// Sets `color` to the voxel's as it is stored: sRGB-encoded in [0,1]. False where none is stored.
+VOXDAG_HD inline bool stored_srgb(const EsvoView& esvo, const EsvoVoxel& voxel, Vec3f& color) {
   const std::uint64_t* block = esvo.attachment(voxel.slot, EsvoAttachmentKind::kColors);
   if (block == nullptr) return false;
-  const Vec3f encoded = ColorBlock{*block}.color(attachment_value(voxel));
+  color = ColorBlock{*block}.color(attachment_value(voxel));
+  return true;
+}
+
+/// Likewise as pictures hold it, 8 bits a channel.
+VOXDAG_HD inline bool stored_srgb8(const EsvoView& esvo, const EsvoVoxel& voxel,
+                                   Vec3<std::uint8_t>& color) {
+  Vec3f encoded;
+  if (!stored_srgb(esvo, voxel, encoded)) return false;
+  for (int i = 0; i < 3; ++i) color[i] = static_cast<std::uint8_t>(255 * encoded[i] + 0.5f);
+  return true;
+}
+
+/// Likewise as linear light in [0,1].
+VOXDAG_HD inline bool stored_color(const EsvoView& esvo, const EsvoVoxel& voxel, Vec3f& color) {
+  Vec3f encoded;
+  if (!stored_srgb(esvo, voxel, encoded)) return false;
   color = {srgb_to_linear(encoded.x), srgb_to_linear(encoded.y), srgb_to_linear(encoded.z)};
   return true;
 }

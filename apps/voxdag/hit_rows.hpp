@@ -1,0 +1,36 @@
+#pragma once
+/// The rows of the hits that `voxdag trace` writes.
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "voxdag/trace/hit.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
+
+namespace voxdag {
+
+/// Rows of a structured array, without padding: t, voxel, face, hit; of an ESVO also the normal and
+/// colour that it stores of the voxel. They are looked up by where the hit is, so that they do not
+/// depend on the device that cast the ray.
+class HitRows {
+ public:
+  /// `scene` points to what the hits are of.
+  explicit HitRows(const VoxelScene& scene);
+
+  /// As of NpyHeader.
+  const std::string& dtype() const { return dtype_; }
+  std::size_t row_bytes() const { return row_bytes_; }
+
+  /// Writes hits.size() * row_bytes() bytes to `rows`, on all threads.
+  void pack(std::span<const Hit> hits, std::byte* rows) const;
+
+ private:
+  void pack_one(const Hit& hit, std::byte* row) const;
+
+  VoxelScene scene_;
+  bool normals_ = false, colors_ = false;
+  std::string dtype_;
+  std::size_t row_bytes_ = 0;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,20 @@
+#pragma once
+/// Point queries on an ESVO.
+#include "voxdag/layout/esvo.hpp"
+
+namespace voxdag {
+
+/// The voxel of `level` in [1, L] that holds `voxel`, one of the finest level in coordinates of the
+/// grid. There must be one, as where a ray hit: all above it are no leaves.
+VOXDAG_HD inline EsvoVoxel esvo_voxel_at(const EsvoView& esvo, Vec3i voxel, int level) {
+  std::uint64_t slot = esvo.root;
+  for (int l = 1;; ++l) {
+    const int shift = esvo.levels - l;
+    const int child =
+        (voxel.x >> shift & 1) | (voxel.y >> shift & 1) << 1 | (voxel.z >> shift & 1) << 2;
+    if (l == level) return {slot, child};
+    slot = esvo.child(slot, esvo.descriptor(slot), child);
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,171 @@
+// `voxdag trace` at an ESVO: what it tells of the voxels that rays hit.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <sstream>
+
+#include "npy_rays.hpp"
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+#include "support/test_rays.hpp"
+#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/npy.hpp"
+#include "voxdag/layout/color_block.hpp"
+#include "voxdag/layout/normal_block.hpp"
+
+namespace voxdag {
+namespace {
+
+const std::string kPlace = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
+const std::string kLook = ", ('normal', '<f4', (3,)), ('color', '|u1', (3,))";
+constexpr std::size_t kPlaceBytes = 18, kLookBytes = 15;
+
+/// Waves whose vertices have colours, all different.
+std::string colored_waves() {
+  constexpr int kSide = 20;
+  std::ostringstream text;
+  for (int i = 0; i <= kSide; ++i)
+    for (int j = 0; j <= kSide; ++j) {
+      text << "v " << i << " " << 3 * std::sin(0.5 * i) * std::cos(0.4 * j) << " " << j;
+      for (const int step : {37, 61, 89}) text << " " << (i * step + j * (step + 4)) % 101 / 100.0;
+      text << "\n";
+    }
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const int first = 1 + i * (kSide + 1) + j, next = first + kSide + 1;
+      text << "f " << first << " " << first + 1 << " " << next + 1 << " " << next << "\n";
+    }
+  return text.str();
+}
+
+struct Look {
+  Vec3f normal;
+  Vec3<std::uint8_t> color;
+};
+
+/// What every leaf looks like, by its lowest voxel.
+class Leaves {
+ public:
+  explicit Leaves(const EsvoView& esvo) : esvo_(esvo) { walk(esvo.root, {}, esvo.levels); }
+
+  const Look& at(Vec3i voxel) const { return looks_.at({voxel.x, voxel.y, voxel.z}); }
+  std::size_t coarse = 0;
+
+ private:
+  void walk(std::uint64_t slot, Vec3i origin, int log2_size) {
+    const ChildDescriptor descriptor = esvo_.descriptor(slot);
+    for (int child = 0; child < 8; ++child) {
+      if ((descriptor.valid_mask() >> child & 1) == 0) continue;
+      const Vec3i at =
+          origin + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << (log2_size - 1));
+      if ((descriptor.leaf_mask() >> child & 1) == 0) {
+        walk(esvo_.child(slot, descriptor, child), at, log2_size - 1);
+        continue;
+      }
+      coarse += log2_size > 1 ? 1 : 0;
+      looks_[{at.x, at.y, at.z}] = look_of({slot, child});
+    }
+  }
+
+  Look look_of(const EsvoVoxel& voxel) const {
+    const std::uint64_t* const c = esvo_.attachment(voxel.slot, EsvoAttachmentKind::kColors);
+    const std::uint64_t* const n = esvo_.attachment(voxel.slot, EsvoAttachmentKind::kNormals);
+    NormalBlock normals;
+    for (int i = 0; i < 4; ++i)
+      normals.words[i] = static_cast<std::uint32_t>(n[i / 2] >> (i % 2 * 32));
+    Look look;
+    look.normal = normals.normal(attachment_value(voxel));
+    const Vec3f srgb = ColorBlock{c[0]}.color(attachment_value(voxel));
+    for (int i = 0; i < 3; ++i)
+      look.color[i] = static_cast<std::uint8_t>(std::lround(255 * srgb[i]));
+    return look;
+  }
+
+  EsvoView esvo_;
+  std::map<std::array<std::int32_t, 3>, Look> looks_;
+};
+
+class TraceCommand : public testing::Test {
+ protected:
+  TraceCommand() { write_text(dir_ / "waves.obj", colored_waves()); }
+
+  std::string build(const std::string& name, std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"build", dir_ / "waves.obj", "-r", "64", "-o", dir_ / name});
+    const ProcessResult result = run_voxdag(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return dir_ / name;
+  }
+  /// Rays at a grid, of every kind.
+  void write_rays(const Grid& grid) const {
+    TestRays source(grid, 1);
+    std::vector<std::array<float, 8>> rays(4000);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray ray = source.make(static_cast<RayKind>(i % static_cast<int>(RayKind::kCount)));
+      std::memcpy(rays[i].data(), &ray, sizeof ray);
+    }
+    write_text(dir_ / "rays.npy", rays_npy(rays));
+  }
+  std::string trace(const std::string& scene) const {
+    const std::string hits = dir_ / "hits.npy";
+    const ProcessResult result =
+        run_voxdag({"trace", scene, "--rays", dir_ / "rays.npy", "-o", hits});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return hits;
+  }
+  /// Every row, as bytes.
+  static std::vector<std::string> rows_of(const std::string& hits, const std::string& dtype,
+                                          std::size_t row_bytes) {
+    NpyReader reader(hits, dtype, {}, row_bytes);
+    std::vector<std::string> rows(reader.rows(), std::string(row_bytes, '\0'));
+    for (std::string& row : rows) reader.read_rows(row.data(), 1);
+    return rows;
+  }
+
+  TempDir dir_;
+};
+
+TEST_F(TraceCommand, TellsWhatAnEsvoStoresOfTheVoxelsHit) {
+  const std::string scene = build("waves.esvo", {"--color-error", "0.2", "--max-error", "2"});
+  const EsvoFile file(scene);
+  const Leaves leaves(file.view());
+  ASSERT_GT(leaves.coarse, 0u);
+  write_rays(file.grid());
+  const auto rows = rows_of(trace(scene), kPlace + kLook + "]", kPlaceBytes + kLookBytes);
+  std::size_t hits = 0;
+  for (const std::string& row : rows) {
+    Vec3i voxel;
+    Look look;
+    std::memcpy(&voxel, row.data() + 4, sizeof voxel);
+    std::memcpy(&look.normal, row.data() + kPlaceBytes, sizeof look.normal);
+    std::memcpy(&look.color, row.data() + kPlaceBytes + sizeof look.normal, sizeof look.color);
+    const bool is_hit = row[17] != 0;
+    hits += is_hit ? 1 : 0;
+    const Look expected = is_hit ? leaves.at(voxel) : Look{};
+    EXPECT_EQ(look.normal, expected.normal);
+    EXPECT_EQ(look.color, expected.color);
+  }
+  EXPECT_GT(hits, rows.size() / 10);
+  EXPECT_LT(hits, rows.size());
+}
+
+TEST_F(TraceCommand, WithoutAttributesTheHitsAreTheSameAndNothingMoreIsTold) {
+  const std::string with = build("with.esvo", {"--no-contours"});
+  const std::string without = build("without.esvo", {"--no-contours", "--no-attributes"});
+  const std::string dag = build("dag.vdag");
+  write_rays(EsvoFile(with).grid());
+  auto expected = rows_of(trace(with), kPlace + kLook + "]", kPlaceBytes + kLookBytes);
+  for (std::string& row : expected) row.resize(kPlaceBytes);
+  EXPECT_EQ(rows_of(trace(without), kPlace + "]", kPlaceBytes), expected);
+  EXPECT_EQ(rows_of(trace(dag), kPlace + "]", kPlaceBytes), expected) << "cubes are a DAG's voxels";
+}
+
+TEST_F(TraceCommand, NoRaysMakeAnArrayWithTheSameFields) {
+  const std::string scene = build("waves.esvo");
+  write_text(dir_ / "rays.npy", rays_npy({}));
+  EXPECT_TRUE(rows_of(trace(scene), kPlace + kLook + "]", kPlaceBytes + kLookBytes).empty());
+}
+
+}  // namespace
+}  // namespace voxdag
