@@ -18,8 +18,10 @@
 #include "render_passes.hpp"
 #include "render_path.hpp"
 #include "scene_file.hpp"
+#include "voxdag/cpu/paged_cells.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
+#include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
 
 namespace voxdag {
@@ -96,11 +98,23 @@ void print_summary(const RenderArguments& arguments, const RenderedImage& image,
              static_cast<double>(*std::max_element(image.steps.begin(), image.steps.end())));
 }
 
-/// `--memory`: the picture of an ESVO whose blocks are loaded while it is made. The outputs are
-/// there from the first pass on and become finer.
-void render_streamed(const RenderArguments& arguments, const std::vector<RenderPass>& passes,
-                     Session& session) {
-  StreamBlocks blocks(session.subject, arguments.stream_memory);
+/// A film of an ESVO: what a frame has loaded is there for the next one.
+void render_streamed_path(const RenderArguments& arguments, const std::vector<RenderPass>& passes,
+                          StreamBlocks& blocks, Session& session) {
+  const Grid& grid = blocks.stream().grid();
+  // A frame may take long, so that each tells how far it is and can be cancelled.
+  const auto render_frame = [&](const RenderOptions& options, Progress*) {
+    return render_streamed(blocks, grid, options, {}, &session.progress);
+  };
+  const auto find_up = [&] { return guess_up(CoarseCells::of(PagedCells(blocks), kUpLevel)); };
+  render_path(blocks.view(), grid, arguments.options, arguments.path,
+              {render_frame, passes, find_up}, session);
+}
+
+/// A picture of an ESVO. The outputs are there from the first pass on and become finer.
+void render_streamed_picture(const RenderArguments& arguments,
+                             const std::vector<RenderPass>& passes, StreamBlocks& blocks,
+                             Session& session) {
   const auto write = [&](const RenderedImage& image) {
     for (const RenderPass& pass : passes) write_pass(pass, image);
   };
@@ -117,11 +131,23 @@ void render_streamed(const RenderArguments& arguments, const std::vector<RenderP
   session.bar.clear();
   if (session.quiet) return;
   print_summary(arguments, image, seconds, device_name(std::nullopt));
+  fmt::print("  first picture after {}\n",
+             human_seconds(first_seconds > 0 ? first_seconds : seconds));
+}
+
+/// `--memory`: an ESVO's blocks are loaded while pictures of it are made.
+void render_streamed(const RenderArguments& arguments, const std::vector<RenderPass>& passes,
+                     Session& session) {
+  StreamBlocks blocks(session.subject, arguments.stream_memory);
+  if (arguments.path.file.empty())
+    render_streamed_picture(arguments, passes, blocks, session);
+  else
+    render_streamed_path(arguments, passes, blocks, session);
+  if (session.quiet) return;
   const EsvoStreamCounts& counts = blocks.stream().counts();
   std::uint64_t all = 0;
   for (const EsvoBlockEntry& entry : blocks.stream().directory()) all += entry.slots * 8ull;
-  fmt::print("  first picture after {}; {} of {} blocks used, {} of {} in memory at the end\n",
-             human_seconds(first_seconds > 0 ? first_seconds : seconds),
+  fmt::print("  {} of {} blocks used, {} of {} in memory at the end\n",
              with_commas(counts.blocks_used), with_commas(blocks.stream().directory().size()),
              human_bytes(counts.bytes_loaded), human_bytes(all));
   fmt::print("  {} read, {} blocks a second time or more\n", human_bytes(counts.bytes_read),
@@ -156,16 +182,9 @@ void render(RenderArguments& arguments, Session& session) {
     if (device_dag) return render_image(*device_dag, file.grid(), options, progress, source.get());
     return render_image(*cpu_scene, file.grid(), options, progress, source.get());
   };
-  if (!arguments.path.file.empty()) {
-    const auto write_frame = [&](const RenderedImage& image, int frame) {
-      for (const RenderPass& pass : passes)
-        write_pass({pass.name, frame_name(pass.path, frame)}, image);
-    };
-    std::vector<std::string> patterns;
-    for (const RenderPass& pass : passes) patterns.push_back(pass.path);
+  if (!arguments.path.file.empty())
     return render_path(scene, file.grid(), arguments.options, arguments.path,
-                       {render_frame, write_frame, patterns}, session);
-  }
+                       {render_frame, passes, {}}, session);
   const auto start = std::chrono::steady_clock::now();
   const RenderedImage image = render_frame(arguments.options, &session.progress);
   const double seconds =
@@ -316,15 +335,15 @@ void add_render_command(CLI::App& app, Session& session) {
   add_parsed_option(
       command, "--memory", arguments->stream_memory, parse_memory, "LIMIT",
       "Load only what is seen of an ESVO, into this much memory: 512M. The picture is "
-      "there at once, coarse, and is written again as it becomes finer");
+      "there at once, coarse, and is written again as it becomes finer; the frames of --path are "
+      "written once");
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {
     check_mesh_options(arguments->mesh);
     if (arguments->stream_memory != 0 &&
-        (!arguments->path.file.empty() || !arguments->mesh.file.empty() ||
-         arguments->device.kind == DeviceChoice::Kind::kCuda))
-      throw CLI::ValidationError("--memory", "not with --path, --mesh or --device cuda");
+        (!arguments->mesh.file.empty() || arguments->device.kind == DeviceChoice::Kind::kCuda))
+      throw CLI::ValidationError("--memory", "not with --mesh or --device cuda");
     check_outputs(*arguments);
     check_view(arguments->options.view);
     constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // besides the sun

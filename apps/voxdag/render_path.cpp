@@ -99,7 +99,7 @@ std::vector<float> exposures(const CameraPath& path, const std::vector<double>& 
 
 /// Throws Error where two files of the film would have the same name: of f%d.png and f1%d.png
 /// that is frame 11 of the one and frame 1 of the other.
-void check_frame_names(const std::vector<std::string>& patterns, int frames,
+void check_frame_names(const std::vector<RenderPass>& passes, int frames,
                        const std::string& timings) {
   std::unordered_set<std::string> names;
   const auto add = [&](const std::string& path) {
@@ -110,8 +110,8 @@ void check_frame_names(const std::vector<std::string>& patterns, int frames,
     add(timings);
     add(timings_plot(timings));
   }
-  for (const std::string& pattern : patterns)
-    for (int frame = 0; frame < frames; ++frame) add(frame_name(pattern, frame));
+  for (const RenderPass& pass : passes)
+    for (int frame = 0; frame < frames; ++frame) add(frame_name(pass.path, frame));
 }
 
 }  // namespace
@@ -155,10 +155,12 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
   constexpr double kMostFrames = 1e6;
   const PathFile file = read_path_file(arguments.file);
   RenderOptions options = given;
+  const bool has_up = options.view.up || (!file.keys.empty() && file.keys.front().up);
+  if (!has_up && maker.find_up) options.view.up = maker.find_up();
   const CameraPath path = camera_path(file, arguments.file, scene, grid, options);
   const double count = std::floor((path.end() - path.start()) * arguments.fps + 1e-6) + 1;
   if (!(count <= kMostFrames)) throw Error(arguments.file, "", "a million frames are too many");
-  check_frame_names(maker.patterns, static_cast<int>(count), arguments.timings);
+  check_frame_names(maker.passes, static_cast<int>(count), arguments.timings);
   for (const std::string& out : {arguments.timings, timings_plot(arguments.timings)})
     if (!arguments.timings.empty()) check_writable(out);
   if (!options.sun) options.sun = file.sun;
@@ -187,7 +189,8 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
     timing.render_ms = milliseconds_since(stage);
     timing.rays = image.rays;
     stage = Clock::now();
-    maker.write(image, timing.frame);
+    for (const RenderPass& pass : maker.passes)
+      write_pass({pass.name, frame_name(pass.path, timing.frame)}, image);
     timing.write_ms = milliseconds_since(stage);
     timings.push_back(timing);
     session.progress.report("frames", static_cast<double>(i + 1) / count, i + 1);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "output_files.hpp"
+#include "render_passes.hpp"
 #include "session.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/render/render_options.hpp"
@@ -33,8 +34,9 @@ std::string timings_plot(const std::string& csv);
 struct FrameMaker {
   /// The picture of these options; `progress` may be null.
   std::function<RenderedImage(const RenderOptions&, Progress*)> render;
-  std::function<void(const RenderedImage&, int frame)> write;
-  std::vector<std::string> patterns;  ///< Of the files that it writes.
+  std::vector<RenderPass> passes;  ///< What is written of it; paths are patterns.
+  /// What is up, where nobody says. Without it, the scene is asked.
+  std::function<Vec3d()> find_up;
 };
 
 /// Renders the path's frames, from its first key to its last one. The sun stands still: where

@@ -67,6 +67,55 @@ TEST_F(RenderPath, TakesTheFlightOfAScene) {
   EXPECT_NE(result.out.find("5 frames"), std::string::npos) << result.out;
 }
 
+/// An octree of several blocks, and films of it.
+class StreamedPath : public RenderPath {
+ protected:
+  static void SetUpTestSuite() {
+    RenderPath::SetUpTestSuite();
+    ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "512", "--no-contours", "-o",
+                          path("in.esvo")})
+                  .status,
+              0);
+  }
+
+  /// The bytes of the frames, and of their depths.
+  static std::string film(const std::string& keys, const std::vector<std::string>& more,
+                          ProcessResult& result) {
+    write_text(path("keys.json"), keys);
+    std::vector<std::string> arguments = {"render",    path("in.esvo"),
+                                          "--path",    path("keys.json"),
+                                          "-o",        path("s_%d.png"),
+                                          "--size",    "48x32",
+                                          "--fps",     "2",
+                                          "--ao",      "4",
+                                          "--pass",    "depth=" + path("sz_%d.exr"),
+                                          "--timings", path("s.csv")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    result = run_voxdag(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::string frames;
+    for (const char* name : {"s_0.png", "s_1.png", "s_2.png", "sz_0.exr", "sz_2.exr"}) {
+      frames += read_text(path(name));
+      std::filesystem::remove(path(name));
+    }
+    return frames;
+  }
+};
+
+TEST_F(StreamedPath, FramesAreThoseOfTheWholeOctree) {
+  ProcessResult result;
+  const std::string whole = film(kFilm, {}, result);
+  for (const std::string memory : {"1M", "1G"}) {
+    EXPECT_TRUE(film(kFilm, {"--memory", memory}, result) == whole) << memory;
+    EXPECT_NE(result.out.find("3 frames of 48 x 32 pixels"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(" blocks used, "), std::string::npos) << result.out;
+    const std::string csv = read_text(path("s.csv"));
+    EXPECT_TRUE(csv.starts_with("frame,time,render_ms,write_ms,rays,mrays_per_s\n0,1,")) << csv;
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+  }
+  EXPECT_NE(result.out.find(" read, 0 blocks a second time"), std::string::npos) << result.out;
+}
+
 TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
   expect_failure(film("{\"keys\": [}"), 1, "keys.json: byte 11: syntax error");
   expect_failure(film("[]"), 1, "keys.json: not an object");

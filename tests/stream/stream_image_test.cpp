@@ -4,9 +4,11 @@
 #include "support/grid_mesh.hpp"
 #include "support/picture_checks.hpp"
 #include "support/temp_dir.hpp"
+#include "voxdag/cpu/paged_cells.hpp"
 #include "voxdag/esvo/build_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/esvo_writer.hpp"
+#include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
 
 namespace voxdag {
@@ -83,6 +85,59 @@ TEST_F(StreamImage, IsTheSameWithLessMemoryThanItsBlocksTake) {
   test::expect_same_picture(image, whole());
 }
 
+/// What it takes to render these pictures one after the other, all blocks kept.
+std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,
+                        const std::vector<RenderOptions>& pictures) {
+  StreamBlocks blocks(path, bytes);
+  for (const RenderOptions& picture : pictures)
+    render_streamed(blocks, blocks.stream().grid(), picture);
+  return blocks.stream().counts().bytes_loaded;
+}
+
+TEST_F(StreamImage, APictureKeepsTheBlocksOfTheOneBefore) {
+  StreamBlocks blocks(path(), bytes);
+  render_streamed(blocks, blocks.stream().grid(), options);
+  const std::uint64_t read = blocks.stream().counts().blocks_read;
+  test::expect_same_picture(render_streamed(blocks, blocks.stream().grid(), options), whole());
+  EXPECT_EQ(blocks.stream().counts().blocks_read, read) << "all that it needs is there";
+  options.view.eye = Vec3d{1.2, 0.4, 0.9};
+  test::expect_same_picture(render_streamed(blocks, blocks.stream().grid(), options), whole());
+  const EsvoStreamCounts& counts = blocks.stream().counts();
+  EXPECT_GT(counts.blocks_read, read);
+  EXPECT_EQ(counts.blocks_read, counts.blocks_used) << "none is read twice";
+}
+
+TEST_F(StreamImage, APictureTakesTheRoomOfThoseBefore) {
+  // Near the surface, so that either view needs few of the other's blocks.
+  options.occlusion_samples = 0;
+  options.shadows = false;
+  std::vector<RenderOptions> pictures(2, options);
+  pictures[0].view.eye = Vec3d{0.1, 0.4, 0.1};
+  pictures[0].view.target = Vec3d{0.15, 0.1, 0.15};
+  pictures[1].view.eye = Vec3d{0.9, 0.4, 0.9};
+  pictures[1].view.target = Vec3d{0.85, 0.1, 0.85};
+  const std::uint64_t one =
+      std::max(bytes_for(path(), bytes, {pictures[0]}), bytes_for(path(), bytes, {pictures[1]}));
+  const std::uint64_t memory = one + one / 8;
+  ASSERT_GT(bytes_for(path(), bytes, pictures), memory);
+
+  StreamBlocks blocks(path(), memory);
+  for (int i = 0; i < 6; ++i) {
+    options = pictures[static_cast<std::size_t>(i % 2)];
+    int passes = 0;
+    const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options,
+                                                [&](const RenderedImage&) { ++passes; });
+    // Blocks come level after level, for all tiles at once; without room after a pass or two for
+    // one tile after the other.
+    EXPECT_GT(passes, 3);
+    test::expect_same_picture(image, whole());
+  }
+  const EsvoStreamCounts& counts = blocks.stream().counts();
+  EXPECT_GT(counts.blocks_evicted, 0u);
+  EXPECT_LE(counts.bytes_loaded, memory);
+  EXPECT_LE(counts.bytes_read, 6 * one) << "no picture reads a block twice";
+}
+
 /// Of a block and those above it, at most.
 std::uint64_t least_memory(const EsvoStream& stream) {
   std::uint64_t least = 0;
@@ -112,6 +167,21 @@ TEST_F(StreamImage, IsTheSameWhereOneBlockFitsAtATime) {
     const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
     EXPECT_GT(blocks.stream().counts().blocks_evicted, 100u);
     test::expect_same_picture(image, whole());
+  }
+}
+
+TEST_F(StreamImage, CellsAreThoseOfTheWholeOctreeInAnyMemory) {
+  const EsvoFile file(path());
+  const EsvoStream probe(path(), bytes);
+  for (const int level : {2, kUpLevel, 9}) {
+    const std::vector<Vec3i> cells = CoarseCells(file.view(), level).cells();
+    for (const std::uint64_t memory : {bytes, least_memory(probe)}) {
+      StreamBlocks blocks(path(), memory);
+      EXPECT_EQ(CoarseCells::of(PagedCells(blocks), level).cells(), cells);
+      if (level == kUpLevel) {
+        EXPECT_LT(blocks.stream().counts().blocks_used, probe.directory().size() / 2);
+      }
+    }
   }
 }
 

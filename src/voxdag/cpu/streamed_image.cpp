@@ -43,10 +43,11 @@ class StreamedPicture {
   }
 
   RenderedImage render(const std::function<void(const RenderedImage&)>& on_pass) {
+    source_.begin_part();
     for (;;) {
       make_renderer();
       left_ = render_loaded(left_, "render");
-      const BlockSource::Loaded loaded = source_.load_missing(eye(), false);
+      const BlockSource::Loaded loaded = source_.load_missing(eye());
       if (left_.empty()) break;
       if (loaded.loaded == 0) {
         render_parts();
@@ -102,7 +103,7 @@ class StreamedPicture {
       source_.begin_part();
       do {
         part = render_loaded(part, nullptr);
-      } while (source_.load_missing(eye(), true).loaded > 0 && !part.empty());
+      } while (source_.load_missing(eye()).loaded > 0 && !part.empty());
       const PagedNodes nodes(source_);
       for (const ViewTile& tile : part)
         rays_ += renderer_->render_one(nodes, PagedCaster(nodes, progress_), tile);

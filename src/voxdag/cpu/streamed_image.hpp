@@ -23,10 +23,10 @@ class BlockSource {
     std::size_t wanted = 0;  ///< Blocks that were wanted since the last call.
     std::size_t loaded = 0;  ///< Of these, those that are loaded now; the rest had no room.
   };
-  /// Loads what was wanted, the blocks that look largest from `eye` first. With `may_evict`,
-  /// blocks that were loaded before the last begin_part() make room.
-  virtual Loaded load_missing(Vec3d eye, bool may_evict) = 0;
-  /// From here on, what is loaded is for a part of the picture.
+  /// Loads what was wanted, the blocks that look largest from `eye` first. Blocks that were loaded
+  /// before the last begin_part() make room.
+  virtual Loaded load_missing(Vec3d eye) = 0;
+  /// From here on, what is loaded is for a picture, or a part of it.
   virtual void begin_part() = 0;
   /// Loads a block and those above it; those that were wanted longest ago make room.
   virtual void load(std::size_t block) = 0;
@@ -36,8 +36,9 @@ class BlockSource {
 /// start, is there at once; then the tiles whose rays missed blocks are rendered again and again,
 /// each time with what they missed before. When no more fits, a tile for each thread at a time
 /// loads what it needs, and where even that does not fit its rays wait for one block after the
-/// other (paged_caster.hpp). `on_pass` gets each whole picture but the last. Throws as render_image
-/// does, and what the source throws.
+/// other (paged_caster.hpp). What the source has loaded before, for other pictures, is used as long
+/// as there is room. `on_pass` gets each whole picture but the last. Throws as render_image does,
+/// and what the source throws.
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
                               Progress* progress = nullptr);

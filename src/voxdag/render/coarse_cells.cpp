@@ -1,40 +1,18 @@
 #include "voxdag/render/coarse_cells.hpp"
 
-#include <algorithm>
 #include <set>
 #include <utility>
 
 namespace voxdag {
-namespace {
-
-template <class Nodes>
-void collect(const Nodes& nodes, typename Nodes::Node node, int level, int last, Vec3i cell,
-             std::vector<Vec3i>& cells) {
-  if (level == last) {
-    cells.push_back(cell);
-    return;
-  }
-  const std::uint32_t mask = nodes.child_mask(node, level);
-  for (int i = 0; i < 8; ++i) {
-    if ((mask >> i & 1u) == 0) continue;
-    const Vec3i child = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
-    const bool is_voxel = level + 1 == nodes.levels();
-    collect(nodes, is_voxel ? 0 : nodes.child(node, level, i), level + 1, last, child, cells);
-  }
-}
-
-}  // namespace
 
 CoarseCells::CoarseCells(const VoxelScene& scene, int max_level)
-    : level_(std::min(scene.levels(), max_level)), is_set_(std::size_t{1} << (3 * level_)) {
-  scene.visit_nodes([&](const auto& nodes) {
-    if (!nodes.is_empty()) collect(nodes, nodes.root(), 0, level_, {}, cells_);
-  });
-  for (const Vec3i cell : cells_) {
-    is_set_[index(cell)] = true;
-    bounds_.extend(cell);
-    bounds_.extend(cell + Vec3i{1, 1, 1});
-  }
+    : CoarseCells(scene.visit_nodes([&](const auto& nodes) { return of(nodes, max_level); })) {}
+
+void CoarseCells::add(Vec3i cell) {
+  cells_.push_back(cell);
+  is_set_[index(cell)] = true;
+  bounds_.extend(cell);
+  bounds_.extend(cell + Vec3i{1, 1, 1});
 }
 
 bool CoarseCells::contains(Vec3i cell) const {
@@ -55,6 +33,16 @@ double CoarseCells::side_cover(int axis, bool from_below, std::int32_t depth) co
   const double area = static_cast<double>(bounds_.hi[u] - bounds_.lo[u]) *
                       static_cast<double>(bounds_.hi[v] - bounds_.lo[v]);
   return static_cast<double>(covered.size()) / area;
+}
+
+Vec3d guess_up(const CoarseCells& scene) {
+  const Vec3d y{0, 1, 0}, z{0, 0, 1};
+  if (scene.cells().empty()) return y;
+  const Vec3i size = scene.bounds().hi - scene.bounds().lo;
+  if (size.z * 3 < std::min(size.x, size.y)) return z;
+  if (size.y * 3 < std::min(size.x, size.z)) return y;
+  const std::int32_t depth = std::max(1, scene.side() / 40);
+  return scene.side_cover(2, true, depth) > 2.5 * scene.side_cover(1, true, depth) ? z : y;
 }
 
 }  // namespace voxdag

@@ -1,5 +1,6 @@
 #pragma once
 /// A scene at a resolution at which it can be thought about as a whole.
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,13 @@ class CoarseCells {
  public:
   /// The cells of level min(L, max_level), in Morton order.
   CoarseCells(const VoxelScene& scene, int max_level);
+  /// Those of a layout of nodes, for which trace/svdag_nodes.hpp says what it is.
+  template <class Nodes>
+  static CoarseCells of(const Nodes& nodes, int max_level) {
+    CoarseCells cells(std::min(nodes.levels(), max_level));
+    if (!nodes.is_empty()) cells.collect(nodes, nodes.root(), 0, {});
+    return cells;
+  }
 
   int level() const { return level_; }
   std::int32_t side() const { return 1 << level_; }
@@ -27,6 +35,23 @@ class CoarseCells {
   double side_cover(int axis, bool from_below, std::int32_t depth) const;
 
  private:
+  explicit CoarseCells(int level) : level_(level), is_set_(std::size_t{1} << (3 * level)) {}
+
+  void add(Vec3i cell);
+
+  template <class Nodes>
+  void collect(const Nodes& nodes, typename Nodes::Node node, int level, Vec3i cell) {
+    if (level == level_) return add(cell);
+    const std::uint32_t mask = nodes.child_mask(node, level);
+    for (int i = 0; i < 8; ++i) {
+      if ((mask >> i & 1u) == 0) continue;
+      const Vec3i child = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+      // Below the level nothing is read, and a voxel is no node.
+      const bool is_last = level + 1 == level_;
+      collect(nodes, is_last ? node : nodes.child(node, level, i), level + 1, child);
+    }
+  }
+
   std::size_t index(Vec3i cell) const {
     return static_cast<std::size_t>((cell.z << level_ | cell.y) << level_ | cell.x);
   }
@@ -36,5 +61,8 @@ class CoarseCells {
   std::vector<bool> is_set_;
   Box3i bounds_ = Box3i::empty();
 };
+
+/// Meshes have y up, unless the scene lies flat on z or stands on much more of z than of y.
+Vec3d guess_up(const CoarseCells& scene);
 
 }  // namespace voxdag

@@ -19,17 +19,6 @@ constexpr double kPi = 3.14159265358979323846;
 
 double length(Vec3d v) { return std::sqrt(dot(v, v)); }
 
-/// Meshes have y up, unless the scene lies flat on z or stands on much more of z than of y.
-Vec3d guess_up(const CoarseCells& scene) {
-  const Vec3d y{0, 1, 0}, z{0, 0, 1};
-  if (scene.cells().empty()) return y;
-  const Vec3i size = scene.bounds().hi - scene.bounds().lo;
-  if (size.z * 3 < std::min(size.x, size.y)) return z;
-  if (size.y * 3 < std::min(size.x, size.z)) return y;
-  const std::int32_t depth = std::max(1, scene.side() / 40);
-  return scene.side_cover(2, true, depth) > 2.5 * scene.side_cover(1, true, depth) ? z : y;
-}
-
 /// Two unit vectors that with `up` make a right-handed frame: east, north, up.
 struct Compass {
   Vec3d east, north, up;
@@ -247,7 +236,7 @@ View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
   view.up = request.up.value_or(view.up);
   view.vertical_fov_degrees = request.vertical_fov_degrees.value_or(kInsideFov);
   if (request.eye && request.target) {
-    if (!request.up) view.up = guess_up(CoarseCells(voxels, 6));
+    if (!request.up) view.up = guess_up(CoarseCells(voxels, kUpLevel));
     view.eye = *request.eye;
     view.target = *request.target;
     check(view);

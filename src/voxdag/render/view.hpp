@@ -22,6 +22,10 @@ struct ViewRequest {
   std::optional<double> vertical_fov_degrees;
 };
 
+/// Where eye and target are given, frame_scene asks the cells of this level what is up, and no
+/// others.
+inline constexpr int kUpLevel = 6;
+
 /// The view that was asked for, completed so that it shows the scene well in a picture of
 /// `aspect` = width / height. Without an up vector: y, or z where the scene lies or stands on that
 /// axis. Without an eye: from above one corner with all voxels in the picture, or from inside where

@@ -73,7 +73,7 @@ void StreamBlocks::load(std::size_t block) {
   }
 }
 
-BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye, bool may_evict) {
+BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye) {
   std::vector<std::size_t> wanted = take_wanted();
   Loaded result{wanted.size(), 0};
   std::vector<double> sizes(stream_.directory().size());
@@ -84,7 +84,7 @@ BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye, bool may_evict) {
     mark_above(block);
     // Making room for one may have taken what is above another.
     if (!stream_.can_load(block)) continue;
-    if (!stream_.has_room(block) && !(may_evict && make_room(block))) continue;
+    if (!make_room(block)) continue;
     stream_.load(block);
     loaded_in_[block] = part_;
     ++result.loaded;
