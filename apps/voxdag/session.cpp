@@ -1,10 +1,6 @@
 #include "session.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "number_check.hpp"
 #include "voxdag/core/atomic_file.hpp"
@@ -43,18 +39,6 @@ void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& ses
                    session);
 }
 
-void check_writable(const std::string& path) {
-  const std::filesystem::path file(path);
-  if (!file.filename().empty() && !std::filesystem::exists(file)) {
-    // A file without a name, where the file system can do that: nothing is left by a kill just now.
-    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    const int descriptor = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
-    if (descriptor >= 0) {
-      close(descriptor);
-      return;
-    }
-  }
-  AtomicFile{path};
-}
+void check_writable(const std::string& path) { AtomicFile{path}; }
 
 }  // namespace voxdag

@@ -185,13 +185,12 @@ ProcessResult interrupted_build(const std::string& mesh, const std::string& outp
 }
 
 /// Triangles in all directions, which take long at a high resolution.
-std::string long_work() {
-  constexpr unsigned kTriangles = 3000;
+std::string long_work(unsigned triangles = 3000) {
   std::string text;
-  for (unsigned i = 0; i < 3 * kTriangles; ++i)
+  for (unsigned i = 0; i < 3 * triangles; ++i)
     text += "v " + std::to_string(i * 7919 % 997) + " " + std::to_string(i * 104729 % 991) + " " +
             std::to_string(i * 15485863 % 983) + "\n";
-  for (unsigned i = 1; i <= 3 * kTriangles; i += 3)
+  for (unsigned i = 1; i <= 3 * triangles; i += 3)
     text +=
         "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
   return text;
@@ -208,6 +207,17 @@ TEST_F(Build, InterruptsStopItAndLeaveNothing) {
 TEST_F(Build, AKilledBuildLeavesNothing) {
   write_text(mesh_, long_work());
   EXPECT_EQ(interrupted_build(mesh_, output_, SIGKILL).status, 128 + SIGKILL);
+  expect_nothing_left();
+}
+
+TEST_F(Build, AKilledBuildOfAnEsvoLeavesNothing) {
+  // Blocks are written from early on.
+  write_text(mesh_, long_work(300));
+  const std::string output = dir_ / "out.esvo";
+  Process build(voxdag_command({"build", mesh_, "-r", "2048", "-o", output, "--threads", "1"}));
+  ASSERT_TRUE(build.wait_until_it_writes(dir_.path()));
+  build.send_signal(SIGKILL);
+  EXPECT_EQ(build.wait().status, 128 + SIGKILL);
   expect_nothing_left();
 }
 

@@ -72,6 +72,25 @@ void Process::wait_until_it_catches(int number) const {
   }
 }
 
+bool Process::wait_until_it_writes(const std::filesystem::path& folder) const {
+  namespace fs = std::filesystem;
+  const fs::path descriptors = "/proc/" + std::to_string(pid_) + "/fd";
+  const auto is_written = [&](const fs::path& descriptor) {
+    std::error_code closed;
+    const fs::perms mode = fs::symlink_status(descriptor, closed).permissions();
+    return (mode & fs::perms::owner_write) != fs::perms::none &&
+           fs::read_symlink(descriptor, closed).parent_path() == folder &&
+           fs::file_size(descriptor, closed) > 0 && !closed;
+  };
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    std::error_code ended;
+    fs::directory_iterator all(descriptors, ended);
+    if (ended || all == fs::directory_iterator()) return false;
+    for (; all != fs::directory_iterator(); all.increment(ended))
+      if (is_written(all->path())) return true;
+  }
+}
+
 ProcessResult Process::wait() {
   int status = 0;
   waitpid(std::exchange(pid_, -1), &status, 0);

@@ -2,6 +2,7 @@
 /// Runs a program as a user would: arguments in, status and output out.
 #include <sys/types.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ class Process {
   void send_signal(int number) const;
   /// Waits until the program has a handler for the signal, or has ended.
   void wait_until_it_catches(int number) const;
+  /// Waits until the program has written to a file in `folder`, one without a name too. False if it
+  /// has ended.
+  bool wait_until_it_writes(const std::filesystem::path& folder) const;
   ProcessResult wait();
 
  private:

@@ -1,15 +1,23 @@
 #include "voxdag/core/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <functional>
+#include <iterator>
 #include <string>
 
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/nameless_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -30,6 +38,50 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   EXPECT_FALSE(std::filesystem::exists(dir / "out"));
   file.commit();
   EXPECT_EQ(read_text(dir / "out"), "complete");
+  EXPECT_EQ(dir.count(), 1);
+}
+
+/// Whether files without a name can be made there.
+bool has_nameless_files(const TempDir& dir) {
+  const int descriptor = open_nameless_file(dir.path());
+  if (descriptor >= 0) close(descriptor);
+  return descriptor >= 0;
+}
+
+TEST(AtomicFile, HasNoNameAtAllUntilCommitted) {
+  const TempDir dir;
+  if (!has_nameless_files(dir)) GTEST_SKIP() << "the file system has no files without a name";
+  AtomicFile file(dir / "out");
+  file.write("half");
+  EXPECT_EQ(dir.count(), 0);
+}
+
+/// From here on this process may not give names to files.
+void forbid_linkat() {
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, __NR_linkat, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  const sock_fprog program{std::size(filter), filter};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+      prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0)
+    std::exit(2);
+}
+
+TEST(AtomicFile, IsCopiedWhereFilesWithoutANameMayNotHaveOne) {
+  const TempDir dir;
+  const std::string text(3 << 20, 'x');
+  const auto write_without_names = [&] {
+    forbid_linkat();
+    AtomicFile file(dir / "out");
+    file.write(text);
+    file.commit();
+    std::exit(0);
+  };
+  EXPECT_EXIT(write_without_names(), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(read_text(dir / "out"), text);
   EXPECT_EQ(dir.count(), 1);
 }
 

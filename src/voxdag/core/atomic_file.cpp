@@ -10,11 +10,13 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/nameless_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -45,6 +47,12 @@ char* note(const fs::path& name) {
   }
   std::free(copy);
   return nullptr;
+}
+
+/// Whether remove_unfinished_files() has not taken it out.
+bool is_noted(const char* name) {
+  return std::any_of(std::begin(unfinished), std::end(unfinished),
+                     [name](const auto& slot) { return slot.load() == name; });
 }
 
 void forget(char* name) noexcept {
@@ -83,12 +91,14 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
   if (path.filename().empty()) fail(0, ENOENT);
   if (exists && access(target_.c_str(), W_OK) != 0) fail(0, errno);
 
-  do {
+  descriptor_ = open_nameless_file(target_.parent_path());
+  is_nameless_ = descriptor_ >= 0;
+  if (is_nameless_) {
     temporary_ = temporary_name(target_);
-    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor_ < 0 && errno == EEXIST);
-  if (descriptor_ < 0) fail(0, errno);
-  noted_ = note(temporary_);
+    noted_ = note(temporary_);
+  } else {
+    create_named();
+  }
   if (exists) fchmod(descriptor_, existing.st_mode & 07777);
 }
 
@@ -97,6 +107,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
       target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
       noted_(std::exchange(other.noted_, nullptr)),
+      is_nameless_(std::exchange(other.is_nameless_, false)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       flushed_(other.flushed_),
       buffer_(std::move(other.buffer_)) {}
@@ -138,12 +149,47 @@ void AtomicFile::overwrite(std::uint64_t offset, const void* data, std::size_t b
 void AtomicFile::commit() {
   assert(descriptor_ >= 0);
   flush();
+  if (is_nameless_) take_name();
   // Some file systems (NFS, quotas) report a failed write only here.
   if (close(std::exchange(descriptor_, -1)) != 0) fail(position(), errno);
   if (temporary_.empty()) return;
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(position(), errno);
   forget(std::exchange(noted_, nullptr));
   temporary_.clear();
+}
+
+void AtomicFile::create_named() {
+  do {
+    temporary_ = temporary_name(target_);
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EEXIST);
+  if (descriptor_ < 0) fail(0, errno);
+  noted_ = note(temporary_);
+}
+
+/// Of a nameless file: the target's where there is none yet, else the temporary one.
+void AtomicFile::take_name() {
+  if (noted_ != nullptr && !is_noted(noted_)) fail(position(), ECANCELED);
+  int error = name_file(descriptor_, target_);
+  if (error == 0)
+    temporary_ = target_;  // to be removed if closing it fails
+  else if (error == EEXIST)
+    error = name_file(descriptor_, temporary_);
+  is_nameless_ = false;
+  if (error != 0) copy_to_named();
+}
+
+/// For where the system makes nameless files, but does not let them have a name.
+void AtomicFile::copy_to_named() {
+  struct Nameless {
+    int descriptor;
+    ~Nameless() { close(descriptor); }
+  };
+  const Nameless from{std::exchange(descriptor_, -1)};
+  forget(std::exchange(noted_, nullptr));
+  create_named();
+  if (const int error = copy_file(from.descriptor, descriptor_); error != 0)
+    fail(position(), error);
 }
 
 void AtomicFile::flush() {
@@ -166,7 +212,7 @@ void AtomicFile::write_through(const std::byte* data, std::size_t bytes) {
 
 void AtomicFile::discard() noexcept {
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (!temporary_.empty() && !is_nameless_) unlink(temporary_.c_str());
   forget(std::exchange(noted_, nullptr));
   temporary_.clear();
 }

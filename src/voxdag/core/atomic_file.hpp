@@ -9,8 +9,11 @@
 
 namespace voxdag {
 
-/// Written beside its name (NAME.tmp-PID-n) and renamed by commit(). Destroyed before that, also by
-/// an exception that passes, it removes what it wrote and leaves an older file of the name alone.
+/// Written to a file without a name in its folder (nameless_file.hpp), to which commit() gives the
+/// name: where the process is killed before, nothing is left. Where the file system has no such
+/// files it is written beside its name (NAME.tmp-PID-n), and commit() renames it. Destroyed before
+/// commit(), also by an exception that passes, it removes what it wrote; an older file of the name
+/// stays as it is.
 ///
 /// A name that exists and is neither a regular file nor a directory (a pipe, /dev/stdout,
 /// /dev/null) is written directly. A symbolic link stays; the file that it points to is replaced.
@@ -22,7 +25,7 @@ namespace voxdag {
 /// error instead of the signal. Not thread-safe.
 class AtomicFile {
  public:
-  /// Creates the temporary file, so that an unwritable place is known before the work begins.
+  /// Creates the file, so that an unwritable place is known before the work begins.
   explicit AtomicFile(const std::filesystem::path& path);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
@@ -50,13 +53,17 @@ class AtomicFile {
  private:
   void flush();
   void write_through(const std::byte* data, std::size_t bytes);
+  void create_named();
+  void take_name();
+  void copy_to_named();
   void discard() noexcept;
   [[noreturn]] void fail(std::uint64_t at, int error) const;
 
   std::filesystem::path path_;       ///< As given: what errors name.
   std::filesystem::path target_;     ///< With symbolic links resolved.
   std::filesystem::path temporary_;  ///< Empty where the target is written directly.
-  char* noted_ = nullptr;            ///< Its name, for remove_unfinished_files().
+  char* noted_ = nullptr;            ///< That name, for remove_unfinished_files().
+  bool is_nameless_ = false;         ///< The temporary name is not in use yet.
   int descriptor_ = -1;
   std::uint64_t flushed_ = 0;
   std::vector<std::byte> buffer_;
