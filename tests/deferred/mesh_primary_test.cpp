@@ -77,6 +77,23 @@ TEST_P(MeshPrimary, CornersOfARoomAreDarkerButNotBlack) {
   for (std::size_t i = 0; i < image.depth.size(); ++i) EXPECT_GT(image.occlusion[i], 0.1f) << i;
 }
 
+TEST_P(MeshPrimary, CrevicesFinerThanVoxelsAreNotBlack) {
+  // Two walls that meet at 45 degrees, seen through the gap between them.
+  constexpr float kSide = 2, kHalfWidth = 0.828f;
+  Mesh mesh;
+  mesh.vertices = {{-kSide, 0, 0},           {kSide, 0, 0},
+                   {-kSide, kHalfWidth, 2},  {kSide, kHalfWidth, 2},
+                   {-kSide, -kHalfWidth, 2}, {kSide, -kHalfWidth, 2}};
+  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}};
+  RenderOptions options = from({0.3, 0.1, 4}, {}, {0, 0, 1});
+  options.view.vertical_fov_degrees = 1;
+  const RenderedImage image = render(mesh, options);
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    ASSERT_FALSE(std::isinf(image.depth[i])) << i;
+    EXPECT_GT(image.occlusion[i], 0.01f) << i;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Levels, MeshPrimary, testing::Values(7, 9, 11),
                          [](const auto& levels) { return std::to_string(1 << levels.param); });
 

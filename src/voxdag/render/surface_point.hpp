@@ -72,7 +72,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   // In a corner, in a gap, at the edge of something thin that may be inside or behind a cell of
   // another surface: the viewer sees the sample, but not that point. What the viewer looks along is
   // free, for voxels at once and for a mesh when its cells are left.
-  constexpr int kTries = 3;
+  constexpr int kTries = 3, kFarthest = 9;  // cells
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
   for (int i = 1; i <= kTries; ++i) {
@@ -93,6 +93,12 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
       if (!is_hidden(nodes, point, to_viewer)) return point;
     }
     left[axis] = 0;
+  }
+  // Deep in what is finer than cells: light from a little before it is nearer to its own than none.
+  for (int i = kTries + 1; i <= kFarthest; i += i / 2) {
+    point.start =
+        make_grid_point(setup.grid, setup.camera.eye + direction * (depth - i * cell_depth));
+    if (!is_hidden(nodes, point, to_viewer)) return point;
   }
   return point;
 }
