@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "support/brute_svdag.hpp"
@@ -148,6 +149,23 @@ TEST(RenderBeams, SoftShadowsAreTheSameWithoutForEveryLight) {
     EXPECT_LT(shadow, static_cast<double>(with.shadow.size()));
   }
   EXPECT_GE(fewer, 3);  // wide beams meet something everywhere
+}
+
+TEST(RenderBeams, VoxelsRightBehindALampAreNotInItsWay) {
+  // A post, and a roof whose lower side is the lamp's plane.
+  const Svdag dag = voxels_where(
+      6, [](int x, int y, int z) { return y < 8 || y >= 40 || (x == 30 && z == 34 && y < 20); });
+  RenderOptions options = small_picture();
+  options.view.eye = {0.7, 0.1, 0.9};
+  options.view.target = {0, -0.75, 0};
+  options.occlusion_samples = 0;
+  options.with_sun = false;
+  options.lights = {rectangle_light({-0.3, 0.25, -0.2}, {0.5, 0, 0}, {0, 0, 0.6})};
+  const RenderedImage with = render_image(dag.view(), test_grid(6), options);
+  options.beams = false;
+  const RenderedImage without = render_image(dag.view(), test_grid(6), options);
+  expect_same_picture(with, without);
+  EXPECT_GT(std::accumulate(with.shadow.begin(), with.shadow.end(), 0.0f), 100);
 }
 
 TEST(RenderEffects, PicturesDependNeitherOnTilesNorThreads) {

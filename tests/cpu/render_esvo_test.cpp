@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "support/ball_octree.hpp"
@@ -11,6 +12,8 @@
 #include "support/voxel_sets.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/cpu/render_image.hpp"
+#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {
@@ -177,6 +180,57 @@ TEST(RenderEsvo, AFloorSeenAlongItFacesUpWhicheverWayItsNormalsPoint) {
     }
     EXPECT_GT(seen, 100);
   }
+}
+
+void add_box(Mesh& mesh, Vec3f lo, Vec3f hi) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.push_back(
+        {(i & 1) != 0 ? hi.x : lo.x, (i & 2) != 0 ? hi.y : lo.y, (i & 4) != 0 ? hi.z : lo.z});
+  for (const auto& [a, b, c, d] :
+       {std::array{0u, 2u, 3u, 1u}, std::array{4u, 5u, 7u, 6u}, std::array{0u, 1u, 5u, 4u},
+        std::array{2u, 6u, 7u, 3u}, std::array{0u, 4u, 6u, 2u}, std::array{1u, 3u, 7u, 5u}}) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.triangles.push_back({first + a, first + c, first + d});
+  }
+}
+
+TEST(RenderEsvo, ShadowsFallOnFlatFacesHoweverThickTheContoursAboveAre) {
+  // A room with a table; in its shadow the fronts of its legs, which the planes of coarse contours
+  // touch, too.
+  Mesh mesh;
+  add_box(mesh, {0, 0, 0}, {10, 0.2f, 8});
+  add_box(mesh, {0, 0, 0}, {10, 4, 0.2f});
+  add_box(mesh, {0, 0, 0}, {0.2f, 4, 8});
+  add_box(mesh, {8, 0.2f, 1}, {9, 3, 2});
+  add_box(mesh, {3, 0.2f, 3}, {3.4f, 2, 3.4f});
+  add_box(mesh, {6, 0.2f, 3}, {6.4f, 2, 3.4f});
+  add_box(mesh, {2.5f, 2, 2.5f}, {7, 2.2f, 4.5f});
+  const Grid grid = fit_grid(mesh, 10);
+  const Esvo esvo = build_esvo(mesh, grid);
+  RenderOptions options = small_picture();
+  options.width = 240;
+  options.height = 150;
+  options.view.eye = {8.5, 3.5, 9};
+  options.view.target = {4.5, 1.3, 2.7};
+  options.view.vertical_fov_degrees = 18;
+  options.sun = Vec3d{0.5, 0.8, 0.6};
+  options.sun_degrees = 0;
+  options.lod_pixels = 0;
+  const RenderedImage image = render_image(esvo.view(), grid, options);
+  const Camera camera = make_camera(image.view, image.width, image.height);
+  int seen = 0;
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    const auto column = static_cast<double>(i % 240), row = static_cast<double>(i / 240);
+    const Vec3d at = camera.eye + camera.direction(column + 0.5, row + 0.5) *
+                                      static_cast<double>(image.depth[i]);
+    if (!(image.normal[i].z > 0.9f && at.z > 3.3 && at.z < 3.5 && at.y > 0.65 && at.y < 1.9 &&
+          at.x < 6.1))
+      continue;
+    EXPECT_EQ(image.shadow[i], 0) << at.x << " " << at.y << " " << at.z;
+    ++seen;
+  }
+  EXPECT_GT(seen, 500);
 }
 
 TEST(RenderEsvo, WithoutViewOrAttributesItStillMakesAPicture) {

@@ -43,8 +43,8 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   const Vec3f view = -static_cast<Vec3f>(normalized(direction));
   const Vec3f entered = entered_normal(ray, hit);
   const Vec3f plane = dot(entered, entered) > 0 ? entered : view;
-  ContourPlane contour = hit.plane;
-  if (Nodes::kWithContours && !hit.is_through_contour()) contour = deepest_contour(esvo, ray, hit);
+  const ContourPlane deepest =
+      Nodes::kWithContours ? deepest_contour(esvo, ray, hit) : ContourPlane{};
 
   ViewSample sample;
   sample.albedo = setup.settings.albedo;
@@ -77,15 +77,18 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     const float pixels = voxel_size / static_cast<float>(setup.camera.pixel_size() * depth);
     const float cube =
         smooth_step(setup.settings.cube_pixels / 2, setup.settings.cube_pixels, pixels);
-    const bool is_cube = contour.contour.bits == 0;
+    const bool is_cube = deepest.contour.bits == 0;
     sample.face = is_cube ? normalized(mix(sample.normal, plane, cube)) : sample.normal;
   }
-  if (contour.contour.bits != 0) {
-    sample.lift = kSlabs * thickness(contour) * side + kCells * sample.detail_size;
-  } else {
-    // As for the cubes of a DAG: this side of the cube may lie below the surface's plane.
-    const float below = cube_height(sample.face) - dot(sample.face, plane);
-    sample.lift = (cube_height(sample.face) + (below > 0 ? below : 0.0f) + kCells) * voxel_size;
+  // As for the cubes of a DAG: this side of the cube may lie below the surface's plane.
+  const float below = cube_height(sample.face) - dot(sample.face, plane);
+  sample.lift = (cube_height(sample.face) + (below > 0 ? below : 0.0f) + kCells) * voxel_size;
+  // The contours' slabs may be thinner. That whose plane is seen may be an ancestor's, and thick,
+  // but above it nothing in the ancestor's cube stands out.
+  for (const ContourPlane& slab : {hit.plane, deepest}) {
+    if (slab.contour.bits == 0) continue;
+    const float above = kSlabs * thickness(slab) * side + kCells * sample.detail_size;
+    sample.lift = above < sample.lift ? above : sample.lift;
   }
   return sample;
 }

@@ -59,7 +59,10 @@ VOXDAG_HD inline LightInterval cast_light_beam(const Nodes& nodes, const Light& 
   beam.t_min = first;
   constexpr double kRounding = 1e-6;  // to float, outwards
   interval.first = static_cast<float>(first * (1 - kRounding));
-  if (last_met(nodes, beam, stop, last)) interval.last = static_cast<float>(last * (1 + kRounding));
+  if (last_met(nodes, beam, stop, last)) {
+    const auto rounded = static_cast<float>(last * (1 + kRounding));
+    interval.last = rounded < interval.last ? rounded : interval.last;  // never behind the light
+  }
   return interval;
 }
 
