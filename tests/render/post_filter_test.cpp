@@ -205,5 +205,61 @@ TEST(PostFilter, BlocksOfNoiseBecomeSmooth) {
       EXPECT_LT(std::fabs(picture.filtered(x + 1, y).x - picture.filtered(x, y).x), 0.35f);
 }
 
+/// A checkerboard of 24 pixel voxels on a plane that leans away from the viewer.
+struct GuidedPicture : Picture {
+  std::vector<float> depth, occlusion, shadow;
+  std::vector<Vec3f> normal;
+  Camera camera = make_camera({{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 40}, 64, 64);
+
+  GuidedPicture()
+      : Picture(64, 64, 24),
+        depth(color.size()),
+        occlusion(color.size(), 0.5f),
+        shadow(color.size(), 1),
+        normal(color.size(), normalized(Vec3f{0, 0.8f, 0.6f})) {
+    const auto n = static_cast<Vec3d>(normal[0]);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const double toward = dot(n, camera.direction(x + 0.5, y + 0.5));
+        depth[at(x, y)] = static_cast<float>(dot(n, Vec3d{0, 0, -5}) / toward);
+        color[at(x, y)] = Vec3f{1, 1, 1} * static_cast<float>((x + y) % 2);
+      }
+  }
+  Vec3f guided(int x, int y) const {
+    FilterInput with = input();
+    with.guides = {depth.data(), normal.data(), occlusion.data(), shadow.data(), camera};
+    return filtered_color(with, filter_table().data(), x, y);
+  }
+};
+
+TEST(FilteredColor, OnePlaneInOneLightIsMixedAsWithoutGuides) {
+  const GuidedPicture picture;
+  for (const int x : {5, 31, 60})
+    for (const int y : {3, 32, 59}) EXPECT_EQ(picture.guided(x, y), picture.filtered(x, y));
+}
+
+TEST(FilteredColor, OtherSurfacesAndOtherLightAreLeftOut) {
+  using Change = void (*)(GuidedPicture&, std::size_t);
+  for (const Change change :
+       {Change([](GuidedPicture&p, std::size_t i) { p.depth[i] *= 0.8f; }),
+        Change([](GuidedPicture&p, std::size_t i) { p.depth[i] = HUGE_VALF; }),
+        Change([](GuidedPicture&p, std::size_t i) {
+          p.normal[i] = {0, 0, 1};
+        }),
+        Change([](GuidedPicture&p, std::size_t i) { p.normal[i] = {}; }),
+        Change([](GuidedPicture&p, std::size_t i) { p.shadow[i] = 0.5f; }),
+        Change([](GuidedPicture&p, std::size_t i) { p.occlusion[i] = 0.1f; })}) {
+    GuidedPicture picture;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 32; x < picture.width; ++x) {
+        change(picture, picture.at(x, y));
+        picture.color[picture.at(x, y)] = {7, 7, 7};
+      }
+    EXPECT_GT(picture.filtered(30, 30).x, 2) << "without guides they are mixed";
+    EXPECT_LT(picture.guided(30, 30).x, 1);
+    EXPECT_GT(picture.guided(30, 30).x, 0.2f) << "its own side is mixed";
+  }
+}
+
 }  // namespace
 }  // namespace voxdag

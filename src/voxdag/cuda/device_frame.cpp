@@ -42,7 +42,11 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
     filtered_ = make_device_buffer<Vec3f>(pixels, what);
     cell_pixels_ = make_device_buffer<std::uint8_t>(pixels, what);
     filter_samples_ = upload(std::span<const FilterSample>(filter_table()), what);
-    filter_input_ = {radiance_.data(), cell_pixels_.data(), camera.width, camera.height};
+    filter_input_ = {radiance_.data(),
+                     cell_pixels_.data(),
+                     camera.width,
+                     camera.height,
+                     {depth_.data(), normal_.data(), occlusion_.data(), shadow_.data(), camera}};
   }
   const unsigned long long none = 0;
   rays_ = upload(std::span(&none, 1), what);
