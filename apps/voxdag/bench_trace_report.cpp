@@ -70,6 +70,8 @@ Json trace_json(const TraceResults& results, const Json& machine) {
     if (!row.rivals.empty()) continue;
     object["rival"] = nullptr;
     object["rival_mrays_per_s"] = nullptr;
+    object["ratio"] = nullptr;
+    object["rival_agreement"] = nullptr;
     array.push_back(object);
   }
   return array;

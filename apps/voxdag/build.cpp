@@ -189,8 +189,9 @@ void add_build_command(CLI::App& app, Session& session) {
                     "Voxels a side: a power of two from 4 to 1048576; 8K is 8192");
   add_parsed_option(command, "--voxel-size", arguments->voxel_size, parse_positive, "SIZE",
                     "Instead of -r: the side of a voxel in the mesh's units");
-  add_parsed_option(command, "--bounds", arguments->bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
-                    "The part of the world to voxelize (default: the mesh's bounds)");
+  add_parsed_option(
+      command, "--bounds", arguments->bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+      "Where the grid is: a cube from the lower corner on (default: the mesh's bounds)");
   command
       .add_option("--method", arguments->options.method,
                   "hash: depth-first with a hash of nodes; sort: the paper's. Same result")

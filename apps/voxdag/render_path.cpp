@@ -156,7 +156,8 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
   const PathFile file = read_path_file(arguments.file);
   RenderOptions options = given;
   const bool has_up = options.view.up || (!file.keys.empty() && file.keys.front().up);
-  if (!has_up && maker.find_up) options.view.up = maker.find_up();
+  if (!has_up && maker.find_up && !file.keys.empty())
+    options.view.up = up_across(maker.find_up(), file.keys.front().target - file.keys.front().eye);
   const CameraPath path = camera_path(file, arguments.file, scene, grid, options);
   const double count = std::floor((path.end() - path.start()) * arguments.fps + 1e-6) + 1;
   if (!(count <= kMostFrames)) throw Error(arguments.file, "", "a million frames are too many");

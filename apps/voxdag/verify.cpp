@@ -106,6 +106,10 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
                       displaced ? &*displaced : nullptr, arguments.samples, arguments.seed);
   VerifyCheck check{"enclosure", Result::kPassed,
                     fmt::format("{} points of the surface", with_commas(enclosure.points))};
+  if (enclosure.points == 0 && arguments.samples > 0 && !file.view().is_empty()) {
+    check.result = Result::kFailed;
+    check.detail = fmt::format("no point of {} lies in the grid", arguments.mesh);
+  }
   if (!enclosure.outside) return check;
   const Vec3d at = file.grid().to_world(enclosure.outside->point);
   check.result = Result::kFailed;

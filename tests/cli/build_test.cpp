@@ -247,9 +247,18 @@ TEST_F(Build, VerifyNamesTheCheckThatFails) {
 }
 
 TEST_F(Build, VerifyFindsTheWrongMesh) {
+  const std::string octree = dir_ / "out.esvo";
   ASSERT_EQ(build({"-r", "64"}).status, 0);
+  ASSERT_EQ(build({"-r", "64", "--as", "esvo"}, octree).status, 0);
+  EXPECT_EQ(run_voxdag({"verify", octree, "--mesh", mesh_}).status, 0);
   write_text(mesh_, "v 1 2 3\nv 5 2 3\nv 1 4 3.5\nf 1 2 3\n");
   EXPECT_EQ(run_voxdag({"verify", output_, "--mesh", mesh_}).status, 1);
+  EXPECT_EQ(run_voxdag({"verify", octree, "--mesh", mesh_}).status, 1);
+  // Nowhere near.
+  write_text(mesh_, "v 1001 2 3\nv 1005 2 3\nv 1001 4 3.5\nf 1 2 3\n");
+  ProcessResult result = run_voxdag({"verify", octree, "--mesh", mesh_});
+  result.out.clear();
+  expect_failure(result, 1, "no point of " + mesh_ + " lies in the grid");
 }
 
 }  // namespace

@@ -135,6 +135,18 @@ TEST(FrameScene, KeepsWhatIsAskedFor) {
   EXPECT_EQ(frame_scene(dag.view(), grid, 1.5, target_only).target, *target_only.target);
 }
 
+TEST(FrameScene, AViewStraightDownOrUpFindsItsOwnUp) {
+  for (const double y : {-1.0, 1.0}) {
+    ViewRequest request;
+    request.eye = {32, 32, 32};
+    request.target = {32, 32 + y, 32};
+    EXPECT_EQ(frame_scene(brute_svdag(6, {{1, 2, 3}}).view(), grid_of(6), 1.5, request).up,
+              (Vec3d{0, 0, -1}));
+  }
+  EXPECT_EQ(up_across({0, 0, 1}, {0, 0, -5}), (Vec3d{0, 1, 0}));
+  EXPECT_EQ(up_across({0, 0, 1}, {0, 1, -5}), (Vec3d{0, 0, 1}));
+}
+
 TEST(FrameScene, AnEmptySceneHasAView) {
   const View view = frame_scene(Svdag{}.view(), Grid{}, 1, {});
   EXPECT_TRUE(std::isfinite(view.eye.x) && std::isfinite(view.target.x));

@@ -230,15 +230,22 @@ void check(const View& view) {
 
 }  // namespace
 
+Vec3d up_across(Vec3d up, Vec3d forward) {
+  const Vec3d aside = cross(forward, up);
+  if (dot(aside, aside) > 1e-6 * dot(forward, forward) * dot(up, up)) return up;
+  return std::fabs(up.z) > std::fabs(up.y) ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1};
+}
+
 View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request) {
   View view;
   view.up = request.up.value_or(view.up);
   view.vertical_fov_degrees = request.vertical_fov_degrees.value_or(kInsideFov);
   if (request.eye && request.target) {
-    if (!request.up) view.up = guess_up(CoarseCells(voxels, kUpLevel));
     view.eye = *request.eye;
     view.target = *request.target;
+    if (!request.up)
+      view.up = up_across(guess_up(CoarseCells(voxels, kUpLevel)), view.target - view.eye);
     check(view);
     return view;
   }

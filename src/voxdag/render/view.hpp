@@ -26,12 +26,17 @@ struct ViewRequest {
 /// others.
 inline constexpr int kUpLevel = 6;
 
+/// `up`, or for a view that runs straight up or down what is ahead on a map: -z where y is up, y
+/// where z is.
+Vec3d up_across(Vec3d up, Vec3d forward);
+
 /// The view that was asked for, completed so that it shows the scene well in a picture of
 /// `aspect` = width / height. Without an up vector: y, or z where the scene lies or stands on that
-/// axis. Without an eye: from above one corner with all voxels in the picture, or from inside where
-/// it is a closed box, as buildings are, with room to look around. A valid view even for
-/// an empty scene. Deterministic; some ten milliseconds. Throws Error for a request that names no
-/// view: numbers that are not finite, eye = target, an angle not in (0,180), up along the view.
+/// axis, or across these if the view runs along them. Without an eye: from above one corner with
+/// all voxels in the picture, or from inside where it is a closed box, as buildings are, with room
+/// to look around. A valid view even for an empty scene. Deterministic; some ten milliseconds.
+/// Throws Error for a request that names no view: numbers that are not finite, eye = target, an
+/// angle not in (0,180), up along the view.
 View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request);
 
