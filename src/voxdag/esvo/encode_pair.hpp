@@ -8,18 +8,14 @@ namespace voxdag {
 
 /// The 16 values of a pair of slots; those that no voxel has are not in the mask.
 struct PairValues {
-  /// What a leaf weighs beside an inner voxel: leaves may be large and seen from near, inner voxels
-  /// are seen from where they are smaller than a pixel.
-  static constexpr float kLeafWeight = 16;
-
   std::uint32_t mask = 0;
+  std::uint32_t leaves = 0;  ///< Bit i: value i is of a leaf.
   VoxelValue values[16];
-  float weights[16] = {};
 
   void set(std::uint32_t at, const VoxelValue& value, bool is_leaf) {
     mask |= 1u << at;
+    leaves |= is_leaf ? 1u << at : 0u;
     values[at] = value;
-    weights[at] = is_leaf ? kLeafWeight : 1.0f;
   }
 };
 
