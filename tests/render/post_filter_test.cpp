@@ -261,5 +261,14 @@ TEST(FilteredColor, OtherSurfacesAndOtherLightAreLeftOut) {
   }
 }
 
+TEST(FilteredColor, APixelLikeNoneBesideItIsMixedWithAll) {
+  GuidedPicture picture;
+  picture.occlusion[picture.at(30, 30)] = 0;
+  picture.color[picture.at(30, 30)] = {};
+  EXPECT_EQ(picture.guided(30, 30), picture.filtered(30, 30));
+  for (int x = 25; x < 36; ++x) picture.occlusion[picture.at(x, 30)] = 0;
+  EXPECT_NE(picture.guided(30, 30), picture.filtered(30, 30)) << "a line is none";
+}
+
 }  // namespace
 }  // namespace voxdag

@@ -100,6 +100,14 @@ VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSamp
   float radius = unpack_cell_pixels(input.cell_pixels[center]);
   if (radius <= 1.0f) return input.color[center];
   const SameSurface same(input.guides, pixel_x, pixel_y, center, radius);
+  // A pixel none or one of whose neighbours is like it is noise: it is mixed with all.
+  constexpr int kFewest = 2;
+  int alike = 0;
+  for (int i = 0; i < 9 && alike < kFewest; ++i) {
+    const int x = pixel_x + i % 3 - 1, y = pixel_y + i / 3 - 1;
+    const bool is_neighbour = i != 4 && x >= 0 && y >= 0 && x < input.width && y < input.height;
+    alike += is_neighbour && same.has(x, y, index(x, y)) ? 1 : 0;
+  }
   Vec3f sum{};
   float weight_sum = 0.0f;
   for (int i = 0; i < kFilterSamples; ++i) {
@@ -111,9 +119,9 @@ VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSamp
     const float other = unpack_cell_pixels(input.cell_pixels[at]);
     radius = other < radius ? other : radius;
     if (sample.distance > radius) break;
-    if (!same.has(x, y, at)) continue;
     const float taper = radius - sample.distance;
     const float weight = sample.weight * (taper < 1.0f ? taper : 1.0f);
+    if (alike >= kFewest && !same.has(x, y, at)) continue;
     sum = sum + input.color[at] * weight;
     weight_sum += weight;
   }
