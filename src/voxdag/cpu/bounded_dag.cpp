@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "voxdag/core/large_array.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
@@ -100,7 +101,7 @@ std::uint64_t make_node(const SvdagView& dag, int level, std::uint64_t at, std::
 }  // namespace
 
 BoundedDag::BoundedDag(const SvdagNodes& nodes)
-    : nodes_(nodes), words_(std::make_unique_for_overwrite<std::uint32_t[]>(word_count())) {
+    : nodes_(nodes), words_(make_large_array<std::uint32_t>(word_count())) {
   const SvdagView& dag = nodes_.view();
   std::fill_n(words_.get() + 2 * dag.node_words(), 7, 0);
   for (int level = dag.levels - 3; level >= 0; --level) {

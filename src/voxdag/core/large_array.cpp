@@ -1,0 +1,23 @@
+#include "voxdag/core/large_array.hpp"
+
+#include <sys/mman.h>
+
+#include <cstdlib>
+#include <new>
+
+namespace voxdag {
+
+std::shared_ptr<void> allocate_large(std::size_t bytes) {
+  constexpr std::size_t kLargePage = 2 << 20;
+  const std::size_t alignment = bytes >= kLargePage ? kLargePage : alignof(std::max_align_t);
+  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+  if (rounded < bytes) throw std::bad_alloc();
+  void* const memory = std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  if (bytes >= kLargePage) madvise(memory, rounded, MADV_HUGEPAGE);  // a wish
+#endif
+  return {memory, &std::free};
+}
+
+}  // namespace voxdag
