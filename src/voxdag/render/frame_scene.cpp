@@ -166,6 +166,7 @@ std::vector<InsideView> inside_views(const CoarseCells& scene, const Explorer& e
                                      const Grid& grid, const Compass& compass, double fov,
                                      double aspect) {
   constexpr int kPlaces = 160, kDirections = 48, kYaws = 24;
+  if (scene.cells().empty()) return {};
   const double cell_size =
       grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
   const Vec3d lo = grid.origin + static_cast<Vec3d>(scene.bounds().lo) * cell_size;
