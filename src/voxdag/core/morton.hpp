@@ -42,4 +42,10 @@ VOXDAG_HD constexpr Vec3i morton_decode(std::uint64_t code) {
           static_cast<std::int32_t>(gather_bits3(code >> 2))};
 }
 
+/// Which child of the cell above it at bit `shift` of the coordinates a cell is in: of `shift` 0,
+/// which child it is.
+VOXDAG_HD constexpr int child_index(Vec3i cell, int shift) {
+  return (cell.x >> shift & 1) | (cell.y >> shift & 1) << 1 | (cell.z >> shift & 1) << 2;
+}
+
 }  // namespace voxdag

@@ -2,6 +2,7 @@
 /// How a walk reads the upper levels of an ESVO of which hardly anything is in memory at a time.
 #include <cstdint>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/streamed_image.hpp"
 
 namespace voxdag {
@@ -45,10 +46,8 @@ class PagedCells {
       const EsvoView esvo = source_->view();
       const ChildDescriptor descriptor = esvo.descriptor(slot);
       if (l == level) return descriptor;
-      const int shift = level - ++l;
-      const int child = (node.cell.x >> shift & 1) | (node.cell.y >> shift & 1) << 1 |
-                        (node.cell.z >> shift & 1) << 2;
-      slot = esvo.child(slot, descriptor, child);
+      ++l;
+      slot = esvo.child(slot, descriptor, child_index(node.cell, level - l));
     }
   }
 

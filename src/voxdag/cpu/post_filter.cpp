@@ -17,15 +17,9 @@ std::vector<Vec3f> filter_picture(const FilterInput& input) {
   return filtered;
 }
 
-FilterInput filter_input(const RenderedImage& image) {
-  return {image.radiance.data(),
-          image.cell_pixels.data(),
-          image.width,
-          image.height,
-          {image.depth.data(), image.normal.data(), image.occlusion.data(), image.shadow.data(),
-           make_camera(image.view, image.width, image.height)}};
+void filter_picture(RenderedImage& image) {
+  const Camera camera = make_camera(image.view, image.width, image.height);
+  image.radiance = filter_picture(filter_input(buffers_of(image), camera));
 }
-
-void filter_picture(RenderedImage& image) { image.radiance = filter_picture(filter_input(image)); }
 
 }  // namespace voxdag

@@ -11,10 +11,7 @@ namespace voxdag {
 /// of threads.
 std::vector<Vec3f> filter_picture(const FilterInput& input);
 
-/// The radiance of a picture, which is to have cell_pixels. Points to it.
-FilterInput filter_input(const RenderedImage& image);
-
-/// Filters the radiance of such a picture.
+/// Filters the radiance of a picture, which is to have cell_pixels.
 void filter_picture(RenderedImage& image);
 
 }  // namespace voxdag

@@ -47,9 +47,9 @@ class StreamedPicture {
     for (;;) {
       make_renderer();
       left_ = render_loaded(left_, "render");
-      const BlockSource::Loaded loaded = source_.load_missing(eye());
+      const std::size_t loaded = source_.load_missing(eye());
       if (left_.empty()) break;
-      if (loaded.loaded == 0) {
+      if (loaded == 0) {
         render_parts();
         break;
       }
@@ -103,7 +103,7 @@ class StreamedPicture {
       source_.begin_part();
       do {
         part = render_loaded(part, nullptr);
-      } while (source_.load_missing(eye()).loaded > 0 && !part.empty());
+      } while (source_.load_missing(eye()) > 0 && !part.empty());
       const PagedNodes nodes(source_);
       for (const ViewTile& tile : part)
         rays_ += renderer_->render_one(nodes, PagedCaster(nodes, progress_), tile);

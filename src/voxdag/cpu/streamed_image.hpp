@@ -19,13 +19,10 @@ class BlockSource {
   /// What is loaded; stays valid while blocks come and go.
   virtual EsvoView view() const = 0;
 
-  struct Loaded {
-    std::size_t wanted = 0;  ///< Blocks that were wanted since the last call.
-    std::size_t loaded = 0;  ///< Of these, those that are loaded now; the rest had no room.
-  };
-  /// Loads what was wanted, the blocks that look largest from `eye` first. Blocks that were loaded
-  /// before the last begin_part() make room.
-  virtual Loaded load_missing(Vec3d eye) = 0;
+  /// Loads the blocks that were wanted since the last call, those that look largest from `eye`
+  /// first, as long as there is room; blocks that were loaded before the last begin_part() make
+  /// some. Returns how many it loaded.
+  virtual std::size_t load_missing(Vec3d eye) = 0;
   /// From here on, what is loaded is for a picture, or a part of it.
   virtual void begin_part() = 0;
   /// Loads a block and those above it; those that were wanted longest ago make room.

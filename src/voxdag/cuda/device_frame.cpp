@@ -42,11 +42,6 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
     filtered_ = make_device_buffer<Vec3f>(pixels, what);
     cell_pixels_ = make_device_buffer<std::uint8_t>(pixels, what);
     filter_samples_ = upload(std::span<const FilterSample>(filter_table()), what);
-    filter_input_ = {radiance_.data(),
-                     cell_pixels_.data(),
-                     camera.width,
-                     camera.height,
-                     {depth_.data(), normal_.data(), occlusion_.data(), shadow_.data(), camera}};
   }
   const unsigned long long none = 0;
   rays_ = upload(std::span(&none, 1), what);
@@ -62,6 +57,7 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
   setup_.image = {radiance_.data(), depth_.data(), normal_.data(),     occlusion_.data(),
                   shadow_.data(),   steps_.data(), cell_pixels_.data()};
   setup_.beam_starts = beam_starts_.data();
+  if (with_filter) filter_input_ = voxdag::filter_input(setup_.image, camera);
 }
 
 void DeviceFrame::copy_to(RenderedImage& image, bool is_filtered) const {

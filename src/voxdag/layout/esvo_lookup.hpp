@@ -1,5 +1,6 @@
 #pragma once
 /// Point queries on an ESVO.
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/esvo.hpp"
 
 namespace voxdag {
@@ -9,9 +10,7 @@ namespace voxdag {
 VOXDAG_HD inline EsvoVoxel esvo_voxel_at(const EsvoView& esvo, Vec3i voxel, int level) {
   std::uint64_t slot = esvo.root;
   for (int l = 1;; ++l) {
-    const int shift = esvo.levels - l;
-    const int child =
-        (voxel.x >> shift & 1) | (voxel.y >> shift & 1) << 1 | (voxel.z >> shift & 1) << 2;
+    const int child = child_index(voxel, esvo.levels - l);
     if (l == level) return {slot, child};
     slot = esvo.child(slot, esvo.descriptor(slot), child);
   }

@@ -1,5 +1,6 @@
 #pragma once
 /// Point queries on a DAG.
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -11,8 +12,7 @@ VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) 
   std::uint32_t at = 0;
   for (int level = 0; level < dag.levels - 2; ++level) {
     const int shift = dag.levels - level - 1;
-    const int child =
-        (voxel.x >> shift & 1) | (voxel.y >> shift & 1) << 1 | (voxel.z >> shift & 1) << 2;
+    const int child = child_index(voxel, shift);
     const std::uint32_t* node = dag.nodes + at;
     if ((child_mask(node) >> child & 1) == 0) return 0;
     at = child_pointer(node, child);
@@ -28,8 +28,7 @@ VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level
   std::uint32_t at = 0;
   for (int l = 0; l < level; ++l) {
     const int shift = level - 1 - l;
-    const int child =
-        ((cell.x >> shift) & 1) | ((cell.y >> shift) & 1) << 1 | ((cell.z >> shift) & 1) << 2;
+    const int child = child_index(cell, shift);
     if (l < dag.levels - 2) {
       const std::uint32_t* node = dag.nodes + at;
       if (((child_mask(node) >> child) & 1) == 0) return false;

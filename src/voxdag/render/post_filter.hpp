@@ -15,6 +15,7 @@
 #include "voxdag/core/vec.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/cell_pixels.hpp"
+#include "voxdag/render/render_setup.hpp"
 
 namespace voxdag {
 
@@ -50,6 +51,15 @@ struct FilterInput {
   int width = 0, height = 0;
   FilterGuides guides{};
 };
+
+/// With guides. All but the steps must be there.
+VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camera& camera) {
+  return {image.radiance,
+          image.cell_pixels,
+          camera.width,
+          camera.height,
+          {image.depth, image.normal, image.occlusion, image.shadow, camera}};
+}
 
 /// Tells which pixels show the same surface as one pixel does, in the same light.
 class SameSurface {

@@ -57,4 +57,12 @@ struct RenderedImage {
   std::uint64_t rays = 0;                 ///< Rays cast: primary, shadow, occlusion.
 };
 
+/// Where its values are, null where it has none.
+inline ImageBuffers buffers_of(RenderedImage& image) {
+  const auto values = [](auto& pixels) { return pixels.empty() ? nullptr : pixels.data(); };
+  return {values(image.radiance),   values(image.depth),  values(image.normal),
+          values(image.occlusion),  values(image.shadow), values(image.steps),
+          values(image.cell_pixels)};
+}
+
 }  // namespace voxdag

@@ -94,13 +94,7 @@ RenderPlan::RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderO
   setup_.camera = make_camera(image_.view, options.width, options.height);
   setup_.sky = make_sky(setup_.camera, image_.view, options);
   setup_.tables = samples_.view();
-  setup_.image = {image_.radiance.data(),
-                  image_.depth.data(),
-                  image_.normal.data(),
-                  image_.occlusion.data(),
-                  image_.shadow.data(),
-                  options.with_steps ? image_.steps.data() : nullptr,
-                  options.filter ? image_.cell_pixels.data() : nullptr};
+  setup_.image = buffers_of(image_);
 
   RenderSettings& settings = setup_.settings;
   settings.samples_per_pixel = options.samples_per_pixel;

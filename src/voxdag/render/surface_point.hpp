@@ -66,20 +66,23 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
                           ? static_cast<double>(sample.lift)
                           : static_cast<double>(cube_height(sample.face) + kSlack) * cell_size;
   const Vec3d lifted = sample.point + static_cast<Vec3d>(sample.face) * lift;
-  point.start = make_grid_point(setup.grid, lifted);
   const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
-  if (!is_hidden(nodes, point, to_viewer)) return point;
+  const auto can_start_at = [&](Vec3d there) {
+    point.start = make_grid_point(setup.grid, there);
+    return !is_hidden(nodes, point, to_viewer);
+  };
+  if (can_start_at(lifted)) return point;
   // In a corner, in a gap, at the edge of something thin that may be inside or behind a cell of
   // another surface: the viewer sees the sample, but not that point. What the viewer looks along is
   // free, for voxels at once and for a mesh when its cells are left.
   constexpr int kTries = 3, kFarthest = 9;  // cells
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
-  for (int i = 1; i <= kTries; ++i) {
-    point.start =
-        make_grid_point(setup.grid, setup.camera.eye + direction * (depth - i * cell_depth));
-    if (!is_hidden(nodes, point, to_viewer)) return point;
-  }
+  const auto cells_before = [&](int cells) {
+    return setup.camera.eye + direction * (depth - cells * cell_depth);
+  };
+  for (int i = 1; i <= kTries; ++i)
+    if (can_start_at(cells_before(i))) return point;
   // That way may all but graze the other surface of a corner. The steps along the axes that it is
   // made of, the longest first, do not.
   Vec3f left = to_viewer;
@@ -89,17 +92,13 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
     for (int cells = 1; cells <= 2; ++cells) {
       Vec3d there = lifted;
       there[axis] += (left[axis] < 0 ? -cells : cells) * cell_size;
-      point.start = make_grid_point(setup.grid, there);
-      if (!is_hidden(nodes, point, to_viewer)) return point;
+      if (can_start_at(there)) return point;
     }
     left[axis] = 0;
   }
   // Deep in what is finer than cells: light from a little before it is nearer to its own than none.
-  for (int i = kTries + 1; i <= kFarthest; i += i / 2) {
-    point.start =
-        make_grid_point(setup.grid, setup.camera.eye + direction * (depth - i * cell_depth));
-    if (!is_hidden(nodes, point, to_viewer)) return point;
-  }
+  for (int i = kTries + 1; i <= kFarthest; i += i / 2)
+    if (can_start_at(cells_before(i))) return point;
   return point;
 }
 

@@ -73,9 +73,9 @@ void StreamBlocks::load(std::size_t block) {
   }
 }
 
-BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye) {
+std::size_t StreamBlocks::load_missing(Vec3d eye) {
   std::vector<std::size_t> wanted = take_wanted();
-  Loaded result{wanted.size(), 0};
+  std::size_t loaded = 0;
   std::vector<double> sizes(stream_.directory().size());
   for (const std::size_t block : wanted) sizes[block] = apparent_size(block, eye);
   std::stable_sort(wanted.begin(), wanted.end(),
@@ -87,9 +87,9 @@ BlockSource::Loaded StreamBlocks::load_missing(Vec3d eye) {
     if (!make_room(block)) continue;
     stream_.load(block);
     loaded_in_[block] = part_;
-    ++result.loaded;
+    ++loaded;
   }
-  return result;
+  return loaded;
 }
 
 }  // namespace voxdag

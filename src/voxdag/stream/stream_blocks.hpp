@@ -18,7 +18,7 @@ class StreamBlocks : public BlockSource {
   const EsvoStream& stream() const { return stream_; }
 
   EsvoView view() const override { return stream_.view(); }
-  Loaded load_missing(Vec3d eye) override;
+  std::size_t load_missing(Vec3d eye) override;
   void begin_part() override { ++part_; }
   std::int64_t missing_block(std::uint64_t slot) const override {
     return stream_.missing_block(slot);

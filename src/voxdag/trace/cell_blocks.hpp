@@ -1,6 +1,7 @@
 #pragma once
 /// Occupancy near a cell, read from any node layout.
 #include "voxdag/core/bits.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
@@ -31,8 +32,7 @@ VOXDAG_HD inline bool descend(const Nodes& nodes, typename Nodes::Node& node, in
                               int to_level, Vec3i cell) {
   for (int level = from_level; level < to_level; ++level) {
     const int shift = to_level - 1 - level;
-    const int index =
-        (cell.x >> shift & 1) | (cell.y >> shift & 1) << 1 | (cell.z >> shift & 1) << 2;
+    const int index = child_index(cell, shift);
     if ((nodes.child_mask(node, level) >> index & 1u) == 0) return false;
     node = nodes.child(node, level, index);
   }
