@@ -9,7 +9,8 @@
 //
 // A contour is looked at when its voxel is visited, not when its parent is: by then rays that end
 // nearer by are gone. What it leaves of the rays' ranges is kept for its level, as the voxels below
-// are visited before any other of that level. Where only a few rays are left it is the other way
+// are visited before any other of that level. Many rays close together are tried at the children's
+// cubes and contours as one wide ray before. Where only a few rays are left it is the other way
 // round: one ray after the other is tried at all children, and their contours, at once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/cast_esvo_packet.cpp"
@@ -28,12 +29,12 @@ namespace HWY_NAMESPACE {
 #if VOXDAG_PACKET_LANES
 
 /// Sets spans 0, and the rays as ContourRay has them.
-template <bool kWithContours>
-void EsvoPacketWalk<kWithContours>::set_own_spans() {
+template <bool kWithContours, bool kOneOrigin>
+void EsvoPacketWalk<kWithContours, kOneOrigin>::set_own_spans() {
   const DF d;
   const DI di;
   if constexpr (kWithContours)
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
       for (std::size_t i = 0; i < rays_.size; i += kWidth) {
         const auto bits = hn::BitCast(di, hn::Load(d, rays_.origin[axis] + i));
         hn::Store(hn::Sub(bits, hn::Set(di, static_cast<std::int32_t>(kOne))), di,
@@ -42,6 +43,13 @@ void EsvoPacketWalk<kWithContours>::set_own_spans() {
             hn::Div(hn::Set(d, ContourRay::kDirectionOne), hn::Load(d, rays_.inverse[axis] + i));
         hn::Store(hn::ConvertTo(di, speed), di, direction_[axis] + i);
       }
+      // Both conversions keep the order.
+      for (const int end : {0, 1}) {
+        position_range_[axis][end] =
+            static_cast<std::int32_t>(bits_of_float(origin_range_[axis][end]) - kOne);
+        direction_range_[axis][end] = ContourRay::direction(inverse_range_[axis][1 - end]);
+      }
+    }
   Spans& own = spans_[0];
   for (std::size_t i = 0; i < rays_.size; i += kWidth) {
     hn::Store(hn::Load(d, rays_.t_min + i), d, own.enter + i);
@@ -53,12 +61,11 @@ void EsvoPacketWalk<kWithContours>::set_own_spans() {
   span_at_[0] = 0;
 }
 
-template <bool kWithContours>
-typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::clip(const Visit& visit,
-                                                                                 Rays rays,
-                                                                                 Rays& stopped) {
-  const bool with_stop = static_cast<int>(visit.level) >= stop_level_;
-  if (kWithContours && visit.contour.bits != 0)
+template <bool kWithContours, bool kOneOrigin>
+typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
+EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, Rays& stopped) {
+  const bool with_stop = (visit.known & kMayStop) != 0;
+  if (kWithContours && visit.contour != 0)
     return with_stop ? clip<true, true>(visit, rays, stopped)
                      : clip<true, false>(visit, rays, stopped);
   return with_stop ? clip<false, true>(visit, rays, stopped)
@@ -66,16 +73,17 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::clip
 }
 
 /// The contour of the path's voxel of `level`, or an ancestor, by which a ray came to t, if by one.
-template <bool kWithContours>
-HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours>::plane_at(std::uint32_t level,
-                                                                std::size_t ray, float t) const {
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours, kOneOrigin>::plane_at(std::uint32_t level,
+                                                                            std::size_t ray,
+                                                                            float t) const {
   const Spans& spans = spans_below(level);
   const std::int32_t enter_level = spans.enter[ray] == t ? spans.enter_level[ray] : 0;
-  return {enter_level != 0 ? contours_[enter_level] : Contour{}, enter_level};
+  return {Contour{enter_level != 0 ? contours_[enter_level] : 0}, enter_level};
 }
 
-template <bool kWithContours>
-HWY_INLINE void EsvoPacketWalk<kWithContours>::record(const Visit& visit, Rays rays) {
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::record(const Visit& visit, Rays rays) {
   if (hits_ == nullptr) return;
   const Spans& spans = spans_below(visit.level);
   const int bit = 23 - static_cast<int>(visit.level);
@@ -99,12 +107,12 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::record(const Visit& visit, Rays r
   }
 }
 
-template <bool kWithContours>
-HWY_INLINE void EsvoPacketWalk<kWithContours>::push_children(const Visit& visit,
-                                                             ChildDescriptor descriptor,
-                                                             std::uint32_t met,
-                                                             const ChildRays& children,
-                                                             bool is_exact) {
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::push_children(const Visit& visit,
+                                                                         ChildDescriptor descriptor,
+                                                                         const ChildRays& children,
+                                                                         std::uint32_t known) {
+  std::uint32_t met = children.met;
   if (met == 0) return;
   const std::uint32_t half = 1u << (22 - visit.level);
   const std::uint32_t inner = descriptor.inner_mask();
@@ -116,40 +124,85 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::push_children(const Visit& visit,
       inner != 0 ? esvo_.first_child(visit.slot, descriptor) : std::uint64_t{0};
   for (; met != 0; met &= met - 1) {
     const auto child = static_cast<std::uint32_t>(lowest_bit64(met));
-    // Taken back where no ray meets the child: that is hard to foretell.
-    Visit& next = stack_[top_];
+    Visit& next = stack_[top_++];
     next.rays = children.meet[child];
-    top_ += next.rays != 0 ? 1 : 0;
     const std::uint32_t index = child ^ rays_.mirrored;
     set_child_corner(visit.corner, child, half, next.corner);
-    next.is_exact = is_exact;
+    next.known = known;
     const bool is_inner = (inner >> index & 1u) != 0;
     next.slot = is_inner ? first_child + inner_before[index] : kLeaf;
     hwy::Prefetch(esvo_.slots + (is_inner ? next.slot : visit.slot));
-    next.contour = {};
+    next.contour = 0;
     if constexpr (kWithContours) {
       const std::uint32_t has_contour = with_contour >> index & 1u;
-      next.contour.bits = contours[has_contour * contours_before[index]] & (0u - has_contour);
+      next.contour = contours[has_contour * contours_before[index]] & (0u - has_contour);
     }
   }
 }
 
-template <bool kWithContours>
-typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::walk(Rays all) {
+/// Whether any ray may end by its level of detail at a child of the voxel.
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE bool EsvoPacketWalk<kWithContours, kOneOrigin>::may_stop_below(
+    const Visit& visit) const {
+  const auto level = static_cast<int>(visit.level) + 1;
+  if (level < stop_level_) return false;
+  return side_of(level) <= stop_start_[1] + stop_per_t_[1] * last_exit(visit.corner);
+}
+
+/// Of the rays, which meet the voxel and do not end there, returns those that end at a child. Puts
+/// the children that others meet on the stack, the nearest on top.
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
+EsvoPacketWalk<kWithContours, kOneOrigin>::visit_children(const Visit& visit, Rays rays) {
+  slots_[visit.level] = visit.slot;
+  const ChildDescriptor descriptor = esvo_.descriptor(visit.slot);
+  const Spans& spans = spans_below(visit.level);
+  const bool may_stop = may_stop_below(visit);
+  ChildRays children;
+  children.met = mirrored(descriptor.valid_mask());
+  std::uint32_t known = may_stop ? kMayStop : 0;
+  Rays ended = 0;
+  if (are_many(rays) && are_narrow(visit.corner, static_cast<int>(visit.level), spans.first)) {
+    children.met &= children_met_by_hull(visit, descriptor, spans);
+    for (Rays& meet : children.meet) meet = rays;
+  } else if (popcount64(rays) <= kFew) {
+    ended = end_at_children(visit, descriptor, rays, may_stop, children);
+    known |= kMeetCube | kMeetShape;
+  } else {
+    intersect(visit, spans, rays, children);
+    known |= kMeetCube;
+  }
+  push_children(visit, descriptor, children, known);
+  return ended;
+}
+
+template <bool kWithContours, bool kOneOrigin>
+typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
+EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
   Rays searching = all;
-  stack_[0] = {{kOne, kOne, kOne}, 0, all, esvo_.root, {}, true};
+  stack_[0] = {{kOne, kOne, kOne}, 0, all, esvo_.root, 0, kMeetCube};
   top_ = 1;
   while (top_ > 0 && searching != 0) {
-    const Visit visit = stack_[--top_];
-    const std::uint32_t level = visit.level;
-    Rays rays = visit.rays & searching;
+    // Field by field, as it was stored: a wider load would wait for the stores. The corner and the
+    // level were stored as one.
+    const Visit& popped = stack_[--top_];
+    Rays rays = popped.rays & searching;
     if (rays == 0) continue;
-    const bool is_cut = kWithContours && visit.contour.bits != 0;
+    Visit visit;
+    const hn::CappedTag<std::uint32_t, 4> d4;
+    hn::StoreU(hn::LoadU(d4, popped.corner), d4, visit.corner);
+    visit.slot = popped.slot;
+    visit.contour = popped.contour;
+    visit.known = popped.known;
+    const std::uint32_t level = visit.level;
+    const bool is_cut = kWithContours && visit.contour != 0;
     const bool is_leaf = visit.slot == kLeaf;
-    bool is_exact = visit.is_exact;
     if (level > 0) {
       Rays stopped = 0;
-      if (is_cut || static_cast<int>(level) >= stop_level_ || (is_leaf && !is_exact)) {
+      const bool may_stop = (visit.known & kMayStop) != 0;
+      if (is_cut && !may_stop && (visit.known & kMeetShape) != 0) {
+        if constexpr (kWithContours) recall_spans(visit, rays);
+      } else if (is_cut || may_stop || (is_leaf && (visit.known & kMeetCube) == 0)) {
         rays = clip(visit, rays, stopped);
         if (rays == 0) continue;
       }
@@ -165,31 +218,14 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::walk
         if (rays == 0) continue;
       }
     }
-    slots_[level] = visit.slot;
-    const ChildDescriptor descriptor = esvo_.descriptor(visit.slot);
-    const std::uint32_t mask = mirrored(descriptor.valid_mask());
-    const Spans& spans = spans_below(level);
-    ChildRays children;
-    const bool by_hull =
-        are_many(rays) && are_narrow(visit.corner, static_cast<int>(level), spans.first);
-    std::uint32_t met = mask;
-    if (by_hull) {
-      met &= children_met_by_hull(visit, spans);
-      for (Rays& meet : children.meet) meet = rays;
-    } else if (popcount64(rays) <= kFew) {
-      searching &= ~end_at_children(visit, descriptor, rays, children);
-    } else {
-      intersect(visit, spans, rays, children);
-    }
-    push_children(visit, descriptor, met, children, !by_hull);
+    searching &= ~visit_children(visit, rays);
   }
   return all & ~searching;
 }
 
-template <bool kWithContours>
-typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::cast(
-    const RayPacket& packet) {
-  if (packet.size == 0 || esvo_.is_empty()) return 0;
+template <bool kWithContours, bool kOneOrigin>
+typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
+EsvoPacketWalk<kWithContours, kOneOrigin>::cast(const RayPacket& packet) {
   load(packet);
   bound(kMaxLevels + 1);
   set_own_spans();
@@ -198,7 +234,11 @@ typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::cast
 
 template <class Nodes>
 std::uint64_t cast_packet_simd(const Nodes& nodes, const RayPacket& packet, EsvoHits* hits) {
-  return EsvoPacketWalk<std::is_same_v<Nodes, ContourNodes>>(nodes.view(), hits).cast(packet);
+  constexpr bool kWithContours = std::is_same_v<Nodes, ContourNodes>;
+  const EsvoView& esvo = nodes.view();
+  if (packet.size == 0 || esvo.is_empty()) return 0;
+  if (have_one_origin(packet)) return EsvoPacketWalk<kWithContours, true>(esvo, hits).cast(packet);
+  return EsvoPacketWalk<kWithContours, false>(esvo, hits).cast(packet);
 }
 
 #else

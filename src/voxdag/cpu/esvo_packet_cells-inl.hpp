@@ -14,18 +14,27 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// ContourRay::span: where rays with n.O = position and n.d = speed are between planes.
-template <bool kWithContours>
+/// ContourSlab::slack.
+template <bool kWithContours, bool kOneOrigin>
 template <class VFloat, class VInt>
-HWY_INLINE void EsvoPacketWalk<kWithContours>::cut(VInt position, VInt speed, VFloat exit, VInt low,
-                                                   VInt high, VInt length1, VFloat& enter,
-                                                   VFloat& leave) {
+HWY_INLINE VInt EsvoPacketWalk<kWithContours, kOneOrigin>::slack_of(VInt length1, VFloat exit) {
   const hn::DFromV<VFloat> d;
   const hn::DFromV<VInt> di;
   const auto base = hn::Set(d, ContourSlab::kReachBase);
   const auto reach = hn::Sub(hn::BitCast(di, hn::Add(exit, base)), hn::BitCast(di, base));
-  const auto slack =
-      hn::ShiftRight<ContourSlab::kReachShift>(hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
+  return hn::ShiftRight<ContourSlab::kReachShift>(hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
+}
+
+/// ContourRay::span: where rays with n.O = position and n.d = speed are between planes.
+template <bool kWithContours, bool kOneOrigin>
+template <class VFloat, class VInt>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::cut(VInt position, VInt speed,
+                                                               VFloat exit, VInt low, VInt high,
+                                                               VInt length1, VFloat& enter,
+                                                               VFloat& leave) {
+  const hn::DFromV<VFloat> d;
+  const hn::DFromV<VInt> di;
+  const auto slack = slack_of(length1, exit);
   const auto fall = hn::ConvertTo(d, hn::Or(speed, hn::Set(di, 1)));
   const auto inverse = hn::Div(hn::Set(d, 2.0f), fall);
   const auto above_high = hn::Sub(hn::Sub(position, high), slack),
@@ -38,29 +47,30 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::cut(VInt position, VInt speed, VF
 
 /// Which of `rays` meet the voxel's shape, and of these, with kWithStop, which end at it. With kCut
 /// it has a contour: sets the spans of its level.
-template <bool kWithContours>
+template <bool kWithContours, bool kOneOrigin>
 template <bool kCut, bool kWithStop>
-HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithContours>::clip(
-    const Visit& visit, Rays rays, Rays& stopped) {
+HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
+EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, Rays& stopped) {
   const DF d;
   const DI di;
   const std::uint32_t level = visit.level;
   const int bit = 23 - static_cast<int>(level);
   VF lower[3], upper[3];
   for (int axis = 0; axis < 3; ++axis) {
-    lower[axis] = hn::Set(d, float_from_bits(visit.corner[axis]));
-    upper[axis] = hn::Set(d, float_from_bits(visit.corner[axis] + (1u << bit)));
+    lower[axis] = to_plane(d, axis, visit.corner[axis]);
+    upper[axis] = to_plane(d, axis, visit.corner[axis] + (1u << bit));
   }
   const Spans& above = spans_below(level - 1);
   Spans& here = spans_[kCut ? level : 0];
   VI normal[3], low, high, length1;
   if constexpr (kCut) {
-    const ContourSlab slab = ContourSlab::make(visit.contour, rays_.mirrored, bit);
+    const ContourSlab slab = ContourSlab::make(Contour{visit.contour}, rays_.mirrored, bit);
     std::int32_t centre = 0;
     for (int axis = 0; axis < 3; ++axis) {
       normal[axis] = hn::Set(di, slab.normal[axis]);
       centre += slab.normal[axis] *
                 static_cast<std::int32_t>(visit.corner[axis] - kOne + (1u << (bit - 1)));
+      if constexpr (kOneOrigin) centre -= slab.normal[axis] * position_range_[axis][0];
     }
     low = hn::Set(di, centre + slab.low);
     high = hn::Set(di, centre + slab.high);
@@ -73,10 +83,9 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
     const std::size_t at = take_vector(rest);
     VF enters[3], exits[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const auto origin = hn::Load(d, rays_.origin[axis] + at),
-                 inverse = hn::Load(d, rays_.inverse[axis] + at);
-      enters[axis] = hn::Mul(hn::Sub(origin, upper[axis]), inverse);
-      exits[axis] = hn::Mul(hn::Sub(origin, lower[axis]), inverse);
+      const auto inverse = hn::Load(d, rays_.inverse[axis] + at);
+      enters[axis] = hn::Mul(distance(axis, at, upper[axis]), inverse);
+      exits[axis] = hn::Mul(distance(axis, at, lower[axis]), inverse);
     }
     const auto exit = hn::Min(hn::Min(exits[0], exits[1]), exits[2]);
     auto enter = hn::Max(hn::Max(enters[0], enters[1]), enters[2]);
@@ -91,7 +100,8 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
         return hn::Add(xy, hn::Mul(normal[2], hn::Load(di, v[2] + at)));
       };
       VF cut_enter, cut_leave;
-      cut(along(position_), along(direction_), exit, low, high, length1, cut_enter, cut_leave);
+      const auto position = kOneOrigin ? hn::Zero(di) : along(position_);
+      cut(position, along(direction_), exit, low, high, length1, cut_enter, cut_leave);
       const auto by_contour = hn::RebindMask(di, hn::Gt(cut_enter, enter));
       const auto enter_level = hn::IfThenZeroElse(by_cube, hn::Load(di, above.enter_level + at));
       hn::Store(
@@ -112,24 +122,24 @@ HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays EsvoPacketWalk<kWithCont
       stopped |= bits_of(hn::Le(hn::Set(d, side_of(level)), limit)) << at;
     }
   }
-  if constexpr (kCut) {
+  met &= rays;
+  if (kCut && are_many(met)) {
     here.first = hn::GetLane(hn::MinOfLanes(d, first));
     here.last = hn::GetLane(hn::MaxOfLanes(d, last));
   }
-  met &= rays;
   stopped &= met;
   return met;
 }
 
-/// Which of `rays` meet which children's cubes.
-template <bool kWithContours>
-HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, const Spans& spans,
-                                                         Rays rays, ChildRays& children) const {
+/// Which of `rays` meet which children's cubes, of those that are there.
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::intersect(const Visit& visit,
+                                                                     const Spans& spans, Rays rays,
+                                                                     ChildRays& children) const {
   const DF d;
   const std::uint32_t half = 1u << (22 - visit.level);
-  const auto plane = [&](int axis, std::uint32_t i) HWY_ATTR {
-    return hn::Set(d, float_from_bits(visit.corner[axis] + i * half));
-  };
+  const auto plane = [&](int axis, std::uint32_t i)
+                         HWY_ATTR { return to_plane(d, axis, visit.corner[axis] + i * half); };
   const auto x0 = plane(0, 0), x1 = plane(0, 1), x2 = plane(0, 2);
   const auto y0 = plane(1, 0), y1 = plane(1, 1), y2 = plane(1, 2);
   const auto z0 = plane(2, 0), z1 = plane(2, 1), z2 = plane(2, 2);
@@ -137,8 +147,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, con
   for (Rays rest = rays; rest != 0;) {
     const std::size_t first = take_vector(rest);
     const auto t = [&](int axis, VF position) HWY_ATTR {
-      return hn::Mul(hn::Sub(hn::Load(d, rays_.origin[axis] + first), position),
-                     hn::Load(d, rays_.inverse[axis] + first));
+      return hn::Mul(distance(axis, first, position), hn::Load(d, rays_.inverse[axis] + first));
     };
     const auto tx0 = t(0, x0), tx1 = t(0, x1), tx2 = t(0, x2);
     const auto ty0 = t(1, y0), ty1 = t(1, y1), ty2 = t(1, y2);
@@ -164,12 +173,20 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::intersect(const Visit& visit, con
   children.meet[5] = m5 & rays;
   children.meet[6] = m6 & rays;
   children.meet[7] = m7 & rays;
+  const hn::CappedTag<std::uint64_t, 4> d4;
+  std::uint8_t met[2][8];
+  for (std::size_t half_of_them = 0; half_of_them < 2; ++half_of_them)
+    hn::StoreMaskBits(d4, hn::Ne(hn::LoadU(d4, children.meet + 4 * half_of_them), hn::Zero(d4)),
+                      met[half_of_them]);
+  children.met &= met[0][0] | static_cast<std::uint32_t>(met[1][0]) << 4;
 }
 
 /// The children that any ray can meet.
-template <bool kWithContours>
-inline std::uint32_t EsvoPacketWalk<kWithContours>::children_met_by_hull(const Visit& visit,
-                                                                         const Spans& spans) const {
+template <bool kWithContours, bool kOneOrigin>
+inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::children_met_by_hull(
+    const Visit& visit, ChildDescriptor descriptor, const Spans& spans) const {
+  if (kWithContours && descriptor.contour_mask() != 0)
+    return shapes_met_by_hull(visit, descriptor, spans);
   const DF8 d;
   const DU8 du;
   const auto half = hn::Set(du, 1u << (22 - visit.level));

@@ -16,17 +16,16 @@ namespace HWY_NAMESPACE {
 #if VOXDAG_PACKET_LANES
 
 /// The shapes of a voxel's children, which are numbered as in its descriptor.
-template <bool kWithContours>
-struct EsvoPacketWalk<kWithContours>::ChildShapes {
-  VF8 lower[3], upper[3];  ///< Their cubes.
+template <bool kWithContours, bool kOneOrigin>
+struct EsvoPacketWalk<kWithContours, kOneOrigin>::ChildShapes {
+  VF8 lower[3], upper[3];  ///< Their cubes; with kOneOrigin how far from it.
   VI8 words, normal[3], length1, low, high;
   std::uint32_t with_contour;
 };
 
-template <bool kWithContours>
-HWY_INLINE void EsvoPacketWalk<kWithContours>::set_child_shapes(const Visit& visit,
-                                                                ChildDescriptor descriptor,
-                                                                ChildShapes& shapes) const {
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_shapes(
+    const Visit& visit, ChildDescriptor descriptor, ChildShapes& shapes) const {
   const DF8 d;
   const DI8 di;
   const int bit = 22 - static_cast<int>(visit.level);
@@ -39,6 +38,11 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::set_child_shapes(const Visit& vis
                            hn::And(is_upper, size));
     shapes.lower[axis] = hn::BitCast(d, corner[axis]);
     shapes.upper[axis] = hn::BitCast(d, hn::Add(corner[axis], size));
+    if constexpr (kOneOrigin) {
+      const auto origin = hn::Set(d, origin_range_[axis][0]);
+      shapes.lower[axis] = hn::Sub(origin, shapes.lower[axis]);
+      shapes.upper[axis] = hn::Sub(origin, shapes.upper[axis]);
+    }
   }
   shapes.with_contour = kWithContours ? descriptor.contour_mask() : 0;
   if (shapes.with_contour == 0) return;
@@ -61,7 +65,9 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::set_child_shapes(const Visit& vis
   for (int axis = 0; axis < 3; ++axis) {
     shapes.normal[axis] = hn::Sub(hn::Xor(normal[axis], sign[axis]), sign[axis]);
     length1 = hn::Add(length1, hn::Abs(normal[axis]));
-    centre = hn::Add(centre, hn::Mul(shapes.normal[axis], hn::Add(corner[axis], base)));
+    auto middle = hn::Add(corner[axis], base);
+    if constexpr (kOneOrigin) middle = hn::Sub(middle, hn::Set(di, position_range_[axis][0]));
+    centre = hn::Add(centre, hn::Mul(shapes.normal[axis], middle));
   }
   shapes.length1 = length1;
   const auto position = hn::Set(di, Contour::kMaxPosition);
@@ -79,31 +85,111 @@ HWY_INLINE void EsvoPacketWalk<kWithContours>::set_child_shapes(const Visit& vis
   shapes.high = hn::Add(plane(twice_high), wider);
 }
 
+/// The children whose shapes any ray can meet.
+///
+/// While the rays are in a child's cube, n.(O - C) - T n.d is between what the ranges of O, d and T
+/// allow. Where that is all above the contour's planes, or all below, no ray comes between them:
+/// those have been moved outwards by the slack for each ray, and here by another one, which is more
+/// than what ContourRay::span and this round.
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::shapes_met_by_hull(
+    const Visit& visit, ChildDescriptor descriptor, const Spans& spans) const {
+  const DF8 d;
+  const DI8 di;
+  ChildShapes shapes;
+  set_child_shapes(visit, descriptor, shapes);
+  auto enter = hn::Set(d, spans.first), exit = hn::Set(d, spans.last);
+  for (int axis = 0; axis < 3; ++axis) {
+    if constexpr (kOneOrigin)
+      bound_by_distances(axis, shapes.upper[axis], shapes.lower[axis], enter, exit);
+    else
+      bound_by_sides(axis, shapes.lower[axis], shapes.upper[axis], enter, exit);
+  }
+  const auto in_cube = hn::Lt(enter, exit);
+
+  auto least = hn::Zero(di), most = hn::Zero(di), slowest = hn::Zero(di), fastest = hn::Zero(di);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto add_range = [&](const std::int32_t(&range)[2], VI8& low, VI8& high) HWY_ATTR {
+      const auto a = hn::Mul(shapes.normal[axis], hn::Set(di, range[0])),
+                 b = hn::Mul(shapes.normal[axis], hn::Set(di, range[1]));
+      low = hn::Add(low, hn::Min(a, b));
+      high = hn::Add(high, hn::Max(a, b));
+    };
+    if constexpr (!kOneOrigin) add_range(position_range_[axis], least, most);
+    add_range(direction_range_[axis], slowest, fastest);
+  }
+  const auto slack = slack_of(shapes.length1, exit);
+  const auto twice = hn::Add(hn::Add(slack, slack), hn::Set(di, 1));
+  // T n.d is in units of 2^-24.
+  const auto half = hn::Set(d, 0.5f);
+  const auto slow = hn::Mul(hn::ConvertTo(d, slowest), half),
+             fast = hn::Mul(hn::ConvertTo(d, fastest), half);
+  const auto lowest = hn::Sub(hn::ConvertTo(d, hn::Sub(least, shapes.high)),
+                              hn::Max(hn::Mul(fast, enter), hn::Mul(fast, exit)));
+  const auto highest = hn::Sub(hn::ConvertTo(d, hn::Sub(most, shapes.low)),
+                               hn::Min(hn::Mul(slow, enter), hn::Mul(slow, exit)));
+  const auto reach = hn::ConvertTo(d, twice);
+  const auto is_between = hn::And(hn::Le(lowest, reach), hn::Ge(highest, hn::Neg(reach)));
+  const std::uint32_t between = bits_of_children(is_between) | ~shapes.with_contour;
+  return mirrored(bits_of_children(in_cube) & between & 0xFFu);
+}
+
+/// Sets the spans of the visited voxel's level to what end_at_children() has found for its parent.
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Visit& visit,
+                                                                        Rays rays) {
+  const Tried& tried = tried_[visit.level - 1];
+  const Spans& above = spans_below(visit.level - 1);
+  Spans& here = spans_[visit.level];
+  const int bit = 23 - static_cast<int>(visit.level);
+  std::uint32_t child = rays_.mirrored;
+  for (int axis = 0; axis < 3; ++axis) child ^= (visit.corner[axis] >> bit & 1u) << axis;
+  here.first = HUGE_VALF;
+  here.last = 0;
+  for (; rays != 0; rays &= rays - 1) {
+    const auto i = static_cast<std::size_t>(lowest_bit64(rays));
+    const auto place = static_cast<std::size_t>(popcount64(tried.rays & ((Rays{1} << i) - 1)));
+    const float enter = tried.enter[place][child], leave = tried.leave[place][child];
+    here.enter[i] = enter;
+    here.leave[i] = leave;
+    here.first = enter < here.first ? enter : here.first;
+    here.last = leave > here.last ? leave : here.last;
+    if ((tried.by_contour[place] >> child & 1u) != 0)
+      here.enter_level[i] = static_cast<std::int32_t>(visit.level);
+    else
+      here.enter_level[i] = (tried.by_cube[place] >> child & 1u) != 0 ? 0 : above.enter_level[i];
+  }
+}
+
 /// Ends those of `rays` that first meet a leaf or a voxel that they end at; returns them. Sets
 /// which children the others meet.
-template <bool kWithContours>
-HWY_INLINE typename EsvoPacketWalk<kWithContours>::Rays
-EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescriptor descriptor,
-                                               Rays rays, ChildRays& children) {
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
+EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,
+                                                           ChildDescriptor descriptor, Rays rays,
+                                                           bool may_stop, ChildRays& children) {
   const DF8 d;
   const DI8 di;
   ChildShapes shapes;
   set_child_shapes(visit, descriptor, shapes);
   const Spans& spans = spans_below(visit.level);
   const std::uint32_t present = descriptor.valid_mask();
-  const bool with_stop = static_cast<int>(visit.level) + 1 >= stop_level_;
   const auto side = hn::Set(d, side_of(visit.level + 1));
   const auto has_contour =
       hn::RebindMask(d, hn::Ne(hn::And(hn::Set(di, static_cast<std::int32_t>(shapes.with_contour)),
                                        hn::LoadU(di, kChildBits)),
                                hn::Zero(di)));
   for (Rays& meet : children.meet) meet = 0;
+  children.met = 0;
+  Tried& tried = tried_[kWithContours ? visit.level : 0];
+  tried.rays = rays;
   Rays ended = 0;
-  for (Rays rest = rays; rest != 0; rest &= rest - 1) {
+  std::size_t place = 0;
+  for (Rays rest = rays; rest != 0; rest &= rest - 1, ++place) {
     const auto i = static_cast<std::size_t>(lowest_bit64(rest));
-    const auto t = [&](int axis, VF8 position) HWY_ATTR {
-      return hn::Mul(hn::Sub(hn::Set(d, rays_.origin[axis][i]), position),
-                     hn::Set(d, rays_.inverse[axis][i]));
+    const auto t = [&](int axis, VF8 plane) HWY_ATTR {
+      if constexpr (!kOneOrigin) plane = hn::Sub(hn::Set(d, rays_.origin[axis][i]), plane);
+      return hn::Mul(plane, hn::Set(d, rays_.inverse[axis][i]));
     };
     const auto exit =
         hn::Min(hn::Min(t(0, shapes.lower[0]), t(1, shapes.lower[1])), t(2, shapes.lower[2]));
@@ -119,17 +205,22 @@ EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescript
         return hn::Add(xy, hn::Mul(shapes.normal[2], hn::Set(di, v[2][i])));
       };
       VF8 cut_enter, cut_leave;
-      cut(along(position_), along(direction_), exit, shapes.low, shapes.high, shapes.length1,
-          cut_enter, cut_leave);
+      const auto position = kOneOrigin ? hn::Zero(di) : along(position_);
+      cut(position, along(direction_), exit, shapes.low, shapes.high, shapes.length1, cut_enter,
+          cut_leave);
       const auto is_later = hn::And(has_contour, hn::Gt(cut_enter, enter));
       through_contour = bits_of_children(is_later);
       enter = hn::IfThenElse(is_later, cut_enter, enter);
       leave = hn::IfThenElse(has_contour, hn::Min(leave, cut_leave), leave);
+      hn::Store(enter, d, tried.enter[place]);
+      hn::Store(leave, d, tried.leave[place]);
+      tried.by_contour[place] = through_contour;
+      tried.by_cube[place] = bits_of_children(hn::Gt(cube, hn::Set(d, spans.enter[i])));
     }
     const std::uint32_t met = bits_of_children(hn::Lt(enter, leave)) & present;
     if (met == 0) continue;
     std::uint32_t ends = descriptor.leaf_mask();
-    if (with_stop) {
+    if (may_stop) {
       const auto limit =
           hn::Add(hn::Set(d, rays_.stop_start[i]), hn::Mul(hn::Set(d, rays_.stop_per_t[i]), exit));
       ends |= bits_of_children(hn::Le(side, limit));
@@ -138,6 +229,7 @@ EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescript
     const auto child = static_cast<std::uint32_t>(highest_bit(in_order));
     const std::uint32_t index = child ^ rays_.mirrored;
     if ((ends >> index & 1u) == 0) {
+      children.met |= in_order;
       for (; in_order != 0; in_order &= in_order - 1)
         children.meet[lowest_bit64(in_order)] |= Rays{1} << i;
       continue;
@@ -147,9 +239,9 @@ EsvoPacketWalk<kWithContours>::end_at_children(const Visit& visit, ChildDescript
     alignas(32) float enters[8];
     hn::Store(enter, d, enters);
     EsvoHits& hits = *hits_;
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
-      hits.corner[axis][i] =
-          visit.corner[axis] | ((child >> axis & 1u) != 0 ? 1u << (22 - visit.level) : 0u);
+    std::uint32_t corner[4];
+    set_child_corner(visit.corner, child, 1u << (22 - visit.level), corner);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) hits.corner[axis][i] = corner[axis];
     hits.t[i] = enters[index];
     hits.level[i] = static_cast<int>(visit.level + 1);
     hits.slot[i] = visit.slot;

@@ -21,7 +21,8 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-template <bool kWithContours>
+/// With kOneOrigin all rays start at one point, so that how far a plane is from it is found once.
+template <bool kWithContours, bool kOneOrigin>
 class EsvoPacketWalk : PacketRays {
   using DI = hn::RebindToSigned<DF>;
   using VI = hn::Vec<DI>;
@@ -43,10 +44,13 @@ class EsvoPacketWalk : PacketRays {
     std::uint32_t corner[3];  ///< Float bits.
     std::uint32_t level;
     Rays rays;
-    std::uint64_t slot;  ///< Of its descriptor, or kLeaf.
-    Contour contour;
-    bool is_exact;  ///< Whether the rays are known to meet its cube.
+    std::uint64_t slot;     ///< Of its descriptor, or kLeaf.
+    std::uint32_t contour;  ///< Contour::bits.
+    std::uint32_t known;    ///< Of what follows.
   };
+  /// Of the rays of a visit: they meet the voxel's cube; its shape, too, as end_at_children() has
+  /// found; some may end here by their level of detail.
+  static constexpr std::uint32_t kMeetCube = 1, kMeetShape = 2, kMayStop = 4;
   /// What contours have left of each ray's range of T, and of all rays together.
   struct Spans {
     alignas(64) float enter[RayPacket::kMaxRays], leave[RayPacket::kMaxRays];
@@ -57,6 +61,13 @@ class EsvoPacketWalk : PacketRays {
   /// By mirrored child index, the rays that meet the child.
   struct ChildRays {
     Rays meet[8];
+    std::uint32_t met;  ///< The children, mirrored, that any meets.
+  };
+  /// What end_at_children() has found for each of its rays, by child.
+  struct Tried {
+    alignas(32) float enter[kFew][8], leave[kFew][8];
+    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< How the ray comes to `enter`.
+    Rays rays;
   };
 
   using ByteTable = std::array<std::array<std::uint8_t, 8>, 256>;
@@ -81,22 +92,41 @@ class EsvoPacketWalk : PacketRays {
     const auto* const own = reinterpret_cast<const std::uint32_t*>(esvo_.slots) + 2 * visit.slot;
     return own + (descriptor.contour_mask() != 0 ? descriptor.contour_pointer() : 0);
   }
+  /// What distance() wants of a plane at the float bits `position`: how far it is from the origin
+  /// of all rays, or where it is.
+  HWY_INLINE VF to_plane(DF d, int axis, std::uint32_t position) const {
+    const float at = float_from_bits(position);
+    return hn::Set(d, kOneOrigin ? origin_range_[axis][0] - at : at);
+  }
+  /// How far the origins of the vector of rays at `first` are from a plane.
+  HWY_INLINE VF distance(int axis, std::size_t first, VF plane) const {
+    if constexpr (kOneOrigin) return plane;
+    return hn::Sub(hn::Load(DF(), rays_.origin[axis] + first), plane);
+  }
   struct ChildShapes;
   void set_child_shapes(const Visit& visit, ChildDescriptor descriptor, ChildShapes& shapes) const;
-  Rays end_at_children(const Visit& visit, ChildDescriptor descriptor, Rays rays,
+  Rays end_at_children(const Visit& visit, ChildDescriptor descriptor, Rays rays, bool may_stop,
                        ChildRays& children);
+  template <class VFloat, class VInt>
+  static VInt slack_of(VInt length1, VFloat exit);
   template <class VFloat, class VInt>
   static void cut(VInt position, VInt speed, VFloat exit, VInt low, VInt high, VInt length1,
                   VFloat& enter, VFloat& leave);
   void set_own_spans();
+  void recall_spans(const Visit& visit, Rays rays);
+  bool may_stop_below(const Visit& visit) const;
   Rays walk(Rays all);
+  Rays visit_children(const Visit& visit, Rays rays);
   Rays clip(const Visit& visit, Rays rays, Rays& stopped);
   template <bool kCut, bool kWithStop>
   Rays clip(const Visit& visit, Rays rays, Rays& stopped);
-  std::uint32_t children_met_by_hull(const Visit& visit, const Spans& spans) const;
+  std::uint32_t children_met_by_hull(const Visit& visit, ChildDescriptor descriptor,
+                                     const Spans& spans) const;
+  std::uint32_t shapes_met_by_hull(const Visit& visit, ChildDescriptor descriptor,
+                                   const Spans& spans) const;
   void intersect(const Visit& visit, const Spans& spans, Rays rays, ChildRays& children) const;
-  void push_children(const Visit& visit, ChildDescriptor descriptor, std::uint32_t met,
-                     const ChildRays& children, bool is_exact);
+  void push_children(const Visit& visit, ChildDescriptor descriptor, const ChildRays& children,
+                     std::uint32_t known);
   void record(const Visit& visit, Rays rays);
   ContourPlane plane_at(std::uint32_t level, std::size_t ray, float t) const;
 
@@ -104,14 +134,17 @@ class EsvoPacketWalk : PacketRays {
   EsvoHits* hits_;
   /// Positions and directions as ContourRay has them, by axis, then by ray.
   alignas(64) std::int32_t position_[3][RayPacket::kMaxRays], direction_[3][RayPacket::kMaxRays];
+  /// Least and greatest of them, by axis.
+  std::int32_t position_range_[3][2], direction_range_[3][2];
   std::size_t top_ = 0;
   Visit stack_[8 * kMaxLevels];
   /// The path to the voxel that is visited, by level: its descriptors' slots and its contours;
   /// where the spans are that its contours have left, of which 0 is the rays' own.
   std::uint64_t slots_[kMaxLevels + 1];
-  Contour contours_[kMaxLevels + 1];
+  std::uint32_t contours_[kMaxLevels + 1];
   std::uint32_t span_at_[kMaxLevels + 1];
   Spans spans_[kWithContours ? kMaxLevels + 1 : 1];
+  Tried tried_[kWithContours ? kMaxLevels + 1 : 1];  ///< By level of the parent.
 };
 
 #endif  // VOXDAG_PACKET_LANES

@@ -19,6 +19,22 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
+/// Whether all rays start at one point, mirrored.
+inline bool have_one_origin(const RayPacket& packet) {
+  static_assert(offsetof(GridRay, origin) == 0 && sizeof(GridRay) >= 16);
+  const hn::CappedTag<float, 4> d;
+  const auto origin = [&](std::size_t i) HWY_ATTR {
+    return hn::LoadU(d, reinterpret_cast<const float*>(packet.rays[i]));
+  };
+  const auto first = origin(0);
+  std::uint8_t bits[8] = {};
+  for (std::size_t i = 1; i < packet.size; ++i) {
+    hn::StoreMaskBits(d, hn::Ne(origin(i), first), bits);
+    if ((bits[0] & 7u) != 0) return false;
+  }
+  return true;
+}
+
 class PacketRays : protected PacketLanes {
  protected:
   using Rays = Set;
@@ -49,8 +65,11 @@ class PacketRays : protected PacketLanes {
   /// Finds the ranges that the rays are in. `levels` is L, or more.
   void bound(int levels);
   /// Whether the rays are close together for the children of this cell: not worth telling apart.
-  /// None enters it before `enter`.
-  bool are_narrow(const std::uint32_t corner[3], int level, float enter) const;
+  /// None enters it before `enter`. A word after the corner's three is read, too.
+  bool are_narrow(const std::uint32_t corner[4], int level, float enter) const;
+  /// No ray that meets a cell with this lower corner leaves it later. A word after the corner's
+  /// three is read, too.
+  float last_exit(const std::uint32_t corner[4]) const;
   /// Whether they fill more than two vectors: fewer are told apart as fast.
   static bool are_many(Rays rays) { return (rays >> (2 * kWidth - 1) >> 1) != 0; }
 
@@ -59,10 +78,15 @@ class PacketRays : protected PacketLanes {
   HWY_INLINE void bound_by_sides(int axis, hn::Vec<DF8> low, hn::Vec<DF8> high, hn::Vec<DF8>& enter,
                                  hn::Vec<DF8>& exit) const {
     const DF8 d;
+    bound_by_distances(axis, hn::Sub(hn::Set(d, origin_range_[axis][0]), high),
+                       hn::Sub(hn::Set(d, origin_range_[axis][1]), low), enter, exit);
+  }
+  /// The same of the least distances down to the upper sides, and the greatest to the lower ones.
+  HWY_INLINE void bound_by_distances(int axis, hn::Vec<DF8> to_high, hn::Vec<DF8> to_low,
+                                     hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const {
+    const DF8 d;
     const auto slow = hn::Set(d, inverse_range_[axis][1]),
                fast = hn::Set(d, inverse_range_[axis][0]);
-    const auto to_high = hn::Sub(hn::Set(d, origin_range_[axis][0]), high);
-    const auto to_low = hn::Sub(hn::Set(d, origin_range_[axis][1]), low);
     enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
     exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
   }
@@ -82,10 +106,7 @@ class PacketRays : protected PacketLanes {
         table[m][mask] = static_cast<std::uint8_t>(mirrored_mask(mask, m));
     return table;
   }
-  std::uint32_t mirrored(std::uint32_t mask) const {
-    static constexpr MaskTable kMasks = mirrored_masks();
-    return kMasks[rays_.mirrored][mask];
-  }
+  std::uint32_t mirrored(std::uint32_t mask) const { return mirrored_masks_[mask]; }
   static HWY_INLINE std::uint32_t bits_of_children(hn::Mask<DF8> mask) {
     std::uint8_t bits[8];
     hn::StoreMaskBits(DF8(), mask, bits);
@@ -95,6 +116,8 @@ class PacketRays : protected PacketLanes {
   static HWY_INLINE float side_of(Level level) {
     return float_from_bits((127u - static_cast<std::uint32_t>(level)) << 23);
   }
+  /// All bits of the first three words.
+  alignas(16) static constexpr std::uint32_t kAxes[4] = {~0u, ~0u, ~0u, 0};
   /// By axis: all bits of the children in the upper half.
   alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
                                                              {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
@@ -114,8 +137,11 @@ class PacketRays : protected PacketLanes {
   }
 
   Lanes rays_;
+  const std::uint8_t* mirrored_masks_;  ///< By mask.
   /// Least and greatest of all rays, by axis, then of t_min and t_end.
   float origin_range_[3][2], inverse_range_[3][2], t_range_[2];
+  /// By axis, then 0.
+  alignas(16) float least_origin_[4], least_inverse_[4], most_origin_[4], most_inverse_[4];
   float stop_start_[2], stop_per_t_[2];
   float last_t_min_;
   int stop_level_;  ///< No ray ends above this level but at voxels; `levels` where none does.
@@ -197,6 +223,8 @@ inline void PacketRays::load(const RayPacket& packet) {
   }
   rays_.size = packet.size;
   rays_.mirrored = packet.rays[0]->ray.mirrored;
+  static constexpr MaskTable kMasks = mirrored_masks();
+  mirrored_masks_ = kMasks[rays_.mirrored].data();
   rays_.coarsest = packet.rays[0]->stop.coarsest_level;
   rays_.has_stop = !hn::AllTrue(d, hn::Le(stops, hn::Zero(d)));
 }
@@ -213,9 +241,14 @@ inline void PacketRays::bound(int levels) {
     out[1] = hn::GetLane(hn::MaxOfLanes(d, high));
   };
   width_at_start_ = width_per_t_ = 0;
+  least_origin_[3] = least_inverse_[3] = most_origin_[3] = most_inverse_[3] = 0;
   for (int axis = 0; axis < 3; ++axis) {
     range(rays_.origin[axis], origin_range_[axis]);
     range(rays_.inverse[axis], inverse_range_[axis]);
+    least_origin_[axis] = origin_range_[axis][0];
+    least_inverse_[axis] = inverse_range_[axis][0];
+    most_origin_[axis] = origin_range_[axis][1];
+    most_inverse_[axis] = inverse_range_[axis][1];
     const float apart = origin_range_[axis][1] - origin_range_[axis][0];
     const float spread = 1 / inverse_range_[axis][0] - 1 / inverse_range_[axis][1];
     width_at_start_ = apart > width_at_start_ ? apart : width_at_start_;
@@ -238,13 +271,23 @@ inline void PacketRays::bound(int levels) {
   while (stop_level_ < levels && side_of(stop_level_) > most) ++stop_level_;
 }
 
-inline bool PacketRays::are_narrow(const std::uint32_t corner[3], int level, float enter) const {
-  const std::uint32_t size = 1u << (23 - level);
-  for (int axis = 0; axis < 3; ++axis) {
-    const float t =
-        (origin_range_[axis][0] - float_from_bits(corner[axis] + size)) * inverse_range_[axis][0];
-    enter = t > enter ? t : enter;
-  }
+inline float PacketRays::last_exit(const std::uint32_t corner[4]) const {
+  const hn::CappedTag<float, 4> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const auto lower = hn::BitCast(d, hn::And(hn::LoadU(du, corner), hn::Load(du, kAxes)));
+  const auto t = hn::Mul(hn::Sub(hn::Load(d, most_origin_), lower), hn::Load(d, most_inverse_));
+  const auto is_axis = hn::MaskFromVec(hn::BitCast(d, hn::Load(du, kAxes)));
+  return hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_axis, t, hn::Set(d, HUGE_VALF))));
+}
+
+inline bool PacketRays::are_narrow(const std::uint32_t corner[4], int level, float enter) const {
+  const hn::CappedTag<float, 4> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const auto upper = hn::Add(hn::LoadU(du, corner), hn::Set(du, 1u << (23 - level)));
+  const auto distance =
+      hn::Sub(hn::Load(d, least_origin_), hn::BitCast(d, hn::And(upper, hn::Load(du, kAxes))));
+  const auto t = hn::Mul(distance, hn::Load(d, least_inverse_));
+  enter = hn::GetLane(hn::MaxOfLanes(d, hn::Max(t, hn::Set(d, enter))));
   return width_at_start_ + width_per_t_ * enter < kNarrow * side_of(level + 1);
 }
 
