@@ -33,6 +33,8 @@ template <bool kWithContours, bool kOneOrigin>
 void EsvoPacketWalk<kWithContours, kOneOrigin>::set_own_spans() {
   const DF d;
   const DI di;
+  for (int axis = 0; axis < 3; ++axis)
+    sign_[axis] = -static_cast<std::int32_t>(rays_.mirrored >> axis & 1u);
   if constexpr (kWithContours)
     for (int axis = 0; axis < 3; ++axis) {
       for (std::size_t i = 0; i < rays_.size; i += kWidth) {
@@ -65,21 +67,23 @@ template <bool kWithContours, bool kOneOrigin>
 typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, Rays& stopped) {
   const bool with_stop = (visit.known & kMayStop) != 0;
-  if (kWithContours && visit.contour != 0)
+  if (kWithContours && (visit.known & kHasContour) != 0)
     return with_stop ? clip<true, true>(visit, rays, stopped)
                      : clip<true, false>(visit, rays, stopped);
   return with_stop ? clip<false, true>(visit, rays, stopped)
                    : clip<false, false>(visit, rays, stopped);
 }
 
-/// The contour of the path's voxel of `level`, or an ancestor, by which a ray came to t, if by one.
+/// The contour of the visited voxel or an ancestor by which a ray came to t, if by one.
 template <bool kWithContours, bool kOneOrigin>
-HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours, kOneOrigin>::plane_at(std::uint32_t level,
+HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours, kOneOrigin>::plane_at(const Visit& visit,
                                                                             std::size_t ray,
                                                                             float t) const {
-  const Spans& spans = spans_below(level);
-  const std::int32_t enter_level = spans.enter[ray] == t ? spans.enter_level[ray] : 0;
-  return {Contour{enter_level != 0 ? contours_[enter_level] : 0}, enter_level};
+  const Spans& spans = spans_below(visit.level);
+  const std::int32_t level = spans.enter[ray] == t ? spans.enter_level[ray] : 0;
+  if (level == 0) return {};
+  const std::uint32_t child = child_of(visit.corner, static_cast<std::uint32_t>(level));
+  return {Contour{static_cast<std::uint32_t>(child_contours_[level - 1].words[child])}, level};
 }
 
 template <bool kWithContours, bool kOneOrigin>
@@ -88,8 +92,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::record(const Visit& v
   const Spans& spans = spans_below(visit.level);
   const int bit = 23 - static_cast<int>(visit.level);
   EsvoHits& hits = *hits_;
-  std::uint32_t child = 0;
-  for (int axis = 0; axis < 3; ++axis) child |= (visit.corner[axis] >> bit & 1u) << axis;
+  const auto child = static_cast<std::uint8_t>(child_of(visit.corner, visit.level));
   for (; rays != 0; rays &= rays - 1) {
     const auto i = static_cast<std::size_t>(lowest_bit64(rays));
     float t = spans.enter[i];
@@ -102,8 +105,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::record(const Visit& v
     hits.t[i] = t;
     hits.level[i] = static_cast<int>(visit.level);
     hits.slot[i] = slots_[visit.level - 1];
-    hits.child[i] = static_cast<std::uint8_t>(child ^ rays_.mirrored);
-    if constexpr (kWithContours) hits.plane[i] = plane_at(visit.level, i, t);
+    hits.child[i] = child;
+    if constexpr (kWithContours) hits.plane[i] = plane_at(visit, i, t);
   }
 }
 
@@ -118,8 +121,6 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::push_children(const V
   const std::uint32_t inner = descriptor.inner_mask();
   const std::uint32_t with_contour = kWithContours ? descriptor.contour_mask() : 0;
   const auto& inner_before = kBefore[inner];
-  const auto& contours_before = kBefore[with_contour];
-  const std::uint32_t* const contours = contours_of(visit, descriptor);
   const std::uint64_t first_child =
       inner != 0 ? esvo_.first_child(visit.slot, descriptor) : std::uint64_t{0};
   for (; met != 0; met &= met - 1) {
@@ -128,15 +129,10 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::push_children(const V
     next.rays = children.meet[child];
     const std::uint32_t index = child ^ rays_.mirrored;
     set_child_corner(visit.corner, child, half, next.corner);
-    next.known = known;
+    next.known = known | ((with_contour >> index & 1u) != 0 ? kHasContour : 0);
     const bool is_inner = (inner >> index & 1u) != 0;
     next.slot = is_inner ? first_child + inner_before[index] : kLeaf;
     hwy::Prefetch(esvo_.slots + (is_inner ? next.slot : visit.slot));
-    next.contour = 0;
-    if constexpr (kWithContours) {
-      const std::uint32_t has_contour = with_contour >> index & 1u;
-      next.contour = contours[has_contour * contours_before[index]] & (0u - has_contour);
-    }
   }
 }
 
@@ -161,12 +157,18 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::visit_children(const Visit& visit, Ra
   ChildRays children;
   children.met = mirrored(descriptor.valid_mask());
   std::uint32_t known = may_stop ? kMayStop : 0;
+  const std::uint32_t with_contour = kWithContours ? descriptor.contour_mask() : 0;
+  const bool are_few = popcount64(rays) <= kFew;
+  ChildCubes cubes;
+  if (with_contour != 0 || are_few) set_child_cubes(visit, cubes);
+  if (with_contour != 0) set_child_contours(visit, descriptor, cubes);
   Rays ended = 0;
   if (are_many(rays) && are_narrow(visit.corner, static_cast<int>(visit.level), spans.first)) {
-    children.met &= children_met_by_hull(visit, descriptor, spans);
+    children.met &= with_contour != 0 ? shapes_met_by_hull(visit, with_contour, cubes, spans)
+                                      : cubes_met_by_hull(visit, spans);
     for (Rays& meet : children.meet) meet = rays;
-  } else if (popcount64(rays) <= kFew) {
-    ended = end_at_children(visit, descriptor, rays, may_stop, children);
+  } else if (are_few) {
+    ended = end_at_children(visit, descriptor, cubes, rays, may_stop, children);
     known |= kMeetCube | kMeetShape;
   } else {
     intersect(visit, spans, rays, children);
@@ -180,7 +182,7 @@ template <bool kWithContours, bool kOneOrigin>
 typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
   Rays searching = all;
-  stack_[0] = {{kOne, kOne, kOne}, 0, all, esvo_.root, 0, kMeetCube};
+  stack_[0] = {{kOne, kOne, kOne}, 0, all, esvo_.root, kMeetCube};
   top_ = 1;
   while (top_ > 0 && searching != 0) {
     // Field by field, as it was stored: a wider load would wait for the stores. The corner and the
@@ -192,10 +194,9 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
     const hn::CappedTag<std::uint32_t, 4> d4;
     hn::StoreU(hn::LoadU(d4, popped.corner), d4, visit.corner);
     visit.slot = popped.slot;
-    visit.contour = popped.contour;
     visit.known = popped.known;
     const std::uint32_t level = visit.level;
-    const bool is_cut = kWithContours && visit.contour != 0;
+    const bool is_cut = kWithContours && (visit.known & kHasContour) != 0;
     const bool is_leaf = visit.slot == kLeaf;
     if (level > 0) {
       Rays stopped = 0;
@@ -208,7 +209,6 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
       }
       if constexpr (kWithContours) {
         span_at_[level] = is_cut ? level : span_at_[level - 1];
-        contours_[level] = visit.contour;
       }
       if (is_leaf) stopped = rays;
       if (stopped != 0) {

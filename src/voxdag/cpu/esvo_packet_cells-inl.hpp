@@ -64,17 +64,12 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, R
   Spans& here = spans_[kCut ? level : 0];
   VI normal[3], low, high, length1;
   if constexpr (kCut) {
-    const ContourSlab slab = ContourSlab::make(Contour{visit.contour}, rays_.mirrored, bit);
-    std::int32_t centre = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      normal[axis] = hn::Set(di, slab.normal[axis]);
-      centre += slab.normal[axis] *
-                static_cast<std::int32_t>(visit.corner[axis] - kOne + (1u << (bit - 1)));
-      if constexpr (kOneOrigin) centre -= slab.normal[axis] * position_range_[axis][0];
-    }
-    low = hn::Set(di, centre + slab.low);
-    high = hn::Set(di, centre + slab.high);
-    length1 = hn::Set(di, slab.length1);
+    const ChildContours& contours = child_contours_[level - 1];
+    const std::uint32_t child = child_of(visit.corner, level);
+    for (int axis = 0; axis < 3; ++axis) normal[axis] = hn::Set(di, contours.normal[axis][child]);
+    low = hn::Set(di, contours.low[child]);
+    high = hn::Set(di, contours.high[child]);
+    length1 = hn::Set(di, contours.length1[child]);
   }
   auto first = hn::Set(d, HUGE_VALF), last = hn::Zero(d);
   Rays met = 0;
@@ -181,12 +176,10 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::intersect(const Visit
   children.met &= met[0][0] | static_cast<std::uint32_t>(met[1][0]) << 4;
 }
 
-/// The children that any ray can meet.
+/// The children whose cubes any ray can meet.
 template <bool kWithContours, bool kOneOrigin>
-inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::children_met_by_hull(
-    const Visit& visit, ChildDescriptor descriptor, const Spans& spans) const {
-  if (kWithContours && descriptor.contour_mask() != 0)
-    return shapes_met_by_hull(visit, descriptor, spans);
+inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::cubes_met_by_hull(
+    const Visit& visit, const Spans& spans) const {
   const DF8 d;
   const DU8 du;
   const auto half = hn::Set(du, 1u << (22 - visit.level));

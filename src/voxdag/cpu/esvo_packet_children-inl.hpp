@@ -15,61 +15,67 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// The shapes of a voxel's children, which are numbered as in its descriptor.
+/// The cubes of a voxel's children, which are numbered as in its descriptor.
 template <bool kWithContours, bool kOneOrigin>
-struct EsvoPacketWalk<kWithContours, kOneOrigin>::ChildShapes {
-  VF8 lower[3], upper[3];  ///< Their cubes; with kOneOrigin how far from it.
-  VI8 words, normal[3], length1, low, high;
-  std::uint32_t with_contour;
+struct EsvoPacketWalk<kWithContours, kOneOrigin>::ChildCubes {
+  VI8 corner[3];           ///< Float bits.
+  VF8 lower[3], upper[3];  ///< Their sides; with kOneOrigin how far from it.
 };
 
 template <bool kWithContours, bool kOneOrigin>
-HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_shapes(
-    const Visit& visit, ChildDescriptor descriptor, ChildShapes& shapes) const {
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_cubes(
+    const Visit& visit, ChildCubes& cubes) const {
   const DF8 d;
   const DI8 di;
-  const int bit = 22 - static_cast<int>(visit.level);
-  const auto size = hn::Set(di, 1 << bit);
-  VI8 corner[3], sign[3];
+  const auto size = hn::Set(di, 1 << (22 - visit.level));
   for (int axis = 0; axis < 3; ++axis) {
-    sign[axis] = hn::Set(di, -static_cast<std::int32_t>(rays_.mirrored >> axis & 1u));
-    const auto is_upper = hn::Xor(hn::BitCast(di, hn::Load(DU8(), kUpper[axis])), sign[axis]);
-    corner[axis] = hn::Add(hn::Set(di, static_cast<std::int32_t>(visit.corner[axis])),
-                           hn::And(is_upper, size));
-    shapes.lower[axis] = hn::BitCast(d, corner[axis]);
-    shapes.upper[axis] = hn::BitCast(d, hn::Add(corner[axis], size));
+    const auto is_upper =
+        hn::Xor(hn::BitCast(di, hn::Load(DU8(), kUpper[axis])), hn::Set(di, sign_[axis]));
+    cubes.corner[axis] = hn::Add(hn::Set(di, static_cast<std::int32_t>(visit.corner[axis])),
+                                 hn::And(is_upper, size));
+    cubes.lower[axis] = hn::BitCast(d, cubes.corner[axis]);
+    cubes.upper[axis] = hn::BitCast(d, hn::Add(cubes.corner[axis], size));
     if constexpr (kOneOrigin) {
       const auto origin = hn::Set(d, origin_range_[axis][0]);
-      shapes.lower[axis] = hn::Sub(origin, shapes.lower[axis]);
-      shapes.upper[axis] = hn::Sub(origin, shapes.upper[axis]);
+      cubes.lower[axis] = hn::Sub(origin, cubes.lower[axis]);
+      cubes.upper[axis] = hn::Sub(origin, cubes.upper[axis]);
     }
   }
-  shapes.with_contour = kWithContours ? descriptor.contour_mask() : 0;
-  if (shapes.with_contour == 0) return;
+}
 
-  // The contours stand one after the other: each to the lane of its child.
-  const auto* const words = reinterpret_cast<const std::int32_t*>(contours_of(visit, descriptor));
-  const auto count = static_cast<std::size_t>(popcount8(shapes.with_contour));
+/// Sets the children's contours of the voxel's level, eight at once. There is one at least.
+template <bool kWithContours, bool kOneOrigin>
+HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
+    const Visit& visit, ChildDescriptor descriptor, const ChildCubes& cubes) {
+  const DI8 di;
+  const int bit = 22 - static_cast<int>(visit.level);
+  ChildContours& contours = child_contours_[visit.level];
+  // They stand one after the other: each to the lane of its child.
+  const std::uint32_t with_contour = descriptor.contour_mask();
+  const auto* const words = reinterpret_cast<const std::int32_t*>(esvo_.slots) + 2 * visit.slot +
+                            descriptor.contour_pointer();
+  const auto count = static_cast<std::size_t>(popcount8(with_contour));
   const auto listed = hn::MaskedLoad(hn::FirstN(di, count), di, words);
   const hn::Rebind<std::uint8_t, DI8> d_bytes;
-  const auto places = hn::PromoteTo(di, hn::LoadU(d_bytes, kBefore[shapes.with_contour].data()));
+  const auto places = hn::PromoteTo(di, hn::LoadU(d_bytes, kBefore[with_contour].data()));
   const auto w = hn::TableLookupLanes(listed, hn::IndicesFromVec(di, places));
-  shapes.words = w;
+  hn::Store(w, di, contours.words);
 
   // ContourSlab::make, and the centres.
   const VI8 normal[3] = {hn::ShiftRight<26>(hn::ShiftLeft<26>(w)),
                          hn::ShiftRight<26>(hn::ShiftLeft<20>(w)),
                          hn::ShiftRight<26>(hn::ShiftLeft<14>(w))};
-  const auto base = hn::Set(di, (1 << (bit - 1)) - static_cast<std::int32_t>(kOne));
+  const std::int32_t base = (1 << (bit - 1)) - static_cast<std::int32_t>(kOne);
   auto centre = hn::Zero(di), length1 = hn::Zero(di);
   for (int axis = 0; axis < 3; ++axis) {
-    shapes.normal[axis] = hn::Sub(hn::Xor(normal[axis], sign[axis]), sign[axis]);
-    length1 = hn::Add(length1, hn::Abs(normal[axis]));
-    auto middle = hn::Add(corner[axis], base);
-    if constexpr (kOneOrigin) middle = hn::Sub(middle, hn::Set(di, position_range_[axis][0]));
-    centre = hn::Add(centre, hn::Mul(shapes.normal[axis], middle));
+    const auto sign = hn::Set(di, sign_[axis]);
+    const auto n = hn::Sub(hn::Xor(normal[axis], sign), sign);
+    const auto from = hn::Set(di, kOneOrigin ? base - position_range_[axis][0] : base);
+    centre = hn::Add(centre, hn::Mul(n, hn::Add(cubes.corner[axis], from)));
+    length1 = hn::Add(length1, hn::Abs(n));
+    hn::Store(n, di, contours.normal[axis]);
   }
-  shapes.length1 = length1;
+  hn::Store(length1, di, contours.length1);
   const auto position = hn::Set(di, Contour::kMaxPosition);
   const auto plane = [&](VI8 twice) HWY_ATTR {
     const auto steps = hn::Mul(length1, hn::Sub(twice, position));
@@ -81,8 +87,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_shapes(
               hn::ShiftRight<ContourSlab::kWiderShift>(hn::ShiftLeftSame(length1, bit - 1)));
   const auto twice_low = hn::And(hn::ShiftRight<17>(w), hn::Set(di, 2 * Contour::kMaxPosition)),
              twice_high = hn::And(hn::ShiftRight<24>(w), hn::Set(di, 2 * Contour::kMaxPosition));
-  shapes.low = hn::Sub(plane(twice_low), wider);
-  shapes.high = hn::Add(plane(twice_high), wider);
+  hn::Store(hn::Sub(plane(twice_low), wider), di, contours.low);
+  hn::Store(hn::Add(plane(twice_high), wider), di, contours.high);
 }
 
 /// The children whose shapes any ray can meet.
@@ -93,45 +99,45 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_shapes(
 /// than what ContourRay::span and this round.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::shapes_met_by_hull(
-    const Visit& visit, ChildDescriptor descriptor, const Spans& spans) const {
+    const Visit& visit, std::uint32_t with_contour, const ChildCubes& cubes,
+    const Spans& spans) const {
   const DF8 d;
   const DI8 di;
-  ChildShapes shapes;
-  set_child_shapes(visit, descriptor, shapes);
   auto enter = hn::Set(d, spans.first), exit = hn::Set(d, spans.last);
   for (int axis = 0; axis < 3; ++axis) {
     if constexpr (kOneOrigin)
-      bound_by_distances(axis, shapes.upper[axis], shapes.lower[axis], enter, exit);
+      bound_by_distances(axis, cubes.upper[axis], cubes.lower[axis], enter, exit);
     else
-      bound_by_sides(axis, shapes.lower[axis], shapes.upper[axis], enter, exit);
+      bound_by_sides(axis, cubes.lower[axis], cubes.upper[axis], enter, exit);
   }
-  const auto in_cube = hn::Lt(enter, exit);
+  const std::uint32_t in_cube = bits_of_children(hn::Lt(enter, exit));
+  if ((in_cube & with_contour) == 0) return mirrored(in_cube);
 
+  const ChildContours& contours = child_contours_[kWithContours ? visit.level : 0];
   auto least = hn::Zero(di), most = hn::Zero(di), slowest = hn::Zero(di), fastest = hn::Zero(di);
   for (int axis = 0; axis < 3; ++axis) {
     const auto add_range = [&](const std::int32_t(&range)[2], VI8& low, VI8& high) HWY_ATTR {
-      const auto a = hn::Mul(shapes.normal[axis], hn::Set(di, range[0])),
-                 b = hn::Mul(shapes.normal[axis], hn::Set(di, range[1]));
+      const auto n = hn::Load(di, contours.normal[axis]);
+      const auto a = hn::Mul(n, hn::Set(di, range[0])), b = hn::Mul(n, hn::Set(di, range[1]));
       low = hn::Add(low, hn::Min(a, b));
       high = hn::Add(high, hn::Max(a, b));
     };
     if constexpr (!kOneOrigin) add_range(position_range_[axis], least, most);
     add_range(direction_range_[axis], slowest, fastest);
   }
-  const auto slack = slack_of(shapes.length1, exit);
+  const auto slack = slack_of(hn::Load(di, contours.length1), exit);
   const auto twice = hn::Add(hn::Add(slack, slack), hn::Set(di, 1));
   // T n.d is in units of 2^-24.
   const auto half = hn::Set(d, 0.5f);
   const auto slow = hn::Mul(hn::ConvertTo(d, slowest), half),
              fast = hn::Mul(hn::ConvertTo(d, fastest), half);
-  const auto lowest = hn::Sub(hn::ConvertTo(d, hn::Sub(least, shapes.high)),
+  const auto lowest = hn::Sub(hn::ConvertTo(d, hn::Sub(least, hn::Load(di, contours.high))),
                               hn::Max(hn::Mul(fast, enter), hn::Mul(fast, exit)));
-  const auto highest = hn::Sub(hn::ConvertTo(d, hn::Sub(most, shapes.low)),
+  const auto highest = hn::Sub(hn::ConvertTo(d, hn::Sub(most, hn::Load(di, contours.low))),
                                hn::Min(hn::Mul(slow, enter), hn::Mul(slow, exit)));
   const auto reach = hn::ConvertTo(d, twice);
   const auto is_between = hn::And(hn::Le(lowest, reach), hn::Ge(highest, hn::Neg(reach)));
-  const std::uint32_t between = bits_of_children(is_between) | ~shapes.with_contour;
-  return mirrored(bits_of_children(in_cube) & between & 0xFFu);
+  return mirrored(in_cube & (bits_of_children(is_between) | ~with_contour));
 }
 
 /// Sets the spans of the visited voxel's level to what end_at_children() has found for its parent.
@@ -141,9 +147,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Vi
   const Tried& tried = tried_[visit.level - 1];
   const Spans& above = spans_below(visit.level - 1);
   Spans& here = spans_[visit.level];
-  const int bit = 23 - static_cast<int>(visit.level);
-  std::uint32_t child = rays_.mirrored;
-  for (int axis = 0; axis < 3; ++axis) child ^= (visit.corner[axis] >> bit & 1u) << axis;
+  const std::uint32_t child = child_of(visit.corner, visit.level);
   here.first = HUGE_VALF;
   here.last = 0;
   for (; rays != 0; rays &= rays - 1) {
@@ -166,17 +170,18 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Vi
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,
-                                                           ChildDescriptor descriptor, Rays rays,
+                                                           ChildDescriptor descriptor,
+                                                           const ChildCubes& cubes, Rays rays,
                                                            bool may_stop, ChildRays& children) {
   const DF8 d;
   const DI8 di;
-  ChildShapes shapes;
-  set_child_shapes(visit, descriptor, shapes);
+  const std::uint32_t with_contour = kWithContours ? descriptor.contour_mask() : 0;
+  const ChildContours& contours = child_contours_[kWithContours ? visit.level : 0];
   const Spans& spans = spans_below(visit.level);
   const std::uint32_t present = descriptor.valid_mask();
   const auto side = hn::Set(d, side_of(visit.level + 1));
   const auto has_contour =
-      hn::RebindMask(d, hn::Ne(hn::And(hn::Set(di, static_cast<std::int32_t>(shapes.with_contour)),
+      hn::RebindMask(d, hn::Ne(hn::And(hn::Set(di, static_cast<std::int32_t>(with_contour)),
                                        hn::LoadU(di, kChildBits)),
                                hn::Zero(di)));
   for (Rays& meet : children.meet) meet = 0;
@@ -192,22 +197,23 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,
       return hn::Mul(plane, hn::Set(d, rays_.inverse[axis][i]));
     };
     const auto exit =
-        hn::Min(hn::Min(t(0, shapes.lower[0]), t(1, shapes.lower[1])), t(2, shapes.lower[2]));
+        hn::Min(hn::Min(t(0, cubes.lower[0]), t(1, cubes.lower[1])), t(2, cubes.lower[2]));
     const auto cube =
-        hn::Max(hn::Max(t(0, shapes.upper[0]), t(1, shapes.upper[1])), t(2, shapes.upper[2]));
+        hn::Max(hn::Max(t(0, cubes.upper[0]), t(1, cubes.upper[1])), t(2, cubes.upper[2]));
     auto enter = hn::Max(cube, hn::Set(d, spans.enter[i]));
     auto leave = hn::Min(exit, hn::Set(d, spans.leave[i]));
     std::uint32_t through_contour = 0;
-    if (kWithContours && shapes.with_contour != 0) {
+    if (kWithContours && with_contour != 0) {
       const auto along = [&](const std::int32_t(&v)[3][RayPacket::kMaxRays]) HWY_ATTR {
-        const auto xy = hn::Add(hn::Mul(shapes.normal[0], hn::Set(di, v[0][i])),
-                                hn::Mul(shapes.normal[1], hn::Set(di, v[1][i])));
-        return hn::Add(xy, hn::Mul(shapes.normal[2], hn::Set(di, v[2][i])));
+        const auto part = [&](int axis) HWY_ATTR {
+          return hn::Mul(hn::Load(di, contours.normal[axis]), hn::Set(di, v[axis][i]));
+        };
+        return hn::Add(hn::Add(part(0), part(1)), part(2));
       };
       VF8 cut_enter, cut_leave;
       const auto position = kOneOrigin ? hn::Zero(di) : along(position_);
-      cut(position, along(direction_), exit, shapes.low, shapes.high, shapes.length1, cut_enter,
-          cut_leave);
+      cut(position, along(direction_), exit, hn::Load(di, contours.low),
+          hn::Load(di, contours.high), hn::Load(di, contours.length1), cut_enter, cut_leave);
       const auto is_later = hn::And(has_contour, hn::Gt(cut_enter, enter));
       through_contour = bits_of_children(is_later);
       enter = hn::IfThenElse(is_later, cut_enter, enter);
@@ -248,10 +254,9 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,
     hits.child[i] = static_cast<std::uint8_t>(index);
     if constexpr (kWithContours) {
       if ((through_contour >> index & 1u) != 0)
-        hits.plane[i] = {esvo_.contour(visit.slot, descriptor, static_cast<int>(index)),
-                         hits.level[i]};
+        hits.plane[i] = {Contour{static_cast<std::uint32_t>(contours.words[index])}, hits.level[i]};
       else
-        hits.plane[i] = plane_at(visit.level, i, enters[index]);
+        hits.plane[i] = plane_at(visit, i, enters[index]);
     }
   }
   return ended;

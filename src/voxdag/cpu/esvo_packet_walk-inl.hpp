@@ -44,13 +44,12 @@ class EsvoPacketWalk : PacketRays {
     std::uint32_t corner[3];  ///< Float bits.
     std::uint32_t level;
     Rays rays;
-    std::uint64_t slot;     ///< Of its descriptor, or kLeaf.
-    std::uint32_t contour;  ///< Contour::bits.
-    std::uint32_t known;    ///< Of what follows.
+    std::uint64_t slot;   ///< Of its descriptor, or kLeaf.
+    std::uint32_t known;  ///< Of what follows.
   };
-  /// Of the rays of a visit: they meet the voxel's cube; its shape, too, as end_at_children() has
-  /// found; some may end here by their level of detail.
-  static constexpr std::uint32_t kMeetCube = 1, kMeetShape = 2, kMayStop = 4;
+  /// Of a visit: the rays meet the voxel's cube; its shape, too, as end_at_children() has found;
+  /// some may end here by their level of detail; the voxel has a contour.
+  static constexpr std::uint32_t kMeetCube = 1, kMeetShape = 2, kMayStop = 4, kHasContour = 8;
   /// What contours have left of each ray's range of T, and of all rays together.
   struct Spans {
     alignas(64) float enter[RayPacket::kMaxRays], leave[RayPacket::kMaxRays];
@@ -62,6 +61,12 @@ class EsvoPacketWalk : PacketRays {
   struct ChildRays {
     Rays meet[8];
     std::uint32_t met;  ///< The children, mirrored, that any meets.
+  };
+  /// The contours of a voxel's children, which are numbered as in its descriptor. The planes are
+  /// where ContourSlab has them, but from the origin of the grid or of all rays.
+  struct ChildContours {
+    alignas(32) std::int32_t words[8];  ///< Contour::bits.
+    alignas(32) std::int32_t normal[3][8], length1[8], low[8], high[8];
   };
   /// What end_at_children() has found for each of its rays, by child.
   struct Tried {
@@ -87,10 +92,11 @@ class EsvoPacketWalk : PacketRays {
     return kWithContours ? spans_[span_at_[level]] : spans_[0];
   }
 
-  /// The contours of a descriptor's children; without any, some word of the octree.
-  const std::uint32_t* contours_of(const Visit& visit, ChildDescriptor descriptor) const {
-    const auto* const own = reinterpret_cast<const std::uint32_t*>(esvo_.slots) + 2 * visit.slot;
-    return own + (descriptor.contour_mask() != 0 ? descriptor.contour_pointer() : 0);
+  /// The number, in its parent's descriptor, of the voxel of `level` that holds this corner.
+  std::uint32_t child_of(const std::uint32_t corner[3], std::uint32_t level) const {
+    std::uint32_t child = rays_.mirrored;
+    for (int axis = 0; axis < 3; ++axis) child ^= (corner[axis] >> (23 - level) & 1u) << axis;
+    return child;
   }
   /// What distance() wants of a plane at the float bits `position`: how far it is from the origin
   /// of all rays, or where it is.
@@ -103,10 +109,11 @@ class EsvoPacketWalk : PacketRays {
     if constexpr (kOneOrigin) return plane;
     return hn::Sub(hn::Load(DF(), rays_.origin[axis] + first), plane);
   }
-  struct ChildShapes;
-  void set_child_shapes(const Visit& visit, ChildDescriptor descriptor, ChildShapes& shapes) const;
-  Rays end_at_children(const Visit& visit, ChildDescriptor descriptor, Rays rays, bool may_stop,
-                       ChildRays& children);
+  struct ChildCubes;
+  void set_child_cubes(const Visit& visit, ChildCubes& cubes) const;
+  void set_child_contours(const Visit& visit, ChildDescriptor descriptor, const ChildCubes& cubes);
+  Rays end_at_children(const Visit& visit, ChildDescriptor descriptor, const ChildCubes& cubes,
+                       Rays rays, bool may_stop, ChildRays& children);
   template <class VFloat, class VInt>
   static VInt slack_of(VInt length1, VFloat exit);
   template <class VFloat, class VInt>
@@ -120,15 +127,14 @@ class EsvoPacketWalk : PacketRays {
   Rays clip(const Visit& visit, Rays rays, Rays& stopped);
   template <bool kCut, bool kWithStop>
   Rays clip(const Visit& visit, Rays rays, Rays& stopped);
-  std::uint32_t children_met_by_hull(const Visit& visit, ChildDescriptor descriptor,
-                                     const Spans& spans) const;
-  std::uint32_t shapes_met_by_hull(const Visit& visit, ChildDescriptor descriptor,
-                                   const Spans& spans) const;
+  std::uint32_t cubes_met_by_hull(const Visit& visit, const Spans& spans) const;
+  std::uint32_t shapes_met_by_hull(const Visit& visit, std::uint32_t with_contour,
+                                   const ChildCubes& cubes, const Spans& spans) const;
   void intersect(const Visit& visit, const Spans& spans, Rays rays, ChildRays& children) const;
   void push_children(const Visit& visit, ChildDescriptor descriptor, const ChildRays& children,
                      std::uint32_t known);
   void record(const Visit& visit, Rays rays);
-  ContourPlane plane_at(std::uint32_t level, std::size_t ray, float t) const;
+  ContourPlane plane_at(const Visit& visit, std::size_t ray, float t) const;
 
   const EsvoView& esvo_;
   EsvoHits* hits_;
@@ -136,15 +142,17 @@ class EsvoPacketWalk : PacketRays {
   alignas(64) std::int32_t position_[3][RayPacket::kMaxRays], direction_[3][RayPacket::kMaxRays];
   /// Least and greatest of them, by axis.
   std::int32_t position_range_[3][2], direction_range_[3][2];
+  std::int32_t sign_[3];  ///< By axis: -1 where mirrored, else 0.
   std::size_t top_ = 0;
   Visit stack_[8 * kMaxLevels];
-  /// The path to the voxel that is visited, by level: its descriptors' slots and its contours;
-  /// where the spans are that its contours have left, of which 0 is the rays' own.
+  /// The path to the voxel that is visited, by level: its descriptors' slots; where the spans are
+  /// that its contours have left, of which 0 is the rays' own.
   std::uint64_t slots_[kMaxLevels + 1];
-  std::uint32_t contours_[kMaxLevels + 1];
   std::uint32_t span_at_[kMaxLevels + 1];
   Spans spans_[kWithContours ? kMaxLevels + 1 : 1];
-  Tried tried_[kWithContours ? kMaxLevels + 1 : 1];  ///< By level of the parent.
+  /// By level of the parent.
+  ChildContours child_contours_[kWithContours ? kMaxLevels + 1 : 1];
+  Tried tried_[kWithContours ? kMaxLevels + 1 : 1];
 };
 
 #endif  // VOXDAG_PACKET_LANES
