@@ -49,7 +49,7 @@ int expect_same_starts(const Nodes& nodes, unsigned seed) {
   constexpr double kRounding = 0x1p-18;
   int met = 0;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(static_cast<std::uint32_t>(target));
+    hwy::SetSupportedTargetsForTest(target);
     std::mt19937 rng(seed);
     for (const std::size_t size : {1, 1, 1, 1, 3, 9, 64, 64, 64}) {
       BeamPacket packet = random_packet(rng, size);

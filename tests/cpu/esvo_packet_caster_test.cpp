@@ -92,6 +92,69 @@ TEST(EsvoPacketCaster, ShortRaysOfOnePointMeetTheSame) {
   }
 }
 
+// The planes of a contour are moved outwards by where the ray leaves the cube, even where its range
+// ends long before.
+TEST(EsvoPacketCaster, ShortRaysBesideAContourMeetTheSame) {
+  TestVoxel root;
+  root.children[0] = std::make_unique<TestVoxel>();
+  root.children[0]->contour = Contour::make({31, 0, 0}, 0, 63);
+  const Esvo esvo = TestEsvoAssembler(1, 1).assemble(root, 2);
+  const int plane = ContourSlab::make(*root.children[0]->contour, 0, 22).high / 31;
+  std::vector<CastRay> rays;
+  for (int above = 0; above < 8; ++above)
+    for (int i = 0; i < 64; ++i) {
+      const float x = 1.25f + static_cast<float>(plane + above) * 0x1p-23f;
+      const Vec3f direction{0.001f * static_cast<float>(i), 1, 0.01f * static_cast<float>(i % 8)};
+      rays.push_back({make_grid_ray(GridPoint{{x, 1.1f, 1.1f}}, direction, 0, 1e-4f), {}});
+    }
+  const ContourNodes nodes(esvo.view());
+  const auto expected = expect_same_hits(nodes, PacketCaster<ContourNodes>(nodes), rays, "short");
+  const auto hits = std::count(expected.is_hit.begin(), expected.is_hit.end(), 1);
+  EXPECT_GT(hits, 64);
+  EXPECT_LT(hits, 8 * 64);
+}
+
+TEST(EsvoPacketCaster, RaysThatStartAlongOneAxisMeetTheSame) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+      const int levels = 4;
+      const Esvo esvo = random_esvo(seed, levels);
+      std::vector<CastRay> rays;
+      for (int i = 0; i < 256; ++i) {
+        GridPoint start{{1.3f, 1.4f, 1.6f}};
+        start.position[axis] = 1 + static_cast<float>(i) * 0x1p-8f;
+        rays.push_back({make_grid_ray(start, {0.3f, -0.8f, 0.5f}, 0, HUGE_VALF), {}});
+      }
+      expect_same_results(ContourNodes(esvo.view()), rays, "along axis " + std::to_string(axis));
+    }
+}
+
+// Where one ray or another is parallel to each axis, the range of their directions bounds nothing.
+TEST(EsvoPacketCaster, RaysAlongAllAxesFromOnePointMeetTheSame) {
+  for (int levels = 2; levels <= 18; ++levels) {
+    const int middle = 1 << (levels - 1);
+    const auto root = test_octree(levels, {{middle, middle, middle}});
+    TestVoxel* leaf = root.get();
+    while (!leaf->is_leaf())
+      for (auto& child : leaf->children)
+        if (child) {
+          leaf = child.get();
+          break;
+        }
+    leaf->contour = Contour::make({31, 31, 31}, 0, 127);
+    const Esvo esvo = TestEsvoAssembler(1, 1).assemble(*root, levels);
+    const float start = 1.5f + std::ldexp(0.3f, -levels);
+    std::vector<CastRay> rays;
+    for (int i = 0; i < 64; ++i) {
+      Vec3f direction{};
+      direction[i % 3] = 1;
+      rays.push_back(
+          {make_grid_ray(GridPoint{{start, start, start}}, direction, 0, HUGE_VALF), {}});
+    }
+    expect_same_results(ContourNodes(esvo.view()), rays, std::to_string(levels) + " levels");
+  }
+}
+
 /// How often rays ended at the leaves of each descriptor.
 class CountedLeaves : public LeafListener {
  public:

@@ -151,7 +151,7 @@ TEST(BuildSvdag, TheWordsDependOnNeitherThreadsNorVectorWidth) {
     });
   }
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(static_cast<std::uint32_t>(target));
+    hwy::SetSupportedTargetsForTest(target);
     EXPECT_EQ(build_svdag(mesh, unit_grid(levels)).dag, expected) << hwy::TargetName(target);
     EXPECT_EQ(build_svdag(mesh, unit_grid(levels), kBySorting).dag, expected)
         << hwy::TargetName(target);

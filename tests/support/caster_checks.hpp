@@ -63,7 +63,7 @@ CastResults<typename FoundBy<Nodes>::Type> expect_same_hits(const Nodes& nodes,
   using Found = typename FoundBy<Nodes>::Type;
   const auto expected = closest_hits<Found>(ScalarCaster<Nodes>(nodes), rays);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(static_cast<std::uint32_t>(target));
+    hwy::SetSupportedTargetsForTest(target);
     const auto found = closest_hits<Found>(caster, rays);
     const auto met = any_hits(caster, rays);
     int wrong = 0;

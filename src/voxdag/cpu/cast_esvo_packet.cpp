@@ -10,8 +10,9 @@
 // A contour is looked at when its voxel is visited, not when its parent is: by then rays that end
 // nearer by are gone. What it leaves of the rays' ranges is kept for its level, as the voxels below
 // are visited before any other of that level. Many rays close together are tried at the children's
-// cubes and contours as one wide ray before. Where only a few rays are left it is the other way
-// round: one ray after the other is tried at all children, and their contours, at once.
+// cubes and contours as one wide ray before they are visited. Where only a few rays are left it is
+// the other way round: one ray after the other is tried at all children, and their contours, at
+// once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/cast_esvo_packet.cpp"
 #include <hwy/foreach_target.h>
@@ -20,6 +21,7 @@
 #include "voxdag/cpu/esvo_packet.hpp"
 #include "voxdag/cpu/esvo_packet_cells-inl.hpp"
 #include "voxdag/cpu/esvo_packet_children-inl.hpp"
+#include "voxdag/cpu/esvo_packet_hull-inl.hpp"
 #include "voxdag/cpu/esvo_packet_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,9 +30,10 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Sets spans 0, and the rays as ContourRay has them.
+/// Sets what is known of the rays themselves: spans 0, and positions and directions as ContourRay
+/// has them.
 template <bool kWithContours, bool kOneOrigin>
-void EsvoPacketWalk<kWithContours, kOneOrigin>::set_own_spans() {
+void EsvoPacketWalk<kWithContours, kOneOrigin>::prepare_rays() {
   const DF d;
   const DI di;
   for (int axis = 0; axis < 3; ++axis)
@@ -67,9 +70,10 @@ template <bool kWithContours, bool kOneOrigin>
 typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, Rays& stopped) {
   const bool with_stop = (visit.known & kMayStop) != 0;
-  if (kWithContours && (visit.known & kHasContour) != 0)
-    return with_stop ? clip<true, true>(visit, rays, stopped)
-                     : clip<true, false>(visit, rays, stopped);
+  if constexpr (kWithContours)
+    if ((visit.known & kHasContour) != 0)
+      return with_stop ? clip<true, true>(visit, rays, stopped)
+                       : clip<true, false>(visit, rays, stopped);
   return with_stop ? clip<false, true>(visit, rays, stopped)
                    : clip<false, false>(visit, rays, stopped);
 }
@@ -191,6 +195,7 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
     Rays rays = popped.rays & searching;
     if (rays == 0) continue;
     Visit visit;
+    visit.rays = rays;
     const hn::CappedTag<std::uint32_t, 4> d4;
     hn::StoreU(hn::LoadU(d4, popped.corner), d4, visit.corner);
     visit.slot = popped.slot;
@@ -228,7 +233,7 @@ typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::cast(const RayPacket& packet) {
   load(packet);
   bound(kMaxLevels + 1);
-  set_own_spans();
+  prepare_rays();
   return walk(first(packet.size));
 }
 

@@ -176,23 +176,6 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::intersect(const Visit
   children.met &= met[0][0] | static_cast<std::uint32_t>(met[1][0]) << 4;
 }
 
-/// The children whose cubes any ray can meet.
-template <bool kWithContours, bool kOneOrigin>
-inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::cubes_met_by_hull(
-    const Visit& visit, const Spans& spans) const {
-  const DF8 d;
-  const DU8 du;
-  const auto half = hn::Set(du, 1u << (22 - visit.level));
-  auto enter = hn::Set(d, spans.first), exit = hn::Set(d, spans.last);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto low =
-        hn::Or(hn::Set(du, visit.corner[axis]), hn::And(hn::Load(du, kUpper[axis]), half));
-    const auto high = hn::Add(low, half);
-    bound_by_sides(axis, hn::BitCast(d, low), hn::BitCast(d, high), enter, exit);
-  }
-  return bits_of_children(hn::Lt(enter, exit));
-}
-
 #endif  // VOXDAG_PACKET_LANES
 
 }  // namespace HWY_NAMESPACE

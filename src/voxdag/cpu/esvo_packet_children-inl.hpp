@@ -1,5 +1,5 @@
-// A few rays of a packet, one after the other, against all children of a voxel at once: the lanes
-// are the children.
+// All children of a voxel at once, which are the lanes: their cubes and contours, and a few rays of
+// a packet, one after the other, against these.
 #if defined(VOXDAG_ESVO_PACKET_CHILDREN_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_ESVO_PACKET_CHILDREN_INL
 #undef VOXDAG_ESVO_PACKET_CHILDREN_INL
@@ -91,55 +91,6 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   hn::Store(hn::Add(plane(twice_high), wider), di, contours.high);
 }
 
-/// The children whose shapes any ray can meet.
-///
-/// While the rays are in a child's cube, n.(O - C) - T n.d is between what the ranges of O, d and T
-/// allow. Where that is all above the contour's planes, or all below, no ray comes between them:
-/// those have been moved outwards by the slack for each ray, and here by another one, which is more
-/// than what ContourRay::span and this round.
-template <bool kWithContours, bool kOneOrigin>
-HWY_INLINE std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::shapes_met_by_hull(
-    const Visit& visit, std::uint32_t with_contour, const ChildCubes& cubes,
-    const Spans& spans) const {
-  const DF8 d;
-  const DI8 di;
-  auto enter = hn::Set(d, spans.first), exit = hn::Set(d, spans.last);
-  for (int axis = 0; axis < 3; ++axis) {
-    if constexpr (kOneOrigin)
-      bound_by_distances(axis, cubes.upper[axis], cubes.lower[axis], enter, exit);
-    else
-      bound_by_sides(axis, cubes.lower[axis], cubes.upper[axis], enter, exit);
-  }
-  const std::uint32_t in_cube = bits_of_children(hn::Lt(enter, exit));
-  if ((in_cube & with_contour) == 0) return mirrored(in_cube);
-
-  const ChildContours& contours = child_contours_[kWithContours ? visit.level : 0];
-  auto least = hn::Zero(di), most = hn::Zero(di), slowest = hn::Zero(di), fastest = hn::Zero(di);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto add_range = [&](const std::int32_t(&range)[2], VI8& low, VI8& high) HWY_ATTR {
-      const auto n = hn::Load(di, contours.normal[axis]);
-      const auto a = hn::Mul(n, hn::Set(di, range[0])), b = hn::Mul(n, hn::Set(di, range[1]));
-      low = hn::Add(low, hn::Min(a, b));
-      high = hn::Add(high, hn::Max(a, b));
-    };
-    if constexpr (!kOneOrigin) add_range(position_range_[axis], least, most);
-    add_range(direction_range_[axis], slowest, fastest);
-  }
-  const auto slack = slack_of(hn::Load(di, contours.length1), exit);
-  const auto twice = hn::Add(hn::Add(slack, slack), hn::Set(di, 1));
-  // T n.d is in units of 2^-24.
-  const auto half = hn::Set(d, 0.5f);
-  const auto slow = hn::Mul(hn::ConvertTo(d, slowest), half),
-             fast = hn::Mul(hn::ConvertTo(d, fastest), half);
-  const auto lowest = hn::Sub(hn::ConvertTo(d, hn::Sub(least, hn::Load(di, contours.high))),
-                              hn::Max(hn::Mul(fast, enter), hn::Mul(fast, exit)));
-  const auto highest = hn::Sub(hn::ConvertTo(d, hn::Sub(most, hn::Load(di, contours.low))),
-                               hn::Min(hn::Mul(slow, enter), hn::Mul(slow, exit)));
-  const auto reach = hn::ConvertTo(d, twice);
-  const auto is_between = hn::And(hn::Le(lowest, reach), hn::Ge(highest, hn::Neg(reach)));
-  return mirrored(in_cube & (bits_of_children(is_between) | ~with_contour));
-}
-
 /// Sets the spans of the visited voxel's level to what end_at_children() has found for its parent.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Visit& visit,
@@ -148,16 +99,13 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Vi
   const Spans& above = spans_below(visit.level - 1);
   Spans& here = spans_[visit.level];
   const std::uint32_t child = child_of(visit.corner, visit.level);
-  here.first = HUGE_VALF;
-  here.last = 0;
+  here.first = above.first;
+  here.last = above.last;
   for (; rays != 0; rays &= rays - 1) {
     const auto i = static_cast<std::size_t>(lowest_bit64(rays));
     const auto place = static_cast<std::size_t>(popcount64(tried.rays & ((Rays{1} << i) - 1)));
-    const float enter = tried.enter[place][child], leave = tried.leave[place][child];
-    here.enter[i] = enter;
-    here.leave[i] = leave;
-    here.first = enter < here.first ? enter : here.first;
-    here.last = leave > here.last ? leave : here.last;
+    here.enter[i] = tried.enter[place][child];
+    here.leave[i] = tried.leave[place][child];
     if ((tried.by_contour[place] >> child & 1u) != 0)
       here.enter_level[i] = static_cast<std::int32_t>(visit.level);
     else

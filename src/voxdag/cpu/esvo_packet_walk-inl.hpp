@@ -119,7 +119,7 @@ class EsvoPacketWalk : PacketRays {
   template <class VFloat, class VInt>
   static void cut(VInt position, VInt speed, VFloat exit, VInt low, VInt high, VInt length1,
                   VFloat& enter, VFloat& leave);
-  void set_own_spans();
+  void prepare_rays();
   void recall_spans(const Visit& visit, Rays rays);
   bool may_stop_below(const Visit& visit) const;
   Rays walk(Rays all);

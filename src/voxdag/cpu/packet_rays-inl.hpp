@@ -70,7 +70,7 @@ class PacketRays : protected PacketLanes {
   /// No ray that meets a cell with this lower corner leaves it later. A word after the corner's
   /// three is read, too.
   float last_exit(const std::uint32_t corner[4]) const;
-  /// Whether they fill more than two vectors: fewer are told apart as fast.
+  /// Whether any is beyond the first two vectors: those that are not are told apart as fast.
   static bool are_many(Rays rays) { return (rays >> (2 * kWidth - 1) >> 1) != 0; }
 
   /// Moves the bounds on where the rays enter and leave boxes, one a lane, to between the boxes'
@@ -140,7 +140,7 @@ class PacketRays : protected PacketLanes {
   const std::uint8_t* mirrored_masks_;  ///< By mask.
   /// Least and greatest of all rays, by axis, then of t_min and t_end.
   float origin_range_[3][2], inverse_range_[3][2], t_range_[2];
-  /// By axis, then 0.
+  /// By axis, then 0, so that a fourth lane stays 0.
   alignas(16) float least_origin_[4], least_inverse_[4], most_origin_[4], most_inverse_[4];
   float stop_start_[2], stop_per_t_[2];
   float last_t_min_;
@@ -264,9 +264,10 @@ inline void PacketRays::bound(int levels) {
   if (!rays_.has_stop) return;
   range(rays_.stop_start, stop_start_);
   range(rays_.stop_per_t, stop_per_t_);
+  // So that what it bounds grows with T.
+  if (stop_per_t_[1] < 0) stop_per_t_[1] = 0;
   // T is at most 1 in the grid.
-  const float most =
-      stop_per_t_[1] > 0 ? (stop_start_[1] + stop_per_t_[1]) * (1 + 0x1p-10f) : stop_start_[1];
+  const float most = (stop_start_[1] + stop_per_t_[1]) * (1 + 0x1p-10f);
   stop_level_ = rays_.coarsest;
   while (stop_level_ < levels && side_of(stop_level_) > most) ++stop_level_;
 }
