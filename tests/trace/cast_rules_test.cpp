@@ -1,6 +1,7 @@
 // The corners of the definition of a hit, one fact each.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "support/brute_svdag.hpp"
@@ -97,6 +98,13 @@ TEST(CastRules, BothEndsOfTheRangeBelongToIt) {
   EXPECT_FALSE(scene.cast({0, 4.5f, 4.5f}, {1, 0, 0}, 0, 3.999f).hit);
   EXPECT_TRUE(scene.cast({0, 4.5f, 4.5f}, {1, 0, 0}, 4.999f, 9).hit);
   EXPECT_FALSE(scene.cast({0, 4.5f, 4.5f}, {1, 0, 0}, 5, 9).hit);
+}
+
+TEST(CastRules, ARangeMayEndAtMinusZero) {
+  const Scene scene({{4, 4, 4}});
+  EXPECT_TRUE(scene.cast({4.5f, 4.5f, 4.5f}, {1, 2, 3}, 0.0f, -0.0f).hit);
+  const GridPoint start{{1.5f, 1.5f, 1.5f}};
+  EXPECT_FALSE(std::signbit(make_grid_ray(start, {1, 2, 3}, 0.0f, -0.0f).t_max));
 }
 
 TEST(CastRules, NegativeTIsBehindTheOrigin) {

@@ -140,7 +140,7 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec
   ray.t_start = enter * ray.t_scale;
   const double first = t_min * length - enter;
   ray.t_min = first > 0 ? static_cast<float>(first) : 0.0f;
-  ray.t_max = static_cast<float>(t_max * length - enter);
+  ray.t_max = static_cast<float>(t_max * length - enter) + 0.0f;  // not -0, for end_of_range()
   return ray;
 }
 
@@ -190,7 +190,7 @@ VOXDAG_HD inline GridRay make_grid_ray(const GridPoint& start, Vec3f direction, 
   }
   ray.t_scale = 1.0 / static_cast<double>(length);
   ray.t_min = t_min * length;
-  ray.t_max = t_max * length;
+  ray.t_max = t_max * length + 0.0f;  // not -0, for end_of_range()
   return ray;
 }
 
