@@ -167,13 +167,14 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::visit_children(const Visit& visit, Ra
   if (with_contour != 0 || are_few) set_child_cubes(visit, cubes);
   if (with_contour != 0) set_child_contours(visit, descriptor, cubes);
   Rays ended = 0;
-  if (are_many(rays) && are_narrow(visit.corner, static_cast<int>(visit.level), spans.first)) {
+  if (are_few) {
+    ended = end_at_children(visit, descriptor, cubes, rays, may_stop, children);
+    known |= kMeetCube | kMeetShape;
+  } else if (are_many(rays) &&
+             are_narrow(visit.corner, static_cast<int>(visit.level), spans.first)) {
     children.met &= with_contour != 0 ? shapes_met_by_hull(visit, with_contour, cubes, spans)
                                       : cubes_met_by_hull(visit, spans);
     for (Rays& meet : children.meet) meet = rays;
-  } else if (are_few) {
-    ended = end_at_children(visit, descriptor, cubes, rays, may_stop, children);
-    known |= kMeetCube | kMeetShape;
   } else {
     intersect(visit, spans, rays, children);
     known |= kMeetCube;

@@ -91,7 +91,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   hn::Store(hn::Add(plane(twice_high), wider), di, contours.high);
 }
 
-/// Sets the spans of the visited voxel's level to what end_at_children() has found for its parent.
+/// Sets the spans of the visited voxel's level to what end_at_children() has found for its parent;
+/// not those of all rays together, for which nobody asks where there are few.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Visit& visit,
                                                                         Rays rays) {
@@ -99,8 +100,6 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Vi
   const Spans& above = spans_below(visit.level - 1);
   Spans& here = spans_[visit.level];
   const std::uint32_t child = child_of(visit.corner, visit.level);
-  here.first = above.first;
-  here.last = above.last;
   for (; rays != 0; rays &= rays - 1) {
     const auto i = static_cast<std::size_t>(lowest_bit64(rays));
     const auto place = static_cast<std::size_t>(popcount64(tried.rays & ((Rays{1} << i) - 1)));
