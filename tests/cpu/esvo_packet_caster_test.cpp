@@ -134,14 +134,7 @@ TEST(EsvoPacketCaster, RaysAlongAllAxesFromOnePointMeetTheSame) {
   for (int levels = 2; levels <= 18; ++levels) {
     const int middle = 1 << (levels - 1);
     const auto root = test_octree(levels, {{middle, middle, middle}});
-    TestVoxel* leaf = root.get();
-    while (!leaf->is_leaf())
-      for (auto& child : leaf->children)
-        if (child) {
-          leaf = child.get();
-          break;
-        }
-    leaf->contour = Contour::make({31, 31, 31}, 0, 127);
+    first_leaf(*root).contour = Contour::make({31, 31, 31}, 0, 127);
     const Esvo esvo = TestEsvoAssembler(1, 1).assemble(*root, levels);
     const float start = 1.5f + std::ldexp(0.3f, -levels);
     std::vector<CastRay> rays;

@@ -24,6 +24,13 @@ struct TestVoxel {
   }
 };
 
+/// The leaf that the first children lead to.
+inline TestVoxel& first_leaf(TestVoxel& voxel) {
+  for (const auto& child : voxel.children)
+    if (child) return first_leaf(*child);
+  return voxel;
+}
+
 /// Puts an octree into one block. Descriptors stand depth first, siblings together from an even
 /// slot on; of the pointers to children, one in `far_in` is far, more or less, and all that must.
 class TestEsvoAssembler {

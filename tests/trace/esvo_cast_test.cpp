@@ -211,15 +211,8 @@ TEST(EsvoCast, FarRaysAtTheFinestVoxelsMissNothing) {
     const auto any = [&] { return static_cast<std::int32_t>(rng() % (1u << kLevels)); };
     const Vec3i voxel{any(), any(), any()};
     auto root = test_octree(kLevels, {voxel});
-    TestVoxel* leaf = root.get();
-    while (!leaf->is_leaf())
-      for (auto& child : leaf->children)
-        if (child) {
-          leaf = child.get();
-          break;
-        }
     const Contour random = random_contour(rng);
-    leaf->contour = Contour::make(random.normal(), 63, 64);
+    first_leaf(*root).contour = Contour::make(random.normal(), 63, 64);
     ContourScene scene(2, 1);
     scene.levels = kLevels;
     scene.grid = grid;

@@ -73,8 +73,7 @@ inline void DagPacketWalk::walk() {
     if (visit.rays == 0) continue;
     visit.node = popped.node;
     visit.skipped = popped.skipped;
-    const hn::CappedTag<std::uint32_t, 4> d4;
-    hn::StoreU(hn::LoadU(d4, popped.corner), d4, visit.corner);
+    store(load(popped), visit);
     if (visit.skipped == kEndsHere)
       end(visit.rays, visit.corner, static_cast<int>(visit.level));
     else if (static_cast<int>(visit.level) == nodes_.levels() - 2)

@@ -49,11 +49,13 @@ void EsvoPacketWalk<kWithContours, kOneOrigin>::prepare_rays() {
         hn::Store(hn::ConvertTo(di, speed), di, direction_[axis] + i);
       }
       // Both conversions keep the order.
-      for (const int end : {0, 1}) {
-        position_range_[axis][end] =
-            static_cast<std::int32_t>(bits_of_float(origin_range_[axis][end]) - kOne);
-        direction_range_[axis][end] = ContourRay::direction(inverse_range_[axis][1 - end]);
-      }
+      const auto position = [](float p) {
+        return static_cast<std::int32_t>(bits_of_float(p) - kOne);
+      };
+      position_range_[axis][0] = position(origins_.least[axis]);
+      position_range_[axis][1] = position(origins_.most[axis]);
+      direction_range_[axis][0] = ContourRay::direction(inverses_.most[axis]);
+      direction_range_[axis][1] = ContourRay::direction(inverses_.least[axis]);
     }
   Spans& own = spans_[0];
   for (std::size_t i = 0; i < rays_.size; i += kWidth) {
@@ -121,7 +123,6 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::push_children(const V
                                                                          std::uint32_t known) {
   std::uint32_t met = children.met;
   if (met == 0) return;
-  const std::uint32_t half = 1u << (22 - visit.level);
   const std::uint32_t inner = descriptor.inner_mask();
   const std::uint32_t with_contour = kWithContours ? descriptor.contour_mask() : 0;
   const auto& inner_before = kBefore[inner];
@@ -132,7 +133,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::push_children(const V
     Visit& next = stack_[top_++];
     next.rays = children.meet[child];
     const std::uint32_t index = child ^ rays_.mirrored;
-    set_child_corner(visit.corner, child, half, next.corner);
+    set_child(visit, child, next);
     next.known = known | ((with_contour >> index & 1u) != 0 ? kHasContour : 0);
     const bool is_inner = (inner >> index & 1u) != 0;
     next.slot = is_inner ? first_child + inner_before[index] : kLeaf;
@@ -146,7 +147,7 @@ HWY_INLINE bool EsvoPacketWalk<kWithContours, kOneOrigin>::may_stop_below(
     const Visit& visit) const {
   const auto level = static_cast<int>(visit.level) + 1;
   if (level < stop_level_) return false;
-  return side_of(level) <= stop_start_[1] + stop_per_t_[1] * last_exit(visit.corner);
+  return side_of(level) <= stop_start_[1] + stop_per_t_[1] * last_exit(visit);
 }
 
 /// Of the rays, which meet the voxel and do not end there, returns those that end at a child. Puts
@@ -170,8 +171,7 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::visit_children(const Visit& visit, Ra
   if (are_few) {
     ended = end_at_children(visit, descriptor, cubes, rays, may_stop, children);
     known |= kMeetCube | kMeetShape;
-  } else if (are_many(rays) &&
-             are_narrow(visit.corner, static_cast<int>(visit.level), spans.first)) {
+  } else if (are_many(rays) && are_narrow(visit, spans.first)) {
     children.met &= with_contour != 0 ? shapes_met_by_hull(visit, with_contour, cubes, spans)
                                       : cubes_met_by_hull(visit, spans);
     for (Rays& meet : children.meet) meet = rays;
@@ -187,7 +187,7 @@ template <bool kWithContours, bool kOneOrigin>
 typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
   Rays searching = all;
-  stack_[0] = {{kOne, kOne, kOne}, 0, all, esvo_.root, kMeetCube};
+  stack_[0] = {{{kOne, kOne, kOne}, 0}, all, esvo_.root, kMeetCube};
   top_ = 1;
   while (top_ > 0 && searching != 0) {
     // Field by field, as it was stored: a wider load would wait for the stores. The corner and the
@@ -197,8 +197,7 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
     if (rays == 0) continue;
     Visit visit;
     visit.rays = rays;
-    const hn::CappedTag<std::uint32_t, 4> d4;
-    hn::StoreU(hn::LoadU(d4, popped.corner), d4, visit.corner);
+    store(load(popped), visit);
     visit.slot = popped.slot;
     visit.known = popped.known;
     const std::uint32_t level = visit.level;

@@ -150,7 +150,6 @@ inline DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child, int c
 /// these rays alone.
 inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std::size_t& top) {
   const auto level = static_cast<int>(visit.level);
-  const std::uint32_t side = 1u << (22 - level);
   const std::uint32_t* node = words_ + 2 * std::size_t{visit.node};
   const std::uint32_t present = node[0];
   const std::uint32_t* pointers = node + 2;
@@ -184,8 +183,7 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     end_at_children(visit, met);
     return;
   }
-  const bool are_as_one =
-      is_single || (are_many(visit.rays) && are_narrow(visit.corner, level, t_range_[0]));
+  const bool are_as_one = is_single || (are_many(visit.rays) && are_narrow(visit, t_range_[0]));
   for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
     const auto child = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const bool may_end = (children.some_end >> child & 1u) != 0;
@@ -203,7 +201,7 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     hwy::Prefetch(level == nodes_.levels() - 3
                       ? static_cast<const std::uint32_t*>(nodes_.address(next.node, level + 1))
                       : words_ + 2 * std::size_t{next.node});
-    set_child(next, visit, child, side);
+    set_child(visit, child, next);
     if (!may_end) {
       top += next.rays != 0 ? 1 : 0;
       continue;
@@ -216,16 +214,15 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     end.rays = ending;
     end.node = 0;
     end.skipped = kEndsHere;
-    set_child(end, visit, child, side);
+    set_child(visit, child, end);
   }
 }
 
 /// Ends rays at the children `met`, at which all rays end that meet them.
 inline void DagPacketWalk::end_at_children(const Visit& visit, std::uint32_t met) {
-  const std::uint32_t side = 1u << (22 - visit.level);
   const auto end_at = [&](std::uint32_t child, Rays hits) {
-    Visit cell;
-    set_child(cell, visit, child, side);
+    Cell cell;
+    set_child(visit, child, cell);
     end(hits, cell.corner, static_cast<int>(cell.level));
   };
   Rays rays = visit.rays;

@@ -35,12 +35,10 @@ class DagPacketWalk : PacketRays {
 
  private:
   /// A node to visit.
-  struct alignas(32) Visit {
+  struct alignas(32) Visit : Cell {
     Rays rays;
     std::uint32_t node;
-    std::uint32_t skipped;    ///< Children not to look at, mirrored.
-    std::uint32_t corner[3];  ///< Float bits.
-    std::uint32_t level;
+    std::uint32_t skipped;  ///< Children not to look at, mirrored.
   };
   /// In Visit::skipped: the rays end at this cell; of a leaf block, they end at its octants, or
   /// some may.
@@ -108,10 +106,6 @@ class DagPacketWalk : PacketRays {
   int finest_without_stop() const;
   std::size_t begin(Rays all, Visit* stack) const;
   void walk();
-  static HWY_INLINE void set_child(Visit& visit, const Visit& parent, std::uint32_t child,
-                                   std::uint32_t half) {
-    set_child_corner(parent.corner, child, half, visit.corner);
-  }
   HWY_INLINE void set_planes(const std::uint32_t corner[3], int level, hn::Vec<DU8> boxes);
   HWY_INLINE Children bound_children(int child_level) const;
   HWY_INLINE void cut_by_boxes(int i, hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const;

@@ -36,7 +36,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_cubes(
     cubes.lower[axis] = hn::BitCast(d, cubes.corner[axis]);
     cubes.upper[axis] = hn::BitCast(d, hn::Add(cubes.corner[axis], size));
     if constexpr (kOneOrigin) {
-      const auto origin = hn::Set(d, origin_range_[axis][0]);
+      const auto origin = hn::Set(d, origins_.least[axis]);
       cubes.lower[axis] = hn::Sub(origin, cubes.lower[axis]);
       cubes.upper[axis] = hn::Sub(origin, cubes.upper[axis]);
     }
@@ -192,9 +192,9 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,
     alignas(32) float enters[8];
     hn::Store(enter, d, enters);
     EsvoHits& hits = *hits_;
-    std::uint32_t corner[4];
-    set_child_corner(visit.corner, child, 1u << (22 - visit.level), corner);
-    for (std::uint32_t axis = 0; axis < 3; ++axis) hits.corner[axis][i] = corner[axis];
+    Cell cell;
+    set_child(visit, child, cell);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) hits.corner[axis][i] = cell.corner[axis];
     hits.t[i] = enters[index];
     hits.level[i] = static_cast<int>(visit.level + 1);
     hits.slot[i] = visit.slot;

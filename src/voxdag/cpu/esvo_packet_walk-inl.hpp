@@ -12,6 +12,7 @@
 
 #include <array>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/esvo_packet.hpp"
 #include "voxdag/cpu/packet_rays-inl.hpp"
 
@@ -40,9 +41,7 @@ class EsvoPacketWalk : PacketRays {
   static constexpr std::uint64_t kLeaf = ~std::uint64_t{0};
 
   /// A voxel to visit.
-  struct alignas(16) Visit {
-    std::uint32_t corner[3];  ///< Float bits.
-    std::uint32_t level;
+  struct Visit : Cell {
     Rays rays;
     std::uint64_t slot;   ///< Of its descriptor, or kLeaf.
     std::uint32_t known;  ///< Of what follows.
@@ -94,15 +93,15 @@ class EsvoPacketWalk : PacketRays {
 
   /// The number, in its parent's descriptor, of the voxel of `level` that holds this corner.
   std::uint32_t child_of(const std::uint32_t corner[3], std::uint32_t level) const {
-    std::uint32_t child = rays_.mirrored;
-    for (int axis = 0; axis < 3; ++axis) child ^= (corner[axis] >> (23 - level) & 1u) << axis;
-    return child;
+    const auto word = [&](int axis) { return static_cast<std::int32_t>(corner[axis]); };
+    const int child = child_index({word(0), word(1), word(2)}, static_cast<int>(23 - level));
+    return static_cast<std::uint32_t>(child) ^ rays_.mirrored;
   }
   /// What distance() wants of a plane at the float bits `position`: how far it is from the origin
   /// of all rays, or where it is.
   HWY_INLINE VF to_plane(DF d, int axis, std::uint32_t position) const {
     const float at = float_from_bits(position);
-    return hn::Set(d, kOneOrigin ? origin_range_[axis][0] - at : at);
+    return hn::Set(d, kOneOrigin ? origins_.least[axis] - at : at);
   }
   /// How far the origins of the vector of rays at `first` are from a plane.
   HWY_INLINE VF distance(int axis, std::size_t first, VF plane) const {
@@ -151,8 +150,8 @@ class EsvoPacketWalk : PacketRays {
   std::uint32_t span_at_[kMaxLevels + 1];
   Spans spans_[kWithContours ? kMaxLevels + 1 : 1];
   /// By level of the parent.
-  ChildContours child_contours_[kWithContours ? kMaxLevels + 1 : 1];
-  Tried tried_[kWithContours ? kMaxLevels + 1 : 1];
+  ChildContours child_contours_[kWithContours ? kMaxLevels : 1];
+  Tried tried_[kWithContours ? kMaxLevels : 1];
 };
 
 #endif  // VOXDAG_PACKET_LANES

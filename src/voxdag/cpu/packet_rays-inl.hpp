@@ -47,6 +47,18 @@ class PacketRays : protected PacketLanes {
   static constexpr int kFew = 6;
   static constexpr std::uint32_t kOne = 0x3F800000u;  ///< The bits of 1.0f.
 
+  using D4 = hn::CappedTag<std::uint32_t, 4>;
+  /// A cell, whose words are read and written as one vector.
+  struct alignas(16) Cell {
+    std::uint32_t corner[3];  ///< Float bits.
+    std::uint32_t level;
+  };
+  static_assert(sizeof(Cell) == 16);
+  /// The least and the greatest of all rays by axis; then 0, so that a fourth lane stays 0.
+  struct alignas(16) Ranges {
+    float least[4], most[4];
+  };
+
   /// The rays, by axis, then by ray; the last vector is filled up with copies of the last ray.
   struct Lanes {
     alignas(64) float origin[3][RayPacket::kMaxRays], inverse[3][RayPacket::kMaxRays];
@@ -65,11 +77,10 @@ class PacketRays : protected PacketLanes {
   /// Finds the ranges that the rays are in. `levels` is L, or more.
   void bound(int levels);
   /// Whether the rays are close together for the children of this cell: not worth telling apart.
-  /// None enters it before `enter`. A word after the corner's three is read, too.
-  bool are_narrow(const std::uint32_t corner[4], int level, float enter) const;
-  /// No ray that meets a cell with this lower corner leaves it later. A word after the corner's
-  /// three is read, too.
-  float last_exit(const std::uint32_t corner[4]) const;
+  /// None enters it before `enter`.
+  bool are_narrow(const Cell& cell, float enter) const;
+  /// No ray that meets the cell leaves it later.
+  float last_exit(const Cell& cell) const;
   /// Whether any is beyond the first two vectors: those that are not are told apart as fast.
   static bool are_many(Rays rays) { return (rays >> (2 * kWidth - 1) >> 1) != 0; }
 
@@ -78,15 +89,14 @@ class PacketRays : protected PacketLanes {
   HWY_INLINE void bound_by_sides(int axis, hn::Vec<DF8> low, hn::Vec<DF8> high, hn::Vec<DF8>& enter,
                                  hn::Vec<DF8>& exit) const {
     const DF8 d;
-    bound_by_distances(axis, hn::Sub(hn::Set(d, origin_range_[axis][0]), high),
-                       hn::Sub(hn::Set(d, origin_range_[axis][1]), low), enter, exit);
+    bound_by_distances(axis, hn::Sub(hn::Set(d, origins_.least[axis]), high),
+                       hn::Sub(hn::Set(d, origins_.most[axis]), low), enter, exit);
   }
   /// The same of the least distances down to the upper sides, and the greatest to the lower ones.
   HWY_INLINE void bound_by_distances(int axis, hn::Vec<DF8> to_high, hn::Vec<DF8> to_low,
                                      hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const {
     const DF8 d;
-    const auto slow = hn::Set(d, inverse_range_[axis][1]),
-               fast = hn::Set(d, inverse_range_[axis][0]);
+    const auto slow = hn::Set(d, inverses_.most[axis]), fast = hn::Set(d, inverses_.least[axis]);
     enter = hn::Max(enter, hn::Mul(to_high, hn::IfNegativeThenElse(to_high, slow, fast)));
     exit = hn::Min(exit, hn::Mul(to_low, hn::IfNegativeThenElse(to_low, fast, slow)));
   }
@@ -122,26 +132,29 @@ class PacketRays : protected PacketLanes {
   alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
                                                              {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
                                                              {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
-  /// Sets four words to a cell's corner and level those of a child of the cell of which they are
-  /// given; `side` is that of the child in the bits of a position.
-  static HWY_INLINE void set_child_corner(const std::uint32_t* cell, std::uint32_t child,
-                                          std::uint32_t side, std::uint32_t* corner) {
+  static HWY_INLINE hn::Vec<D4> load(const Cell& cell) {
+    return hn::LoadU(D4(), reinterpret_cast<const std::uint32_t*>(&cell));
+  }
+  static HWY_INLINE void store(hn::Vec<D4> words, Cell& cell) {
+    hn::StoreU(words, D4(), reinterpret_cast<std::uint32_t*>(&cell));
+  }
+  static HWY_INLINE void set_child(const Cell& parent, std::uint32_t child, Cell& cell) {
     // By the child's bits: whether its side is added to the corner.
     alignas(16) static constexpr std::uint32_t kBits[8][4] = {
         {0, 0, 0, 0},   {~0u, 0, 0, 0},   {0, ~0u, 0, 0},   {~0u, ~0u, 0, 0},
         {0, 0, ~0u, 0}, {~0u, 0, ~0u, 0}, {0, ~0u, ~0u, 0}, {~0u, ~0u, ~0u, 0}};
     alignas(16) static constexpr std::uint32_t kNextLevel[4] = {0, 0, 0, 1};
-    const hn::CappedTag<std::uint32_t, 4> d;
-    const auto first = hn::Add(hn::LoadU(d, cell), hn::Load(d, kNextLevel));
-    hn::StoreU(hn::Or(first, hn::And(hn::Load(d, kBits[child]), hn::Set(d, side))), d, corner);
+    const D4 d;
+    const auto side = hn::Set(d, 1u << (22 - parent.level));
+    const auto first = hn::Add(load(parent), hn::Load(d, kNextLevel));
+    store(hn::Or(first, hn::And(hn::Load(d, kBits[child]), side)), cell);
   }
 
   Lanes rays_;
   const std::uint8_t* mirrored_masks_;  ///< By mask.
-  /// Least and greatest of all rays, by axis, then of t_min and t_end.
-  float origin_range_[3][2], inverse_range_[3][2], t_range_[2];
-  /// By axis, then 0, so that a fourth lane stays 0.
-  alignas(16) float least_origin_[4], least_inverse_[4], most_origin_[4], most_inverse_[4];
+  Ranges origins_, inverses_;
+  /// Least and greatest of all rays, of t_min and t_end.
+  float t_range_[2];
   float stop_start_[2], stop_per_t_[2];
   float last_t_min_;
   int stop_level_;  ///< No ray ends above this level but at voxels; `levels` where none does.
@@ -241,16 +254,20 @@ inline void PacketRays::bound(int levels) {
     out[1] = hn::GetLane(hn::MaxOfLanes(d, high));
   };
   width_at_start_ = width_per_t_ = 0;
-  least_origin_[3] = least_inverse_[3] = most_origin_[3] = most_inverse_[3] = 0;
+  const auto range_by_axis = [&](const float(&values)[3][RayPacket::kMaxRays], Ranges& out) {
+    for (int axis = 0; axis < 3; ++axis) {
+      float ends[2];
+      range(values[axis], ends);
+      out.least[axis] = ends[0];
+      out.most[axis] = ends[1];
+    }
+    out.least[3] = out.most[3] = 0;
+  };
+  range_by_axis(rays_.origin, origins_);
+  range_by_axis(rays_.inverse, inverses_);
   for (int axis = 0; axis < 3; ++axis) {
-    range(rays_.origin[axis], origin_range_[axis]);
-    range(rays_.inverse[axis], inverse_range_[axis]);
-    least_origin_[axis] = origin_range_[axis][0];
-    least_inverse_[axis] = inverse_range_[axis][0];
-    most_origin_[axis] = origin_range_[axis][1];
-    most_inverse_[axis] = inverse_range_[axis][1];
-    const float apart = origin_range_[axis][1] - origin_range_[axis][0];
-    const float spread = 1 / inverse_range_[axis][0] - 1 / inverse_range_[axis][1];
+    const float apart = origins_.most[axis] - origins_.least[axis];
+    const float spread = 1 / inverses_.least[axis] - 1 / inverses_.most[axis];
     width_at_start_ = apart > width_at_start_ ? apart : width_at_start_;
     width_per_t_ = spread > width_per_t_ ? spread : width_per_t_;
   }
@@ -272,24 +289,23 @@ inline void PacketRays::bound(int levels) {
   while (stop_level_ < levels && side_of(stop_level_) > most) ++stop_level_;
 }
 
-inline float PacketRays::last_exit(const std::uint32_t corner[4]) const {
+inline float PacketRays::last_exit(const Cell& cell) const {
   const hn::CappedTag<float, 4> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  const auto lower = hn::BitCast(d, hn::And(hn::LoadU(du, corner), hn::Load(du, kAxes)));
-  const auto t = hn::Mul(hn::Sub(hn::Load(d, most_origin_), lower), hn::Load(d, most_inverse_));
-  const auto is_axis = hn::MaskFromVec(hn::BitCast(d, hn::Load(du, kAxes)));
+  const auto axes = hn::Load(D4(), kAxes);
+  const auto lower = hn::BitCast(d, hn::And(load(cell), axes));
+  const auto t = hn::Mul(hn::Sub(hn::Load(d, origins_.most), lower), hn::Load(d, inverses_.most));
+  const auto is_axis = hn::MaskFromVec(hn::BitCast(d, axes));
   return hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(is_axis, t, hn::Set(d, HUGE_VALF))));
 }
 
-inline bool PacketRays::are_narrow(const std::uint32_t corner[4], int level, float enter) const {
+inline bool PacketRays::are_narrow(const Cell& cell, float enter) const {
   const hn::CappedTag<float, 4> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  const auto upper = hn::Add(hn::LoadU(du, corner), hn::Set(du, 1u << (23 - level)));
+  const auto upper = hn::Add(load(cell), hn::Set(D4(), 1u << (23 - cell.level)));
   const auto distance =
-      hn::Sub(hn::Load(d, least_origin_), hn::BitCast(d, hn::And(upper, hn::Load(du, kAxes))));
-  const auto t = hn::Mul(distance, hn::Load(d, least_inverse_));
+      hn::Sub(hn::Load(d, origins_.least), hn::BitCast(d, hn::And(upper, hn::Load(D4(), kAxes))));
+  const auto t = hn::Mul(distance, hn::Load(d, inverses_.least));
   enter = hn::GetLane(hn::MaxOfLanes(d, hn::Max(t, hn::Set(d, enter))));
-  return width_at_start_ + width_per_t_ * enter < kNarrow * side_of(level + 1);
+  return width_at_start_ + width_per_t_ * enter < kNarrow * side_of(cell.level + 1);
 }
 
 #endif  // VOXDAG_PACKET_LANES
