@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "voxdag/voxelize/cell_classify.hpp"
+#include "voxdag/esvo/small_triangle.hpp"
 
 namespace voxdag {
 
@@ -12,22 +12,27 @@ void CellBuilder::start(int log2_size, Vec3i origin, const ConvexPolyhedron& sha
   log2_size_ = log2_size;
   shape_ = shape;
   triangles_.clear();
+  boxes_.clear();
   ids_.clear();
   items_.clear();
   tree_ = {};
 }
 
 void CellBuilder::add(const SurfaceTriangle& triangle, std::uint32_t id) {
-  Item item;
-  item.triangle = static_cast<std::uint32_t>(triangles_.size());
-  item.conditions = triangle.setup.conditions;
-  item.polygon = triangle.polygon({}, log2_size_);
-  item.polygon.clip_to_cell();
+  const auto index = static_cast<std::uint32_t>(triangles_.size());
   triangles_.push_back(triangle);
-  set_look(triangles_.back());
+  SurfaceTriangle& added = triangles_.back();
+  added.has_small_edges = has_small_edges(added.setup, log2_size_);
+  set_look(added);
+  boxes_.push_back({added.setup.box_lo, added.setup.box_hi});
   ids_.push_back(id);
+  items_.emplace_back();
+  Item& item = items_.back();
+  item.triangle = index;
+  item.conditions = added.setup.conditions;
+  item.polygon = added.polygon({}, log2_size_);
+  item.polygon.clip_to_cell();
   set_area(item);
-  items_.push_back(item);
 }
 
 void CellBuilder::set_area(Item& item) const {
@@ -167,85 +172,76 @@ CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i 
 }
 
 ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cell) const {
-  const TriangleSetup& setup = triangles_[item.triangle].setup;
+  const VoxelBox& box = boxes_[item.triangle];
   // A triangle in the cell whose box lies in one child, or in two side by side, meets them.
   const int shift = log2_size - 1;
   unsigned lo = 0, hi = 0;
   bool is_inside = true;
   for (int axis = 0; axis < 3; ++axis) {
-    const int from = (setup.box_lo[axis] - cell[axis]) >> shift;
-    const int to = (setup.box_hi[axis] - cell[axis]) >> shift;
+    const int from = (box.lo[axis] - cell[axis]) >> shift;
+    const int to = (box.hi[axis] - cell[axis]) >> shift;
     is_inside &= ((from | to) & ~1) == 0;
     lo |= static_cast<unsigned>(from) << axis;
     hi |= static_cast<unsigned>(to) << axis;
   }
   const unsigned across = lo ^ hi;
-  if (!is_inside || (across & (across - 1)) != 0)
-    return classify_children(setup, item.conditions, cell, 1 << shift);
-  const std::uint64_t every = item.conditions * 0x0001000100010001ull;
+  if (!is_inside || (across & (across - 1)) != 0) {
+    const SurfaceTriangle& triangle = triangles_[item.triangle];
+    if (triangle.has_small_edges)
+      return classify_small_children(triangle.setup, item.conditions, cell, 1 << shift);
+    return classify_children(triangle.setup, item.conditions, cell, 1 << shift);
+  }
+  const std::uint64_t every = item.conditions * detail::kEveryLane;
   return {1u << lo | 1u << hi, {every, every}};
 }
 
-void CellBuilder::visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,
-                               const ConvexPolyhedron& shape, Visited (&children)[8]) {
-  const std::size_t end = items_.size();
-  const std::uint32_t low = detail::kLowChildren[part.axis];
-  for (const bool is_upper : {false, true}) {
-    const std::uint32_t half = part.children & (is_upper ? ~low : low);
-    if ((alive & half) == 0) continue;
-    const int child = std::countr_zero(half);  // The only one where the axis is the last.
-    for (std::size_t i = begin; i < end; ++i) {
-      const ChildConditions& classified = classified_[items_[i].classified];
-      if ((classified.alive & half) == 0) continue;
-      items_.emplace_back();
-      const Item& whole = items_[i];
-      Item& item = items_.back();
-      item.triangle = whole.triangle;
-      item.classified = whole.classified;
-      const bool is_in_one_child = (classified.alive & (classified.alive - 1)) == 0;
-      if (!is_in_one_child) {
-        item.polygon.become_half(whole.polygon, part.axis, is_upper);
-      } else if (part.axis == 0) {
-        const Item& of_cell = items_[part.items + whole.classified - part.classified];
-        item.polygon = of_cell.polygon;
-        for (int axis = 0; axis < 3; ++axis) item.polygon.stretch(axis, (child >> axis & 1) != 0);
-        item.area = 4 * of_cell.area;
-      }
-      if (part.axis > 0) continue;
-      item.conditions = classified.conditions(child);
-      if (!is_in_one_child) set_area(item);
-    }
-    ConvexPolyhedron half_shape;
-    if (settings_.contours && !part.is_near) half_shape.become_half(shape, part.axis, is_upper);
-    if (part.axis > 0) {
-      Part next = part;
-      next.axis = part.axis - 1;
-      next.children = half;
-      visit_halves(end, next, alive, half_shape, children);
-    } else {
-      const Vec3i at =
-          part.cell + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << (part.log2_size - 1));
-      children[child] = visit(end, part.log2_size - 1, at, part.is_near, half_shape);
-    }
-    items_.resize(end);
+/// Appends what the item has in a child.
+void CellBuilder::add_part(std::size_t of, const ChildConditions& classified, int child) {
+  items_.emplace_back();
+  const Item& whole = items_[of];
+  Item& item = items_.back();
+  item.triangle = whole.triangle;
+  item.conditions = classified.conditions(child);
+  if ((classified.alive & (classified.alive - 1)) == 0) {
+    item.polygon.become_enlarged(whole.polygon, child);
+    item.area = 4 * whole.area;
+  } else {
+    item.polygon.become_octant(whole.polygon, child);
+    set_area(item);
   }
 }
 
 CellBuilder::Visited CellBuilder::visit_children(std::size_t begin, int log2_size, Vec3i cell,
                                                  bool is_near, const ConvexPolyhedron& shape) {
-  const std::size_t first_classified = classified_.size();
+  const std::size_t first_classified = classified_.size(), end = items_.size();
   std::uint32_t alive = 0;
-  for (std::size_t i = begin; i < items_.size(); ++i) {
-    Item& item = items_[i];
-    item.classified = static_cast<std::uint32_t>(classified_.size());
-    classified_.push_back(classify(item, log2_size, cell));
+  for (std::size_t i = begin; i < end; ++i) {
+    classified_.push_back(classify(items_[i], log2_size, cell));
     alive |= classified_.back().alive;
   }
   // Leaves that have no contours need no shapes.
   if (settings_.contours && !is_near && log2_size == 1) is_near = is_too_thin(begin, shape);
+  const bool has_shapes = settings_.contours && !is_near;
+  // Of the shape: the half that the children at hand are in, and the half of that.
+  ConvexPolyhedron half, quarter;
   Visited children[8];
-  visit_halves(begin, {log2_size, cell, is_near, 2, 0xFF, begin, first_classified}, alive, shape,
-               children);
+  for (int last = -1; alive != 0; alive &= alive - 1) {
+    const int child = std::countr_zero(alive);
+    ConvexPolyhedron octant;
+    if (has_shapes) {
+      if (last < 0 || last >> 2 != child >> 2) half.become_half(shape, 2, child >> 2 != 0);
+      if (last < 0 || last >> 1 != child >> 1) quarter.become_half(half, 1, (child >> 1 & 1) != 0);
+      octant.become_half(quarter, 0, (child & 1) != 0);
+    }
+    last = child;
+    for (std::size_t i = begin; i < end; ++i) {
+      const ChildConditions& classified = classified_[first_classified + (i - begin)];
+      if ((classified.alive >> child & 1u) != 0) add_part(i, classified, child);
+    }
+    const Vec3i at = cell + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << (log2_size - 1));
+    children[child] = visit(end, log2_size - 1, at, is_near, octant);
+    items_.resize(end);
+  }
   classified_.resize(first_classified);
 
   Visited result;

@@ -99,27 +99,18 @@ class CellBuilder {
   BuiltVoxel build(const VoxelDecision& decision);
 
  private:
-  /// What a triangle has in a cell, or, while that is split, in one half of it after the other.
+  struct VoxelBox {
+    Vec3i lo, hi;
+  };
+  /// What a triangle has in a cell.
   struct Item {
     // Nothing of it is to be zero: polygons are large.
     Item() {}  // NOLINT(clang-analyzer-optin.cplusplus.UninitializedObject): see above
 
     std::uint32_t triangle;
     std::uint32_t conditions;  ///< Which of the triangle's conditions are open in the cell.
-    std::uint32_t classified;  ///< While a cell is split: what of it is alive, an index.
     double area;               ///< In the cell's own coordinates.
     SurfacePolygon polygon;
-  };
-  /// Some of a cell's children: all, or those in one half of it, or in one half of that. They are
-  /// halved next across `axis`; the axes before it are left.
-  struct Part {
-    int log2_size;
-    Vec3i cell;
-    bool is_near;  ///< What becomes of the cell's shape does not matter.
-    int axis;
-    std::uint32_t children;  ///< A mask.
-    std::size_t items;       ///< Where the cell's are, those that are classified from...
-    std::size_t classified;  ///< ...here on.
   };
   /// A voxel with its children known, and the node that says so.
   struct Visited {
@@ -165,8 +156,7 @@ class CellBuilder {
   Visited visit(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                 ConvexPolyhedron& shape);
   ChildConditions classify(const Item& item, int log2_size, Vec3i cell) const;
-  void visit_halves(std::size_t begin, const Part& part, std::uint32_t alive,
-                    const ConvexPolyhedron& shape, Visited (&children)[8]);
+  void add_part(std::size_t of, const ChildConditions& classified, int child);
   Visited visit_children(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                          const ConvexPolyhedron& shape);
 
@@ -176,6 +166,7 @@ class CellBuilder {
   Vec3i origin_{};
   ConvexPolyhedron shape_;
   std::vector<SurfaceTriangle> triangles_;
+  std::vector<VoxelBox> boxes_;  // of the triangles: most need no more to be classified
   std::vector<std::uint32_t> ids_;
   std::vector<Item> items_;                  // stack of lists, one for each cell on the way
   std::vector<ChildConditions> classified_;  // likewise

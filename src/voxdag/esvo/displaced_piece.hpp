@@ -22,32 +22,42 @@ struct DisplacedPiece {
 
   /// The least and the greatest dot(direction, p) that any point p can have.
   Interval along(Vec3d direction) const {
-    Vec3d at;
-    Vec3f component;
-    const double length = std::sqrt(dot(direction, direction));
-    for (int i = 0; i < 3; ++i) {
-      at[i] = dot(direction, corners[static_cast<std::size_t>(i)]);
-      component[i] = dot(static_cast<Vec3f>(direction), normals[static_cast<std::size_t>(i)]);
+    std::array<double, 3> at;
+    std::array<float, 3> component;
+    for (std::size_t i = 0; i < 3; ++i) {
+      at[i] = dot(direction, corners[i]);
+      component[i] = dot(static_cast<Vec3f>(direction), normals[i]);
     }
-    const auto [least, most] = std::minmax({component.x, component.y, component.z});
-    const Interval normal{least < 0 ? least / shortest : least, most > 0 ? most / shortest : most};
-    const Interval offset = normal * heights;
-    Interval all{std::min({at.x, at.y, at.z}) + offset.lo - slack * length,
-                 std::max({at.x, at.y, at.z}) + offset.hi + slack * length};
-    for (int i = 0; i < 3; ++i) {
-      const double far = reach[static_cast<std::size_t>(i)] * length;
-      all = {std::min(all.lo, at[i] - far), std::max(all.hi, at[i] + far)};
-    }
-    return all;
+    return between(at, component, std::sqrt(dot(direction, direction)));
   }
 
   Box3d box() const {
-    const Interval x = along({1, 0, 0}), y = along({0, 1, 0}), z = along({0, 0, 1});
+    const auto along_axis = [&](int axis) {
+      return between({corners[0][axis], corners[1][axis], corners[2][axis]},
+                     {normals[0][axis], normals[1][axis], normals[2][axis]}, 1);
+    };
+    const Interval x = along_axis(0), y = along_axis(1), z = along_axis(2);
     return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
   }
 
   /// Half of the cross product of two edges of the flat triangle.
   Vec3d area() const { return cross(corners[1] - corners[0], corners[2] - corners[0]) * 0.5; }
+
+ private:
+  /// along() a direction of this length, along which corners and normals have these components.
+  Interval between(const std::array<double, 3>& at, const std::array<float, 3>& component,
+                   double length) const {
+    const auto [least, most] = std::minmax({component[0], component[1], component[2]});
+    const Interval normal{least < 0 ? least / shortest : least, most > 0 ? most / shortest : most};
+    const Interval offset = normal * heights;
+    Interval all{std::min({at[0], at[1], at[2]}) + offset.lo - slack * length,
+                 std::max({at[0], at[1], at[2]}) + offset.hi + slack * length};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double far = reach[i] * length;
+      all = {std::min(all.lo, at[i] - far), std::max(all.hi, at[i] + far)};
+    }
+    return all;
+  }
 };
 
 }  // namespace voxdag

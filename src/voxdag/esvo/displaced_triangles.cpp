@@ -175,7 +175,12 @@ DisplacedTriangles::Pass::Pass(const DisplacedTriangles& all, std::uint32_t base
     densest = std::max({densest, all.edge_density(all.members_[edge.first]),
                         all.density(all.members_[corner.first] / 3)});
   }
-  blurriest = level_of(densest, edge_limit);
+  if (!all.is_displaced(base)) return;
+  const HeightTexture& heights = *all.displacement(base).heights;
+  const float blurriest = level_of(densest, edge_limit);
+  const float texel = blurriest > 0 ? 1.5f * std::exp2(std::floor(blurriest) + 1) : 0;
+  blur = {texel / static_cast<float>(heights.width()),
+          texel / static_cast<float>(heights.height())};
 }
 
 bool DisplacedTriangles::is_seam(std::uint32_t t, std::uint8_t edges) const {
@@ -198,7 +203,7 @@ DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const Vertex& a, co
     const Vertex& v = *corners[i];
     flat.extend(v.position);
     piece.corners[i] = v.position;
-    piece.normals[i] = unit_or_zero(v.normal);
+    piece.normals[i] = i > 0 && v.normal == a.normal ? piece.normals[0] : unit_or_zero(v.normal);
     if (is_seam(pass.triangle, v.edges)) piece.reach[i] = radius_;
   }
   const std::array<Vec3f, 3>& n = piece.normals;
@@ -211,11 +216,7 @@ DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const Vertex& a, co
 
   HeightTexture::Bounds range{{65535}, {0}};
   const auto include = [&](Vec2f lo, Vec2f hi) {
-    const HeightTexture& heights = *d.heights;
-    const float texel = pass.blurriest > 0 ? 1.5f * std::exp2(std::floor(pass.blurriest) + 1) : 0;
-    const Vec2f margin{texel / static_cast<float>(heights.width()),
-                       texel / static_cast<float>(heights.height())};
-    const HeightTexture::Bounds bounds = heights.bounds(lo - margin, hi + margin);
+    const HeightTexture::Bounds bounds = d.heights->bounds(lo - pass.blur, hi + pass.blur);
     range.lo[0] = std::min(range.lo[0], bounds.lo[0]);
     range.hi[0] = std::max(range.hi[0], bounds.hi[0]);
   };

@@ -98,8 +98,9 @@ class DisplacedTriangles {
 
     std::uint32_t triangle;
     double limit;
-    float level;      ///< Of the heights inside the triangle.
-    float blurriest;  ///< No level of heights is over this, but on seams.
+    float level;  ///< Of the heights inside the triangle.
+    /// No height but on seams depends on texels farther away than this, in texture coordinates.
+    Vec2f blur{};
     std::array<Vertex, 3> corners;
   };
 

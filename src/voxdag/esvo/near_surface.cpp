@@ -128,6 +128,13 @@ bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygo
   std::size_t known = 0;
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
+    // Most points that are near are so to a corner of small polygons.
+    for (const PlanarPolygon& polygon : surface) {
+      const auto corner = static_cast<Vec3f>(polygon.polygon->corners[0]);
+      const FloatLanes x = points.x[i] - corner.x, y = points.y[i] - corner.y,
+                       z = points.z[i] - corner.z;
+      far &= x * x + y * y + z * z > distance * distance;
+    }
     for (std::size_t k = 0; k < surface.size() && any_lane(far); ++k) {
       if (k == known) polygons[known++].set(surface[k]);
       far = polygons[k].still_far(points, i, distance, far);

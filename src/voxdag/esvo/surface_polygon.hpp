@@ -18,6 +18,7 @@ namespace voxdag {
 struct SurfacePolygon {
   static constexpr int kMaxCorners = 12;
   static constexpr std::uint8_t kCutEdge = 3;
+  static constexpr double kSlack = 1e-9;  ///< Corners nearer to a plane than this lie on it.
 
   // Most have a few of the corners that there is room for: copies leave out the rest.
   SurfacePolygon() {}
@@ -51,7 +52,6 @@ struct SurfacePolygon {
   /// Becomes the part of `whole`, another polygon, where sign * (p[axis] - position) >= 0; sign is
   /// 1 or -1.
   void become_part(const SurfacePolygon& whole, int axis, double position, double sign) {
-    constexpr double kSlack = 1e-9;
     double distances[kMaxCorners];
     unsigned inside = 0, on_plane = 0;
     const int n = whole.count;
@@ -100,21 +100,34 @@ struct SurfacePolygon {
     }
   }
 
-  /// Becomes the half of `whole` on one side of 0 along an axis, stretched along it: what was [0,1]
-  /// or [-1,0] is [-1,1] then. Where rounding lost all that is known to be there a point is left.
-  void become_half(const SurfacePolygon& whole, int axis, bool is_upper) {
-    become_part(whole, axis, 0, is_upper ? 1 : -1);
-    if (count == 0) {
-      become_point(whole.corners[0]);
-      corners[0][axis] = 0;
+  /// Becomes the part of `whole`, another polygon, in octant `child` (x=1, y=2, z=4), enlarged to
+  /// [-1,1]³. Where rounding lost all that is known to be there a point is left.
+  void become_octant(const SurfacePolygon& whole, int child) {
+    SurfacePolygon parts[2];
+    const SurfacePolygon* from = &whole;
+    for (int axis = 2; axis >= 0; --axis) {
+      const double sign = (child >> axis & 1) != 0 ? 1 : -1;
+      if (from->is_inside(axis, sign)) continue;
+      SurfacePolygon& part = from == &parts[0] ? parts[1] : parts[0];
+      part.become_part(*from, axis, 0, sign);
+      if (part.count == 0) {
+        part.become_point(from->corners[0]);
+        part.corners[0][axis] = 0;
+      }
+      from = &part;
     }
-    stretch(axis, is_upper);
+    become_enlarged(*from, child);
   }
 
-  /// The same for what is known to lie in that half.
-  void stretch(int axis, bool is_upper) {
-    const double shift = is_upper ? -1 : 1;
-    for (int i = 0; i < count; ++i) corners[i][axis] = 2 * corners[i][axis] + shift;
+  /// The same of a polygon that is known to lie in that octant.
+  void become_enlarged(const SurfacePolygon& whole, int child) {
+    const auto shift = [&](int axis) { return (child >> axis & 1) != 0 ? -1.0 : 1.0; };
+    const Vec3d shifts{shift(0), shift(1), shift(2)};
+    count = whole.count;
+    for (int i = 0; i < count; ++i) {
+      corners[i] = whole.corners[i] * 2.0 + shifts;
+      edges[i] = whole.edges[i];
+    }
   }
 
   /// Keeps the part in [-1,1]³, or a point there if rounding lost it.
@@ -142,6 +155,14 @@ struct SurfacePolygon {
     count = 1;
     corners[0] = point;
     edges[0] = kCutEdge;
+  }
+
+  /// Whether all corners are on this side of 0 along an axis, and none as near as to lie on it;
+  /// `sign` is the side's, 1 or -1.
+  bool is_inside(int axis, double sign) const {
+    bool is_inside = true;
+    for (int i = 0; i < count; ++i) is_inside &= sign * corners[i][axis] >= kSlack;
+    return is_inside;
   }
 
   /// The vector area: its length is the area, its direction the normal.

@@ -25,14 +25,27 @@ constexpr int kLeastLog2 = 2;
 constexpr std::size_t kMostLoaded = 1 << 14;
 
 /// The side of the cells in which displaced triangles are tessellated.
-constexpr int kDisplacedTaskLog2 = 5;
+constexpr int kDisplacedTaskLog2 = 4;
 
 void add_displaced(CellBuilder& builder, const TriangleSource& source, const TopCell& cell,
                    std::uint32_t triangle) {
   const Grid& grid = source.grid;
   const int log2_size = grid.levels - cell.level;
   const Vec3i origin = cell.cell * (1 << log2_size);
+  const std::int64_t side = std::int64_t{kSubvoxels} << log2_size;
   const Vec3l lo = static_cast<Vec3l>(origin) * std::int64_t{kSubvoxels};
+  const Vec3l hi = lo + Vec3l{side, side, side};
+  // Most lie in the cell as a whole: the exact test is slow.
+  const auto meets_cell = [&](const QuantizedTriangle& t) {
+    const auto least = static_cast<Vec3l>(min(t.x, min(t.y, t.z)));
+    const auto most = static_cast<Vec3l>(max(t.x, max(t.y, t.z)));
+    bool is_inside = true, is_outside = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      is_inside &= least[axis] >= lo[axis] && most[axis] < hi[axis];
+      is_outside |= most[axis] < lo[axis] || least[axis] >= hi[axis];
+    }
+    return is_inside || (!is_outside && triangle_overlaps_cube(t.x, t.y, t.z, lo, side));
+  };
   source.displaced->tessellate(
       triangle, world_box(grid, cell.cell, log2_size), source.edge_limit(),
       [&](const MicroTriangle& micro) {
@@ -43,9 +56,7 @@ void add_displaced(CellBuilder& builder, const TriangleSource& source, const Top
           if (!q) return;
           quantized[i] = *q;
         }
-        if (!triangle_overlaps_cube(quantized.x, quantized.y, quantized.z, lo,
-                                    std::int64_t{kSubvoxels} << log2_size))
-          return;
+        if (!meets_cell(quantized)) return;
         const Vec2f barycentrics[3] = {micro.barycentrics[0], micro.barycentrics[1],
                                        micro.barycentrics[2]};
         builder.add(SurfaceTriangle::make_displaced(quantized, origin, triangle, barycentrics),

@@ -28,6 +28,7 @@ struct ChildConditions {
 namespace detail {
 
 inline constexpr std::uint32_t kLowChildren[3] = {0x55, 0x33, 0x0F};
+inline constexpr std::uint64_t kEveryLane = 0x0001000100010001ull;
 
 /// For projection p and a set of its four quadrants (u=1, v=2): the children over them, as a mask
 /// and as 16-bit lanes.
@@ -52,14 +53,11 @@ constexpr QuadrantChildren make_quadrant_children() {
 
 inline constexpr QuadrantChildren kQuadrantChildren = make_quadrant_children();
 
-}  // namespace detail
-
-/// `cell` is the least voxel of a cell of (2*half)³ voxels, relative to the setup's origin;
-/// `conditions` what still matters in it.
-VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
-                                                      std::uint32_t conditions, Vec3i cell,
-                                                      std::int32_t half) {
-  using namespace detail;
+/// What classify_children() learns from all but the edges. Takes the box out of `conditions` if it
+/// no longer matters.
+VOXDAG_FORCE_INLINE ChildConditions classify_by_box_and_plane(const TriangleSetup& t,
+                                                              std::uint32_t& conditions, Vec3i cell,
+                                                              std::int32_t half) {
   ChildConditions result;
   if (conditions & kBox) {
     bool inside = true;
@@ -71,8 +69,7 @@ VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
     }
     if (inside) conditions &= ~kBox;
   }
-  const std::uint64_t every_lane = 0x0001000100010001ull;
-  result.lanes[0] = result.lanes[1] = conditions * every_lane;
+  result.lanes[0] = result.lanes[1] = conditions * kEveryLane;
 
   if ((conditions & kPlane) && slab_range(t, cell, 2 * half) == 1) {
     const Vec3l& n = t.plane.normal;
@@ -87,7 +84,18 @@ VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
       meets |= static_cast<std::uint32_t>(value[child] >= least && value[child] <= most) << child;
     result.alive &= meets;
   }
+  return result;
+}
 
+}  // namespace detail
+
+/// `cell` is the least voxel of a cell of (2*half)³ voxels, relative to the setup's origin;
+/// `conditions` what still matters in it.
+VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
+                                                      std::uint32_t conditions, Vec3i cell,
+                                                      std::int32_t half) {
+  using namespace detail;
+  ChildConditions result = classify_by_box_and_plane(t, conditions, cell, half);
   for (std::uint32_t left = conditions & kAllEdges; left != 0 && result.alive != 0;
        left &= left - 1) {
     const int edge = std::countr_zero(left);
@@ -108,7 +116,7 @@ VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
       inside |= static_cast<std::uint32_t>(values[quadrant] >= all) << quadrant;
     }
     result.alive &= kQuadrantChildren.mask[projection][meets];
-    const std::uint64_t bit = every_lane << edge;
+    const std::uint64_t bit = kEveryLane << edge;
     result.lanes[0] &= ~(kQuadrantChildren.lanes[projection][inside][0] & bit);
     result.lanes[1] &= ~(kQuadrantChildren.lanes[projection][inside][1] & bit);
   }

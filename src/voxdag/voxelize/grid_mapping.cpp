@@ -93,7 +93,10 @@ std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
   for (int axis = 0; axis < 3; ++axis) {
     const double units = (world[axis] - grid.origin[axis]) * grid.quantization_scale;
     if (!(std::fabs(units) <= kMaxUnits)) return std::nullopt;
-    q[axis] = static_cast<std::int32_t>(std::llround(units));
+    // std::llround(units), which is a call.
+    const auto whole = static_cast<std::int32_t>(units);
+    const double rest = units - whole;
+    q[axis] = whole + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0);
   }
   return q;
 }

@@ -14,8 +14,8 @@
 ///
 /// The same functions decide for a cell of s³ voxels: its least and greatest value over the cell's
 /// voxels say whether none, some or all of them pass.
+#include <bit>
 #include <cstdint>
-#include <numeric>
 
 #include "voxdag/core/host_device.hpp"
 #include "voxdag/core/int128.hpp"
@@ -80,20 +80,26 @@ VOXDAG_HD inline void set_edge(TriangleSetup& s, int slot, std::int64_t pu, std:
   if (a != 0 || b != 0) s.conditions |= 1u << slot;
 }
 
-VOXDAG_HD inline std::int64_t common_divisor(std::int64_t a, std::int64_t b) {
+/// The greatest common divisor of numbers that are not negative, by Stein's algorithm: divisions
+/// take long.
+inline std::int64_t common_divisor(std::int64_t a, std::int64_t b) {
+  if (a == 0) return b;
+  if (b == 0) return a;
+  const int twos = std::countr_zero(static_cast<std::uint64_t>(a | b));
+  a >>= std::countr_zero(static_cast<std::uint64_t>(a));
   while (b != 0) {
-    const std::int64_t r = a % b;
-    a = b;
-    b = r;
+    b >>= std::countr_zero(static_cast<std::uint64_t>(b));
+    const std::int64_t least = a < b ? a : b;
+    b = a < b ? b - a : a - b;
+    a = least;
   }
-  return a;
+  return a << twos;
 }
 
 }  // namespace detail
 
 /// `origin` is in voxels. Exact for coordinates within ±kMaxUnits and 0 <= origin < 2^kMaxLevels.
-VOXDAG_HD inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle,
-                                                   Vec3i origin) {
+inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3i origin) {
   static_assert(kSubvoxels == 1 << 8);
   using namespace detail;
   TriangleSetup s{};
