@@ -183,6 +183,15 @@ class DisplacedTriangles {
     const Vec3d d = a.position - b.position;
     return dot(d, d);
   }
+  /// Holds all of a piece; enclose() is looked at only where it could make the box much smaller.
+  Box3d bounds_of_piece(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c) const {
+    Box3d box = Box3d::empty();
+    for (const Vertex* v : {&a, &b, &c}) box.extend(v->position);
+    const Vec3d size = box.hi - box.lo;
+    if (std::max({size.x, size.y, size.z}) < radius_) return enclose(pass, a, b, c).box();
+    const Vec3d reach{radius_, radius_, radius_};
+    return {box.lo - reach, box.hi + reach};
+  }
   static Box3d bounds_of(const MicroTriangle& micro) {
     Box3d box = Box3d::empty();
     for (const Vec3d& p : micro.positions) box.extend(p);
@@ -202,7 +211,7 @@ class DisplacedTriangles {
       return;
     }
     if (!search.is_inside) {
-      const Box3d box = enclose(pass, a, b, c).box();
+      const Box3d box = bounds_of_piece(pass, a, b, c);
       if (!meets(box, search.region)) return;
       search.is_inside =
           box.lo == max(box.lo, search.region.lo) && box.hi == min(box.hi, search.region.hi);

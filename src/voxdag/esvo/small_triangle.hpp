@@ -20,7 +20,8 @@ inline bool has_small_edges(const TriangleSetup& t, int log2_size) {
   return farthest < kMost && steepest < kMost && farthest + (steepest << log2_size) < kMost;
 }
 
-/// What classify_children() finds, for cells within one for which has_small_edges() holds.
+/// What classify_children() finds, for cells within one for which has_small_edges() holds; but
+/// children that are voxels keep all of `conditions`.
 inline ChildConditions classify_small_children(const TriangleSetup& t, std::uint32_t conditions,
                                                Vec3i cell, std::int32_t half) {
   using namespace detail;
@@ -50,6 +51,7 @@ inline ChildConditions classify_small_children(const TriangleSetup& t, std::uint
     for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
       const std::uint32_t met = lane_bits(values[quadrant] >= some) | ~open;
       meets |= ((met & 7u) == 7u ? 1u : 0u) << quadrant;
+      if (half == 1) continue;
       const std::uint64_t inside = lane_bits(values[quadrant] >= all) & open;
       const std::uint64_t closed = (inside << first) * kEveryLane;
       const auto& lanes = kQuadrantChildren.lanes[projection][1u << quadrant];
