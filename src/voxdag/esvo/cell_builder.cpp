@@ -12,7 +12,6 @@ void CellBuilder::start(int log2_size, Vec3i origin, const ConvexPolyhedron& sha
   log2_size_ = log2_size;
   shape_ = shape;
   triangles_.clear();
-  boxes_.clear();
   ids_.clear();
   items_.clear();
   tree_ = {};
@@ -24,7 +23,6 @@ void CellBuilder::add(const SurfaceTriangle& triangle, std::uint32_t id) {
   SurfaceTriangle& added = triangles_.back();
   added.has_small_edges = has_small_edges(added.setup, log2_size_);
   set_look(added);
-  boxes_.push_back({added.setup.box_lo, added.setup.box_hi});
   ids_.push_back(id);
   items_.emplace_back();
   Item& item = items_.back();
@@ -175,27 +173,29 @@ CellBuilder::Visited CellBuilder::visit(std::size_t begin, int log2_size, Vec3i 
 }
 
 ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cell) const {
-  const VoxelBox& box = boxes_[item.triangle];
+  const auto meets = [&](std::uint32_t first, std::uint32_t last) -> ChildConditions {
+    const std::uint64_t every = item.conditions * detail::kEveryLane;
+    return {1u << first | 1u << last, {every, every}};
+  };
+  if (const auto octants = item.polygon.octants()) return meets(octants->first, octants->last);
   // A triangle in the cell whose box lies in one child, or in two side by side, meets them.
+  const SurfaceTriangle& triangle = triangles_[item.triangle];
+  const TriangleSetup& setup = triangle.setup;
   const int shift = log2_size - 1;
-  unsigned lo = 0, hi = 0;
+  std::uint32_t lo = 0, hi = 0;
   bool is_inside = true;
   for (int axis = 0; axis < 3; ++axis) {
-    const int from = (box.lo[axis] - cell[axis]) >> shift;
-    const int to = (box.hi[axis] - cell[axis]) >> shift;
+    const int from = (setup.box_lo[axis] - cell[axis]) >> shift;
+    const int to = (setup.box_hi[axis] - cell[axis]) >> shift;
     is_inside &= ((from | to) & ~1) == 0;
-    lo |= static_cast<unsigned>(from) << axis;
-    hi |= static_cast<unsigned>(to) << axis;
+    lo |= static_cast<std::uint32_t>(from) << axis;
+    hi |= static_cast<std::uint32_t>(to) << axis;
   }
-  const unsigned across = lo ^ hi;
-  if (!is_inside || (across & (across - 1)) != 0) {
-    const SurfaceTriangle& triangle = triangles_[item.triangle];
-    if (triangle.has_small_edges)
-      return classify_small_children(triangle.setup, item.conditions, cell, 1 << shift);
-    return classify_children(triangle.setup, item.conditions, cell, 1 << shift);
-  }
-  const std::uint64_t every = item.conditions * detail::kEveryLane;
-  return {1u << lo | 1u << hi, {every, every}};
+  const std::uint32_t across = lo ^ hi;
+  if (is_inside && (across & (across - 1)) == 0) return meets(lo, hi);
+  if (triangle.has_small_edges)
+    return classify_small_children(setup, item.conditions, cell, 1 << shift);
+  return classify_children(setup, item.conditions, cell, 1 << shift);
 }
 
 /// Appends what the item has in a child.

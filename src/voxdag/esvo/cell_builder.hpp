@@ -99,9 +99,6 @@ class CellBuilder {
   BuiltVoxel build(const VoxelDecision& decision);
 
  private:
-  struct VoxelBox {
-    Vec3i lo, hi;
-  };
   /// What a triangle has in a cell.
   struct Item {
     // Nothing of it is to be zero: polygons are large.
@@ -166,7 +163,6 @@ class CellBuilder {
   Vec3i origin_{};
   ConvexPolyhedron shape_;
   std::vector<SurfaceTriangle> triangles_;
-  std::vector<VoxelBox> boxes_;  // of the triangles: most need no more to be classified
   std::vector<std::uint32_t> ids_;
   std::vector<Item> items_;                  // stack of lists, one for each cell on the way
   std::vector<ChildConditions> classified_;  // likewise

@@ -183,14 +183,23 @@ class DisplacedTriangles {
     const Vec3d d = a.position - b.position;
     return dot(d, d);
   }
-  /// Holds all of a piece; enclose() is looked at only where it could make the box much smaller.
-  Box3d bounds_of_piece(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c) const {
+  /// Of a piece that is not small, what it may meet of the region, and whether it lies in there.
+  bool may_meet(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c,
+                Search& search) const {
     Box3d box = Box3d::empty();
     for (const Vertex* v : {&a, &b, &c}) box.extend(v->position);
     const Vec3d size = box.hi - box.lo;
-    if (std::max({size.x, size.y, size.z}) < radius_) return enclose(pass, a, b, c).box();
-    const Vec3d reach{radius_, radius_, radius_};
-    return {box.lo - reach, box.hi + reach};
+    const double longest = std::max({size.x, size.y, size.z});
+    // To look at the few triangles of a little piece takes no longer than to enclose it.
+    if (longest < radius_ && longest > 4 * pass.limit) {
+      box = enclose(pass, a, b, c).box();
+    } else {
+      const Vec3d reach{radius_, radius_, radius_};
+      box = {box.lo - reach, box.hi + reach};
+    }
+    search.is_inside =
+        box.lo == max(box.lo, search.region.lo) && box.hi == min(box.hi, search.region.hi);
+    return meets(box, search.region);
   }
   static Box3d bounds_of(const MicroTriangle& micro) {
     Box3d box = Box3d::empty();
@@ -210,12 +219,7 @@ class DisplacedTriangles {
       if (search.is_inside || meets(bounds_of(micro), search.region)) emit(micro);
       return;
     }
-    if (!search.is_inside) {
-      const Box3d box = bounds_of_piece(pass, a, b, c);
-      if (!meets(box, search.region)) return;
-      search.is_inside =
-          box.lo == max(box.lo, search.region.lo) && box.hi == min(box.hi, search.region.hi);
-    }
+    if (!search.is_inside && !may_meet(pass, a, b, c, search)) return;
     for_each_part(pass, a, b, c,
                   [&](Vertex& p, Vertex& q, Vertex& r) { split(pass, p, q, r, search, emit); });
   }

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "voxdag/core/vec.hpp"
 
@@ -155,6 +156,30 @@ struct SurfacePolygon {
     count = 1;
     corners[0] = point;
     edges[0] = kCutEdge;
+  }
+
+  /// Octants (x=1, y=2, z=4): one, or two side by side.
+  struct Octants {
+    std::uint32_t first, last;
+  };
+  /// Those that it lies in, unless they are more, or rounding leaves a doubt.
+  std::optional<Octants> octants() const {
+    // Corners are moved by kSlack at most, which each of twenty levels of cells doubles.
+    constexpr double kDoubt = kSlack * (1 << 20);
+    if (count < 3) return std::nullopt;
+    Vec3d least = corners[0], most = corners[0];
+    for (int i = 1; i < count; ++i) {
+      least = min(least, corners[i]);
+      most = max(most, corners[i]);
+    }
+    Octants octants{0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::min(std::fabs(least[axis]), std::fabs(most[axis])) < kDoubt) return std::nullopt;
+      octants.first |= (least[axis] > 0 ? 1u : 0u) << axis;
+      octants.last |= (most[axis] > 0 ? 1u : 0u) << axis;
+    }
+    if (std::popcount(octants.first ^ octants.last) > 1) return std::nullopt;
+    return octants;
   }
 
   /// Whether all corners are on this side of 0 along an axis, and none as near as to lie on it;
