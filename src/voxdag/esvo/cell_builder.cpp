@@ -209,7 +209,12 @@ void CellBuilder::add_part(std::size_t of, const ChildConditions& classified, in
     item.polygon.become_enlarged(whole.polygon, child);
     item.area = 4 * whole.area;
   } else {
-    item.polygon.become_octant(whole.polygon, child);
+    std::uint32_t across = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint32_t low = detail::kLowChildren[axis];
+      if ((classified.alive & low) != 0 && (classified.alive & ~low) != 0) across |= 1u << axis;
+    }
+    item.polygon.become_octant(whole.polygon, child, across);
     set_area(item);
   }
 }

@@ -75,35 +75,47 @@ void ContourCandidates::add(const ContourDirection& direction, double weight) {
   weights_[lightest] = weight;
 }
 
-ContourExtents extents_of(std::span<const PlanarPolygon> surface,
-                          const ContourCandidates& candidates) {
+namespace {
+
+/// Extents along up to four directions a group.
+template <int groups>
+ContourExtents extents_by_groups(std::span<const PlanarPolygon> surface,
+                                 std::span<const ContourDirection> directions) {
   // Floats will do: what they round away is a hundredth of kMargin.
-  const std::span<const ContourDirection> directions = candidates.directions();
-  ContourExtents extents;
-  constexpr int kGroups = ContourCandidates::kMost / kLanes;
-  FloatLanes x[kGroups]{}, y[kGroups]{}, z[kGroups]{}, low[kGroups]{}, high[kGroups]{};
+  FloatLanes x[groups]{}, y[groups]{}, z[groups]{}, least[groups], most[groups];
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const auto n = static_cast<Vec3f>(directions[i].normal);
     const std::size_t group = i / kLanes, lane = i % kLanes;
     x[group][lane] = n.x, y[group][lane] = n.y, z[group][lane] = n.z;
   }
-  const int groups = (static_cast<int>(directions.size()) + kLanes - 1) / kLanes;
   for (int group = 0; group < groups; ++group) {
-    FloatLanes least = all_lanes(HUGE_VALF), most = -least;
-    for (const PlanarPolygon& p : surface)
-      for (int i = 0; i < p.polygon->count; ++i) {
-        const auto corner = static_cast<Vec3f>(p.polygon->corners[i]);
-        const FloatLanes along = x[group] * corner.x + y[group] * corner.y + z[group] * corner.z;
-        least = min(least, along);
-        most = max(most, along);
-      }
-    low[group] = least;
-    high[group] = most;
+    least[group] = all_lanes(HUGE_VALF);
+    most[group] = -least[group];
   }
+  for (const PlanarPolygon& p : surface)
+    for (int i = 0; i < p.polygon->count; ++i) {
+      const auto corner = static_cast<Vec3f>(p.polygon->corners[i]);
+      for (int group = 0; group < groups; ++group) {
+        const FloatLanes along = x[group] * corner.x + y[group] * corner.y + z[group] * corner.z;
+        least[group] = min(least[group], along);
+        most[group] = max(most[group], along);
+      }
+    }
+  ContourExtents extents;
   for (std::size_t i = 0; i < directions.size(); ++i)
-    extents[i] = {static_cast<double>(low[i / kLanes][i % kLanes]),
-                  static_cast<double>(high[i / kLanes][i % kLanes])};
+    extents[i] = {static_cast<double>(least[i / kLanes][i % kLanes]),
+                  static_cast<double>(most[i / kLanes][i % kLanes])};
   return extents;
+}
+
+}  // namespace
+
+ContourExtents extents_of(std::span<const PlanarPolygon> surface,
+                          const ContourCandidates& candidates) {
+  const std::span<const ContourDirection> directions = candidates.directions();
+  static_assert(ContourCandidates::kMost == 2 * kLanes);
+  return directions.size() <= kLanes ? extents_by_groups<1>(surface, directions)
+                                     : extents_by_groups<2>(surface, directions);
 }
 
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,

@@ -102,13 +102,14 @@ struct SurfacePolygon {
   }
 
   /// Becomes the part of `whole`, another polygon, in octant `child` (x=1, y=2, z=4), enlarged to
-  /// [-1,1]³. Where rounding lost all that is known to be there a point is left.
-  void become_octant(const SurfacePolygon& whole, int child) {
+  /// [-1,1]³. It is in both halves along `axes` at most, a mask likewise. Where rounding lost all
+  /// that is known to be there a point is left.
+  void become_octant(const SurfacePolygon& whole, int child, std::uint32_t axes) {
     SurfacePolygon parts[2];
     const SurfacePolygon* from = &whole;
     for (int axis = 2; axis >= 0; --axis) {
       const double sign = (child >> axis & 1) != 0 ? 1 : -1;
-      if (from->is_inside(axis, sign)) continue;
+      if ((axes >> axis & 1u) == 0 || from->is_inside(axis, sign)) continue;
       SurfacePolygon& part = from == &parts[0] ? parts[1] : parts[0];
       part.become_part(*from, axis, 0, sign);
       if (part.count == 0) {
