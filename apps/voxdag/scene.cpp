@@ -61,16 +61,17 @@ void print_list(bool json) {
                "", scene.size_meaning, scene.min_size, scene.max_size, scene.default_size);
 }
 
-void make(const SceneArguments& arguments, bool json, const Progress& progress) {
+void make(const SceneArguments& arguments, const Session& session) {
+  const Progress& progress = session.progress;
   check_writable(arguments.output);
   const Mesh mesh = make_scene(arguments.name, arguments.options, &progress);
   write_ply(arguments.output, mesh, &progress);
-  if (json) {
+  if (session.json) {
     const nlohmann::ordered_json summary = {{"file", arguments.output},
                                             {"vertices", mesh.vertices.size()},
                                             {"triangles", mesh.triangles.size()}};
     fmt::print("{}\n", summary.dump(2));
-  } else {
+  } else if (!session.quiet) {
     fmt::print("{}: {} triangles, {} vertices\n", arguments.output,
                with_commas(mesh.triangles.size()), with_commas(mesh.vertices.size()));
   }
@@ -107,6 +108,7 @@ void add_scene_command(CLI::App& app, Session& session) {
       ->check(whole_number(0, 0xffff'ffff))
       ->type_name("N")
       ->capture_default_str();
+  add_quiet_option(command, session);
   add_json_option(command, session);
   command.callback([arguments, &session] {
     if (arguments->list) {
@@ -127,7 +129,7 @@ void add_scene_command(CLI::App& app, Session& session) {
       return;
     }
     if (arguments->output.empty()) throw CLI::RequiredError("--output");
-    session.work = [arguments, &session] { make(*arguments, session.json, session.progress); };
+    session.work = [arguments, &session] { make(*arguments, session); };
   });
 }
 
