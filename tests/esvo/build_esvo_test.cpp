@@ -75,9 +75,9 @@ EsvoOptions cubes() {
 }
 
 TEST(BuildEsvo, CubesAreTheVoxelsOfTheExactCover) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const int levels = 2 + static_cast<int>(seed % 6);
-    const Mesh mesh = random_mesh(seed, levels, 1 + static_cast<int>(seed));
+    const Mesh mesh = random_mesh(seed, levels, 1 + static_cast<int>(seed % 40));
     const Esvo esvo = build_esvo(mesh, unit_grid(levels), cubes());
     std::vector<std::uint64_t> codes;
     for (const Leaf& leaf : leaves_of(esvo.view())) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "voxdag/esvo/small_triangle.hpp"
+#include "voxdag/voxelize/cell_classify.hpp"
 
 namespace voxdag {
 
@@ -21,7 +21,6 @@ void CellBuilder::add(const SurfaceTriangle& triangle, std::uint32_t id) {
   const auto index = static_cast<std::uint32_t>(triangles_.size());
   triangles_.push_back(triangle);
   SurfaceTriangle& added = triangles_.back();
-  added.has_small_edges = has_small_edges(added.setup, log2_size_);
   set_look(added);
   ids_.push_back(id);
   items_.emplace_back();
@@ -179,8 +178,7 @@ ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cel
   };
   if (const auto octants = item.polygon.octants()) return meets(octants->first, octants->last);
   // A triangle in the cell whose box lies in one child, or in two side by side, meets them.
-  const SurfaceTriangle& triangle = triangles_[item.triangle];
-  const TriangleSetup& setup = triangle.setup;
+  const TriangleSetup& setup = triangles_[item.triangle].setup;
   const int shift = log2_size - 1;
   std::uint32_t lo = 0, hi = 0;
   bool is_inside = true;
@@ -193,8 +191,6 @@ ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cel
   }
   const std::uint32_t across = lo ^ hi;
   if (is_inside && (across & (across - 1)) == 0) return meets(lo, hi);
-  if (triangle.has_small_edges)
-    return classify_small_children(setup, item.conditions, cell, 1 << shift);
   return classify_children(setup, item.conditions, cell, 1 << shift);
 }
 

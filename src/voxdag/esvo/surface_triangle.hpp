@@ -17,12 +17,11 @@ namespace voxdag {
 struct SurfaceTriangle {
   // What every level reads comes first.
   TriangleSetup setup;
-  Vec3d normal{};                ///< Unit length; zero for a triangle without area.
-  ContourDirection across;       ///< `normal` as a contour stores it; none likewise.
-  std::uint32_t source = 0;      ///< Triangle of the mesh.
-  bool has_small_edges = false;  ///< has_small_edges() holds in the cell in hand.
-  bool is_displaced = false;     ///< Its normal is its own, not that of the source.
-  std::uint8_t open_edges = 0;   ///< Bit e: no other triangle has the edge that begins at corner e.
+  Vec3d normal{};               ///< Unit length; zero for a triangle without area.
+  ContourDirection across;      ///< `normal` as a contour stores it; none likewise.
+  std::uint32_t source = 0;     ///< Triangle of the mesh.
+  bool is_displaced = false;    ///< Its normal is its own, not that of the source.
+  std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
   std::optional<SurfaceSample> look;  ///< That of all its points, if they look the same.
   ContourDirection across_edges[3];   ///< In the plane and perpendicular to the open edges.
   Vec3d corners[3];

@@ -53,11 +53,14 @@ constexpr QuadrantChildren make_quadrant_children() {
 
 inline constexpr QuadrantChildren kQuadrantChildren = make_quadrant_children();
 
-/// What classify_children() learns from all but the edges. Takes the box out of `conditions` if it
-/// no longer matters.
-VOXDAG_FORCE_INLINE ChildConditions classify_by_box_and_plane(const TriangleSetup& t,
-                                                              std::uint32_t& conditions, Vec3i cell,
-                                                              std::int32_t half) {
+}  // namespace detail
+
+/// `cell` is the least voxel of a cell of (2*half)³ voxels, relative to the setup's origin;
+/// `conditions` what still matters in it.
+VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
+                                                      std::uint32_t conditions, Vec3i cell,
+                                                      std::int32_t half) {
+  using namespace detail;
   ChildConditions result;
   if (conditions & kBox) {
     bool inside = true;
@@ -84,18 +87,7 @@ VOXDAG_FORCE_INLINE ChildConditions classify_by_box_and_plane(const TriangleSetu
       meets |= static_cast<std::uint32_t>(value[child] >= least && value[child] <= most) << child;
     result.alive &= meets;
   }
-  return result;
-}
 
-}  // namespace detail
-
-/// `cell` is the least voxel of a cell of (2*half)³ voxels, relative to the setup's origin;
-/// `conditions` what still matters in it.
-VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
-                                                      std::uint32_t conditions, Vec3i cell,
-                                                      std::int32_t half) {
-  using namespace detail;
-  ChildConditions result = classify_by_box_and_plane(t, conditions, cell, half);
   for (std::uint32_t left = conditions & kAllEdges; left != 0 && result.alive != 0;
        left &= left - 1) {
     const int edge = std::countr_zero(left);
