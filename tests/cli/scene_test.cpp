@@ -29,6 +29,18 @@ TEST_F(Sponge, EverySceneHasAFlight) {
   }
 }
 
+TEST_F(Sponge, QuietScenesSayNothingButJson) {
+  const auto scene = [&](const std::string& option) {
+    return run_voxdag(
+        {"scene", "sponge", "--size", "1", "-o", path("quiet.ply"), "--quiet", option});
+  };
+  const ProcessResult quiet = scene("--seed=1");
+  EXPECT_EQ(quiet.status, 0) << quiet.err;
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_TRUE(exists("quiet.ply"));
+  EXPECT_GT(nlohmann::json::parse(scene("--json").out).at("triangles"), 0);
+}
+
 TEST_F(Sponge, UnknownScenesAndSizesAreRefused) {
   expect_failure(run_voxdag({"scene", "nowhere", "-o", path("x.ply")}), 1, "nowhere");
   expect_failure(run_voxdag({"scene", "sponge", "--size", "99", "-o", path("x.ply")}), 1, "99");

@@ -194,7 +194,6 @@ ChildConditions CellBuilder::classify(const Item& item, int log2_size, Vec3i cel
   return classify_children(setup, item.conditions, cell, 1 << shift);
 }
 
-/// Appends what the item has in a child.
 void CellBuilder::add_part(std::size_t of, const ChildConditions& classified, int child) {
   items_.emplace_back();
   const Item& whole = items_[of];

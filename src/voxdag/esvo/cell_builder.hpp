@@ -153,6 +153,7 @@ class CellBuilder {
   Visited visit(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                 ConvexPolyhedron& shape);
   ChildConditions classify(const Item& item, int log2_size, Vec3i cell) const;
+  /// Appends what the item at `of` has in a child.
   void add_part(std::size_t of, const ChildConditions& classified, int child);
   Visited visit_children(std::size_t begin, int log2_size, Vec3i cell, bool is_near,
                          const ConvexPolyhedron& shape);

@@ -28,13 +28,13 @@ struct DisplacedPiece {
       at[i] = dot(direction, corners[i]);
       component[i] = dot(static_cast<Vec3f>(direction), normals[i]);
     }
-    return between(at, component, std::sqrt(dot(direction, direction)));
+    return interval_along(at, component, std::sqrt(dot(direction, direction)));
   }
 
   Box3d box() const {
     const auto along_axis = [&](int axis) {
-      return between({corners[0][axis], corners[1][axis], corners[2][axis]},
-                     {normals[0][axis], normals[1][axis], normals[2][axis]}, 1);
+      return interval_along({corners[0][axis], corners[1][axis], corners[2][axis]},
+                            {normals[0][axis], normals[1][axis], normals[2][axis]}, 1);
     };
     const Interval x = along_axis(0), y = along_axis(1), z = along_axis(2);
     return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
@@ -44,9 +44,9 @@ struct DisplacedPiece {
   Vec3d area() const { return cross(corners[1] - corners[0], corners[2] - corners[0]) * 0.5; }
 
  private:
-  /// along() a direction of this length, along which corners and normals have these components.
-  Interval between(const std::array<double, 3>& at, const std::array<float, 3>& component,
-                   double length) const {
+  /// That of a direction of this length, along which corners and normals have these components.
+  Interval interval_along(const std::array<double, 3>& at, const std::array<float, 3>& component,
+                          double length) const {
     const auto [least, most] = std::minmax({component[0], component[1], component[2]});
     const Interval normal{least < 0 ? least / shortest : least, most > 0 ? most / shortest : most};
     const Interval offset = normal * heights;

@@ -183,14 +183,15 @@ class DisplacedTriangles {
     const Vec3d d = a.position - b.position;
     return dot(d, d);
   }
-  /// Of a piece that is not small, what it may meet of the region, and whether it lies in there.
+  /// Whether a piece that is not small may meet the region. Sets whether it lies in there.
   bool may_meet(const Pass& pass, const Vertex& a, const Vertex& b, const Vertex& c,
                 Search& search) const {
     Box3d box = Box3d::empty();
     for (const Vertex* v : {&a, &b, &c}) box.extend(v->position);
     const Vec3d size = box.hi - box.lo;
     const double longest = std::max({size.x, size.y, size.z});
-    // To look at the few triangles of a little piece takes no longer than to enclose it.
+    // Heights say little more of a piece that is larger than they are high, and to look at the few
+    // triangles of a little one takes no longer than to enclose it.
     if (longest < radius_ && longest > 4 * pass.limit) {
       box = enclose(pass, a, b, c).box();
     } else {

@@ -14,8 +14,8 @@
 ///
 /// The same functions decide for a cell of s³ voxels: its least and greatest value over the cell's
 /// voxels say whether none, some or all of them pass.
-#include <bit>
 #include <cstdint>
+#include <numeric>
 
 #include "voxdag/core/host_device.hpp"
 #include "voxdag/core/int128.hpp"
@@ -80,22 +80,6 @@ VOXDAG_HD inline void set_edge(TriangleSetup& s, int slot, std::int64_t pu, std:
   if (a != 0 || b != 0) s.conditions |= 1u << slot;
 }
 
-/// The greatest common divisor of numbers that are not negative, by Stein's algorithm: divisions
-/// take long.
-inline std::int64_t common_divisor(std::int64_t a, std::int64_t b) {
-  if (a == 0) return b;
-  if (b == 0) return a;
-  const int twos = std::countr_zero(static_cast<std::uint64_t>(a | b));
-  a >>= std::countr_zero(static_cast<std::uint64_t>(a));
-  while (b != 0) {
-    b >>= std::countr_zero(static_cast<std::uint64_t>(b));
-    const std::int64_t least = a < b ? a : b;
-    b = a < b ? b - a : a - b;
-    a = least;
-  }
-  return a << twos;
-}
-
 }  // namespace detail
 
 /// `origin` is in voxels. Exact for coordinates within ±kMaxUnits and 0 <= origin < 2^kMaxLevels.
@@ -140,7 +124,7 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
   }
 
   const std::int64_t divisor =
-      common_divisor(common_divisor(absolute(normal.x), absolute(normal.y)), absolute(normal.z));
+      std::gcd(std::gcd(absolute(normal.x), absolute(normal.y)), absolute(normal.z));
   if (divisor == 0) return s;
   Vec3l n{normal.x / divisor, normal.y / divisor, normal.z / divisor};
   if (n.x < 0 || (n.x == 0 && (n.y < 0 || (n.y == 0 && n.z < 0)))) n = -n;
