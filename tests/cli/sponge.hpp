@@ -2,7 +2,7 @@
 /// The smallest procedural scene as a mesh and as a DAG, for tests of what uses them.
 #include <gtest/gtest.h>
 
-#include "process.hpp"
+#include "cli/process.hpp"
 #include "support/temp_dir.hpp"
 
 namespace voxdag {

@@ -1,5 +1,5 @@
 #include "voxdag/cuda/beam_start.hpp"
-#include "voxdag/cuda/check.hpp"
+#include "voxdag/cuda/launch.hpp"
 #include "voxdag/cuda/render_kernels.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
 #include "voxdag/cuda/with_nodes.hpp"
@@ -60,28 +60,28 @@ std::uint32_t beam_blocks(std::uint32_t threads) {
 
 void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, float* starts, cudaStream_t stream) {
-  with_beam_nodes(voxels, [&](const auto& nodes) {
-    beams_kernel<<<beam_blocks(4 * (last - first)), kBeamThreads, 0, stream>>>(nodes, setup, first,
-                                                                               last, starts);
+  with_beam_nodes(voxels, [&]<class Nodes>(const Nodes& nodes) {
+    launch("casting beams", beams_kernel<Nodes>, beam_blocks(4 * (last - first)), kBeamThreads,
+           stream, nodes, setup, first, last, starts);
   });
-  check_cuda(cudaGetLastError(), "casting beams");
 }
 
 void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream) {
-  with_beam_nodes(voxels, [&](const auto& nodes) {
-    steps_kernel<<<beam_blocks(last - first), kBeamThreads, 0, stream>>>(nodes, setup, first, last);
+  with_beam_nodes(voxels, [&]<class Nodes>(const Nodes& nodes) {
+    launch("counting steps", steps_kernel<Nodes>, beam_blocks(last - first), kBeamThreads, stream,
+           nodes, setup, first, last);
   });
-  check_cuda(cudaGetLastError(), "counting steps");
 }
 
 void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream) {
-  with_all_nodes(voxels, [&](const auto& beam_nodes, const auto& nodes) {
-    render_kernel<<<range.last_block - range.first_block, kBlockPixels, 0, stream>>>(
-        beam_nodes, ScalarCaster(nodes), setup, range, view_samples, rays);
-  });
-  check_cuda(cudaGetLastError(), "rendering");
+  with_all_nodes(
+      voxels, [&]<class BeamNodes, class Nodes>(const BeamNodes& beam_nodes, const Nodes& nodes) {
+        launch("rendering", render_kernel<BeamNodes, ScalarCaster<Nodes>>,
+               range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
+               ScalarCaster(nodes), setup, range, view_samples, rays);
+      });
 }
 
 void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,
@@ -89,9 +89,8 @@ void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f*
   const auto blocks = [](int pixels) {
     return static_cast<unsigned>((pixels + kFilterSide - 1) / kFilterSide);
   };
-  filter_kernel<<<dim3(blocks(input.width), blocks(input.height)), dim3(kFilterSide, kFilterSide),
-                  0, stream>>>(input, samples, filtered);
-  check_cuda(cudaGetLastError(), "filtering");
+  launch("filtering", filter_kernel, dim3(blocks(input.width), blocks(input.height)),
+         dim3(kFilterSide, kFilterSide), stream, input, samples, filtered);
 }
 
 }  // namespace voxdag

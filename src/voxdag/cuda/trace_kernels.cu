@@ -1,4 +1,4 @@
-#include "voxdag/cuda/check.hpp"
+#include "voxdag/cuda/launch.hpp"
 #include "voxdag/cuda/trace_kernels.hpp"
 #include "voxdag/cuda/with_nodes.hpp"
 
@@ -6,6 +6,7 @@ namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kThreads = 128;
+constexpr const char* kDoing = "casting rays";
 
 template <class Nodes>
 __global__ void __launch_bounds__(kThreads)
@@ -43,29 +44,28 @@ std::uint32_t blocks_of(std::uint32_t count) { return (count + kThreads - 1) / k
 void launch_closest_hits(const DeviceVoxels& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  with_nodes(dag, [&](const auto& nodes) {
-    closest_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(nodes, grid, rays, hits, count);
+  with_nodes(dag, [&]<class Nodes>(const Nodes& nodes) {
+    launch(kDoing, closest_hits_kernel<Nodes>, blocks_of(count), kThreads, stream, nodes, grid,
+           rays, hits, count);
   });
-  check_cuda(cudaGetLastError(), "casting rays");
 }
 
 void launch_closest_cells(const DeviceVoxels& dag, const CastRay* rays, CellHit* cells,
                           std::uint8_t* hits, std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  with_nodes(dag, [&](const auto& nodes) {
-    closest_cells_kernel<<<blocks_of(count), kThreads, 0, stream>>>(nodes, rays, cells, hits,
-                                                                    count);
+  with_nodes(dag, [&]<class Nodes>(const Nodes& nodes) {
+    launch(kDoing, closest_cells_kernel<Nodes>, blocks_of(count), kThreads, stream, nodes, rays,
+           cells, hits, count);
   });
-  check_cuda(cudaGetLastError(), "casting rays");
 }
 
 void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t* hits,
                      std::uint32_t count, cudaStream_t stream) {
   if (count == 0) return;
-  with_nodes(dag, [&](const auto& nodes) {
-    any_hits_kernel<<<blocks_of(count), kThreads, 0, stream>>>(nodes, rays, hits, count);
+  with_nodes(dag, [&]<class Nodes>(const Nodes& nodes) {
+    launch(kDoing, any_hits_kernel<Nodes>, blocks_of(count), kThreads, stream, nodes, rays, hits,
+           count);
   });
-  check_cuda(cudaGetLastError(), "casting rays");
 }
 
 }  // namespace voxdag

@@ -1,0 +1,82 @@
+/// The program with a device: `--device cuda` does what `--device cpu` does.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/npy_rays.hpp"
+#include "cli/sponge.hpp"
+
+namespace voxdag {
+namespace {
+
+class DeviceCommands : public Sponge {
+ protected:
+  static void SetUpTestSuite() {
+    Sponge::SetUpTestSuite();
+    ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "-o", path("in.esvo")}).status,
+              0);
+    write_text(path("rays.npy"), rays_npy({{0.01F, 9, 0.01F, 0, 0, -1, 0, HUGE_VALF},
+                                           {9, 9, 9, 0, 0, 1, 0, HUGE_VALF}}));
+  }
+
+  /// The command on this device.
+  static ProcessResult run_on(const char* device, std::vector<std::string> words) {
+    words.insert(words.end(), {"--device", device});
+    return run_voxdag(words);
+  }
+  /// Expects the file `output` that the command writes to be the same of both.
+  static void expect_like_cpu(std::vector<std::string> words, const std::string& output) {
+    const ProcessResult cpu = run_on("cpu", words);
+    ASSERT_EQ(cpu.status, 0) << cpu.err;
+    const std::string expected = read_text(path(output));
+    for (const char* device : {"cuda", "cuda:0", "auto"}) {
+      const ProcessResult cuda = run_on(device, words);
+      ASSERT_EQ(cuda.status, 0) << cuda.err;
+      EXPECT_NE(cuda.out.find(" on the host\n"), std::string::npos) << cuda.out;
+      EXPECT_TRUE(read_text(path(output)) == expected) << words[0] << " " << words[1];
+    }
+  }
+};
+
+TEST_F(DeviceCommands, TraceFindsTheHitsOfTheCpu) {
+  for (const char* scene : {"in.vdag", "in.esvo"})
+    expect_like_cpu({"trace", path(scene), "--rays", path("rays.npy"), "-o", path("hits.npy")},
+                    "hits.npy");
+}
+
+TEST_F(DeviceCommands, RenderMakesThePictureOfTheCpu) {
+  for (const char* scene : {"in.vdag", "in.esvo"})
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{"--no-filter"},
+          {"--filter", "--spp", "2"},
+          {"--light", "sphere:1,3,1,0.2", "--ao", "8", "--lod", "2"},
+          {"--sun-angle", "0", "--no-beams", "--pass", "steps=" + path("steps.png")}}) {
+      std::vector<std::string> words = {"render",      path(scene), "-o",
+                                        path("p.exr"), "--size",    "50x30"};
+      words.insert(words.end(), options.begin(), options.end());
+      expect_like_cpu(words, "p.exr");
+    }
+}
+
+TEST_F(DeviceCommands, BenchTraceMeasuresIt) {
+  for (const char* scene : {"in.vdag", "in.esvo"}) {
+    const ProcessResult result = run_on("cuda", {"bench", "trace", path(scene), "--size", "40x32",
+                                                 "--repeat", "1", "--views", "1", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const nlohmann::json rows = nlohmann::json::parse(result.out);
+    ASSERT_EQ(rows.size(), 5u);
+    for (const nlohmann::json& row : rows) {
+      EXPECT_EQ(row.at("device"), "cuda");
+      EXPECT_EQ(row.at("device_name"), "the host");
+      EXPECT_GT(row.at("mrays_per_s"), 0);
+    }
+  }
+}
+
+TEST_F(DeviceCommands, ADeviceThatIsNotThereIsRefused) {
+  expect_failure(run_on("cuda:1", {"render", path("in.vdag"), "-o", path("none.png")}), 1,
+                 "no CUDA device: there is no number 1 among 1");
+  EXPECT_FALSE(exists("none.png"));
+}
+
+}  // namespace
+}  // namespace voxdag
