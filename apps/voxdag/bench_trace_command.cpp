@@ -185,6 +185,12 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
       ->type_name("N")
       ->capture_default_str();
   command
+      .add_option("--ao-cone", plan.rays.occlusion_cone,
+                  "Rays of occlusion end at cells of this solid angle, such as 0.07; 0: never")
+      ->check(number_from(0, 6))
+      ->type_name("SR")
+      ->capture_default_str();
+  command
       .add_option("--rays", plan.rays.most_rays, "Most rays of a set of shadow or occlusion rays")
       ->check(whole_number(1'000, 1'000'000'000))
       ->type_name("N")

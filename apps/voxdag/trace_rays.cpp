@@ -116,6 +116,7 @@ RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const V
   options.shadow_samples = ray_options.shadow_samples;
   options.occlusion_samples = ray_options.occlusion_samples;
   options.lod_pixels = ray_options.lod_pixels;
+  options.occlusion_cone = ray_options.occlusion_cone;
   options.sun_degrees = 0;
   options.beams = false;  // those towards lamps, which rivals do not have
   const Camera camera = make_camera(view, options.width, options.height);

@@ -36,6 +36,7 @@ struct RayOptions {
   int width = 1024, height = 768;
   int shadow_samples = 16, occlusion_samples = 64;
   float lod_pixels = 1;
+  double occlusion_cone = 0;  ///< As RenderOptions::occlusion_cone.
   /// Of greater sets of any-hit rays a part is taken: whole 8×8 pixels, evenly spread over the
   /// picture.
   std::size_t most_rays = 500'000;

@@ -64,6 +64,19 @@ TEST_F(BenchTrace, AllLayoutsMeetTheSame) {
   }
 }
 
+TEST_F(BenchTrace, OcclusionMayEndAtCellsOfASolidAngle) {
+  const auto rows = [](const char* cone) {
+    const ProcessResult result = bench({path("in.vdag"), "--ao-cone", cone, "--json"});
+    return result.status == 0 ? Json::parse(result.out) : Json();
+  };
+  const Json exact = rows("0"), ended = rows("0.5");
+  ASSERT_EQ(exact.size(), 5u);
+  ASSERT_EQ(ended.size(), 5u);
+  EXPECT_EQ(ended[3].at("cells_per_ray"), exact[3].at("cells_per_ray"));
+  EXPECT_LT(ended[4].at("cells_per_ray"), exact[4].at("cells_per_ray"));
+  EXPECT_GT(ended[4].at("hit_part"), exact[4].at("hit_part"));
+}
+
 TEST_F(BenchTrace, WritesTableJsonAndPlot) {
   const ProcessResult result =
       bench({path("in.vdag"), "-o", path("rays.json"), "--plot", path("rays.svg")});
