@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <new>
 #include <type_traits>
 
@@ -29,24 +28,15 @@ class RayWindow {
   /// on_miss(i, ray). Without `by_direction` the others keep their order but for what mirrors them.
   template <class MakeRay, class OnMiss>
   void fill(int available, bool by_direction, const MakeRay& make_ray, const OnMiss& on_miss) {
-    constexpr bool kRefers = std::is_lvalue_reference_v<std::invoke_result_t<const MakeRay&, int>>;
-    const auto copy = [&](int i, const auto& ray_of) {
-      ::new (static_cast<void*>(copies_ + sizeof(CastRay) * i)) CastRay(ray_of(i));
+    const auto take_one = [&](int i) {
+      if constexpr (std::is_lvalue_reference_v<std::invoke_result_t<const MakeRay&, int>>)
+        rays_[i] = &make_ray(i);
+      else
+        rays_[i] = ::new (static_cast<void*>(made_ + sizeof(CastRay) * i)) CastRay(make_ray(i));
     };
     taken_ = size_ = 0;
-    has_copies_ = !kRefers;
-    const bool are_alike = take(std::min(available, kAlike), on_miss, [&](int i) {
-      if constexpr (kRefers)
-        references_[i] = &make_ray(i);
-      else
-        copy(i, make_ray);
-    });
-    if (are_alike) return;
-    if constexpr (kRefers)
-      for (int i = 0; i < taken_; ++i)
-        copy(i, [this](int at) -> const CastRay& { return *references_[at]; });
-    has_copies_ = true;
-    take(std::min(available, kMaxRays), on_miss, [&](int i) { copy(i, make_ray); });
+    if (take(std::min(available, kAlike), on_miss, take_one)) return;
+    take(std::min(available, kMaxRays), on_miss, take_one);
     sort(by_direction && are_unlike() ? 0 : kCellBits);
   }
 
@@ -59,12 +49,12 @@ class RayWindow {
   /// Sets the rays from this place on that make a packet.
   void set_packet(int place, RayPacket& packet) const {
     const int most = std::min(size_ - place, static_cast<int>(RayPacket::kMaxRays));
-    const std::uint32_t mirrored = ray(order_[place]).ray.mirrored;
+    const std::uint32_t mirrored = rays_[order_[place]]->ray.mirrored;
     packet.size = 0;
     for (int end = place + most; place < end; ++place) {
-      const CastRay& next = ray(order_[place]);
-      if (next.ray.mirrored != mirrored) return;
-      packet.rays[packet.size++] = &next;
+      const CastRay* next = rays_[order_[place]];
+      if (next->ray.mirrored != mirrored) return;
+      packet.rays[packet.size++] = next;
     }
   }
 
@@ -73,11 +63,6 @@ class RayWindow {
   /// How many are taken of those that are alike.
   static constexpr int kAlike = 256;
 
-  const CastRay& ray(int i) const {
-    return has_copies_ ? std::launder(reinterpret_cast<const CastRay*>(copies_))[i]
-                       : *references_[i];
-  }
-
   /// Takes rays, which take_one(i) puts in their place, until there are `end`. Returns whether
   /// those taken are all mirrored alike.
   template <class OnMiss, class TakeOne>
@@ -85,7 +70,7 @@ class RayWindow {
     std::uint32_t octants = 0;  // bit m: there is a ray with `mirrored` m
     for (; taken_ < end; ++taken_) {
       take_one(taken_);
-      const GridRay& taken = ray(taken_).ray;
+      const GridRay& taken = rays_[taken_]->ray;
       if (taken.misses()) {
         on_miss(taken_, taken);
         continue;
@@ -114,7 +99,7 @@ class RayWindow {
     constexpr int kStep = 16;
     int unlike = 0, pairs = 0;
     for (int i = 1; i < size_; i += kStep, ++pairs)
-      unlike += ray(order_[i]).ray.mirrored != ray(order_[i - 1]).ray.mirrored ? 1 : 0;
+      unlike += rays_[order_[i]]->ray.mirrored != rays_[order_[i - 1]]->ray.mirrored ? 1 : 0;
     return 4 * unlike > pairs;
   }
 
@@ -122,7 +107,7 @@ class RayWindow {
   void sort(int ignored_bits) {
     std::uint16_t begin[kKeys + 1] = {}, keys[kMaxRays];
     for (int i = 0; i < size_; ++i) {
-      keys[i] = static_cast<std::uint16_t>(key_of(ray(order_[i]).ray) >> ignored_bits);
+      keys[i] = static_cast<std::uint16_t>(key_of(rays_[order_[i]]->ray) >> ignored_bits);
       ++begin[keys[i] + 1];
     }
     for (int key = 0; key < kKeys >> ignored_bits; ++key)
@@ -132,11 +117,10 @@ class RayWindow {
     std::copy_n(sorted, size_, order_);
   }
 
-  alignas(CastRay) std::byte copies_[kMaxRays * sizeof(CastRay)];  // made as they come
-  const CastRay* references_[kAlike];
+  alignas(CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // where they come as values
+  const CastRay* rays_[kMaxRays];
   std::uint16_t order_[kMaxRays];
   int taken_ = 0, size_ = 0;
-  bool has_copies_ = false;  ///< Else rays are those referred to.
 };
 
 }  // namespace voxdag
