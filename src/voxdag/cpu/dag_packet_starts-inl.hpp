@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 inline void DagPacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int finest) const {
   const DF d;
   const hn::RebindToUnsigned<DF> du;
-  // More than the rounding of T, of the quotient and of the difference here.
+  // More than the rounding of T, and of what is calculated here.
   const auto slack = hn::Set(d, 0x1p-21f);
   const auto zero = hn::Zero(d), least = hn::Set(d, 1 + 0x1p-23f), two = hn::Set(d, 2);
   std::uint32_t start_differs = 0, reach_differs = 0;
@@ -28,12 +28,12 @@ inline void DagPacketWalk::common_cells(CommonCell& starts, CommonCell& reach, i
     auto end_or = start_or, end_and = start_and;
     for (std::size_t i = 0; i < rays_.size; i += kWidth) {
       const auto origin = hn::Load(d, rays_.origin[axis] + i),
-                 inverse = hn::Load(d, rays_.inverse[axis] + i);
+                 per_t = hn::Div(hn::Set(d, 1), hn::Load(d, rays_.inverse[axis] + i));
       const auto t_min = hn::Load(d, rays_.t_min + i);
       const auto is_later = hn::Gt(t_min, zero);
-      const auto start = hn::Sub(origin, hn::Div(t_min, inverse));
+      const auto start = hn::Sub(origin, hn::Mul(t_min, per_t));
       const auto start_slack = hn::IfThenElseZero(is_later, slack);
-      const auto end = hn::Sub(origin, hn::Div(hn::Load(d, rays_.t_end + i), inverse));
+      const auto end = hn::Sub(origin, hn::Mul(hn::Load(d, rays_.t_end + i), per_t));
       const auto bits = [&](VF p) HWY_ATTR {
         const auto inside = hn::Min(hn::Max(p, least), two);
         return hn::Sub(hn::BitCast(du, inside), hn::Set(du, 1));
