@@ -151,15 +151,23 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       std::vector<TraceRunner> rivals;
       if (embree) rivals = embree->prepare(scene.grid, rays, whole);
       for (std::size_t i = 0; i < layouts.size(); ++i) {
-        TraceRunner ours = layouts[i]->runner(rays, casts);
+        std::optional<TimedBeams> device_beams;
+        std::vector<CastRay> device_casts;
+        if (device_dags[i] && with_beams) {
+          device_beams.emplace(*device_dags[i], beams.setup());
+          device_casts = primary_rays(beams.setup(), device_beams->starts().data());
+        }
+        // The CPU's beams are not the device's.
+        const std::vector<CastRay>& set = device_beams ? device_casts : casts;
+        TraceRunner ours = layouts[i]->runner(rays, set);
         if (with_beams) ours.before = [&beams] { beams.run(); };
         std::vector<TraceRunner> others = rivals;
         if (device_dags[i]) {
           others.push_back(ours);
           others.back().name = "voxdag_cpu";
-          ours = cuda_runner(*device_dags[i], rays, casts, with_beams ? &beams.setup() : nullptr);
+          ours = cuda_runner(*device_dags[i], rays, set, device_beams);
         }
-        measure_set(*layouts[i], ours, casts, others, plan.repeat,
+        measure_set(*layouts[i], ours, set, others, plan.repeat,
                     sums[i][static_cast<std::size_t>(rays)]);
       }
       if (!openvdb) continue;

@@ -1,19 +1,16 @@
 #include "trace_cuda.hpp"
 
 #include <chrono>
-#include <optional>
-
-#include "voxdag/cuda/timed_casts.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Calls cast(), which returns seconds, for a tenth of a second or once, and returns what the last
+/// Calls cast(), which returns seconds, for 0.3 seconds or once, and returns what the last
 /// call did: a device that has rested while the CPU worked raises its clock under load only.
 template <class Cast>
 double warm_seconds(const Cast& cast) {
   using Clock = std::chrono::steady_clock;
-  const auto warm = Clock::now() + std::chrono::milliseconds(100);
+  const auto warm = Clock::now() + std::chrono::milliseconds(300);
   double seconds = cast();
   while (Clock::now() < warm) seconds = cast();
   return seconds;
@@ -22,15 +19,13 @@ double warm_seconds(const Cast& cast) {
 }  // namespace
 
 TraceRunner cuda_runner(const DeviceScene& dag, RayClass rays, std::span<const CastRay> casts,
-                        const RenderSetup* beams) {
-  std::optional<TimedBeams> pass;
-  if (beams != nullptr) pass.emplace(dag, *beams);
+                        const std::optional<TimedBeams>& beams) {
   TraceRunner runner;
   runner.name = "voxdag_cuda";
-  runner.cast_set = [set = TimedCasts(dag, casts), pass, closest = is_closest(rays),
+  runner.cast_set = [set = TimedCasts(dag, casts), beams, closest = is_closest(rays),
                      count = casts.size()](std::uint8_t* hits) {
     const double seconds = warm_seconds(
-        [&] { return (pass ? pass->run() : 0.0) + (closest ? set.closest() : set.any()); });
+        [&] { return (beams ? beams->run() : 0.0) + (closest ? set.closest() : set.any()); });
     set.copy_hits({hits, count});
     return seconds;
   };

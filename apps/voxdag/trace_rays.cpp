@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kTile = 4;
 
-/// A caster that keeps rays and answers that they meet nothing.
+/// A caster that keeps rays that meet the grid and answers that they meet nothing.
 class RecordingCaster {
  public:
   explicit RecordingCaster(std::vector<CastRay>& rays) : rays_(rays) {}
@@ -24,7 +24,8 @@ class RecordingCaster {
   template <class MakeRay, class OnResult>
   void any(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     for (int i = 0; i < count; ++i) {
-      rays_.push_back(make_ray(i));
+      const CastRay ray = make_ray(i);
+      if (!ray.ray.misses()) rays_.push_back(ray);
       on_result(i, false);
     }
   }
@@ -63,18 +64,6 @@ std::vector<ViewTile> tiles_in_order(const Camera& camera) {
   std::sort(tiles.begin(), tiles.end(),
             [&](const ViewTile& a, const ViewTile& b) { return code(a) < code(b); });
   return tiles;
-}
-
-/// Takes out of both sets the pixels whose plain ray misses the grid.
-void drop_misses(std::vector<CastRay>& plain, std::vector<CastRay>& with_beams) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    if (plain[i].ray.misses()) continue;
-    plain[kept] = plain[i];
-    with_beams[kept++] = with_beams[i];
-  }
-  plain.resize(kept);
-  with_beams.resize(kept);
 }
 
 }  // namespace
@@ -127,59 +116,91 @@ RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const V
 
 namespace {
 
+/// Of the tiles those whose rays are taken where there may be `most_rays`, evenly spread.
+std::vector<ViewTile> some_tiles(const Camera& camera, int rays_per_pixel, std::size_t most_rays) {
+  constexpr std::size_t kGroup = 4;  // tiles that make 8×8 pixels
+  const std::vector<ViewTile> tiles = tiles_in_order(camera);
+  const std::size_t wanted =
+      tiles.size() * kTile * kTile * static_cast<std::size_t>(rays_per_pixel);
+  const std::size_t step = (wanted + most_rays - 1) / most_rays;
+  std::vector<ViewTile> some;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    if (i / kGroup % step == step / 2) some.push_back(tiles[i]);
+  return some;
+}
+
+/// The rays that add(tile, rays) makes of each tile, in the tiles' order.
+template <class AddRays>
+std::vector<CastRay> rays_of(const std::vector<ViewTile>& tiles, const AddRays& add) {
+  constexpr std::size_t kRun = 256;
+  std::vector<std::vector<CastRay>> parts((tiles.size() + kRun - 1) / kRun);
+  parallel_for(parts.size(), [&](std::size_t part) {
+    for (std::size_t i = part * kRun; i < std::min(tiles.size(), (part + 1) * kRun); ++i)
+      add(tiles[i], parts[part]);
+  });
+  std::size_t count = 0;
+  for (const std::vector<CastRay>& part : parts) count += part.size();
+  std::vector<CastRay> rays;
+  rays.reserve(count);
+  for (const std::vector<CastRay>& part : parts) rays.insert(rays.end(), part.begin(), part.end());
+  return rays;
+}
+
+/// The rays of one kind, to light or of occlusion, of the surface that a tile shows.
 template <class Nodes>
-RecordedRays record_rays_at(const Nodes& nodes, const BeamPass& beams, const RayOptions& options) {
-  constexpr std::size_t kGroup = 4;  // tiles that make 8x8 pixels
-  RecordedRays recorded;
-  const RenderSetup& plain = beams.setup();
-  RenderSetup with_beams = plain;
-  with_beams.beam_starts = beams.starts();
-  const std::vector<ViewTile> tiles = tiles_in_order(plain.camera);
-  const auto scratch = std::make_unique<TileScratch<kTile * kTile>>();
-  const std::size_t pixels = tiles.size() * kTile * kTile;
-  for (const RayClass c : kRayClasses) {
-    std::vector<CastRay>& rays = recorded.rays[static_cast<std::size_t>(c)];
-    const int per_pixel = c == RayClass::kSoft ? options.shadow_samples
-                          : c == RayClass::kAo ? options.occlusion_samples
-                                               : 1;
-    const std::size_t wanted = pixels * static_cast<std::size_t>(per_pixel);
-    const std::size_t step =
-        is_closest(c) ? 1 : (wanted + options.most_rays - 1) / options.most_rays;
-    const RecordingCaster record(rays);
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-      if (i / kGroup % step != step / 2) continue;
-      const ViewTile& tile = tiles[i];
-      if (is_closest(c)) {
-        for (int pixel = 0; pixel < tile.pixels(); ++pixel)
-          rays.push_back(primary_ray(c == RayClass::kPrimary ? plain : with_beams, tile, pixel));
-        continue;
-      }
-      trace_view_samples(nodes, ScalarCaster<Nodes>(nodes), with_beams, tile, *scratch);
-      for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
-        const ViewSample& sample = scratch->samples[pixel];
-        scratch->points[pixel] = {};
-        if (sample.is_hit())
-          scratch->points[pixel] =
-              make_surface_point(nodes, plain, sample, pixel_direction(plain, tile, pixel));
-      }
-      if (c == RayClass::kAo)
-        trace_occlusion(record, plain, tile, *scratch);
-      else  // the sun is light 0, the lamp light 1
-        trace_light(nodes, record, plain, c == RayClass::kShadow ? 0 : 1, tile, *scratch);
-    }
-    if (!is_closest(c)) std::erase_if(rays, [](const CastRay& ray) { return ray.ray.misses(); });
+void record_tile(const Nodes& nodes, const RenderSetup& plain, const RenderSetup& with_beams,
+                 RayClass c, const ViewTile& tile, std::vector<CastRay>& rays) {
+  const RecordingCaster record(rays);
+  TileScratch<kTile * kTile> scratch;
+  trace_view_samples(nodes, ScalarCaster<Nodes>(nodes), with_beams, tile, scratch);
+  for (int pixel = 0; pixel < tile.pixels(); ++pixel) {
+    const ViewSample& sample = scratch.samples[pixel];
+    scratch.points[pixel] = {};
+    if (sample.is_hit())
+      scratch.points[pixel] =
+          make_surface_point(nodes, plain, sample, pixel_direction(plain, tile, pixel));
   }
-  drop_misses(recorded.rays[static_cast<std::size_t>(RayClass::kPrimary)],
-              recorded.rays[static_cast<std::size_t>(RayClass::kPrimaryBeams)]);
-  return recorded;
+  if (c == RayClass::kAo)
+    trace_occlusion(record, plain, tile, scratch);
+  else  // the sun is light 0, the lamp light 1
+    trace_light(nodes, record, plain, c == RayClass::kShadow ? 0 : 1, tile, scratch);
 }
 
 }  // namespace
 
+std::vector<CastRay> primary_rays(const RenderSetup& plain, const float* beam_starts) {
+  RenderSetup with_beams = plain;
+  with_beams.beam_starts = beam_starts;
+  return rays_of(tiles_in_order(plain.camera), [&](const ViewTile& tile, auto& rays) {
+    for (int pixel = 0; pixel < tile.pixels(); ++pixel)
+      if (!primary_ray(plain, tile, pixel).ray.misses())
+        rays.push_back(primary_ray(with_beams, tile, pixel));
+  });
+}
+
 RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams,
                          const RayOptions& options) {
-  return scene.visit_nodes(
-      [&](const auto& nodes) { return record_rays_at(nodes, beams, options); });
+  const RenderSetup& plain = beams.setup();
+  RenderSetup with_beams = plain;
+  with_beams.beam_starts = beams.starts();
+  RecordedRays recorded;
+  const auto rays = [&](RayClass c) -> std::vector<CastRay>& {
+    return recorded.rays[static_cast<std::size_t>(c)];
+  };
+  rays(RayClass::kPrimary) = primary_rays(plain, nullptr);
+  rays(RayClass::kPrimaryBeams) = primary_rays(plain, beams.starts());
+  for (const RayClass c : {RayClass::kShadow, RayClass::kSoft, RayClass::kAo}) {
+    const int per_pixel = c == RayClass::kSoft ? options.shadow_samples
+                          : c == RayClass::kAo ? options.occlusion_samples
+                                               : 1;
+    const std::vector<ViewTile> tiles = some_tiles(plain.camera, per_pixel, options.most_rays);
+    scene.visit_nodes([&](const auto& nodes) {
+      rays(c) = rays_of(tiles, [&](const ViewTile& tile, auto& of_tile) {
+        record_tile(nodes, plain, with_beams, c, tile, of_tile);
+      });
+    });
+  }
+  return recorded;
 }
 
 std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double aspect, int count) {

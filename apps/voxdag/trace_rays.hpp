@@ -75,6 +75,10 @@ class BeamPass {
 RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const View& view,
                               const RayOptions& options);
 
+/// Of those that meet the grid, in the same order. Starts are RenderSetup::beam_starts: rays that
+/// beams spare miss everything; null is without beams.
+std::vector<CastRay> primary_rays(const RenderSetup& setup, const float* beam_starts);
+
 /// `beams` is of a picture of picture_options(), and has run.
 RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams, const RayOptions& options);
 

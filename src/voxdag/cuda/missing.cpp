@@ -36,6 +36,7 @@ void TimedCasts::copy_hits(std::span<std::uint8_t>) const { refuse(); }
 struct TimedBeams::State {};
 TimedBeams::TimedBeams(const DeviceScene&, const RenderSetup&) { refuse(); }
 double TimedBeams::run() const { refuse(); }
+std::vector<float> TimedBeams::starts() const { refuse(); }
 
 RenderedImage render_image(const DeviceScene&, const Grid&, const RenderOptions&, Progress*,
                            const ViewSource*) {

@@ -85,4 +85,11 @@ double TimedBeams::run() const {
   });
 }
 
+std::vector<float> TimedBeams::starts() const {
+  run();
+  std::vector<float> starts(state_->starts.size());
+  copy_to_host(starts.data(), state_->starts.data(), starts.size() * sizeof(float));
+  return starts;
+}
+
 }  // namespace voxdag

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/render/render_setup.hpp"
@@ -36,6 +37,8 @@ class TimedBeams {
 
   /// Casts them; returns the device's seconds.
   double run() const;
+  /// Casts them; returns what RenderSetup::beam_starts has.
+  std::vector<float> starts() const;
 
  private:
   struct State;
