@@ -75,6 +75,7 @@ if [ -n "$pack" ]; then
   mkdir -p $content/lib
   cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests $content
   strip $content/voxdag $content/cuda_tests
+  ! ldd $content/voxdag $content/cuda_tests | grep "not found" || die "libraries are missing"
   # All but the C library, which belongs to the machine's loader.
   ldd $content/voxdag $content/cuda_tests | awk '$3 ~ "^/" { print $3 }' | sort -u |
     grep -vE '/(lib(c|m|dl|rt|pthread|resolv|mvec)|ld-linux[^/]*)\.so' | xargs cp -Lt $content/lib
@@ -119,30 +120,36 @@ fi
 scene=$work/courtyard
 voxdag scene courtyard -o $scene.ply
 voxdag build $scene.ply -r 2048 -o $scene.vdag
+mkdir -p "$folder"
 for where in cpu cuda; do
-  attempt voxdag render $scene.vdag -o $scene-$where.png --size 960x540 --device $where
+  attempt voxdag render $scene.vdag -o "$folder/courtyard-$where.png" --size 960x540 --device $where
 done
 
+# Fails where a hit of the device is not the CPU's.
+hits_agree() {
+  awk -F '[:,]' '/"rival":/ { ours = $2 ~ "voxdag_cpu" } /"rival_agreement":/ && ours && $2 != 1 { exit 1 }' "$1"
+}
 # bench NAME FILE MESH LAYOUTS
 bench() {
   echo "== $1"
   attempt voxdag bench trace "$2" --mesh "$3" --device cuda --layout "$4" --size 1920x1080 \
     --rays 8000000 -o "$folder/$1.json"
+  [ ! -f "$folder/$1.json" ] || attempt hits_agree "$folder/$1.json"
 }
 if [ $measure = yes ]; then
-  mkdir -p "$folder"
-  bench courtyard-2048 $scene.vdag $scene.ply paper,wide
+  nvidia-smi --query-gpu=name,driver_version,clocks.sm,clocks.max.sm --format=csv || true
   if [ -n "$packed" ]; then sponza=$(find $work -name sponza.obj); else sponza=$(find_sponza); fi
   if [ -z "$sponza" ]; then
     echo "Crytek Sponza is not measured: VOXDAG_SCENES names no folder with sponza.obj" >&2
   else
-    for resolution in 4096 32768; do
+    for resolution in 32768 4096; do
       attempt voxdag build "$sponza" -r $resolution -o $work/sponza.vdag
       bench sponza-$resolution $work/sponza.vdag "$sponza" paper,wide
     done
     attempt voxdag build "$sponza" -r 1024 -o $work/sponza.esvo
     bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours
   fi
+  bench courtyard-2048 $scene.vdag $scene.ply paper,wide
   echo "== results: $folder"
 fi
 echo "== done in $SECONDS s, $failures failures"

@@ -71,7 +71,7 @@ struct cudaLaunchConfig_t {
 
 #define __global__
 #define __grid_constant__
-#define __launch_bounds__(threads)
+#define __launch_bounds__(...)
 
 extern constinit thread_local uint3 threadIdx, blockIdx;
 
