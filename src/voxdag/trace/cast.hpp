@@ -39,6 +39,7 @@ struct StopAtVoxels {
   VOXDAG_HD constexpr bool operator()(int /*level*/, float /*t_enter*/, float /*t_exit*/) const {
     return false;
   }
+  VOXDAG_HD constexpr int first_level() const { return kMaxLevels; }
 };
 
 /// Finds the first present cell along the ray that is a voxel or for which `stop(level, t_enter,

@@ -23,6 +23,13 @@ struct StopBelowSize {
     const float side = float_from_bits(static_cast<std::uint32_t>(127 - level) << 23);
     return level >= coarsest_level && side <= at_start + per_t * t_exit;
   }
+
+  /// At cells of coarser levels it is false, as T is at most 1 in the grid.
+  VOXDAG_HD int first_level() const {
+    const float most = (at_start + (per_t > 0 ? per_t : 0)) * (1 + 0x1p-10f);
+    const int level = most > 0 ? 127 - static_cast<int>(bits_of_float(most) >> 23) : 127;
+    return level > coarsest_level ? level : coarsest_level;
+  }
 };
 
 /// Ends the cast of `ray` at cells whose side is at most `size_per_t` * t, in world units; the

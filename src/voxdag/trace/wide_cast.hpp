@@ -19,6 +19,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   const float ix = ray.inverse.x, iy = ray.inverse.y, iz = ray.inverse.z;
   const WideLevels range(nodes.levels());
   const std::uint32_t mirror = wide_mirror(ray.mirrored);
+  const int first_stop = stop.first_level();
 
   float t = ray.t_min;
   if (ray.exit_t() <= t) return false;
@@ -55,7 +56,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     const bool octant_is_empty = (half >> (cell & 10u) & kOctantCells) == 0;
     if (!octant_is_empty) {
       const int level = 23 - bit;
-      if (level > 1) {
+      if (level > first_stop && level > 1) {
         const std::uint32_t above = ~0u << (bit + 1);
         if (stop(level - 1, t, exit_t(x & above, y & above, z & above))) {
           hit = {t, x & above, y & above, z & above, level - 1};
@@ -63,7 +64,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
         }
       }
       if ((half >> (cell & 31u) & 1u) != 0) {
-        if (bit == range.leaf_bit || stop(level, t, exit_t(x, y, z))) {
+        if (bit == range.leaf_bit || (level >= first_stop && stop(level, t, exit_t(x, y, z)))) {
           hit = {t, x, y, z, level};
           return true;
         }
