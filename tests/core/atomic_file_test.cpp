@@ -1,5 +1,6 @@
 #include "voxdag/core/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
@@ -7,6 +8,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
@@ -133,6 +135,38 @@ TEST(AtomicFile, ReplacesWhatASymbolicLinkPointsTo) {
   file.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(dir / "link"));
   EXPECT_EQ(read_text(dir / "real"), "new");
+}
+
+TEST(AtomicFile, MakesWhatASymbolicLinkPointsTo) {
+  const TempDir dir;
+  std::filesystem::create_symlink("absent", dir / "link");
+  std::filesystem::create_symlink(dir / "link", dir / "second");
+  std::filesystem::create_symlink("round", dir / "round");
+  write_whole_file(dir / "second", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "link"));
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "second"));
+  EXPECT_EQ(read_text(dir / "absent"), "new");
+  EXPECT_NE(error_of([&] { AtomicFile file(dir / "round"); }).find("symbolic links"),
+            std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "round"));
+}
+
+TEST(AtomicFile, WritesToADescriptorFromWhereItStands) {
+  const TempDir dir;
+  for (const int flags : {O_RDWR, O_WRONLY | O_APPEND}) {
+    write_text(dir / "out", "0123456789");
+    const int descriptor = open((dir / "out").c_str(), flags);
+    lseek(descriptor, 4, SEEK_SET);
+    AtomicFile file("/dev/fd/" + std::to_string(descriptor));
+    file.write("abc");
+    const std::string why = error_of([&] { file.overwrite(1, "x", 1); });
+    file.commit();
+    const bool is_appended = (flags & O_APPEND) != 0;
+    EXPECT_EQ(why.find("cannot write") != std::string::npos, is_appended) << why;
+    EXPECT_EQ(read_text(dir / "out"), is_appended ? "0123456789abc" : "0123axc789");
+    EXPECT_EQ(lseek(descriptor, 0, SEEK_CUR), is_appended ? 13 : 7);
+    close(descriptor);
+  }
 }
 
 TEST(AtomicFile, HoldsWhatWasWrittenInPiecesOfAnySize) {

@@ -17,6 +17,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/nameless_file.hpp"
+#include "voxdag/core/output_place.hpp"
 
 namespace voxdag {
 namespace {
@@ -77,17 +78,22 @@ void remove_unfinished_files() noexcept {
 }
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
+  const OutputPlace place = output_place(path);
+  if (place.error != 0) fail(0, place.error);
+  target_ = place.file;
+  if (place.descriptor >= 0) {
+    share(place.descriptor);
+    return;
+  }
   struct stat existing {};
   const bool exists = stat(path.c_str(), &existing) == 0;
+  if (!exists && errno == ENAMETOOLONG) fail(0, errno);
   if (exists && S_ISDIR(existing.st_mode)) fail(0, EISDIR);
   if (exists && !S_ISREG(existing.st_mode)) {
     descriptor_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) fail(0, errno);
     return;
   }
-  std::error_code ignored;
-  if (exists && fs::is_symlink(path, ignored)) target_ = fs::canonical(path, ignored);
-  if (target_.empty()) target_ = path;
   if (path.filename().empty()) fail(0, ENOENT);
   if (exists && access(target_.c_str(), W_OK) != 0) fail(0, errno);
 
@@ -109,6 +115,8 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
       noted_(std::exchange(other.noted_, nullptr)),
       is_nameless_(std::exchange(other.is_nameless_, false)),
       descriptor_(std::exchange(other.descriptor_, -1)),
+      start_(other.start_),
+      is_appended_(other.is_appended_),
       flushed_(other.flushed_),
       buffer_(std::move(other.buffer_)) {}
 
@@ -135,9 +143,10 @@ void AtomicFile::write_zeros(std::size_t bytes) {
 void AtomicFile::overwrite(std::uint64_t offset, const void* data, std::size_t bytes) {
   assert(offset + bytes <= position());
   flush();
+  if (is_appended_) fail(offset, ESPIPE);
   const auto* from = static_cast<const std::byte*>(data);
   while (bytes > 0) {
-    const ssize_t written = pwrite(descriptor_, from, bytes, static_cast<off_t>(offset));
+    const ssize_t written = pwrite(descriptor_, from, bytes, start_ + static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(offset, errno);
     from += written;
@@ -156,6 +165,18 @@ void AtomicFile::commit() {
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(position(), errno);
   forget(std::exchange(noted_, nullptr));
   temporary_.clear();
+}
+
+/// Writes to what is open already, from where that is.
+void AtomicFile::share(int descriptor) {
+  const int flags = fcntl(descriptor, F_GETFL);
+  if (flags < 0) fail(0, errno);
+  if ((flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
+  descriptor_ = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  if (descriptor_ < 0) fail(0, errno);
+  is_appended_ = (flags & O_APPEND) != 0;
+  const off_t start = lseek(descriptor_, 0, SEEK_CUR);
+  start_ = start < 0 ? 0 : start;
 }
 
 void AtomicFile::create_named() {

@@ -1,5 +1,7 @@
 #pragma once
 /// An output file that appears under its name only when it is complete.
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,8 +17,9 @@ namespace voxdag {
 /// commit(), also by an exception that passes, it removes what it wrote; an older file of the name
 /// stays as it is.
 ///
-/// A name that exists and is neither a regular file nor a directory (a pipe, /dev/stdout,
-/// /dev/null) is written directly. A symbolic link stays; the file that it points to is replaced.
+/// A name that exists and is neither a regular file nor a directory (a pipe, /dev/null) is written
+/// directly, and so is a descriptor of this process (/dev/stdout, /dev/fd/3), whatever it is of,
+/// from where it stands. A symbolic link stays; the file that it points to is made or replaced.
 /// Data is not forced to the disk (no fsync): after a power cut the file may be damaged, which
 /// formats with checksums detect; a crash of the program alone cannot leave a partial file.
 ///
@@ -40,7 +43,7 @@ class AtomicFile {
   void write_zeros(std::size_t bytes);
 
   /// Overwrites bytes already written, e.g. a count in a header. [offset, offset + bytes) must lie
-  /// below position(). Fails where the file cannot seek (a pipe).
+  /// below position(). Fails where the file cannot seek (a pipe, or what is only appended to).
   void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
 
   /// Bytes written so far.
@@ -53,6 +56,7 @@ class AtomicFile {
  private:
   void flush();
   void write_through(const std::byte* data, std::size_t bytes);
+  void share(int descriptor);
   void create_named();
   void take_name();
   void copy_to_named();
@@ -65,6 +69,8 @@ class AtomicFile {
   char* noted_ = nullptr;            ///< That name, for remove_unfinished_files().
   bool is_nameless_ = false;         ///< The temporary name is not in use yet.
   int descriptor_ = -1;
+  off_t start_ = 0;  ///< Of what is written, in the file.
+  bool is_appended_ = false;
   std::uint64_t flushed_ = 0;
   std::vector<std::byte> buffer_;
 };
