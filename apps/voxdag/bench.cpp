@@ -105,7 +105,8 @@ void add_build(CLI::App& parent, Session& session) {
   add_json_option(command, session);
   command.callback([arguments, &session] {
     finish_plan(*arguments);
-    arguments->output.check_distinct();
+    session.inputs = arguments->plan.meshes;
+    arguments->output.check_distinct(session);
     session.work = [arguments, &session] {
       arguments->plan.threads = session.threads;
       bench(*arguments, session);

@@ -7,9 +7,10 @@
 
 namespace voxdag {
 
-void BenchOutput::check_distinct() const {
+void BenchOutput::check_distinct(const Session& session) const {
   voxdag::check_distinct(
-      {{"--output", json_file}, {"--plot", plot_files[0]}, {"--rays-plot", plot_files[1]}});
+      {{"--output", json_file}, {"--plot", plot_files[0]}, {"--rays-plot", plot_files[1]}},
+      session);
 }
 
 void BenchOutput::check_writable() const {
@@ -22,11 +23,11 @@ void BenchOutput::write(const nlohmann::ordered_json& json,
                         const std::vector<std::function<std::string()>>& drawings,
                         const std::string& text, Session& session) const {
   session.bar.clear();
-  const std::string json_text = json.dump(2) + "\n";
-  if (!json_file.empty()) write_whole_file(json_file, json_text);
+  const std::string in_json = json_text(json);
+  if (!json_file.empty()) write_whole_file(json_file, in_json);
   for (std::size_t i = 0; i < drawings.size(); ++i)
     if (!plot_files[i].empty()) write_whole_file(plot_files[i], drawings[i]());
-  fmt::print("{}", session.json ? json_text : text);
+  fmt::print("{}", session.json ? in_json : text);
 }
 
 }  // namespace voxdag

@@ -15,7 +15,7 @@ struct BenchOutput {
   std::array<std::string, 2> plot_files;
 
   /// Throws CLI::ValidationError where two files are the same.
-  void check_distinct() const;
+  void check_distinct(const Session& session) const;
   /// Throws Error unless all files can be made: called before the work.
   void check_writable() const;
   /// Writes the files and prints JSON or `text`. `drawings` draw the plots that are wanted.

@@ -218,7 +218,8 @@ void add_bench_trace_command(CLI::App& parent, Session& session) {
   add_json_option(command, session);
   command.callback([arguments, &session] {
     finish_plan(*arguments, session);
-    arguments->output.check_distinct();
+    session.inputs = {arguments->mesh_file};
+    arguments->output.check_distinct(session);
     session.work = [arguments, &session] { run(*arguments, session); };
   });
 }

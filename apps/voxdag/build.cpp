@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "dag_report.hpp"
 #include "human.hpp"
+#include "output_files.hpp"
 #include "parse.hpp"
 #include "process_usage.hpp"
 #include "voxdag/dag/build_svdag.hpp"
@@ -30,6 +31,19 @@ struct BuildArguments {
   bool as_esvo = false;
   EsvoArguments esvo;
 };
+
+/// Whether it is an ESVO.
+bool parse_structure(const std::string& text) {
+  if (text != "dag" && text != "esvo")
+    throw std::invalid_argument(fmt::format("\"{}\" is neither dag nor esvo", text));
+  return text == "esvo";
+}
+
+BuildMethod parse_method(const std::string& text) {
+  if (text != "hash" && text != "sort")
+    throw std::invalid_argument(fmt::format("\"{}\" is neither hash nor sort", text));
+  return text == "sort" ? BuildMethod::kSort : BuildMethod::kHashConsed;
+}
 
 /// Wall-clock seconds of what a build does, one after the other.
 struct StageSeconds {
@@ -155,7 +169,7 @@ void build(const BuildArguments& arguments, Session& session) {
   warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
   session.bar.clear();
   if (session.json) {
-    fmt::print("{}\n", json_of(report, result.report, seconds).dump(2));
+    fmt::print("{}", json_text(json_of(report, result.report, seconds)));
   } else if (!session.quiet) {
     fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
                table_of(report, seconds));
@@ -179,12 +193,9 @@ void add_build_command(CLI::App& app, Session& session) {
       ->type_name("FILE")
       ->required();
   CLI::Option* const as =
-      command
-          .add_option("--as", arguments->as_esvo,
-                      "dag: the minimal DAG; esvo: an octree with contours, colours and normals "
-                      "(default: esvo for FILE.esvo, else dag)")
-          ->transform(CLI::Transformer(std::map<std::string, bool>{{"dag", false}, {"esvo", true}}))
-          ->type_name("dag|esvo");
+      add_parsed_option(command, "--as", arguments->as_esvo, parse_structure, "dag|esvo",
+                        "dag: the minimal DAG; esvo: an octree with contours, colours and normals "
+                        "(default: esvo for FILE.esvo, else dag)");
   add_parsed_option(command, "-r,--resolution", arguments->levels, parse_levels, "N",
                     "Voxels a side: a power of two from 4 to 1048576; 8K is 8192");
   add_parsed_option(command, "--voxel-size", arguments->voxel_size, parse_positive, "SIZE",
@@ -192,12 +203,8 @@ void add_build_command(CLI::App& app, Session& session) {
   add_parsed_option(
       command, "--bounds", arguments->bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
       "Where the grid is: a cube from the lower corner on (default: the mesh's bounds)");
-  command
-      .add_option("--method", arguments->options.method,
-                  "hash: depth-first with a hash of nodes; sort: the paper's. Same result")
-      ->transform(CLI::Transformer(std::map<std::string, BuildMethod>{
-          {"hash", BuildMethod::kHashConsed}, {"sort", BuildMethod::kSort}}))
-      ->type_name("hash|sort")
+  add_parsed_option(command, "--method", arguments->options.method, parse_method, "hash|sort",
+                    "hash: depth-first with a hash of nodes; sort: the paper's. Same result")
       ->group(kOfDags);
   add_parsed_option(command, "--memory", arguments->options.memory_limit, parse_memory, "LIMIT",
                     "Stop instead of using more memory: 512M, 16GiB");
@@ -209,6 +216,7 @@ void add_build_command(CLI::App& app, Session& session) {
   command.callback([arguments, as, &command, &session] {
     if (as->empty()) arguments->as_esvo = arguments->output.ends_with(".esvo");
     check_none_of(command, arguments->as_esvo ? kOfDags : kOfEsvos);
+    check_distinct({{"--output", arguments->output}}, session);
     if (arguments->levels.has_value() == arguments->voxel_size.has_value())
       throw CLI::ValidationError("exactly one of -r/--resolution and --voxel-size is needed");
     session.work = [arguments, &session] {

@@ -65,7 +65,7 @@ void print_summary(const EsvoReport& report, const EsvoSeconds& seconds, const E
                        {"total", seconds.total()}};
     json["voxels_per_second"] = rate;
     json["peak_memory_bytes"] = peak_memory_bytes();
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}", json_text(json));
     return;
   }
   if (session.quiet) return;

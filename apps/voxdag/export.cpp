@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "output_files.hpp"
 #include "parse.hpp"
 #include "scene_file.hpp"
 
@@ -56,6 +57,8 @@ void add_export_command(CLI::App& app, Session& session) {
   command.callback([arguments, &session] {
     if (arguments->faces && !arguments->output.ends_with(".ply"))
       throw CLI::ValidationError("--faces", "is for an output that ends in .ply");
+    check_distinct({{"--output", arguments->output}, {"--output", arguments->output + ".json"}},
+                   session);
     session.work = [arguments, &session] { export_file(*arguments, session); };
   });
 }

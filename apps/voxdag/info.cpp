@@ -13,7 +13,7 @@ namespace {
 void esvo_info(const std::string& path, bool json) {
   const EsvoReport report = report_of(EsvoFile(path));
   if (json)
-    fmt::print("{}\n", esvo_json(report).dump(2));
+    fmt::print("{}", json_text(esvo_json(report)));
   else
     fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
                report.metadata.program, esvo_table(report), esvo_level_table(report));
@@ -24,7 +24,7 @@ void info(const std::string& path, bool json) {
   const VdagFile file(path);
   const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes()};
   if (json) {
-    fmt::print("{}\n", dag_json(report).dump(2));
+    fmt::print("{}", json_text(dag_json(report)));
     return;
   }
   fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),

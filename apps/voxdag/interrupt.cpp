@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 
@@ -25,6 +26,16 @@ extern "C" void on_signal(int number) {
   progress_to_cancel->cancel();
 }
 
+/// What is mapped is gone where another program cuts the file short.
+extern "C" void on_bus_error(int) {
+  static std::atomic_flag is_said;
+  while (is_said.test_and_set()) pause();  // another thread, and the end is near
+  static constexpr char kText[] = "voxdag: a file was cut short while it was read\n";
+  remove_unfinished_files();
+  if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(1);
+  _exit(1);
+}
+
 }  // namespace
 
 void make_writes_fail_plainly() {
@@ -39,7 +50,9 @@ void cancel_on_signals(Progress& progress) {
   progress_to_cancel = &progress;
   struct sigaction action {};
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;
+  // Without SA_RESTART: a pipe that nobody reads is opened for ever.
+  action.sa_flags = 0;
+  std::signal(SIGBUS, on_bus_error);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
     // What the caller had ignored (nohup) stays ignored.

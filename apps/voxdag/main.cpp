@@ -3,8 +3,6 @@
 #include <fmt/core.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <iostream>
@@ -20,12 +18,8 @@ namespace {
 
 constexpr int kFailure = 1, kBadUsage = 2, kSignalBase = 128;
 
-/// One line whatever stands in the text: file names may hold line breaks.
-int report(std::string text, int status) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  text = "voxdag: " + text + "\n";
-  std::fputs(text.c_str(), stderr);
+int report(const std::string& text, int status) {
+  print_line(text);
   return status;
 }
 
@@ -37,6 +31,15 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
                                  ? fmt::format("there is no command \"{}\"", unknown[0])
                                  : error.what();
   return fmt::format("{} (usage: {} --help)", reason, usage);
+}
+
+/// Throws CLI::ValidationError for an option with an empty text: most are names of files, of a
+/// variable of the shell that was not set.
+void check_not_empty(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& text : option->results())
+      if (text.empty()) throw CLI::ValidationError(option->get_name(), "is empty");
+  for (const CLI::App* below : command.get_subcommands()) check_not_empty(*below);
 }
 
 /// Throws Error if what was printed could not be written.
@@ -69,6 +72,7 @@ int run(int argc, char** argv) {
     add(app, session);
   try {
     app.parse(argc, argv);
+    check_not_empty(app);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       const int status = app.exit(error);  // Prints the help or the version.
@@ -78,16 +82,19 @@ int run(int argc, char** argv) {
     return report(usage_line(app, error), kBadUsage);
   }
   cancel_on_signals(session.progress);
+  const std::string subject = session.subject.empty() ? "" : session.subject + ": ";
   const auto fail = [&](const std::string& text, int status) {
     session.bar.clear();
+    // A signal lets calls of the system fail.
+    if (const int signal = cancelling_signal(); signal != 0)
+      return report(subject + Cancelled().what(), kSignalBase + signal);
     return report(text, status);
   };
-  const std::string subject = session.subject.empty() ? "" : session.subject + ": ";
   try {
     work(session);
     return 0;
   } catch (const Cancelled& cancelled) {
-    return fail(subject + cancelled.what(), kSignalBase + cancelling_signal());
+    return fail(subject + cancelled.what(), kFailure);
   } catch (const Error& error) {
     return fail(error.file().empty() ? subject + error.what() : error.what(), kFailure);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "session.hpp"
+
 namespace voxdag {
 
 struct OutputFile {
@@ -10,8 +12,11 @@ struct OutputFile {
   std::string path;    ///< Empty: none is wanted.
 };
 
-/// Throws CLI::ValidationError where one would overwrite another: their paths lead to the same
-/// file. Devices and pipes can be written several times.
-void check_distinct(const std::vector<OutputFile>& outputs);
+/// Throws CLI::ValidationError where one would overwrite another, or what is read: their paths lead
+/// to the same file. Devices and pipes can be written several times.
+void check_distinct(const std::vector<OutputFile>& outputs, const Session& session);
+
+/// Whether both are names of one file that exists.
+bool are_same_file(const std::string& a, const std::string& b);
 
 }  // namespace voxdag

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "voxdag/core/error.hpp"
 
@@ -60,9 +62,17 @@ PathKey key_of(const Json& json, const Place& place) {
 }
 
 Json parse(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw Error(file, "", "cannot be read");
+  std::string text;
+  try {
+    std::ifstream in;
+    in.exceptions(std::ios::failbit | std::ios::badbit);
+    errno = 0;
+    in.open(file, std::ios::binary);
+    in.exceptions(std::ios::badbit);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  } catch (const std::ios::failure&) {  // a folder can be opened, but not read
+    throw Error(file, "", "cannot be read: " + std::system_category().message(errno));
+  }
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
@@ -87,9 +97,11 @@ PathFile read_path_file(const std::string& path) {
     place.refuse("not an object with an array \"keys\"");
   PathFile file;
   for (const auto& [member, value] : json.items()) {
-    if (member == "sun")
+    if (member == "sun") {
       file.sun = vector(value, place, member);
-    else if (member != "keys")
+      const double length2 = dot(*file.sun, *file.sun);
+      if (!(length2 > 0 && length2 < HUGE_VAL)) place.refuse("\"sun\" is no direction");
+    } else if (member != "keys")
       place.refuse("\"" + member + "\" is neither keys nor sun");
   }
   for (const Json& key : json["keys"])

@@ -67,7 +67,7 @@ void add_render_command(CLI::App& app, Session& session) {
                   "voxdag render scene.vdag -o scene.png --size 1920x1080");
   add_render_options(command, session, *arguments);
   command.callback([arguments, &session] {
-    check_render_arguments(*arguments);
+    check_render_arguments(*arguments, session);
     session.work = [arguments, &session] { render(*arguments, session); };
   });
 }

@@ -13,7 +13,7 @@ namespace voxdag {
 namespace {
 
 /// Throws CLI::ValidationError for names of outputs that are wrong, alone or together.
-void check_outputs(const RenderArguments& arguments) {
+void check_outputs(const RenderArguments& arguments, const Session& session) {
   std::vector<OutputFile> outputs = {{"--output", arguments.output}};
   if (!arguments.depth.empty()) outputs.push_back({"--depth", arguments.depth});
   if (!arguments.normal.empty()) outputs.push_back({"--normal", arguments.normal});
@@ -31,7 +31,7 @@ void check_outputs(const RenderArguments& arguments) {
     outputs.push_back({"--timings", arguments.path.timings});
     outputs.push_back({"the plot of --timings", timings_plot(arguments.path.timings)});
   }
-  check_distinct(outputs);
+  check_distinct(outputs, session);
 }
 
 /// Throws CLI::ValidationError for a view that no scene has.
@@ -187,12 +187,13 @@ void add_render_options(CLI::App& command, Session& session, RenderArguments& ar
   add_quiet_option(command, session);
 }
 
-void check_render_arguments(const RenderArguments& arguments) {
+void check_render_arguments(const RenderArguments& arguments, Session& session) {
+  session.inputs = {arguments.mesh.file, arguments.path.file};
   check_mesh_options(arguments.mesh);
   if (arguments.stream_memory != 0 &&
       (!arguments.mesh.file.empty() || arguments.device.kind == DeviceChoice::Kind::kCuda))
     throw CLI::ValidationError("--memory", "not with --mesh or --device cuda");
-  check_outputs(arguments);
+  check_outputs(arguments, session);
   check_view(arguments.options.view);
   constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // besides the sun
   if (arguments.options.lights.size() > kMostLights)

@@ -32,7 +32,7 @@ struct RenderArguments {
 void add_render_options(CLI::App& command, Session& session, RenderArguments& arguments);
 
 /// Throws CLI::ValidationError for what no scene can be asked for, or not together.
-void check_render_arguments(const RenderArguments& arguments);
+void check_render_arguments(const RenderArguments& arguments, Session& session);
 
 /// Every picture to write.
 std::vector<RenderPass> all_passes(const RenderArguments& arguments);

@@ -11,6 +11,7 @@
 #include "frame_names.hpp"
 #include "frame_timings.hpp"
 #include "human.hpp"
+#include "output_files.hpp"
 #include "parse.hpp"
 #include "path_file.hpp"
 #include "voxdag/core/atomic_file.hpp"
@@ -34,22 +35,20 @@ CameraPath camera_path(const PathFile& path, const std::string& file, const Voxe
     for (const PathKey& key : path.keys) {
       CameraKey next;
       next.time = key.time;
+      ViewRequest request{key.eye, key.target, key.up, key.fov_degrees};
       if (keys.empty()) {
         if ((key.up && options.view.up) || (key.fov_degrees && options.view.vertical_fov_degrees))
           throw Error(fmt::format("it has its own \"{0}\", which leaves --{0} without effect",
                                   key.up && options.view.up ? "up" : "fov"));
-        const ViewRequest request{
-            key.eye, key.target, key.up ? key.up : options.view.up,
-            key.fov_degrees ? key.fov_degrees : options.view.vertical_fov_degrees};
-        next.view =
-            frame_scene(scene, grid, static_cast<double>(options.width) / options.height, request);
+        if (!key.up) request.up = options.view.up;
+        if (!key.fov_degrees) request.vertical_fov_degrees = options.view.vertical_fov_degrees;
       } else {
-        next.view = keys.back().view;
-        next.view.eye = key.eye;
-        next.view.target = key.target;
-        next.view.up = key.up.value_or(next.view.up);
-        next.view.vertical_fov_degrees = key.fov_degrees.value_or(next.view.vertical_fov_degrees);
+        const View& before = keys.back().view;
+        if (!key.up) request.up = before.up;
+        if (!key.fov_degrees) request.vertical_fov_degrees = before.vertical_fov_degrees;
       }
+      next.view =
+          frame_scene(scene, grid, static_cast<double>(options.width) / options.height, request);
       keys.push_back(next);
     }
     return CameraPath(std::move(keys));
@@ -98,13 +97,16 @@ std::vector<float> exposures(const CameraPath& path, const std::vector<double>& 
 }
 
 /// Throws Error where two files of the film would have the same name: of f%d.png and f1%d.png
-/// that is frame 11 of the one and frame 1 of the other.
+/// that is frame 11 of the one and frame 1 of the other. Or where one is read.
 void check_frame_names(const std::vector<RenderPass>& passes, int frames,
-                       const std::string& timings) {
+                       const std::string& timings, const Session& session) {
   std::unordered_set<std::string> names;
   const auto add = [&](const std::string& path) {
     const auto name = std::filesystem::path(path).lexically_normal().string();
     if (!names.insert(name).second) throw Error(path, "", "two files of the film have this name");
+    for (const std::string& input : session.inputs)
+      if (are_same_file(path, input)) throw Error(path, "", "is read, and a file of the film");
+    if (are_same_file(path, session.subject)) throw Error(path, "", "is the scene of the film");
   };
   if (!timings.empty()) {
     add(timings);
@@ -161,7 +163,7 @@ void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions&
   const CameraPath path = camera_path(file, arguments.file, scene, grid, options);
   const double count = std::floor((path.end() - path.start()) * arguments.fps + 1e-6) + 1;
   if (!(count <= kMostFrames)) throw Error(arguments.file, "", "a million frames are too many");
-  check_frame_names(maker.passes, static_cast<int>(count), arguments.timings);
+  check_frame_names(maker.passes, static_cast<int>(count), arguments.timings, session);
   for (const std::string& out : {arguments.timings, timings_plot(arguments.timings)})
     if (!arguments.timings.empty()) check_writable(out);
   if (!options.sun) options.sun = file.sun;

@@ -53,7 +53,7 @@ void print_list(bool json) {
                         {"default_size", scene.default_size},
                         {"min_size", scene.min_size},
                         {"max_size", scene.max_size}});
-    fmt::print("{}\n", scenes.dump(2));
+    fmt::print("{}", json_text(scenes));
     return;
   }
   for (const SceneInfo& scene : scene_list())
@@ -70,7 +70,7 @@ void make(const SceneArguments& arguments, const Session& session) {
     const nlohmann::ordered_json summary = {{"file", arguments.output},
                                             {"vertices", mesh.vertices.size()},
                                             {"triangles", mesh.triangles.size()}};
-    fmt::print("{}\n", summary.dump(2));
+    fmt::print("{}", json_text(summary));
   } else if (!session.quiet) {
     fmt::print("{}: {} triangles, {} vertices\n", arguments.output,
                with_commas(mesh.triangles.size()), with_commas(mesh.vertices.size()));
@@ -111,7 +111,10 @@ void add_scene_command(CLI::App& app, Session& session) {
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.callback([arguments, &session] {
+    if (session.json && (arguments->view || arguments->path))
+      throw CLI::ValidationError("--json", "has no effect with --view or --path");
     if (arguments->list) {
+      if (!arguments->name.empty()) throw CLI::ValidationError("--list", "lists all scenes");
       session.work = [&session] { print_list(session.json); };
       return;
     }

@@ -1,6 +1,13 @@
 #include "session.hpp"
 
-#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "number_check.hpp"
 #include "voxdag/core/atomic_file.hpp"
@@ -21,16 +28,23 @@ void add_threads_option(CLI::App& command, Session& session) {
 }
 
 void add_quiet_option(CLI::App& command, Session& session) {
-  command.add_flag("-q,--quiet", session.quiet, "No progress bar");
+  command.add_flag("-q,--quiet", session.quiet, "Say nothing but errors, warnings and JSON");
 }
 
 void add_json_option(CLI::App& command, Session& session) {
   command.add_flag("--json", session.json, "Print the result as JSON");
 }
 
+void print_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  text = "voxdag: " + text + "\n";
+  std::fputs(text.c_str(), stderr);
+}
+
 void print_warnings(const std::vector<std::string>& warnings, Session& session) {
   session.bar.clear();
-  for (const std::string& warning : warnings) fmt::print(stderr, "voxdag: warning: {}\n", warning);
+  for (const std::string& warning : warnings) print_line("warning: " + warning);
 }
 
 void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session) {
@@ -39,6 +53,16 @@ void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& ses
                    session);
 }
 
-void check_writable(const std::string& path) { AtomicFile{path}; }
+std::string json_text(const nlohmann::ordered_json& json) {
+  using Handler = nlohmann::ordered_json::error_handler_t;
+  return json.dump(2, ' ', false, Handler::replace) + "\n";
+}
+
+void check_writable(const std::string& path) {
+  std::error_code unknown;
+  // Who reads it would see its end.
+  if (std::filesystem::is_fifo(path, unknown) && access(path.c_str(), W_OK) == 0) return;
+  AtomicFile{path};
+}
 
 }  // namespace voxdag

@@ -2,6 +2,7 @@
 /// What the subcommands share: the options that many of them have, progress and cancellation.
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,9 +16,11 @@ namespace voxdag {
 /// command line is known to be right.
 struct Session {
   std::function<void()> work;
+  /// Files that are read: none is to be written.
+  std::vector<std::string> inputs;
   std::string subject;  ///< The file that the work is about, for errors that do not name one.
   int threads = 0;      ///< 0: one for each processor.
-  bool quiet = false;   ///< No progress bar.
+  bool quiet = false;   ///< Neither progress bar nor summary.
   bool json = false;    ///< The result as JSON on stdout.
 
   ProgressBar bar;
@@ -64,11 +67,18 @@ void parse_all(const std::string& option, const std::vector<std::string>& texts,
   }
 }
 
+/// "voxdag: TEXT" as one line on stderr, whatever stands in the text: file names may hold line
+/// breaks. Where stderr is closed nobody hears of it.
+void print_line(std::string text);
+
 /// On stderr, a line each.
 void print_warnings(const std::vector<std::string>& warnings, Session& session);
 
 /// A warning if what was built into `output` has nothing in it.
 void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session);
+
+/// Indented, with a line break behind it. Names of files may have bytes that are no UTF-8: U+FFFD.
+std::string json_text(const nlohmann::ordered_json& json);
 
 /// Throws Error unless a file can be made at `path`: called before long work, not after it.
 void check_writable(const std::string& path);

@@ -9,6 +9,7 @@
 #include "device.hpp"
 #include "hit_rows.hpp"
 #include "human.hpp"
+#include "output_files.hpp"
 #include "scene_file.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
@@ -93,6 +94,8 @@ void add_trace_command(CLI::App& app, Session& session) {
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.callback([arguments, &session] {
+    session.inputs = {arguments->rays};
+    check_distinct({{"--output", arguments->output}}, session);
     session.work = [arguments, &session] { trace(*arguments, session); };
   });
 }

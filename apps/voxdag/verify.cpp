@@ -71,7 +71,7 @@ void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
          {"result", check.result == Result::kFailed ? "failed" : result_name(check.result)},
          {"detail", check.detail}});
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"passed", passed}, {"checks", list}}.dump(2));
+  fmt::print("{}", json_text(nlohmann::ordered_json{{"passed", passed}, {"checks", list}}));
 }
 
 /// What the surface was displaced by, of the options or as the file says; nothing where the file
@@ -101,9 +101,9 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
   std::vector<std::string> warnings;
   const std::optional<DisplacedTriangles> displaced =
       open_displaced(*displace, source.mesh, source.appearance, warnings, session.progress);
-  const EnclosureCheck enclosure =
-      check_enclosure(file.view(), QuantizedMesh(source.mesh, file.grid()), file.grid(), &shading,
-                      displaced ? &*displaced : nullptr, arguments.samples, arguments.seed);
+  const EnclosureCheck enclosure = check_enclosure(
+      file.view(), QuantizedMesh(source.mesh, file.grid()), file.grid(), &shading,
+      displaced ? &*displaced : nullptr, arguments.samples, arguments.seed, &session.progress);
   VerifyCheck check{"enclosure", Result::kPassed,
                     fmt::format("{} points of the surface", with_commas(enclosure.points))};
   if (enclosure.points == 0 && arguments.samples > 0 && !file.view().is_empty()) {

@@ -124,10 +124,29 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
   expect_failure(build({"--ao-distance", "1"}, "bad.esvo"), 2, "--ao-distance requires --bake-ao");
   expect_failure(build({"--bake-ao", "8", "--no-attributes"}, "bad.esvo"), 2, "--no-attributes");
   expect_failure(run_voxdag({"scene", "sponge", "--view", "-o", path("bad.ply")}), 2, "--view");
+  expect_failure(run_voxdag({"scene", "sponge", "--view", "--json"}), 2, "--json");
+  expect_failure(run_voxdag({"scene", "--list", "sponge"}), 2, "--list");
   expect_failure(run_voxdag({"verify", path("in.vdag"), "--samples", "10"}), 2, "--mesh");
   expect_failure(run_voxdag({"export", path("in.vdag"), "--faces", "-o", path("bad.npy")}), 2,
                  "--faces");
   expect_failure(run_voxdag({"bench", "trace", path("in.vdag"), "-r", "64"}), 2, "--resolution");
+  EXPECT_EQ(files_like("bad"), 0);
+}
+
+TEST_F(Options, AreNotEmpty) {
+  expect_refused({{"--mesh", ""}, {"--path", ""}, {"--depth", ""}, {"--light", ""}},
+                 [](const Words& words) { return render(words); });
+  expect_failure(run_voxdag({"verify", path("in.vdag"), "--mesh", ""}), 2, "--mesh: is empty");
+  expect_failure(run_voxdag({"info", ""}), 2, "empty");
+  expect_failure(run_voxdag({"build", path("sponge.ply"), "-r", "16", "-o", ""}), 2,
+                 "--output: is empty");
+}
+
+TEST_F(Options, OneOfSeveralWordsIsOneOfThem) {
+  for (const char* word : {"7", "1", "0", "HASH", "hashes"})
+    expect_failure(build({"--method", word}, "bad.vdag"), 2, "is neither hash nor sort");
+  for (const char* word : {"2", "-1", "1e5", "svo"})
+    expect_failure(build({"--as", word}, "bad.vdag"), 2, "is neither dag nor esvo");
   EXPECT_EQ(files_like("bad"), 0);
 }
 

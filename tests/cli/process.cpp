@@ -91,6 +91,13 @@ bool Process::wait_until_it_writes(const std::filesystem::path& folder) const {
   }
 }
 
+void Process::wait_until_it_maps(const std::filesystem::path& file) const {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    const std::string maps = read_text("/proc/" + std::to_string(pid_) + "/maps");
+    if (maps.empty() || maps.find(file.string()) != std::string::npos) return;
+  }
+}
+
 ProcessResult Process::wait() {
   int status = 0;
   waitpid(std::exchange(pid_, -1), &status, 0);

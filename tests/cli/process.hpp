@@ -29,6 +29,8 @@ class Process {
   /// Waits until the program has written to a file in `folder`, one without a name too. False if it
   /// has ended.
   bool wait_until_it_writes(const std::filesystem::path& folder) const;
+  /// Waits until the program has mapped the file into its memory, or has ended.
+  void wait_until_it_maps(const std::filesystem::path& file) const;
   ProcessResult wait();
 
  private:

@@ -130,12 +130,22 @@ TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
                  1, "key 0: \"x\"");
   expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [1, 2, 3]}]})"), 1,
                  "keys.json: key 0");
+  expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [0, 0, 0]},
+      {"time": 1, "eye": [0, 5, 0], "target": [0, 0, 0], "up": [0, 1, 0]}]})"),
+                 1, "keys.json: key 1");
+  for (const char* sun : {"[0, 0, 0]", "[1e-300, 0, 0]", "[1e300, 1e300, 0]"})
+    expect_failure(film(std::string(R"({"keys": [{"time": 0, "eye": [1, 2, 3],
+        "target": [0, 0, 0]}], "sun": )") +
+                        sun + "}"),
+                   1, "keys.json: \"sun\"");
   expect_failure(
       run_voxdag({"render", path("in.vdag"), "--path", path("keys.json"), "-o", path("plain.png")}),
       2, "%04d");
   expect_failure(
       run_voxdag({"render", path("in.vdag"), "--path", path("absent.json"), "-o", path("%d.png")}),
-      1, "absent.json");
+      1, "absent.json: cannot be read: No such file");
+  expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("."), "-o", path("%d.png")}),
+                 1, "cannot be read: Is a directory");
 }
 
 }  // namespace

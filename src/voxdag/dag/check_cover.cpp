@@ -16,6 +16,7 @@ namespace voxdag {
 namespace {
 
 constexpr int kCoarserLevels = 4;
+constexpr std::uint64_t kMostAtOnce = 1 << 20;  // cells
 
 /// Uniform in [0, 1), the same on every machine (std::uniform_real_distribution is not).
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
@@ -87,12 +88,13 @@ std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int le
 
 /// Which of `cells` (sorted by x) a triangle meets, by trying every triangle on those in its box.
 std::unique_ptr<std::atomic<bool>[]> covered_cells(const QuantizedMesh& mesh, int levels, int level,
-                                                   const std::vector<Vec3i>& cells) {
+                                                   const std::vector<Vec3i>& cells,
+                                                   const Progress* progress) {
   std::unique_ptr<std::atomic<bool>[]> covered(new std::atomic<bool>[cells.size()]());
   const int shift = levels - level + 8;
   const std::int64_t size = std::int64_t{1} << shift;
   parallel_for(mesh.triangle_count(), 256, [&](std::size_t index) {
-    if (!mesh.in_range(index)) return;
+    if (!mesh.in_range(index) || (progress != nullptr && progress->cancelled())) return;
     const QuantizedTriangle t = mesh.triangle(index);
     const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
     auto it = std::lower_bound(cells.begin(), cells.end(), lo.x >> shift,
@@ -123,25 +125,28 @@ CoverCheck check_cover(const SvdagView& dag, const Grid& grid, const Mesh& mesh,
   const int coarsest = std::max(0, grid.levels - kCoarserLevels);
   std::uint64_t left = samples;
   for (int level = grid.levels; level >= coarsest; --level) {
-    if (progress != nullptr) {
-      progress->throw_if_cancelled();
-      progress->report("cover", 1 - static_cast<double>(left) / static_cast<double>(samples));
-    }
     // Half of what is left at each level; the coarsest takes the rest.
-    const std::uint64_t count = level == coarsest ? left : left - left / 2;
-    left -= count;
-    const std::vector<Vec3i> cells = sample_cells(surface, grid.levels, level, count, random);
-    const auto covered = covered_cells(quantized, grid.levels, level, cells);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const bool expected = covered[i].load(std::memory_order_relaxed);
-      check.covered += expected ? 1 : 0;
-      if (svdag_contains(dag, cells[i], level) == expected) continue;
-      if (check.mismatches++ == 0) {
-        check.first_mismatch = cells[i];
-        check.first_mismatch_level = level;
+    const std::uint64_t to_leave = level == coarsest ? 0 : left / 2;
+    while (left > to_leave) {
+      const std::uint64_t count = std::min(left - to_leave, kMostAtOnce);
+      left -= count;
+      const std::vector<Vec3i> cells = sample_cells(surface, grid.levels, level, count, random);
+      const auto covered = covered_cells(quantized, grid.levels, level, cells, progress);
+      if (progress != nullptr) {
+        progress->throw_if_cancelled();
+        progress->report("cover", 1 - static_cast<double>(left) / static_cast<double>(samples));
       }
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        const bool expected = covered[i].load(std::memory_order_relaxed);
+        check.covered += expected ? 1 : 0;
+        if (svdag_contains(dag, cells[i], level) == expected) continue;
+        if (check.mismatches++ == 0) {
+          check.first_mismatch = cells[i];
+          check.first_mismatch_level = level;
+        }
+      }
+      check.samples += count;
     }
-    check.samples += count;
   }
   return check;
 }

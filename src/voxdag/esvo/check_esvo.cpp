@@ -12,6 +12,8 @@
 namespace voxdag {
 namespace {
 
+constexpr std::uint64_t kMostAtOnce = 1 << 18;  // samples
+
 /// splitmix64: a number for each counter value.
 std::uint64_t mix(std::uint64_t v) {
   v += 0x9E3779B97F4A7C15ull;
@@ -67,7 +69,7 @@ struct Walk {
 
 EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
                                const SurfaceShading* shading, const DisplacedTriangles* displaced,
-                               std::uint64_t samples, std::uint64_t seed) {
+                               std::uint64_t samples, std::uint64_t seed, Progress* progress) {
   const std::size_t count = mesh.triangle_count();
   std::vector<double> area_before(count + 1);
   const auto corners = [&](std::size_t i, Vec3d(&p)[3]) {
@@ -89,7 +91,7 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
   std::atomic<std::uint64_t> looked_at{0}, first_bad{~std::uint64_t{0}};
   std::mutex mutex;
   const double size = static_cast<double>(std::int64_t{1} << esvo.levels);
-  parallel_for(samples, 1024, [&](std::size_t i) {
+  const auto look_at = [&](std::uint64_t i) {
     const std::uint64_t a = mix(seed * 0x10001 + 3 * i), b = mix(a), c = mix(b);
     // Half of the samples go by area, half by triangle.
     std::size_t triangle = i / 2 % count;
@@ -140,7 +142,15 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
     if (i >= first_bad.load()) return;
     first_bad = i;
     result.outside = PointOutside{source, point, walk.deepest + 1};
-  });
+  };
+  for (std::uint64_t begin = 0; begin < samples; begin += kMostAtOnce) {
+    if (progress != nullptr) {
+      progress->throw_if_cancelled();
+      progress->report("enclosure", static_cast<double>(begin) / static_cast<double>(samples));
+    }
+    parallel_for(std::min(samples - begin, kMostAtOnce), 1024,
+                 [&](std::size_t i) { look_at(begin + i); });
+  }
   result.points = looked_at;
   return result;
 }

@@ -31,6 +31,7 @@ struct EnclosureCheck {
 /// was for building. Deterministic.
 EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
                                const SurfaceShading* shading, const DisplacedTriangles* displaced,
-                               std::uint64_t samples, std::uint64_t seed = 1);
+                               std::uint64_t samples, std::uint64_t seed = 1,
+                               Progress* progress = nullptr);
 
 }  // namespace voxdag

@@ -45,7 +45,7 @@ void write_placement(const std::filesystem::path& path, const Grid& grid, const 
       (layout.axes.empty() ? "" : "; the array's first element is voxel window.lo");
 
   AtomicFile file(path.string() + ".json");
-  file.write(json.dump(2) + "\n");
+  file.write(json.dump(2, ' ', false, decltype(json)::error_handler_t::replace) + "\n");
   file.commit();
 }
 
