@@ -134,16 +134,28 @@ HWY_INLINE DagPacketWalk::Rays DagPacketWalk::rays_meeting(std::uint32_t child, 
   return met & rays;
 }
 
-/// Which of `rays`, that all meet the cell of child `child` of level `child_level`, end there.
-inline DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child, int child_level,
-                                                      Rays rays) const {
+/// Which of `rays`, that all meet the cell of child `child` of level `child_level`, end there:
+/// those for which ends_at() holds.
+HWY_NOINLINE DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child, int child_level,
+                                                          Rays rays) const {
+  if (child_level < rays_.coarsest) return 0;
+  const DF d;
+  const auto side = hn::Set(d, side_of(child_level));
+  const auto x = hn::Set(d, planes_[0][child]), y = hn::Set(d, planes_[1][child]),
+             z = hn::Set(d, planes_[2][child]);
   Rays ending = 0;
-  for (Rays rest = rays; rest != 0; rest &= rest - 1) {
-    const int i = lowest_bit64(rest);
-    const float low[3] = {planes_[0][child], planes_[1][child], planes_[2][child]};
-    if (ends_at(i, low, child_level)) ending |= Rays{1} << i;
+  for (Rays rest = rays; rest != 0;) {
+    const std::size_t first = take_vector(rest);
+    const auto t = [&](int axis, VF position) HWY_ATTR {
+      return hn::Mul(hn::Sub(hn::Load(d, rays_.origin[axis] + first), position),
+                     hn::Load(d, rays_.inverse[axis] + first));
+    };
+    const auto exit = hn::Min(hn::Min(t(0, x), t(1, y)), t(2, z));
+    const auto limit = hn::Add(hn::Load(d, rays_.stop_start + first),
+                               hn::Mul(hn::Load(d, rays_.stop_per_t + first), exit));
+    ending |= bits_of(hn::Le(side, limit)) << first;
   }
-  return ending;
+  return ending & rays;
 }
 
 /// Puts the children that rays meet on the stack, the nearest on top; those at which rays end with

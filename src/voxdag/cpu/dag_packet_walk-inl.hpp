@@ -112,7 +112,7 @@ class DagPacketWalk : PacketRays {
   HWY_INLINE std::uint32_t boxes_met_by(int i) const;
   HWY_INLINE Children children_met_by(int i, int child_level) const;
   HWY_INLINE Rays rays_meeting(std::uint32_t child, Rays rays) const;
-  Rays rays_ending(std::uint32_t child, int child_level, Rays rays) const;
+  HWY_NOINLINE Rays rays_ending(std::uint32_t child, int child_level, Rays rays) const;
   void visit_children(const Visit& visit, Visit* stack, std::size_t& top);
   void end_at_children(const Visit& visit, std::uint32_t met);
   void cast_in_block(const Visit& visit);
