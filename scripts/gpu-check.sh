@@ -143,8 +143,8 @@ if [ $measure = yes ]; then
     echo "Crytek Sponza is not measured: VOXDAG_SCENES names no folder with sponza.obj" >&2
   else
     for resolution in 32768 4096; do
-      attempt voxdag build "$sponza" -r $resolution -o $work/sponza.vdag
-      bench sponza-$resolution $work/sponza.vdag "$sponza" paper,wide
+      attempt voxdag build "$sponza" -r $resolution -o $work/sponza-$resolution.vdag
+      bench sponza-$resolution $work/sponza-$resolution.vdag "$sponza" paper,wide
     done
     attempt voxdag build "$sponza" -r 1024 -o $work/sponza.esvo
     bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours

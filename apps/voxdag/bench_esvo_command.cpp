@@ -97,6 +97,7 @@ void add_bench_esvo_command(CLI::App& parent, Session& session) {
     parse_all("--resolution", arguments->resolutions, parse_levels, arguments->plan.levels);
     parse_all("--size", arguments->sizes, parse_image_size, arguments->plan.sizes);
     std::sort(arguments->plan.levels.begin(), arguments->plan.levels.end());
+    for (const EsvoBenchScene& scene : arguments->plan.scenes) session.inputs.push_back(scene.mesh);
     arguments->output.check_distinct(session);
     session.work = [arguments, &session] {
       arguments->plan.threads = session.threads;

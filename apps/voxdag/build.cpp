@@ -12,6 +12,7 @@
 #include "output_files.hpp"
 #include "parse.hpp"
 #include "process_usage.hpp"
+#include "voxdag/core/output_place.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
@@ -88,7 +89,8 @@ void check_none_of(const CLI::App& command, const std::string& group) {
 /// An ESVO is written piece by piece, its beginning last, and read again. Throws Error.
 void check_regular(const std::string& path) {
   std::error_code unknown;
-  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
+  if (output_place(path).descriptor >= 0 ||
+      (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)))
     throw Error(path, "", "an ESVO can only be written to a regular file");
 }
 

@@ -26,11 +26,12 @@ extern "C" void on_signal(int number) {
   progress_to_cancel->cancel();
 }
 
-/// What is mapped is gone where another program cuts the file short.
+/// What is mapped is gone where another program cuts the file short, or the disk fails.
 extern "C" void on_bus_error(int) {
   static std::atomic_flag is_said;
   while (is_said.test_and_set()) pause();  // another thread, and the end is near
-  static constexpr char kText[] = "voxdag: a file was cut short while it was read\n";
+  static constexpr char kText[] =
+      "voxdag: a mapped file can no longer be read: was it cut short?\n";
   remove_unfinished_files();
   if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(1);
   _exit(1);
@@ -50,7 +51,8 @@ void cancel_on_signals(Progress& progress) {
   progress_to_cancel = &progress;
   struct sigaction action {};
   action.sa_handler = on_signal;
-  // Without SA_RESTART: a pipe that nobody reads is opened for ever.
+  // Without SA_RESTART: a pipe that nobody reads would be opened for ever. Reads and writes of
+  // pipes that stand still go on after a signal; a second one ends the program.
   action.sa_flags = 0;
   std::signal(SIGBUS, on_bus_error);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {

@@ -17,6 +17,7 @@ namespace voxdag {
 namespace {
 
 constexpr int kFailure = 1, kBadUsage = 2, kSignalBase = 128;
+constexpr int kCancelled = -1;  // kSignalBase and the signal
 
 int report(const std::string& text, int status) {
   print_line(text);
@@ -86,15 +87,15 @@ int run(int argc, char** argv) {
   const auto fail = [&](const std::string& text, int status) {
     session.bar.clear();
     // A signal lets calls of the system fail.
-    if (const int signal = cancelling_signal(); signal != 0)
-      return report(subject + Cancelled().what(), kSignalBase + signal);
-    return report(text, status);
+    if (const int signal = cancelling_signal(); signal != 0 && status != kCancelled)
+      return report("cancelled: " + text, kSignalBase + signal);
+    return report(text, status == kCancelled ? kSignalBase + cancelling_signal() : status);
   };
   try {
     work(session);
     return 0;
   } catch (const Cancelled& cancelled) {
-    return fail(subject + cancelled.what(), kFailure);
+    return fail(subject + cancelled.what(), kCancelled);
   } catch (const Error& error) {
     return fail(error.file().empty() ? subject + error.what() : error.what(), kFailure);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -4,17 +4,12 @@
 #include <filesystem>
 #include <map>
 
+#include "voxdag/core/output_place.hpp"
+
 namespace voxdag {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The same for all ways to write a path.
-fs::path place_of(const std::string& path) {
-  std::error_code unknown;
-  const fs::path place = fs::weakly_canonical(fs::absolute(path, unknown), unknown);
-  return unknown ? fs::path(path).lexically_normal() : place;
-}
 
 bool is_device(const fs::path& path) {
   std::error_code unknown;
@@ -22,6 +17,13 @@ bool is_device(const fs::path& path) {
 }
 
 }  // namespace
+
+fs::path place_of(const std::string& path) {
+  std::error_code unknown;
+  const fs::path file = output_place(path).file;
+  const fs::path place = fs::weakly_canonical(fs::absolute(file, unknown), unknown);
+  return unknown ? fs::path(path).lexically_normal() : place;
+}
 
 bool are_same_file(const std::string& a, const std::string& b) {
   std::error_code unknown;

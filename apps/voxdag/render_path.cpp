@@ -102,8 +102,8 @@ void check_frame_names(const std::vector<RenderPass>& passes, int frames,
                        const std::string& timings, const Session& session) {
   std::unordered_set<std::string> names;
   const auto add = [&](const std::string& path) {
-    const auto name = std::filesystem::path(path).lexically_normal().string();
-    if (!names.insert(name).second) throw Error(path, "", "two files of the film have this name");
+    if (!names.insert(place_of(path).string()).second)
+      throw Error(path, "", "two files of the film have this name");
     for (const std::string& input : session.inputs)
       if (are_same_file(path, input)) throw Error(path, "", "is read, and a file of the film");
     if (are_same_file(path, session.subject)) throw Error(path, "", "is the scene of the film");

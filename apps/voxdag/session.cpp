@@ -11,6 +11,7 @@
 
 #include "number_check.hpp"
 #include "voxdag/core/atomic_file.hpp"
+#include "voxdag/core/output_place.hpp"
 
 namespace voxdag {
 
@@ -28,7 +29,7 @@ void add_threads_option(CLI::App& command, Session& session) {
 }
 
 void add_quiet_option(CLI::App& command, Session& session) {
-  command.add_flag("-q,--quiet", session.quiet, "Say nothing but errors, warnings and JSON");
+  command.add_flag("-q,--quiet", session.quiet, "No progress bar and no summary");
 }
 
 void add_json_option(CLI::App& command, Session& session) {
@@ -61,7 +62,9 @@ std::string json_text(const nlohmann::ordered_json& json) {
 void check_writable(const std::string& path) {
   std::error_code unknown;
   // Who reads it would see its end.
-  if (std::filesystem::is_fifo(path, unknown) && access(path.c_str(), W_OK) == 0) return;
+  if (output_place(path).descriptor < 0 && std::filesystem::is_fifo(path, unknown) &&
+      access(path.c_str(), W_OK) == 0)
+    return;
   AtomicFile{path};
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kTile = 4;
 
-/// A caster that keeps rays that meet the grid and answers that they meet nothing.
+/// A caster that keeps the rays that meet the grid, and finds no hits.
 class RecordingCaster {
  public:
   explicit RecordingCaster(std::vector<CastRay>& rays) : rays_(rays) {}

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,6 +44,7 @@ Process::Process(const std::vector<std::string>& command, const std::string& std
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("cannot fork");
   if (pid_ > 0) return;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is ended takes it along
   const int in = open("/dev/null", O_RDONLY);
   if (dup2(in, 0) < 0 || dup2(out_, 1) < 0 || dup2(err_, 2) < 0) _exit(126);
   execvp(arguments[0], arguments.data());
@@ -92,9 +94,10 @@ bool Process::wait_until_it_writes(const std::filesystem::path& folder) const {
 }
 
 void Process::wait_until_it_maps(const std::filesystem::path& file) const {
+  const std::string name = std::filesystem::canonical(file);
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
     const std::string maps = read_text("/proc/" + std::to_string(pid_) + "/maps");
-    if (maps.empty() || maps.find(file.string()) != std::string::npos) return;
+    if (maps.empty() || maps.find(name) != std::string::npos) return;
   }
 }
 

@@ -4,9 +4,8 @@
 /// - Work in a queue is done when somebody waits for the queue and not before, or at once, as
 ///   `HostDevice::is_eager` says: what misses a wait, or changes what a queue still needs, fails
 ///   with one of them.
-/// - The host cannot touch the memory of the device: that ends the program. Memory ends where it
-/// was
-///   said to end, to 16 bytes, and begins as noise.
+/// - The host cannot touch the memory of the device: that ends the program. Arrays end
+///   where they were said to, to 16 bytes, and hold noise at first.
 /// - Threads of a warp run one after the other and meet where they exchange values.
 /// - Any call can be made to fail.
 ///

@@ -171,7 +171,9 @@ void AtomicFile::commit() {
 void AtomicFile::share(int descriptor) {
   const int flags = fcntl(descriptor, F_GETFL);
   if (flags < 0) fail(0, errno);
-  if ((flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
+  // Those that the program opened itself are nobody's output.
+  const bool is_own = (fcntl(descriptor, F_GETFD) & FD_CLOEXEC) != 0;
+  if (is_own || (flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
   descriptor_ = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
   if (descriptor_ < 0) fail(0, errno);
   is_appended_ = (flags & O_APPEND) != 0;

@@ -1,7 +1,5 @@
 #include "voxdag/core/output_place.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <charconv>
 #include <string>
@@ -18,7 +16,11 @@ constexpr int kMostLinks = 40;  // as many as Linux follows
 int descriptor_at(const fs::path& path) {
   std::error_code none;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (fs::canonical(folder, none) != "/proc/" + std::to_string(getpid()) + "/fd") return -1;
+  const fs::path place = fs::canonical(folder, none);
+  // Not by getpid(): /proc may be of another name space.
+  if (place.empty() || (place != fs::canonical("/proc/self/fd", none) &&
+                        place != fs::canonical("/proc/thread-self/fd", none)))
+    return -1;
   const std::string name = path.filename();
   int descriptor = -1;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), descriptor);

@@ -7,7 +7,7 @@ namespace voxdag {
 struct OutputPlace {
   std::filesystem::path file;  ///< The path with symbolic links followed, one to nothing too.
   int descriptor = -1;  ///< Where the path names a descriptor of this process (/dev/stdout): that.
-  int error = 0;        ///< Of the system, where the links lead nowhere; else 0.
+  int error = 0;        ///< Of the system, where links go round or cannot be read; else 0.
 };
 
 OutputPlace output_place(const std::filesystem::path& path);

@@ -137,7 +137,7 @@ HWY_INLINE DagPacketWalk::Rays DagPacketWalk::rays_meeting(std::uint32_t child, 
 /// Which of `rays`, that all meet the cell of child `child` of level `child_level`, end there:
 /// those for which ends_at() holds.
 HWY_NOINLINE DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child, int child_level,
-                                                          Rays rays) const {
+                                                            Rays rays) const {
   if (child_level < rays_.coarsest) return 0;
   const DF d;
   const auto side = hn::Set(d, side_of(child_level));

@@ -143,13 +143,14 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
     first_bad = i;
     result.outside = PointOutside{source, point, walk.deepest + 1};
   };
-  for (std::uint64_t begin = 0; begin < samples; begin += kMostAtOnce) {
+  for (std::uint64_t left = samples; left > 0;) {
+    const std::uint64_t begin = samples - left, now = std::min(left, kMostAtOnce);
+    left -= now;
     if (progress != nullptr) {
       progress->throw_if_cancelled();
       progress->report("enclosure", static_cast<double>(begin) / static_cast<double>(samples));
     }
-    parallel_for(std::min(samples - begin, kMostAtOnce), 1024,
-                 [&](std::size_t i) { look_at(begin + i); });
+    parallel_for(now, 1024, [&](std::size_t i) { look_at(begin + i); });
   }
   result.points = looked_at;
   return result;

@@ -24,7 +24,7 @@ struct StopBelowSize {
     return level >= coarsest_level && side <= at_start + per_t * t_exit;
   }
 
-  /// At cells of coarser levels it is false, as T is at most 1 in the grid.
+  /// At levels that are less it is false, as T is at most 1 in the grid.
   VOXDAG_HD int first_level() const {
     const float most = (at_start + (per_t > 0 ? per_t : 0)) * (1 + 0x1p-10f);
     const int level = most > 0 ? 127 - static_cast<int>(bits_of_float(most) >> 23) : 127;

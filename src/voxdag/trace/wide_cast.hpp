@@ -9,7 +9,8 @@
 
 namespace voxdag {
 
-/// See cast() in cast.hpp. `stop` must not look at t_enter.
+/// See cast() in cast.hpp. `stop` must not look at t_enter, and has first_level(): at levels that
+/// are less it is false.
 template <WideLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
