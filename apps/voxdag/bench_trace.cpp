@@ -111,6 +111,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
                  TraceResults& results) {
   constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
   results.threads = tbb::this_task_arena::max_concurrency();
+  results.rays = plan.rays;
   const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
   const std::vector<View> views = bench_views(scene.voxels, scene.grid, aspect, plan.views);
   std::optional<EmbreeRival> embree;

@@ -53,6 +53,7 @@ struct TraceRow {
 
 struct TraceResults {
   int threads = 0;
+  RayOptions rays;                    ///< As they were made.
   std::string cuda_device;            ///< Of the rows on it; empty: all are the CPU's.
   std::vector<TraceRow> rows;         ///< By scene, resolution, layout, class.
   std::vector<std::string> failures;  ///< Scenes that could not be measured, and why.

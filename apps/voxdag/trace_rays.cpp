@@ -172,9 +172,11 @@ std::vector<CastRay> primary_rays(const RenderSetup& plain, const float* beam_st
   RenderSetup with_beams = plain;
   with_beams.beam_starts = beam_starts;
   return rays_of(tiles_in_order(plain.camera), [&](const ViewTile& tile, auto& rays) {
-    for (int pixel = 0; pixel < tile.pixels(); ++pixel)
-      if (!primary_ray(plain, tile, pixel).ray.misses())
-        rays.push_back(primary_ray(with_beams, tile, pixel));
+    for (int pixel = 0; pixel < tile.pixels(); ++pixel) {
+      const CastRay ray = primary_ray(plain, tile, pixel);
+      if (ray.ray.misses()) continue;
+      rays.push_back(beam_starts == nullptr ? ray : primary_ray(with_beams, tile, pixel));
+    }
   });
 }
 

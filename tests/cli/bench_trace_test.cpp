@@ -74,6 +74,10 @@ TEST_F(BenchTrace, OcclusionMayEndAtCellsOfASolidAngle) {
   ASSERT_EQ(ended.size(), 5u);
   EXPECT_EQ(ended[3].at("cells_per_ray"), exact[3].at("cells_per_ray"));
   EXPECT_LT(ended[4].at("cells_per_ray"), exact[4].at("cells_per_ray"));
+  EXPECT_EQ(exact[4].at("ao_cone"), 0);
+  EXPECT_EQ(ended[4].at("ao_cone"), 0.5);
+  EXPECT_EQ(ended[4].at("lod_pixels"), 1);
+  EXPECT_EQ(ended[4].at("size"), Json({40, 32}));
   EXPECT_GT(ended[4].at("hit_part"), exact[4].at("hit_part"));
 }
 
