@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/esvo/encode_color_block.hpp"
-#include "voxdag/esvo/encode_normal_block.hpp"
+#include "voxdag/esvo/encode/encode_color_block.hpp"
+#include "voxdag/esvo/encode/encode_normal_block.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
 

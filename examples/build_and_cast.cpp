@@ -6,7 +6,7 @@
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/mesh/read_mesh.hpp"
+#include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "voxdag/mesh/gltf_reader.hpp"
-#include "voxdag/mesh/obj_appearance.hpp"
-#include "voxdag/mesh/obj_reader.hpp"
-#include "voxdag/mesh/off_reader.hpp"
-#include "voxdag/mesh/ply_appearance.hpp"
-#include "voxdag/mesh/ply_reader.hpp"
-#include "voxdag/mesh/stl_reader.hpp"
+#include "voxdag/readers/gltf/gltf_reader.hpp"
+#include "voxdag/readers/obj/obj_appearance.hpp"
+#include "voxdag/readers/obj/obj_reader.hpp"
+#include "voxdag/readers/off/off_reader.hpp"
+#include "voxdag/readers/ply/ply_appearance.hpp"
+#include "voxdag/readers/ply/ply_reader.hpp"
+#include "voxdag/readers/stl/stl_reader.hpp"
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <system_error>
 
-#include "commands.hpp"
-#include "interrupt.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,8 +1,8 @@
-#include "human.hpp"
+#include "cli/human.hpp"
 
 #include <gtest/gtest.h>
 
-#include "progress_bar.hpp"
+#include "cli/progress_bar.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "frame_names.hpp"
+#include "render/frame_names.hpp"
 #include "sponge.hpp"
 
 namespace voxdag {

@@ -1,4 +1,4 @@
-#include "parse.hpp"
+#include "cli/parse.hpp"
 
 #include <gtest/gtest.h>
 

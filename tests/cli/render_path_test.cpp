@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "frame_names.hpp"
+#include "render/frame_names.hpp"
 #include "sponge.hpp"
 
 namespace voxdag {

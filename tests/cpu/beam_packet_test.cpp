@@ -1,5 +1,5 @@
 // Beams in packets against beams one by one.
-#include "voxdag/cpu/beam_packet.hpp"
+#include "voxdag/cpu/packets/beam_packet.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,5 +1,5 @@
 // The boxes beside a DAG's pointers against the voxels that they bound.
-#include "voxdag/cpu/bounded_dag.hpp"
+#include "voxdag/cpu/packets/bounded_dag.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include "support/caster_checks.hpp"
 #include "support/test_esvo.hpp"
 #include "support/voxel_sets.hpp"
-#include "voxdag/cpu/packet_caster.hpp"
-#include "voxdag/trace/streamed_nodes.hpp"
+#include "voxdag/cpu/packets/packet_caster.hpp"
+#include "voxdag/stream/streamed_nodes.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,5 +1,5 @@
 // Packets at a DAG against the scalar cast, ray by ray.
-#include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/cpu/packets/packet_caster.hpp"
 
 #include <gtest/gtest.h>
 

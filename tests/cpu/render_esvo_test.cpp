@@ -12,7 +12,7 @@
 #include "support/voxel_sets.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/cpu/render_image.hpp"
-#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

@@ -7,7 +7,7 @@
 
 #include "support/grid_mesh.hpp"
 #include "voxdag/core/srgb.hpp"
-#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/layout/color_block.hpp"
 
 namespace voxdag {

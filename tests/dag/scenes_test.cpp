@@ -7,7 +7,7 @@
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/mesh/read_mesh.hpp"
+#include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -9,7 +9,7 @@
 #include "support/random_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/esvo/check_esvo.hpp"
+#include "voxdag/esvo/build/check_esvo.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
 
 namespace voxdag {

@@ -1,5 +1,5 @@
 // Lists of contours that share their places.
-#include "voxdag/esvo/contour_pool.hpp"
+#include "voxdag/esvo/encode/contour_pool.hpp"
 
 #include <gtest/gtest.h>
 

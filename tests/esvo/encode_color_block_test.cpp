@@ -1,4 +1,4 @@
-#include "voxdag/esvo/encode_color_block.hpp"
+#include "voxdag/esvo/encode/encode_color_block.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "voxdag/esvo/encode_normal_block.hpp"
+#include "voxdag/esvo/encode/encode_normal_block.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "voxdag/esvo/encode_pair.hpp"
+#include "voxdag/esvo/encode/encode_pair.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,7 +10,7 @@
 #include "support/temp_dir.hpp"
 #include "support/test_png.hpp"
 #include "voxdag/core/srgb.hpp"
-#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/layout/stored_values.hpp"
 
 namespace voxdag {

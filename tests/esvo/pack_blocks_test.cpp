@@ -1,4 +1,4 @@
-#include "voxdag/esvo/pack_blocks.hpp"
+#include "voxdag/esvo/encode/pack_blocks.hpp"
 
 #include <gtest/gtest.h>
 

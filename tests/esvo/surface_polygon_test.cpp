@@ -1,5 +1,5 @@
 // Polygons and the octants of their cell.
-#include "voxdag/esvo/surface_polygon.hpp"
+#include "voxdag/esvo/shape/surface_polygon.hpp"
 
 #include <gtest/gtest.h>
 

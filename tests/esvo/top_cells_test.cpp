@@ -1,4 +1,4 @@
-#include "voxdag/esvo/top_cells.hpp"
+#include "voxdag/esvo/build/top_cells.hpp"
 
 #include <gtest/gtest.h>
 

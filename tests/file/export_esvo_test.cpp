@@ -9,7 +9,7 @@
 #include "support/grid_mesh.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/file/export.hpp"
 
 namespace voxdag {

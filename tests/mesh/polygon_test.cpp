@@ -10,10 +10,10 @@
 #include <random>
 #include <string>
 
-#include "mesh/mesh_text.hpp"
-#include "voxdag/mesh/obj_reader.hpp"
-#include "voxdag/mesh/off_reader.hpp"
-#include "voxdag/mesh/ply_reader.hpp"
+#include "readers/mesh_text.hpp"
+#include "voxdag/readers/obj/obj_reader.hpp"
+#include "voxdag/readers/off/off_reader.hpp"
+#include "voxdag/readers/ply/ply_reader.hpp"
 
 namespace voxdag {
 namespace {

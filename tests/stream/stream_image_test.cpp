@@ -4,11 +4,11 @@
 #include "support/grid_mesh.hpp"
 #include "support/picture_checks.hpp"
 #include "support/temp_dir.hpp"
-#include "voxdag/cpu/paged_cells.hpp"
-#include "voxdag/esvo/build_esvo.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/esvo_writer.hpp"
 #include "voxdag/render/coarse_cells.hpp"
+#include "voxdag/stream/paged_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
 
 namespace voxdag {

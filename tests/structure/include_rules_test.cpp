@@ -24,15 +24,22 @@ TEST(IncludeRules, EverySourceIncludesOnlyWhatItsFolderMay) {
 
 TEST(IncludeRules, RulesAreTransitive) {
   const IncludeRules rules = read_include_rules(kTable);
-  EXPECT_TRUE(rules.at("dag").count("image"));
+  EXPECT_TRUE(rules.at("esvo").count("image"));
   EXPECT_TRUE(rules.at("cpu").count("layout"));
 }
 
 TEST(IncludeRules, AViewerNeedsNoBuilder) {
   const IncludeRules rules = read_include_rules(kTable);
   for (const char* viewer : {"trace", "render", "file"})
-    for (const char* builder : {"mesh", "voxelize", "dag", "esvo"})
+    for (const char* builder : {"mesh", "readers", "voxelize", "dag", "esvo"})
       EXPECT_FALSE(rules.at(viewer).count(builder)) << viewer << " may include " << builder;
+}
+
+TEST(IncludeRules, TheDagBuilderNeedsNoFileFormats) {
+  const IncludeRules rules = read_include_rules(kTable);
+  for (const char* builder : {"voxelize", "dag"})
+    for (const char* format : {"io", "image", "readers", "file"})
+      EXPECT_FALSE(rules.at(builder).count(format)) << builder << " may include " << format;
 }
 
 TEST(IncludeRules, AForbiddenIncludeIsFoundWithItsLine) {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "support/test_esvo.hpp"
-#include "voxdag/esvo/pack_blocks.hpp"
+#include "voxdag/esvo/encode/pack_blocks.hpp"
 
 namespace voxdag {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
-#include "voxdag/esvo/displaced_triangles.hpp"
-#include "voxdag/image/stone_heights.hpp"
+#include "voxdag/displace/displaced_triangles.hpp"
 #include "voxdag/mesh/mesh.hpp"
+#include "voxdag/scenes/stone_heights.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "voxdag/esvo/esvo_tree.hpp"
+#include "voxdag/esvo/encode/esvo_tree.hpp"
 #include "voxdag/layout/esvo.hpp"
 
 namespace voxdag::test {

@@ -2,7 +2,7 @@
 /// Where the primary rays of a picture may start.
 #include <vector>
 
-#include "voxdag/cpu/beam_packet.hpp"
+#include "voxdag/cpu/packets/beam_packet.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/primary_beams.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "voxdag/cpu/packet_caster.hpp"
+#include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/cpu/post_filter.hpp"
 #include "voxdag/cpu/tile_renderer.hpp"
 #include "voxdag/render/render_plan.hpp"

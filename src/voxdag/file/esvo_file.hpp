@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "voxdag/file/esvo_parse.hpp"
-#include "voxdag/file/mapped_file.hpp"
+#include "voxdag/io/mapped_file.hpp"
 
 namespace voxdag {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/atomic_file.hpp"
-#include "voxdag/file/checksum.hpp"
 #include "voxdag/file/esvo_metadata.hpp"
+#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/checksum.hpp"
 #include "voxdag/layout/esvo_directory.hpp"
 
 namespace voxdag {

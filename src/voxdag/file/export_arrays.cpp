@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <span>
 
-#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/export_common.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/export_common.hpp"
+#include "voxdag/io/atomic_file.hpp"
 #include "voxdag/layout/stored_values.hpp"
 
 namespace voxdag {

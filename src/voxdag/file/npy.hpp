@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/core/atomic_file.hpp"
+#include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
 

@@ -2,8 +2,8 @@
 /// A .vdag file opened for use.
 #include <filesystem>
 
-#include "voxdag/file/mapped_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/io/mapped_file.hpp"
 
 namespace voxdag {
 

@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/checksum.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/io/checksum.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 
 namespace voxdag {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/core/atomic_file.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/checksum.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/checksum.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_parse.hpp"
-#include "voxdag/file/mapped_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/io/mapped_file.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 

@@ -1,9 +1,9 @@
 #include "voxdag/image/decode.hpp"
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/image/file_bytes.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
+#include "voxdag/io/file_bytes.hpp"
 
 namespace voxdag {
 namespace {

@@ -11,7 +11,7 @@
 #include <span>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/image/file_bytes.hpp"
+#include "voxdag/io/file_bytes.hpp"
 
 namespace voxdag {
 namespace {

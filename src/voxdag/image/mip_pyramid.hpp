@@ -12,8 +12,8 @@
 #include <cstring>
 #include <vector>
 
+#include "voxdag/core/texture_wrap.hpp"
 #include "voxdag/core/vec2.hpp"
-#include "voxdag/image/wrap.hpp"
 
 namespace voxdag {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/image/file_bytes.hpp"
+#include "voxdag/io/file_bytes.hpp"
 
 namespace voxdag {
 namespace {

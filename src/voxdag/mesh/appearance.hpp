@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/texture_wrap.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/core/vec2.hpp"
-#include "voxdag/image/wrap.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {

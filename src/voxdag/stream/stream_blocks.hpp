@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "voxdag/cpu/streamed_image.hpp"
-#include "voxdag/file/esvo_stream.hpp"
+#include "voxdag/stream/esvo_stream.hpp"
+#include "voxdag/stream/streamed_image.hpp"
 
 namespace voxdag {
 

@@ -41,13 +41,6 @@ int levels_for(double voxels) {
 
 }  // namespace
 
-Box3d referenced_bounds(const Mesh& mesh) {
-  Box3f bounds = Box3f::empty();
-  for (const Triangle& triangle : mesh.triangles)
-    for (std::uint32_t index : triangle) bounds.extend(mesh.vertices[index]);
-  return {static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)};
-}
-
 Grid fit_grid(const Mesh& mesh, int levels) {
   require_levels(levels);
   if (mesh.triangles.empty()) throw Error("the mesh has no triangles");

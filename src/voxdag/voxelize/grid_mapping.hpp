@@ -8,12 +8,9 @@
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
 
 namespace voxdag {
-
-/// The bounds of the vertices that triangles reference; empty for a mesh without triangles.
-Box3d referenced_bounds(const Mesh& mesh);
 
 /// The grid of 2^levels voxels a side that fits the mesh: origin at the least corner of its bounds,
 /// the longest side spanning all voxels. Throws Error if levels is outside [kMinLevels, kMaxLevels]

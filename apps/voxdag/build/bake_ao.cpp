@@ -1,0 +1,70 @@
+#include "build/bake_ao.hpp"
+
+#include <fmt/core.h>
+
+#include "cli/number_check.hpp"
+#include "cli/parse.hpp"
+#include "cli/session.hpp"
+
+namespace voxdag {
+namespace {
+
+/// The same cube in voxels twice as wide, until there are at most 2^levels a side.
+Grid coarser(Grid grid, int levels) {
+  for (; grid.levels > levels; --grid.levels) {
+    grid.voxel_size *= 2;
+    grid.quantization_scale /= 2;
+  }
+  return grid;
+}
+
+}  // namespace
+
+void add_bake_options(CLI::App& command, BakeArguments& arguments) {
+  constexpr int kRays = 64;
+  CLI::Option* const bake =
+      command
+          .add_option("--bake-ao", arguments.rays,
+                      fmt::format("Darken colours by ambient occlusion, by RAYS rays of each point "
+                                  "({} where no number is given)",
+                                  kRays))
+          ->expected(0, 1)
+          ->default_str(std::to_string(kRays))
+          ->check(whole_number(1, 4096))
+          ->type_name("RAYS")
+          ->group("ESVO");
+  add_parsed_option(command, "--ao-distance", arguments.distance, parse_positive, "LENGTH",
+                    "How far --bake-ao reaches, in world units (default: 0.15 of the grid)")
+      ->needs(bake)
+      ->group("ESVO");
+}
+
+void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
+                       std::map<std::string, std::string>& settings) {
+  if (arguments.rays == 0) return;
+  settings["bake_ao_rays"] = std::to_string(arguments.rays);
+  settings["bake_ao_distance"] = fmt::format("{}", arguments.distance_in(grid));
+}
+
+Occluders::Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
+                     const EsvoSettings& settings, const SurfaceShading& shading,
+                     const DisplacedTriangles* displaced, Progress& progress)
+    : grid_(grid) {
+  constexpr int kFinest = 10;
+  const Grid own = coarser(grid, kFinest);
+  EsvoOptions options;
+  options.settings = settings;
+  options.settings.attributes = false;
+  EsvoMemory memory;
+  const EsvoResult result = build_esvo(mesh, own, options, &shading, displaced, memory, &progress);
+  esvo_ = {memory.take(), result.root, own.levels};
+  openness_.emplace(esvo_.view(), own, arguments.rays, arguments.distance_in(grid));
+}
+
+SurfaceLight Occluders::light() const {
+  return [this](const SurfacePlace& place) {
+    return (*openness_)(grid_.to_world(place.point), place.normal, place.face);
+  };
+}
+
+}  // namespace voxdag

@@ -1,0 +1,51 @@
+#pragma once
+/// `build --as esvo --bake-ao`.
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "voxdag/cpu/surface_openness.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
+
+namespace voxdag {
+
+struct BakeArguments {
+  int rays = 0;  ///< Of each point; 0: nothing is baked.
+  /// How far occlusion reaches, in world units; 0: kDefaultDistance grid sides.
+  double distance = 0;
+  static constexpr double kDefaultDistance = 0.15;  ///< As `render --ao`.
+
+  double distance_in(const Grid& grid) const {
+    if (distance > 0) return distance;
+    return kDefaultDistance * grid.voxel_size * static_cast<double>(grid.resolution());
+  }
+};
+
+void add_bake_options(CLI::App& command, BakeArguments& arguments);
+
+/// Adds what was baked, for the metadata.
+void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
+                       std::map<std::string, std::string>& settings);
+
+/// What hides the sky from the points of a surface: an ESVO of the same surface, cut-outs,
+/// displacement and all, without colours and no finer than 1024³.
+class Occluders {
+ public:
+  Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
+            const EsvoSettings& settings, const SurfaceShading& shading,
+            const DisplacedTriangles* displaced, Progress& progress);
+  Occluders(const Occluders&) = delete;
+  Occluders& operator=(const Occluders&) = delete;
+
+  /// For EsvoSettings of an ESVO in the grid; valid while this lives.
+  SurfaceLight light() const;
+
+ private:
+  Grid grid_;
+  Esvo esvo_;
+  std::optional<SurfaceOpenness> openness_;
+};
+
+}  // namespace voxdag

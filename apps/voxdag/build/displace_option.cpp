@@ -1,0 +1,107 @@
+#include "build/displace_option.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "cli/parse.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/image/decode.hpp"
+#include "voxdag/scenes/stone_heights.hpp"
+
+namespace voxdag {
+
+void parse_displace(const std::string& text, DisplaceArguments& arguments) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t colon = text.find(':', begin);
+    parts.push_back(text.substr(begin, colon - begin));
+    if (colon == std::string::npos) break;
+    begin = colon + 1;
+  }
+  const auto number = [](const std::string& part) -> std::optional<double> {
+    try {
+      const std::vector<double> values = parse_numbers(part);
+      return values.size() == 1 ? std::optional(values[0]) : std::nullopt;
+    } catch (const std::invalid_argument&) {
+      return std::nullopt;
+    }
+  };
+  std::optional<double> last = number(parts.back());
+  if (parts.size() >= 3 && last && number(parts[parts.size() - 2])) {
+    arguments.scale = *last;
+    if (!(arguments.scale > 0)) throw std::invalid_argument("the scale must be positive");
+    parts.pop_back();
+    last = number(parts.back());
+  }
+  if (parts.size() < 2 || !last) throw std::invalid_argument("not TEXTURE:AMOUNT[:SCALE]");
+  arguments.amount = *last;
+  parts.pop_back();
+  arguments.texture = parts[0];
+  for (std::size_t i = 1; i < parts.size(); ++i) arguments.texture += ":" + parts[i];
+  if (arguments.texture.empty()) throw std::invalid_argument("not TEXTURE:AMOUNT[:SCALE]");
+}
+
+CLI::Option* add_displace_option(CLI::App& command, DisplaceArguments& arguments) {
+  const auto store = [&arguments](const std::string& text) {
+    try {
+      parse_displace(text, arguments);
+    } catch (const std::invalid_argument& wrong) {
+      throw CLI::ValidationError("--displace", wrong.what());
+    }
+  };
+  return command
+      .add_option_function<std::string>(
+          "--displace", store,
+          "Move the surface by a height texture (PNG, JPEG, or \"stone\" for a built-in wall) of "
+          "AMOUNT world units, which covers SCALE world units (default: as texture coordinates "
+          "say)")
+      ->type_name("TEXTURE:AMOUNT[:SCALE]")
+      ->group("ESVO");
+}
+
+void add_no_displacement_option(CLI::App& command, DisplaceArguments& arguments) {
+  command.add_flag("--no-displacement", arguments.is_off, "Leave the materials' height maps out")
+      ->excludes("--displace")
+      ->group("ESVO");
+}
+
+std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,
+                                                 const Mesh& mesh, const Appearance& appearance,
+                                                 std::vector<std::string>& warnings,
+                                                 Progress& progress) {
+  std::vector<Displacement> displacements;
+  if (!arguments.texture.empty()) {
+    const auto heights = std::make_shared<const HeightTexture>(
+        arguments.texture == "stone" ? make_stone_heights(1, 1024)
+                                     : make_height_texture(read_image(arguments.texture)));
+    displacements = displace_all(mesh, appearance, heights, arguments.amount, arguments.scale);
+  } else if (!arguments.is_off) {
+    displacements = load_displacements(mesh, appearance, warnings, &progress);
+  }
+  if (std::none_of(displacements.begin(), displacements.end(),
+                   [](const Displacement& d) { return d.moves(); }))
+    return std::nullopt;
+  return std::optional<DisplacedTriangles>(std::in_place, mesh, appearance,
+                                           std::move(displacements));
+}
+
+Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh) {
+  Box3d bounds = Box3d::empty();
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Box3d box = displaced.displaced_bounds(i);
+    bounds.extend(box.lo);
+    bounds.extend(box.hi);
+  }
+  return bounds;
+}
+
+std::string displace_text(const DisplaceArguments& arguments) {
+  if (arguments.texture.empty()) return "";
+  const std::string text = fmt::format(
+      "{}:{}", arguments.texture.substr(arguments.texture.find_last_of('/') + 1), arguments.amount);
+  return arguments.scale > 0 ? fmt::format("{}:{}", text, arguments.scale) : text;
+}
+
+}  // namespace voxdag

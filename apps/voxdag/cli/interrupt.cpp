@@ -1,0 +1,68 @@
+#include "cli/interrupt.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+
+#include "voxdag/io/atomic_file.hpp"
+
+namespace voxdag {
+namespace {
+
+Progress* progress_to_cancel = nullptr;
+volatile std::sig_atomic_t caught_signal = 0;
+
+extern "C" void on_signal(int number) {
+  if (caught_signal != 0) {
+    remove_unfinished_files();
+    std::signal(number, SIG_DFL);
+    raise(number);  // Takes effect when this handler returns.
+    return;
+  }
+  caught_signal = number;
+  progress_to_cancel->cancel();
+}
+
+/// What is mapped is gone where another program cuts the file short, or the disk fails.
+extern "C" void on_bus_error(int) {
+  static std::atomic_flag is_said;
+  while (is_said.test_and_set()) pause();  // another thread, and the end is near
+  static constexpr char kText[] =
+      "voxdag: a mapped file can no longer be read: was it cut short?\n";
+  remove_unfinished_files();
+  if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(1);
+  _exit(1);
+}
+
+}  // namespace
+
+void make_writes_fail_plainly() {
+  for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);
+  // Open for reading only, so that writes to it fail. The lowest free descriptor is taken.
+  for (int stream = 0; stream <= 2; ++stream)
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDONLY) != stream)
+      return;
+}
+
+void cancel_on_signals(Progress& progress) {
+  progress_to_cancel = &progress;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  // Without SA_RESTART: a pipe that nobody reads would be opened for ever. Reads and writes of
+  // pipes that stand still go on after a signal; a second one ends the program.
+  action.sa_flags = 0;
+  std::signal(SIGBUS, on_bus_error);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    // What the caller had ignored (nohup) stays ignored.
+    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(number, &action, nullptr);
+  }
+}
+
+int cancelling_signal() { return caught_signal; }
+
+}  // namespace voxdag

@@ -1,0 +1,167 @@
+#include "cli/parse.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
+#include "voxdag/core/grid.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr int kMaxImageSide = 1 << 15;
+
+/// The finite number that the whole of `text` is, if it is one.
+template <class T>
+std::optional<T> number_of(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  bool good = error == std::errc() && end == text.data() + text.size() && !text.empty();
+  if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(value);
+  return good ? std::optional(value) : std::nullopt;
+}
+
+/// Likewise, or throws with `expected`.
+template <class T>
+T parse_number(std::string_view text, const char* expected) {
+  const std::optional<T> value = number_of<T>(text);
+  if (!value) throw std::invalid_argument(fmt::format("\"{}\" is not {}", text, expected));
+  return *value;
+}
+
+/// As parse_number, of a list.
+template <class T>
+T parse_element(std::string_view text) {
+  if constexpr (std::is_integral_v<T>) {
+    return parse_number<T>(text, "a whole number");
+  } else {
+    const T value = parse_number<T>(text, "a number");
+    if (std::fabs(value) > std::numeric_limits<float>::max())
+      throw std::invalid_argument(fmt::format("\"{}\" is too large", text));
+    return value;
+  }
+}
+
+template <class T, std::size_t N>
+std::array<T, N> parse_list(std::string_view text) {
+  std::array<T, N> values{};
+  for (std::size_t i = 0; i < N; ++i) {
+    const std::size_t comma = text.find(',');
+    if ((comma == std::string_view::npos) != (i + 1 == N))
+      throw std::invalid_argument(fmt::format("needs {} numbers with commas between", N));
+    values[i] = parse_element<T>(text.substr(0, comma));
+    text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+  }
+  return values;
+}
+
+template <class T>
+Box<T> parse_box_of(const std::string& text) {
+  const auto v = parse_list<T, 6>(text);
+  const Box<T> box{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(box.lo[axis] < box.hi[axis]))
+      throw std::invalid_argument("the second corner must lie above the first on every axis");
+  return box;
+}
+
+}  // namespace
+
+std::optional<double> read_number(std::string_view text) { return number_of<double>(text); }
+
+std::optional<std::int64_t> read_whole_number(std::string_view text) {
+  return number_of<std::int64_t>(text);
+}
+
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> values;
+  std::string_view rest = text;
+  for (;;) {
+    const std::size_t comma = rest.find(',');
+    values.push_back(parse_element<double>(rest.substr(0, comma)));
+    if (comma == std::string_view::npos) return values;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+Vec3d parse_vec3(const std::string& text) {
+  const auto v = parse_list<double, 3>(text);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3d parse_direction(const std::string& text) {
+  const Vec3d direction = parse_vec3(text);
+  if (!(dot(direction, direction) > 0))
+    throw std::invalid_argument(fmt::format("\"{}\" is no direction", text));
+  return direction;
+}
+
+Box3d parse_box(const std::string& text) { return parse_box_of<double>(text); }
+
+Box3i parse_window(const std::string& text) { return parse_box_of<std::int32_t>(text); }
+
+double parse_positive(const std::string& text) {
+  const double value = parse_number<double>(text, "a number");
+  if (!(value > 0)) throw std::invalid_argument("must be above zero");
+  return value;
+}
+
+int parse_levels(const std::string& text) {
+  constexpr std::uint64_t kLeast = 1u << kMinLevels, kMost = 1u << kMaxLevels;
+  const bool kilo = text.ends_with('K') || text.ends_with('k');
+  std::uint64_t n = parse_number<std::uint64_t>(
+      std::string_view(text).substr(0, text.size() - (kilo ? 1 : 0)), "a whole number");
+  if (kilo) n = n <= kMost ? n * 1024 : kMost + 1;
+  if (n < kLeast || n > kMost)
+    throw std::invalid_argument(
+        fmt::format("{} is not a power of two from {} to {}; the nearest is {}", text, kLeast,
+                    kMost, n < kLeast ? kLeast : kMost));
+  if (!std::has_single_bit(n))
+    throw std::invalid_argument(
+        fmt::format("{} is not a power of two from {} to {}; the nearest are {} and {}", text,
+                    kLeast, kMost, std::bit_floor(n), std::bit_ceil(n)));
+  return std::countr_zero(n);
+}
+
+std::uint64_t parse_memory(const std::string& text) {
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
+  const double value = parse_number<double>(std::string_view(text).substr(0, digits),
+                                            "an amount of memory such as 512M or 16GiB");
+  std::string unit = text.substr(digits);
+  for (const char* ending : {"iB", "B"})
+    if (unit.ends_with(ending)) {
+      unit.resize(unit.size() - std::string_view(ending).size());
+      break;
+    }
+  static constexpr std::string_view kUnits = "KMGT";
+  double factor = 1;
+  if (!unit.empty()) {
+    const std::size_t power = kUnits.find(static_cast<char>(unit[0] & ~0x20));
+    if (unit.size() != 1 || power == std::string_view::npos)
+      throw std::invalid_argument(fmt::format("\"{}\" has no unit of K, M, G or T", text));
+    factor = std::exp2(10.0 * static_cast<double>(power + 1));
+  }
+  const double bytes = value * factor;
+  if (!(bytes >= 1 && bytes < 0x1p63)) throw std::invalid_argument("must be above zero bytes");
+  return static_cast<std::uint64_t>(bytes);
+}
+
+ImageSize parse_image_size(const std::string& text) {
+  const std::size_t x = text.find('x');
+  if (x == std::string::npos) throw std::invalid_argument("needs WIDTHxHEIGHT, such as 1920x1080");
+  const std::string_view view = text;
+  const ImageSize size{parse_number<int>(view.substr(0, x), "a width"),
+                       parse_number<int>(view.substr(x + 1), "a height")};
+  for (const int side : {size.width, size.height})
+    if (side < 1 || side > kMaxImageSide)
+      throw std::invalid_argument(fmt::format("each side must be 1 to {} pixels", kMaxImageSide));
+  return size;
+}
+
+}  // namespace voxdag

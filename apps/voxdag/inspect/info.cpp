@@ -1,0 +1,48 @@
+/// `voxdag info`: what a .vdag or .esvo file holds.
+#include <fmt/core.h>
+
+#include "cli/commands.hpp"
+#include "cli/human.hpp"
+#include "inspect/dag_report.hpp"
+#include "inspect/esvo_report.hpp"
+#include "voxdag/file/vdag_file.hpp"
+
+namespace voxdag {
+namespace {
+
+void esvo_info(const std::string& path, bool json) {
+  const EsvoReport report = report_of(EsvoFile(path));
+  if (json)
+    fmt::print("{}", json_text(esvo_json(report)));
+  else
+    fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
+               report.metadata.program, esvo_table(report), esvo_level_table(report));
+}
+
+void info(const std::string& path, bool json) {
+  if (is_esvo_file(path)) return esvo_info(path, json);
+  const VdagFile file(path);
+  const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes()};
+  if (json) {
+    fmt::print("{}", json_text(dag_json(report)));
+    return;
+  }
+  fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
+             report.metadata.program, dag_table(report), level_table(report.metadata.counts));
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Session& session) {
+  CLI::App& command = add_command(
+      app, "info", "Show what a .vdag or .esvo file holds: counts, sizes, placement, source",
+      "voxdag info scene.vdag --json");
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
+  add_json_option(command, session);
+  command.callback(
+      [&session] { session.work = [&session] { info(session.subject, session.json); }; });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,178 @@
+/// `voxdag verify`: every check of a .vdag file, and of its voxels against the mesh.
+#include <fmt/core.h>
+
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "build/displace_option.hpp"
+#include "cli/commands.hpp"
+#include "cli/human.hpp"
+#include "cli/number_check.hpp"
+#include "voxdag/dag/check_cover.hpp"
+#include "voxdag/esvo/build/check_esvo.hpp"
+#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/vdag_file.hpp"
+#include "voxdag/file/verify_vdag.hpp"
+#include "voxdag/readers/read_appearance.hpp"
+#include "voxdag/readers/read_mesh.hpp"
+
+namespace voxdag {
+namespace {
+
+using Result = VerifyCheck::Result;
+
+struct VerifyArguments {
+  std::string mesh;
+  std::uint64_t samples = 20'000;
+  std::uint64_t seed = 1;
+  DisplaceArguments displace;
+};
+
+const char* result_name(Result result) {
+  return result == Result::kPassed ? "passed" : result == Result::kFailed ? "FAILED" : "skipped";
+}
+
+VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
+  if (!arguments.displace.texture.empty())
+    throw Error(session.subject, "", "--displace is for an ESVO, and this is a DAG");
+  const VdagFile file(session.subject);
+  const Mesh mesh = read_mesh(arguments.mesh, &session.progress);
+  const CoverCheck cover = check_cover(file.view(), file.grid(), mesh, arguments.samples,
+                                       arguments.seed, &session.progress);
+  VerifyCheck check{"cover", Result::kPassed, {}};
+  if (cover.mismatches > 0) {
+    check.result = Result::kFailed;
+    check.detail =
+        fmt::format("{} of {} cells differ from {}, the first is cell ({}, {}, {}) of level {}",
+                    with_commas(cover.mismatches), with_commas(cover.samples), arguments.mesh,
+                    cover.first_mismatch.x, cover.first_mismatch.y, cover.first_mismatch.z,
+                    cover.first_mismatch_level);
+  } else {
+    check.detail = fmt::format("{} cells, {} of them on the surface", with_commas(cover.samples),
+                               with_commas(cover.covered));
+  }
+  return check;
+}
+
+void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
+  if (!json) {
+    for (const VerifyCheck& check : checks)
+      fmt::print("  {:<16}{}{}{}\n", check.name, result_name(check.result),
+                 check.detail.empty() ? "" : "   ", check.detail);
+    return;
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  bool passed = true;
+  for (const VerifyCheck& check : checks) {
+    passed = passed && check.result != Result::kFailed;
+    list.push_back(
+        {{"name", check.name},
+         {"result", check.result == Result::kFailed ? "failed" : result_name(check.result)},
+         {"detail", check.detail}});
+  }
+  fmt::print("{}", json_text(nlohmann::ordered_json{{"passed", passed}, {"checks", list}}));
+}
+
+/// What the surface was displaced by, of the options or as the file says; nothing where the file
+/// names a texture that may be anywhere.
+std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
+                                                 const DisplaceArguments& asked) {
+  if (!asked.texture.empty()) return asked;
+  const std::map<std::string, std::string>& build = file.metadata().build;
+  DisplaceArguments arguments;
+  arguments.is_off = !build.contains("displaced");
+  if (!build.contains("displace")) return arguments;
+  parse_displace(build.at("displace"), arguments);
+  if (arguments.texture != "stone") return std::nullopt;
+  return arguments;
+}
+
+/// Points of the mesh, looked for in the octree.
+VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
+  const EsvoFile file(session.subject);
+  const std::optional<DisplaceArguments> displace = displacement_of(file, arguments.displace);
+  if (!displace)
+    return {"enclosure", Result::kSkipped,
+            fmt::format("the surface is displaced: needs --displace, which was {}",
+                        file.metadata().build.at("displace"))};
+  const MeshWithAppearance source = read_mesh_with_appearance(arguments.mesh, &session.progress);
+  const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
+  std::vector<std::string> warnings;
+  const std::optional<DisplacedTriangles> displaced =
+      open_displaced(*displace, source.mesh, source.appearance, warnings, session.progress);
+  const EnclosureCheck enclosure = check_enclosure(
+      file.view(), QuantizedMesh(source.mesh, file.grid()), file.grid(), &shading,
+      displaced ? &*displaced : nullptr, arguments.samples, arguments.seed, &session.progress);
+  VerifyCheck check{"enclosure", Result::kPassed,
+                    fmt::format("{} points of the surface", with_commas(enclosure.points))};
+  if (enclosure.points == 0 && arguments.samples > 0 && !file.view().is_empty()) {
+    check.result = Result::kFailed;
+    check.detail = fmt::format("no point of {} lies in the grid", arguments.mesh);
+  }
+  if (!enclosure.outside) return check;
+  const Vec3d at = file.grid().to_world(enclosure.outside->point);
+  check.result = Result::kFailed;
+  check.detail = fmt::format("triangle {} of {} at ({:.9g}, {:.9g}, {:.9g}) is outside at level {}",
+                             enclosure.outside->triangle, arguments.mesh, at.x, at.y, at.z,
+                             enclosure.outside->level);
+  return check;
+}
+
+VerifyCheck mesh_check(const VerifyArguments& arguments, Session& session) {
+  return is_esvo_file(session.subject) ? enclosure_check(arguments, session)
+                                       : cover_check(arguments, session);
+}
+
+void verify(const VerifyArguments& arguments, Session& session) {
+  VerifyReport report = verify_vdag(session.subject);
+  session.progress.throw_if_cancelled();
+  if (!arguments.mesh.empty()) {
+    if (report.passed())
+      report.checks.push_back(mesh_check(arguments, session));
+    else
+      report.checks.push_back({"mesh", Result::kSkipped, "the file itself is damaged"});
+  }
+  session.bar.clear();
+  if (session.json || !session.quiet) print_checks(report.checks, session.json);
+  for (const VerifyCheck& check : report.checks)
+    if (check.result == Result::kFailed) throw Error(session.subject, check.name, check.detail);
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App& command = add_command(
+      app, "verify",
+      "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh its voxels too",
+      "voxdag verify sponza.vdag --mesh sponza.obj");
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* const mesh =
+      command
+          .add_option("--mesh", arguments->mesh,
+                      "Compare with this mesh, in a sample of cells or of points")
+          ->type_name("MESH");
+  const CLI::Validator any_count = whole_number(0, std::numeric_limits<std::int64_t>::max());
+  command.add_option("--samples", arguments->samples, "Cells or points of the sample")
+      ->check(any_count)
+      ->needs(mesh)
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--seed", arguments->seed, "Another seed takes another sample")
+      ->check(any_count)
+      ->needs(mesh)
+      ->type_name("N")
+      ->capture_default_str();
+  add_displace_option(command, arguments->displace)->needs(mesh);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.callback([arguments, &session] {
+    session.work = [arguments, &session] { verify(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

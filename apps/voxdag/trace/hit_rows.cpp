@@ -1,0 +1,63 @@
+#include "trace/hit_rows.hpp"
+
+#include <cstring>
+#include <limits>
+
+#include "voxdag/layout/esvo_lookup.hpp"
+#include "voxdag/layout/stored_values.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+
+namespace voxdag {
+namespace {
+
+template <class T>
+void put(std::byte*& row, const T& value) {
+  std::memcpy(row, &value, sizeof value);
+  row += sizeof value;
+}
+
+}  // namespace
+
+HitRows::HitRows(const VoxelScene& scene) : scene_(scene) {
+  dtype_ = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
+  row_bytes_ = 18;
+  if (const EsvoView* esvo = scene.esvo()) {
+    normals_ = has_stored(*esvo, EsvoAttachmentKind::kNormals);
+    colors_ = has_stored(*esvo, EsvoAttachmentKind::kColors);
+  }
+  if (normals_) {
+    dtype_ += ", ('normal', '<f4', (3,))";
+    row_bytes_ += sizeof(Vec3f);
+  }
+  if (colors_) {
+    dtype_ += ", ('color', '|u1', (3,))";
+    row_bytes_ += sizeof(Vec3<std::uint8_t>);
+  }
+  dtype_ += "]";
+}
+
+void HitRows::pack(std::span<const Hit> hits, std::byte* rows) const {
+  constexpr std::size_t kGrain = 1024;
+  parallel_for(hits.size(), kGrain,
+               [&](std::size_t i) { pack_one(hits[i], rows + i * row_bytes_); });
+}
+
+void HitRows::pack_one(const Hit& hit, std::byte* row) const {
+  put(row, hit.hit ? hit.t : std::numeric_limits<float>::infinity());
+  put(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
+  put(row, hit.hit ? hit.face : Face::kNone);
+  put(row, hit.hit);
+  if (!normals_ && !colors_) return;
+  Vec3f normal{};
+  Vec3<std::uint8_t> color{};
+  if (hit.hit) {
+    const EsvoView& esvo = *scene_.esvo();
+    const EsvoVoxel voxel = esvo_voxel_at(esvo, hit.voxel, hit.level);
+    if (normals_) stored_normal(esvo, voxel, normal);
+    if (colors_) stored_srgb8(esvo, voxel, color);
+  }
+  if (normals_) put(row, normal);
+  if (colors_) put(row, color);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,103 @@
+/// `voxdag trace`: batch visibility queries, rays in and hits out as NumPy arrays.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/device.hpp"
+#include "cli/human.hpp"
+#include "cli/output_files.hpp"
+#include "inspect/scene_file.hpp"
+#include "trace/hit_rows.hpp"
+#include "voxdag/cpu/trace_batch.hpp"
+#include "voxdag/cuda/trace_batch.hpp"
+#include "voxdag/file/npy.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Rays in memory at once: enough for every thread of a CPU or GPU, little to hold.
+constexpr std::size_t kBatch = std::size_t{1} << 20;
+
+struct TraceArguments {
+  std::string rays, output;
+  DeviceChoice device;
+};
+
+void trace(const TraceArguments& arguments, Session& session) {
+  const SceneFile file(session.subject);
+  const VoxelScene scene = file.scene();
+  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
+  std::optional<CudaTracer> cuda;
+  if (device_dag) cuda.emplace(*device_dag, file.grid());
+  NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
+  std::optional<CpuScene> cpu_scene;
+  if (!cuda) cpu_scene.emplace(scene, reader.rows());
+  const HitRows hit_rows(scene);
+  NpyWriter writer(arguments.output, hit_rows.dtype(), {}, hit_rows.row_bytes(), reader.rows());
+
+  const std::size_t batch =
+      static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
+  std::vector<Ray> rays(batch);
+  std::vector<Hit> hits(batch);
+  std::vector<std::byte> rows(batch * hit_rows.row_bytes());
+  std::uint64_t hit_count = 0;
+  while (const std::size_t count = reader.read_rows(rays.data(), batch)) {
+    session.progress.throw_if_cancelled();
+    const auto batch_rays = std::span(rays).first(count);
+    const auto batch_hits = std::span(hits).first(count);
+    if (cuda)
+      cuda->trace(batch_rays, batch_hits);
+    else
+      trace_batch(*cpu_scene, file.grid(), batch_rays, batch_hits);
+    hit_rows.pack(batch_hits, rows.data());
+    hit_count += static_cast<std::uint64_t>(
+        std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),
+                      [](const Hit& hit) { return hit.hit; }));
+    writer.write_rows(rows.data(), count);
+    session.progress.report(
+        "trace", static_cast<double>(writer.rows_written()) / static_cast<double>(reader.rows()),
+        writer.rows_written());
+  }
+  writer.commit();
+  session.bar.clear();
+  if (!session.quiet)
+    fmt::print("{}: {} rays, {} hits, on {}\n", arguments.output, with_commas(reader.rows()),
+               with_commas(hit_count), device_name(device_dag));
+}
+
+}  // namespace
+
+void add_trace_command(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<TraceArguments>();
+  CLI::App& command =
+      add_command(app, "trace", "Cast rays from a NumPy file and write what they hit",
+                  "voxdag trace scene.vdag --rays rays.npy -o hits.npy");
+  command.add_option("file", session.subject, "The .vdag or .esvo file")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--rays", arguments->rays,
+                  "float32 array N x 8: origin, t_min, direction, t_max, in world units")
+      ->type_name("RAYS.npy")
+      ->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "Structured array of N: t, voxel, face (0..5 = -x,+x,-y,+y,-z,+z; -1 where the "
+                  "ray starts inside), hit; of a .esvo also what it stores: normal (world space), "
+                  "color (sRGB, 0..255)")
+      ->type_name("HITS.npy")
+      ->required();
+  add_device_option(command, arguments->device);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.callback([arguments, &session] {
+    session.inputs = {arguments->rays};
+    check_distinct({{"--output", arguments->output}}, session);
+    session.work = [arguments, &session] { trace(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,167 @@
+#include "bench/build/bench_build.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "bench/build/bench_mesh.hpp"
+#include "bench/report/bench_machine.hpp"
+#include "bench/report/scratch_folder.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::uint64_t bytes_in(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.symlink_status().type() == fs::file_type::regular) bytes += entry.file_size();
+  return bytes;
+}
+
+std::string quoted(const std::string& text) {
+  std::string shell = "'";
+  for (const char c : text) shell += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return shell + "'";
+}
+
+std::string filled_in(std::string command,
+                      const std::array<std::array<std::string, 2>, 4>& values) {
+  for (const auto& [name, value] : values)
+    for (std::size_t at = 0; (at = command.find(name, at)) != std::string::npos; at += value.size())
+      command.replace(at, name.size(), value);
+  return command;
+}
+
+/// The last line where that is a JSON object, else nothing.
+std::string last_line_json(const std::string& text) {
+  std::string line = text.substr(0, text.find_last_not_of('\n') + 1);
+  line.erase(0, line.find_last_of('\n') + 1);
+  return Json::parse(line, nullptr, false).is_object() ? line : "";
+}
+
+class Bench {
+ public:
+  Bench(const BenchPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
+
+  BenchResults run() {
+    for (const std::string& mesh : plan_.meshes) {
+      const fs::path path = prepare_mesh(mesh, folder_.path(), progress_);
+      const std::string scene = is_procedural(mesh) ? mesh : fs::path(mesh).filename().string();
+      for (const std::string& method : plan_.methods) run_builds(scene, path, method);
+      for (const Rival& rival : plan_.rivals) run_rival(scene, path, rival);
+    }
+    return std::move(results_);
+  }
+
+ private:
+  void run_builds(const std::string& scene, const fs::path& path, const std::string& method) {
+    for (const int levels : plan_.levels) {
+      step(fmt::format("{} {}", scene, 1 << levels));
+      results_.builds.push_back(fastest_build(scene, path, method, levels));
+      if (!results_.builds.back().failure.empty()) return;
+    }
+  }
+
+  BuildRun fastest_build(const std::string& scene, const fs::path& path, const std::string& method,
+                         int levels) {
+    BuildRun fastest;
+    for (int i = 0; i < plan_.repeat; ++i) {
+      BuildRun run = build(scene, path, method, levels);
+      if (!run.failure.empty()) return run;
+      if (i == 0 || run.cost.wall_seconds < fastest.cost.wall_seconds) fastest = std::move(run);
+    }
+    return fastest;
+  }
+
+  BuildRun build(const std::string& scene, const fs::path& path, const std::string& method,
+                 int levels) {
+    BuildRun run;
+    run.scene = scene;
+    run.method = method;
+    run.levels = levels;
+    run.threads =
+        plan_.threads > 0 ? plan_.threads : static_cast<int>(std::thread::hardware_concurrency());
+    run.load_before = load_average();
+    const ScratchFolder folder;
+    const std::vector<std::string> command{this_program(),
+                                           "build",
+                                           path,
+                                           "-r",
+                                           std::to_string(1 << levels),
+                                           "-o",
+                                           "out.vdag",
+                                           "--json",
+                                           "--method",
+                                           method,
+                                           "--threads",
+                                           std::to_string(run.threads)};
+    const ChildResult child = run_child(command, folder.path(), 0, progress_);
+    run.cost = child.cost;
+    run.failure = failure_of(child, 0);
+    if (!run.failure.empty()) return run;
+    const Json json = Json::parse(child.out);
+    for (const auto& [stage, seconds] : json.at("seconds").items())
+      run.stage_seconds.emplace_back(stage, seconds);
+    run.triangles = json.at("source").at("triangles");
+    run.vertices = json.at("source").at("vertices");
+    run.voxels = json.at("voxels");
+    run.svo_nodes = json.at("svo_nodes");
+    run.dag_nodes = json.at("dag_nodes");
+    run.dag_bytes = json.at("bytes").at("svdag_paper");
+    run.file_bytes = json.at("bytes").at("file");
+    return run;
+  }
+
+  void run_rival(const std::string& scene, const fs::path& path, const Rival& rival) {
+    for (const int levels : plan_.levels) {
+      step(fmt::format("{}: {} {}", rival.name, scene, 1 << levels));
+      const ScratchFolder folder;
+      RivalRun run;
+      run.name = rival.name;
+      run.command = rival.command;
+      run.scene = scene;
+      run.levels = levels;
+      run.load_before = load_average();
+      const std::string command =
+          filled_in(rival.command, {{{"{mesh}", quoted(path)},
+                                     {"{out}", quoted(folder.path() / "out")},
+                                     {"{resolution}", std::to_string(1 << levels)},
+                                     {"{levels}", std::to_string(levels)}}});
+      const ChildResult child =
+          run_child({"/bin/sh", "-c", command}, folder.path(), plan_.rival_seconds, progress_);
+      run.cost = child.cost;
+      run.failure = failure_of(child, plan_.rival_seconds);
+      run.output_bytes = bytes_in(folder.path());
+      run.reported = last_line_json(child.out);
+      results_.rivals.push_back(run);
+      if (!run.failure.empty()) return;
+    }
+  }
+
+  void step(const std::string& stage) {
+    const std::size_t of =
+        plan_.meshes.size() * plan_.levels.size() * (plan_.methods.size() + plan_.rivals.size());
+    progress_.report(stage, static_cast<double>(steps_++) / static_cast<double>(of));
+  }
+
+  const BenchPlan& plan_;
+  Progress& progress_;
+  ScratchFolder folder_;
+  BenchResults results_;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace
+
+BenchResults bench_build(const BenchPlan& plan, Progress& progress) {
+  return Bench(plan, progress).run();
+}
+
+}  // namespace voxdag

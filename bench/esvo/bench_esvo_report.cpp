@@ -1,0 +1,338 @@
+/// What `voxdag bench esvo` prints and draws.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/esvo/bench_esvo.hpp"
+#include "bench/esvo/bench_esvo_published.hpp"
+#include "bench/report/bench_machine.hpp"
+#include "bench/report/svg_plot.hpp"
+#include "cli/human.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Builds = std::vector<EsvoBuildRun>;
+
+std::string number(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
+}
+
+Json json_number(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+std::string resolution_of(int levels) { return with_commas(std::uint64_t{1} << levels) + "³"; }
+
+std::string build_row(const EsvoBuildRun& run) {
+  const std::string name = fmt::format("{:>10}  {:<9}", resolution_of(run.levels),
+                                       run.with_contours ? "contours" : "cubes");
+  if (!run.failure.empty()) return fmt::format("  {} failed: {}\n", name, run.failure);
+  const published::EsvoScene* scene = published::esvo_scene(run.scene);
+  const double times_paper =
+      run.voxels_per_cpu_second() / published::esvo_voxels_per_core_second(scene, run.levels);
+  const published::EsvoScene* paper = run.with_contours ? scene : nullptr;
+  const double megabytes =
+      paper != nullptr ? published::esvo_of_levels(paper->megabytes, run.levels) : NAN;
+  const double seconds =
+      paper != nullptr ? published::esvo_of_levels(paper->seconds, run.levels) : NAN;
+  return fmt::format("  {}{:>15}{:>10}{:>8}{:>10}{:>10}{:>14}{:>9}{:>12}{:>10}{:>9}\n", name,
+                     with_commas(run.voxels), number(run.megabytes(), 1),
+                     number(run.bytes_per_voxel(), 2), number(run.build_seconds, 2),
+                     number(run.cost.cpu_seconds(), 2), human_count(run.voxels_per_cpu_second()),
+                     number(times_paper, 1), human_bytes(run.cost.peak_bytes), number(megabytes, 0),
+                     number(seconds, 0));
+}
+
+std::string builds_table(const Builds& builds) {
+  std::string text;
+  for (std::size_t i = 0; i < builds.size(); ++i) {
+    if (i == 0 || builds[i].scene != builds[i - 1].scene) {
+      const published::EsvoScene* paper = published::esvo_scene(builds[i].scene);
+      text += fmt::format("{}{}{}\n", i == 0 ? "" : "\n", builds[i].scene,
+                          paper == nullptr ? ""
+                                           : fmt::format(" (the paper: {:.2f} bytes per voxel)",
+                                                         paper->bytes_per_voxel));
+      text +=
+          fmt::format("  {:>10}  {:<9}{:>15}{:>10}{:>8}{:>10}{:>10}{:>14}{:>9}{:>12}{:>10}{:>9}\n",
+                      "grid", "form", "voxels", "MB", "B/voxel", "build s", "CPU s", "voxels/CPU s",
+                      "x paper", "peak mem", "paper MB", "paper s");
+    }
+    text += build_row(builds[i]);
+  }
+  return text;
+}
+
+std::string size_of(const EsvoRateRow& row) {
+  return fmt::format("{}x{}", row.size.width, row.size.height);
+}
+
+/// NaN where the paper has none.
+double paper_mrays(const EsvoRateRow& row, std::size_t form) {
+  if (form >= published::kEsvoRates) return NAN;
+  return published::esvo_mrays(published::esvo_scene(row.scene), row.size.width,
+                               row.size.height)[form];
+}
+
+std::string rates_table(const std::vector<EsvoRateRow>& rates) {
+  if (rates.empty()) return "";
+  std::string text = fmt::format(
+      "\nMillion primary rays per second (in brackets: the paper's)\n  {:<16}{:>10}{:>12}", "scene",
+      "grid", "size");
+  for (std::size_t form = 0; form < published::kEsvoRates; ++form)
+    text += fmt::format("{:>20}", name_of(kEsvoForms[form]));
+  text += "\n";
+  for (const EsvoRateRow& row : rates) {
+    text += fmt::format("  {:<16}{:>11}{:>12}", row.scene, resolution_of(row.levels), size_of(row));
+    for (std::size_t form = 0; form < published::kEsvoRates; ++form) {
+      const double paper = paper_mrays(row, form);
+      text += fmt::format("{:>20}", number(row.mrays_per_second[form], 2) +
+                                        (std::isnan(paper) ? "" : " (" + number(paper, 1) + ")"));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// The coarse forms, as multiples of the cubes' rate.
+std::string coarse_table(const EsvoBenchResults& results) {
+  const auto coarse_of = [&](const EsvoRateRow& row) {
+    return coarse_levels(results.silhouettes, row.scene);
+  };
+  if (std::all_of(results.rates.begin(), results.rates.end(),
+                  [&](const EsvoRateRow& row) { return coarse_of(row) == 0; }))
+    return "";
+  std::string text = fmt::format(
+      "\nThe same where silhouettes are as good: contours on a coarser grid, as multiples of "
+      "cubes\n"
+      "  {:<16}{:>16}{:>12}{:>12}{:>18}{:>18}{:>14}\n",
+      "scene", "grid of cubes", "contours", "size", "contours", "with beams", "x cubes");
+  for (const EsvoRateRow& row : results.rates) {
+    const int coarse = coarse_of(row);
+    if (coarse == 0) continue;
+    const auto rate = [&row](EsvoForm form) {
+      return row.mrays_per_second[static_cast<std::size_t>(form)];
+    };
+    const double cubes = rate(EsvoForm::kCubes), contours = rate(EsvoForm::kCoarseContours),
+                 beams = rate(EsvoForm::kCoarseContoursBeams);
+    text += fmt::format("  {:<16}{:>17}{:>13}{:>12}{:>18}{:>18}{:>14}\n", row.scene,
+                        resolution_of(row.levels), resolution_of(coarse), size_of(row),
+                        number(contours, 2), number(beams, 2),
+                        number(contours / cubes, 2) + ", " + number(beams / cubes, 2));
+  }
+  return text;
+}
+
+std::string silhouettes_table(const std::vector<SilhouetteRow>& rows) {
+  if (rows.empty()) return "";
+  std::string text = fmt::format(
+      "\nRays on the wrong side of a silhouette, per million\n  {:<16}{:>10}{:>12}{:>12}{:>26}\n",
+      "scene", "grid", "cubes", "contours", "levels of cubes saved");
+  for (const SilhouetteRow& row : rows) {
+    const LevelsSaved saved = levels_saved(rows, row);
+    text += fmt::format("  {:<16}{:>11}{:>12}{:>12}{:>26}\n", row.scene, resolution_of(row.levels),
+                        number(row.cubes * 1e6, 0), number(row.contours * 1e6, 0),
+                        (saved.at_least ? "> " : "") + number(saved.levels, 1));
+  }
+  return text;
+}
+
+/// Lines over the levels, one for each scene and form.
+template <class Value>
+void add_lines(const Builds& builds, const Value& value, LineDiagram& diagram) {
+  std::size_t series = 0;
+  for (std::size_t begin = 0, end; begin < builds.size(); begin = end, ++series) {
+    PlotLine contours{builds[begin].scene, plot_style(series), {}};
+    PlotLine cubes{"", plot_style(series, "stroke-dasharray='1 3'"), {}};
+    for (end = begin; end < builds.size() && builds[end].scene == builds[begin].scene; ++end)
+      if (builds[end].failure.empty())
+        (builds[end].with_contours ? contours : cubes)
+            .points.push_back({static_cast<double>(builds[end].levels), value(builds[end])});
+    diagram.lines.insert(diagram.lines.end(), {contours, cubes});
+    std::erase_if(diagram.lines, [](const PlotLine& line) { return line.points.empty(); });
+  }
+}
+
+/// The paper's line of each scene that is among `builds`.
+void add_paper_lines(const Builds& builds, std::array<double, 7> published::EsvoScene::*values,
+                     LineDiagram& diagram) {
+  std::size_t series = 0;
+  for (std::size_t i = 0; i < builds.size(); ++i) {
+    if (i > 0 && builds[i].scene == builds[i - 1].scene) continue;
+    const published::EsvoScene* paper = published::esvo_scene(builds[i].scene);
+    PlotLine line{"", plot_style(series++, "stroke-dasharray='6 3'"), {}};
+    for (std::size_t k = 0; paper != nullptr && k < (paper->*values).size(); ++k)
+      if (!std::isnan((paper->*values)[k]))
+        line.points.push_back(
+            {static_cast<double>(k) + published::kEsvoFirstLevels, (paper->*values)[k]});
+    if (!line.points.empty()) diagram.lines.push_back(line);
+  }
+}
+
+}  // namespace
+
+std::string name_of(EsvoForm form) {
+  static constexpr std::array kNames{"triangles",      "cubes",           "contours",
+                                     "contours_beams", "coarse_contours", "coarse_contours_beams"};
+  static_assert(kNames.size() == kEsvoForms.size());
+  return kNames[static_cast<std::size_t>(form)];
+}
+
+int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& scene) {
+  const SilhouetteRow* finest = nullptr;
+  for (const SilhouetteRow& row : rows)
+    if (row.scene == scene) finest = &row;
+  for (const SilhouetteRow& row : rows)
+    if (row.scene == scene && row.contours <= finest->cubes)
+      return row.levels < finest->levels ? row.levels : 0;
+  return 0;
+}
+
+LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row) {
+  const SilhouetteRow* before = nullptr;
+  for (const SilhouetteRow& next : rows) {
+    if (next.scene != row.scene) continue;
+    if (next.cubes <= row.contours) {
+      if (before == nullptr) return {static_cast<double>(next.levels - row.levels)};
+      const double whole = std::log(before->cubes / next.cubes);
+      const double part = whole > 0 ? std::log(before->cubes / row.contours) / whole : 0;
+      return {before->levels + part * (next.levels - before->levels) - row.levels};
+    }
+    before = &next;
+  }
+  return {static_cast<double>(before != nullptr ? before->levels - row.levels : 0), true};
+}
+
+Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
+  Json json{{"program", program_name()}, {"machine", machine}, {"threads", results.threads}};
+  json["published"] = published::kEsvoSource;
+  json["builds"] = Json::array();
+  for (const EsvoBuildRun& run : results.builds) {
+    Json object{{"scene", run.scene},
+                {"resolution", std::int64_t{1} << run.levels},
+                {"levels", run.levels},
+                {"contours", run.with_contours},
+                {"load_before", run.load_before}};
+    if (!run.failure.empty()) {
+      object["failure"] = run.failure;
+      json["builds"].push_back(object);
+      continue;
+    }
+    object["voxels"] = run.voxels;
+    object["bytes"] = run.bytes;
+    object["bytes_per_voxel"] = run.bytes_per_voxel();
+    object["contour_count"] = run.contours;
+    object["far_pointers"] = run.far_pointers;
+    object["read_seconds"] = run.read_seconds;
+    object["build_seconds"] = run.build_seconds;
+    object["wall_seconds"] = run.cost.wall_seconds;
+    object["cpu_seconds"] = run.cost.cpu_seconds();
+    object["voxels_per_second"] = run.voxels_per_second();
+    object["voxels_per_cpu_second"] = run.voxels_per_cpu_second();
+    object["peak_memory_bytes"] = run.cost.peak_bytes;
+    const published::EsvoScene* paper = published::esvo_scene(run.scene);
+    if (paper != nullptr && run.with_contours)
+      object["paper"] = {
+          {"megabytes", json_number(published::esvo_of_levels(paper->megabytes, run.levels))},
+          {"build_seconds", json_number(published::esvo_of_levels(paper->seconds, run.levels))},
+          {"bytes_per_voxel", paper->bytes_per_voxel},
+          {"voxels_per_core_second",
+           json_number(published::esvo_voxels_per_core_second(paper, run.levels))}};
+    json["builds"].push_back(object);
+  }
+  json["rays"] = Json::array();
+  for (const EsvoRateRow& row : results.rates) {
+    const int coarse = coarse_levels(results.silhouettes, row.scene);
+    Json object{{"scene", row.scene},
+                {"resolution", std::int64_t{1} << row.levels},
+                {"coarse_resolution", coarse == 0 ? Json() : Json(std::int64_t{1} << coarse)},
+                {"width", row.size.width},
+                {"height", row.size.height},
+                {"ray_count", row.rays}};
+    for (const EsvoForm form : kEsvoForms) {
+      const auto at = static_cast<std::size_t>(form);
+      object[name_of(form)] = {{"mrays_per_s", json_number(row.mrays_per_second[at])},
+                               {"agreement_with_triangles", json_number(row.agreement[at])},
+                               {"paper_mrays_per_s", json_number(paper_mrays(row, at))}};
+    }
+    json["rays"].push_back(object);
+  }
+  json["silhouettes"] = Json::array();
+  for (const SilhouetteRow& row : results.silhouettes) {
+    const LevelsSaved saved = levels_saved(results.silhouettes, row);
+    json["silhouettes"].push_back({{"scene", row.scene},
+                                   {"resolution", std::int64_t{1} << row.levels},
+                                   {"cubes_wrong", row.cubes},
+                                   {"contours_wrong", row.contours},
+                                   {"levels_saved", saved.levels},
+                                   {"levels_saved_is_least", saved.at_least}});
+  }
+  return json;
+}
+
+std::string esvo_bench_table(const EsvoBenchResults& results) {
+  return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results) +
+         silhouettes_table(results.silhouettes);
+}
+
+std::string esvo_bench_svg(const EsvoBenchResults& results) {
+  const PlotAxis resolution = resolution_axis();
+  LineDiagram memory{"Megabytes; dots: cubes, dashes: the paper's",
+                     resolution,
+                     {true, 10, [](double v) { return fmt::format("{:.4g} MB", v); }},
+                     {}};
+  LineDiagram time{
+      "Seconds to build; dots: cubes, dashes: the paper's", resolution, log_seconds_axis(), {}};
+  add_lines(
+      results.builds, [](const EsvoBuildRun& run) { return run.megabytes(); }, memory);
+  add_lines(
+      results.builds, [](const EsvoBuildRun& run) { return run.build_seconds; }, time);
+  add_paper_lines(results.builds, &published::EsvoScene::megabytes, memory);
+  add_paper_lines(results.builds, &published::EsvoScene::seconds, time);
+  std::vector<LineDiagram> diagrams{memory, time};
+  LineDiagram silhouettes{"Rays on the wrong side of a silhouette, per million; dots: cubes",
+                          resolution,
+                          {true, 10, [](double v) { return fmt::format("{:.4g}", v); }},
+                          {}};
+  std::size_t series = 0;
+  const std::vector<SilhouetteRow>& rows = results.silhouettes;
+  for (std::size_t begin = 0, end; begin < rows.size(); begin = end, ++series) {
+    PlotLine contours{rows[begin].scene, plot_style(series), {}};
+    PlotLine cubes{"", plot_style(series, "stroke-dasharray='1 3'"), {}};
+    for (end = begin; end < rows.size() && rows[end].scene == rows[begin].scene; ++end) {
+      const double x = rows[end].levels;
+      if (rows[end].contours > 0) contours.points.push_back({x, rows[end].contours * 1e6});
+      if (rows[end].cubes > 0) cubes.points.push_back({x, rows[end].cubes * 1e6});
+    }
+    for (const PlotLine& line : {contours, cubes})
+      if (!line.points.empty()) silhouettes.lines.push_back(line);
+  }
+  if (!silhouettes.lines.empty()) diagrams.push_back(silhouettes);
+  if (memory.lines.empty()) throw Error("there is nothing to plot");
+  return line_svg(diagrams);
+}
+
+std::string esvo_rays_svg(const EsvoBenchResults& results) {
+  std::vector<BarDiagram> diagrams;
+  for (std::size_t i = 0; i < results.rates.size(); ++i) {
+    const EsvoRateRow& row = results.rates[i];
+    if (i == 0 || row.scene != results.rates[i - 1].scene) {
+      const int coarse = coarse_levels(results.silhouettes, row.scene);
+      BarDiagram diagram;
+      diagram.title = fmt::format(
+          "{} {}{}: million primary rays per second", row.scene, resolution_of(row.levels),
+          coarse == 0 ? "" : fmt::format(", coarse: {}", resolution_of(coarse)));
+      diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
+      for (const EsvoForm form : kEsvoForms) diagram.series.push_back({name_of(form), {}});
+      diagrams.push_back(diagram);
+    }
+    BarDiagram& diagram = diagrams.back();
+    diagram.groups.push_back(fmt::format("{} x {}", row.size.width, row.size.height));
+    for (std::size_t form = 0; form < kEsvoForms.size(); ++form)
+      diagram.series[form].values.push_back(row.mrays_per_second[form]);
+  }
+  if (diagrams.empty()) throw Error("there are no rays to plot");
+  return bar_svg(diagrams);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,204 @@
+#include "bench/trace/bench_trace.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "bench/rivals/trace_rival_openvdb.hpp"
+#include "bench/rivals/trace_rivals.hpp"
+#include "bench/trace/trace_casters.hpp"
+#include "bench/trace/trace_cuda.hpp"
+#include "bench/trace/trace_measure.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Adds up views.
+struct Sums {
+  double seconds = 0, agreeing = 0;
+  void add(double more_seconds, double more_agreeing) {
+    seconds += more_seconds;
+    agreeing += more_agreeing;
+  }
+};
+
+struct RowSums {
+  Sums ours;
+  double rays = 0, hits = 0, cells = 0, bytes = 0;
+  std::vector<double> view_rates;
+  std::map<std::string, Sums> rivals;  ///< Sorted by name: a fixed order.
+};
+
+/// A sample of a set, for what need not see all of it: whole packets.
+std::vector<CastRay> some_of(const std::vector<CastRay>& rays, std::size_t most) {
+  constexpr std::size_t kRun = 64;
+  const std::size_t step = std::max<std::size_t>(1, rays.size() / most);
+  std::vector<CastRay> some;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (i / kRun % step == 0) some.push_back(rays[i]);
+  return some;
+}
+
+/// Measures a set on our layout and its rivals, and adds what it took.
+void measure_set(const TraceLayout& layout, const TraceRunner& ours,
+                 const std::vector<CastRay>& casts, std::vector<TraceRunner> runners, int repeat,
+                 RowSums& sums) {
+  constexpr std::size_t kCounted = 50'000;
+  const WalkCost cost = layout.cost(some_of(casts, kCounted));
+  runners.insert(runners.begin(), ours);
+  const std::vector<Measured> measured = measure(runners, casts.size(), repeat);
+  const auto count = static_cast<double>(casts.size());
+  sums.rays += count;
+  sums.cells += cost.cells * count;
+  sums.bytes += cost.bytes * count;
+  sums.ours.add(measured[0].seconds, count);
+  sums.view_rates.push_back(count / measured[0].seconds * 1e-6);
+  sums.hits += static_cast<double>(
+      std::count(measured[0].hits.begin(), measured[0].hits.end(), std::uint8_t{1}));
+  std::map<std::string, Sums> best;  // of runners with the same name
+  for (std::size_t i = 1; i < runners.size(); ++i) {
+    const Sums s{measured[i].seconds,
+                 static_cast<double>(agreeing(measured[0].hits, measured[i].hits))};
+    const auto [at, is_new] = best.try_emplace(runners[i].name, s);
+    if (!is_new && s.seconds < at->second.seconds) at->second = s;
+  }
+  for (const auto& [name, s] : best) sums.rivals[name].add(s.seconds, s.agreeing);
+}
+
+/// A set that OpenVDB is to cast, and what we found for it.
+struct OpenVdbSet {
+  RayClass rays_class;
+  double rays;  ///< Of the whole set.
+  std::vector<std::uint8_t> hits;
+};
+
+std::vector<std::uint8_t> hits_of(const VoxelScene& voxels, const std::vector<CastRay>& casts) {
+  std::vector<std::uint8_t> hits;
+  voxels.visit_nodes([&](const auto& nodes) {
+    for (const CastRay& ray : casts) {
+      CellHit cell;
+      hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
+    }
+  });
+  return hits;
+}
+
+TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::uint64_t layout_bytes,
+                RayClass rays, const RowSums& sums) {
+  TraceRow row;
+  row.scene = scene.name;
+  row.layout = layout_name;
+  row.levels = scene.grid.levels;
+  row.rays = rays;
+  row.count = static_cast<std::uint64_t>(sums.rays);
+  row.layout_bytes = layout_bytes;
+  row.view_mrays_per_second = sums.view_rates;
+  row.mrays_per_second = sums.rays / sums.ours.seconds * 1e-6;
+  row.hit_part = sums.hits / sums.rays;
+  row.cells_per_ray = sums.cells / sums.rays;
+  row.bytes_per_ray = sums.bytes / sums.rays;
+  for (const auto& [name, s] : sums.rivals)
+    row.rivals.push_back({name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays});
+  return row;
+}
+
+}  // namespace
+
+void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progress,
+                 TraceResults& results) {
+  constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
+  results.threads = tbb::this_task_arena::max_concurrency();
+  results.rays = plan.rays;
+  const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
+  const std::vector<View> views = bench_views(scene.voxels, scene.grid, aspect, plan.views);
+  std::optional<EmbreeRival> embree;
+  if (scene.mesh != nullptr && EmbreeRival::is_available()) embree.emplace(*scene.mesh);
+  std::vector<std::string> names = plan.layouts;
+  if (names.empty()) names = {trace_layouts(scene.voxels).front()};
+  std::vector<std::unique_ptr<TraceLayout>> layouts;
+  layouts.reserve(names.size());
+  for (const std::string& name : names) layouts.push_back(make_trace_layout(name, scene.voxels));
+  std::vector<std::optional<DeviceScene>> device_dags;
+  for (const auto& layout : layouts) {
+    device_dags.push_back(layout->device_layout()
+                              ? load_on_device(plan.device, scene.voxels, *layout->device_layout())
+                              : std::nullopt);
+    if (device_dags.back()) results.cuda_device = device_dags.back()->device().name;
+  }
+  std::optional<OpenVdbRival> openvdb;
+  if (!plan.openvdb_program.empty() && !scene.file.empty()) openvdb.emplace();
+  std::vector<OpenVdbSet> openvdb_sets;
+
+  std::vector<std::array<RowSums, kRayClasses.size()>> sums(layouts.size());
+  const double steps = static_cast<double>(views.size() * kRayClasses.size());
+  std::size_t done = 0;
+  for (const View& view : views) {
+    BeamPass beams(scene.voxels, scene.grid,
+                   picture_options(scene.voxels, scene.grid, view, plan.rays));
+    beams.run();
+    const RecordedRays recorded = record_rays(scene.voxels, beams, plan.rays);
+    for (const RayClass rays : kRayClasses) {
+      progress.throw_if_cancelled();
+      progress.report(scene.name, static_cast<double>(done) / steps, done);
+      ++done;
+      const std::vector<CastRay>& casts = recorded.of(rays);
+      if (casts.empty()) continue;
+      // Rivals have no beams: they cast those rays from the eye.
+      const bool with_beams = rays == RayClass::kPrimaryBeams;
+      const std::vector<CastRay>& whole = with_beams ? recorded.of(RayClass::kPrimary) : casts;
+      std::vector<TraceRunner> rivals;
+      if (embree) rivals = embree->prepare(scene.grid, rays, whole);
+      for (std::size_t i = 0; i < layouts.size(); ++i) {
+        std::optional<TimedBeams> device_beams;
+        std::vector<CastRay> device_casts;
+        if (device_dags[i] && with_beams) {
+          device_beams.emplace(*device_dags[i], beams.setup());
+          device_casts = primary_rays(beams.setup(), device_beams->starts().data());
+        }
+        // The CPU's beams are not the device's.
+        const std::vector<CastRay>& set = device_beams ? device_casts : casts;
+        TraceRunner ours = layouts[i]->runner(rays, set);
+        if (with_beams) ours.before = [&beams] { beams.run(); };
+        std::vector<TraceRunner> others = rivals;
+        if (device_dags[i]) {
+          others.push_back(ours);
+          others.back().name = "voxdag_cpu";
+          ours = cuda_runner(*device_dags[i], rays, set, device_beams);
+        }
+        measure_set(*layouts[i], ours, set, others, plan.repeat,
+                    sums[i][static_cast<std::size_t>(rays)]);
+      }
+      if (!openvdb) continue;
+      const std::vector<CastRay> some = some_of(whole, kOpenVdbRays);
+      openvdb->add(scene.grid, some);
+      openvdb_sets.push_back(
+          {rays, static_cast<double>(casts.size()), hits_of(scene.voxels, some)});
+    }
+  }
+  if (openvdb) {
+    const auto answers =
+        openvdb->cast(plan.openvdb_program, scene.file, results.threads, plan.repeat, progress);
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const OpenVdbSet& set = openvdb_sets[i];
+      const double scale = set.rays / static_cast<double>(set.hits.size());
+      const double same = static_cast<double>(agreeing(set.hits, answers[i].hits));
+      for (auto& layout_sums : sums)
+        layout_sums[static_cast<std::size_t>(set.rays_class)].rivals["openvdb"].add(
+            answers[i].seconds * scale, same * scale);
+    }
+  }
+  for (std::size_t i = 0; i < layouts.size(); ++i) {
+    const std::uint64_t bytes = device_dags[i] ? layouts[i]->device_bytes() : layouts[i]->bytes();
+    for (const RayClass rays : kRayClasses) {
+      const RowSums& s = sums[i][static_cast<std::size_t>(rays)];
+      if (s.rays == 0) continue;
+      results.rows.push_back(row_of(scene, names[i], bytes, rays, s));
+      results.rows.back().on_cuda = device_dags[i].has_value();
+    }
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,136 @@
+/// What `voxdag bench trace` prints and draws.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/report/bench_machine.hpp"
+#include "bench/report/svg_plot.hpp"
+#include "bench/trace/bench_trace.hpp"
+#include "cli/human.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string resolution_of(const TraceRow& row) {
+  return with_commas(std::uint64_t{1} << row.levels) + "³";
+}
+
+/// Whether `row` goes on with what `before` is about.
+bool is_same_dag(const TraceRow& row, const TraceRow& before) {
+  return row.scene == before.scene && row.levels == before.levels && row.layout == before.layout;
+}
+
+/// The names of all rivals, each once.
+std::vector<std::string> rivals_of(const TraceResults& results) {
+  std::vector<std::string> names;
+  for (const TraceRow& row : results.rows)
+    for (const RivalRate& rival : row.rivals)
+      if (std::find(names.begin(), names.end(), rival.name) == names.end())
+        names.push_back(rival.name);
+  return names;
+}
+
+double rate_of(const TraceRow& row, const std::string& rival) {
+  for (const RivalRate& rate : row.rivals)
+    if (rate.name == rival) return rate.mrays_per_second;
+  return NAN;
+}
+
+}  // namespace
+
+Json trace_json(const TraceResults& results, const Json& machine) {
+  Json array = Json::array();
+  for (const TraceRow& row : results.rows) {
+    Json object{{"program", program_name()},
+                {"scene", row.scene},
+                {"resolution", std::int64_t{1} << row.levels},
+                {"device", row.on_cuda ? "cuda" : "cpu"},
+                {"device_name", row.on_cuda ? Json(results.cuda_device) : machine.at("processor")},
+                {"threads", results.threads},
+                {"layout", row.layout},
+                {"layout_bytes", row.layout_bytes},
+                {"rays", std::string(name_of(row.rays))},
+                {"size", {results.rays.width, results.rays.height}},
+                {"lod_pixels", results.rays.lod_pixels},
+                {"ao_cone", results.rays.occlusion_cone},
+                {"ray_count", row.count},
+                {"hit_part", row.hit_part},
+                {"cells_per_ray", row.cells_per_ray},
+                {"bytes_per_ray", row.bytes_per_ray},
+                {"mrays_per_s", row.mrays_per_second},
+                {"view_mrays_per_s", row.view_mrays_per_second}};
+    for (const RivalRate& rival : row.rivals) {
+      Json with_rival = object;
+      with_rival["rival"] = rival.name;
+      with_rival["rival_mrays_per_s"] = rival.mrays_per_second;
+      with_rival["ratio"] = row.mrays_per_second / rival.mrays_per_second;
+      with_rival["rival_agreement"] = rival.agreement;
+      array.push_back(with_rival);
+    }
+    if (!row.rivals.empty()) continue;
+    object["rival"] = nullptr;
+    object["rival_mrays_per_s"] = nullptr;
+    object["ratio"] = nullptr;
+    object["rival_agreement"] = nullptr;
+    array.push_back(object);
+  }
+  return array;
+}
+
+std::string trace_table(const TraceResults& results) {
+  std::string text;
+  const std::vector<std::string> rivals = rivals_of(results);
+  const bool has_device = !results.cuda_device.empty();
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    const TraceRow& row = results.rows[i];
+    if (i == 0 || !is_same_dag(row, results.rows[i - 1])) {
+      text += fmt::format("{}{} {}, layout {}, {}{}\n", i == 0 ? "" : "\n", row.scene,
+                          resolution_of(row), row.layout, human_bytes(row.layout_bytes),
+                          has_device && !row.on_cuda ? ", on the CPU" : "");
+      text += fmt::format("  {:<14}{:>12}{:>8}{:>8}{:>8}{:>10}", "rays", "count", "hit", "cells",
+                          "bytes", "Mrays/s");
+      for (const std::string& rival : rivals) text += fmt::format("{:>24}", rival);
+      text += "\n";
+    }
+    text += fmt::format("  {:<14}{:>12}{:>8.2f}{:>8.1f}{:>8.0f}{:>10.2f}", name_of(row.rays),
+                        with_commas(row.count), row.hit_part, row.cells_per_ray, row.bytes_per_ray,
+                        row.mrays_per_second);
+    for (const std::string& rival : rivals) {
+      const double rate = rate_of(row, rival);
+      text += std::isnan(rate)
+                  ? fmt::format("{:>24}", "-")
+                  : fmt::format("{:>15.2f} ({:>5.2f}x)", rate, row.mrays_per_second / rate);
+    }
+    text += "\n";
+  }
+  for (const std::string& failure : results.failures) text += "\n" + failure + "\n";
+  return text;
+}
+
+std::string trace_svg(const TraceResults& results) {
+  std::vector<BarDiagram> diagrams;
+  const std::vector<std::string> rivals = rivals_of(results);
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    const TraceRow& row = results.rows[i];
+    if (i == 0 || !is_same_dag(row, results.rows[i - 1])) {
+      BarDiagram diagram;
+      diagram.title = fmt::format("{} {}, layout {}: million rays per second", row.scene,
+                                  resolution_of(row), row.layout);
+      diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
+      diagram.series.push_back({"voxdag", {}});
+      for (const std::string& rival : rivals) diagram.series.push_back({rival, {}});
+      diagrams.push_back(diagram);
+    }
+    BarDiagram& diagram = diagrams.back();
+    diagram.groups.emplace_back(name_of(row.rays));
+    diagram.series[0].values.push_back(row.mrays_per_second);
+    for (std::size_t r = 0; r < rivals.size(); ++r)
+      diagram.series[r + 1].values.push_back(rate_of(row, rivals[r]));
+  }
+  return bar_svg(diagrams);
+}
+
+}  // namespace voxdag

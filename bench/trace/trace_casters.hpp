@@ -1,0 +1,42 @@
+#pragma once
+/// Our own casts, by layout.
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/rivals/trace_rivals.hpp"
+#include "voxdag/cuda/device_voxels.hpp"
+#include "voxdag/trace/voxel_scene.hpp"
+
+namespace voxdag {
+
+/// What walks through the nodes take, in the mean over rays.
+struct WalkCost {
+  double cells = 0;  ///< Steps: cells looked at.
+  double bytes = 0;  ///< Read from nodes.
+};
+
+/// Voxels in one of the layouts that can be cast at.
+class TraceLayout {
+ public:
+  virtual ~TraceLayout() = default;
+
+  virtual std::uint64_t bytes() const = 0;
+  /// The same on a CUDA device, where there is one, and what it takes there.
+  virtual std::optional<DeviceLayout> device_layout() const = 0;
+  virtual std::uint64_t device_bytes() const { return bytes(); }
+  /// Casts with the fastest caster of the layout. `casts` must outlive the runner.
+  virtual TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const = 0;
+  virtual WalkCost cost(std::span<const CastRay> casts) const = 0;
+};
+
+/// The layouts' names, of all voxels or of these, the default first.
+std::vector<std::string> trace_layouts();
+std::vector<std::string> trace_layouts(const VoxelScene& voxels);
+
+/// Throws Error where memory is short, or the layout is not one of these voxels. They must outlive
+/// the result.
+std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelScene& voxels);
+
+}  // namespace voxdag

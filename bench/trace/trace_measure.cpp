@@ -1,0 +1,42 @@
+#include "bench/trace/trace_measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "voxdag/parallel/parallel_for.hpp"
+
+namespace voxdag {
+namespace {
+
+double cast_all(const TraceRunner& runner, std::size_t count, std::uint8_t* hits) {
+  constexpr std::size_t kBlock = 8192;  // a multiple of a packet's 16, and of our windows
+  if (runner.cast_set) return runner.cast_set(hits);
+  const auto start = std::chrono::steady_clock::now();
+  if (runner.before) runner.before();
+  parallel_for((count + kBlock - 1) / kBlock, [&](std::size_t block) {
+    runner.cast(block * kBlock, std::min((block + 1) * kBlock, count), hits);
+  });
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size_t count,
+                              int repeat) {
+  std::vector<Measured> measured(runners.size());
+  for (Measured& m : measured) m.hits.resize(count);
+  for (int turn = 0; turn <= repeat; ++turn)
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      const double seconds = cast_all(runners[i], count, measured[i].hits.data());
+      if (turn > 0) measured[i].seconds = std::min(measured[i].seconds, seconds);
+    }
+  return measured;
+}
+
+std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += a[i] == b[i] ? 1 : 0;
+  return count;
+}
+
+}  // namespace voxdag

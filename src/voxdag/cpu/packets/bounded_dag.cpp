@@ -1,0 +1,119 @@
+#include "voxdag/cpu/packets/bounded_dag.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "voxdag/core/large_array.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::uint32_t kLast = CellBox::kParts - 1;
+
+struct Extent {
+  std::uint32_t first[3] = {kLast, kLast, kLast}, last[3] = {0, 0, 0};
+
+  /// Adds the box of octant `index`.
+  void add(CellBox box, std::uint32_t index) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const std::uint32_t begin = (index >> axis & 1u) * CellBox::kParts;
+      const std::uint32_t low = box.bits >> (CellBox::kBits * axis) & kLast;
+      const std::uint32_t high = box.bits >> (CellBox::kBits * (axis + 3)) & kLast;
+      first[axis] = std::min(first[axis], (begin + low) / 2);
+      last[axis] = std::max(last[axis], (begin + high) / 2);
+    }
+  }
+  CellBox box() const {
+    CellBox box;
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+      box.bits |= first[axis] << (CellBox::kBits * axis) | last[axis]
+                                                               << (CellBox::kBits * (axis + 3));
+    return box;
+  }
+};
+
+CellBox box_of(std::uint64_t block) {
+  constexpr std::uint64_t kOdd[3] = {0xAAAAAAAAAAAAAAAAu, 0xCCCCCCCCCCCCCCCCu, 0xF0F0F0F0F0F0F0F0u};
+  constexpr std::uint64_t kUpper[3] = {0xFF00FF00FF00FF00u, 0xFFFF0000FFFF0000u,
+                                       0xFFFFFFFF00000000u};
+  constexpr std::uint32_t kVoxel = CellBox::kParts / 4;
+  Extent extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint32_t slices = 0;  // Bit i: a voxel at i along the axis.
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint64_t slice = ((i & 1u) != 0 ? kOdd[axis] : ~kOdd[axis]) &
+                                  ((i & 2u) != 0 ? kUpper[axis] : ~kUpper[axis]);
+      slices |= (block & slice) != 0 ? 1u << i : 0u;
+    }
+    extent.first[axis] = static_cast<std::uint32_t>(lowest_bit64(slices)) * kVoxel;
+    extent.last[axis] = static_cast<std::uint32_t>(highest_bit(slices) + 1) * kVoxel - 1;
+  }
+  return extent.box();
+}
+
+/// The first words of nodes [begin, end) that are about kRun words apart.
+std::vector<std::uint64_t> runs_of(const SvdagView& dag, std::uint64_t begin, std::uint64_t end) {
+  constexpr std::uint64_t kRun = 1 << 14;
+  std::vector<std::uint64_t> runs{begin};
+  for (std::uint64_t at = begin; at < end;
+       at += 1 + static_cast<std::uint64_t>(popcount8(child_mask(dag.nodes + at))))
+    if (at - runs.back() >= kRun) runs.push_back(at);
+  runs.push_back(end);
+  return runs;
+}
+
+/// Fetches what a pointer a little further on needs; a mask taken for a pointer does no harm.
+void prefetch(const SvdagView& dag, int level, std::uint64_t at, const std::uint32_t* words) {
+  constexpr std::uint64_t kAhead = 64;
+  if (at + kAhead + 8 >= dag.level_begin[level + 1]) return;
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const std::uint64_t child = dag.nodes[at + kAhead + i];
+    if (level == dag.levels - 3)
+      __builtin_prefetch(dag.leaf_blocks + child);
+    else
+      __builtin_prefetch(words + 2 * child + 1);
+  }
+}
+
+/// Makes the node at `at` of the DAG, the nodes below being made. Returns its words there.
+std::uint64_t make_node(const SvdagView& dag, int level, std::uint64_t at, std::uint32_t* words) {
+  const std::uint32_t mask = child_mask(dag.nodes + at);
+  const auto children = static_cast<std::uint64_t>(popcount8(mask));
+  std::uint32_t* const node = words + 2 * at;
+  std::uint32_t* const pointers = node + 2;
+  std::uint32_t* const boxes = pointers + children;
+  Extent extent;
+  std::uint32_t rest = mask;
+  for (std::uint64_t i = 0; i < children; ++i, rest &= rest - 1) {
+    const std::uint32_t child = dag.nodes[at + 1 + i];
+    const CellBox box = level == dag.levels - 3 ? box_of(dag.leaf_blocks[child])
+                                                : CellBox{words[2 * std::uint64_t{child} + 1]};
+    extent.add(box, static_cast<std::uint32_t>(lowest_bit64(rest)));
+    pointers[i] = child;
+    boxes[i] = box.bits;
+  }
+  node[0] = mask;
+  node[1] = extent.box().bits;
+  return 1 + children;
+}
+
+}  // namespace
+
+BoundedDag::BoundedDag(const SvdagNodes& nodes)
+    : nodes_(nodes), words_(make_large_array<std::uint32_t>(word_count())) {
+  const SvdagView& dag = nodes_.view();
+  std::fill_n(words_.get() + 2 * dag.node_words(), 7, 0);
+  for (int level = dag.levels - 3; level >= 0; --level) {
+    const std::vector<std::uint64_t> runs =
+        runs_of(dag, dag.level_begin[level], dag.level_begin[level + 1]);
+    parallel_for(runs.size() - 1, [&](std::size_t run) {
+      for (std::uint64_t at = runs[run]; at < runs[run + 1];) {
+        prefetch(dag, level, at, words_.get());
+        at += make_node(dag, level, at, words_.get());
+      }
+    });
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,45 @@
+// Casts up to 64 beams from one point together. Compiled once for each instruction set; the best
+// that the machine has is chosen at run time.
+//
+// The walk of trace/beam.hpp, depth first and nearest octants first, with a beam in each lane: for
+// all beams that meet a node it is found which of its children they meet, and where. In float: T
+// are moved outwards by more than all rounding.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "voxdag/cpu/packets/cast_beam_packet.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "voxdag/cpu/packets/beam_packet.hpp"
+#include "voxdag/cpu/packets/beam_packet_walk-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+void cast_dag_beams(const SvdagNodes& nodes, BeamPacket& packet) {
+  BeamPacketWalk<SvdagNodes>(nodes, packet).cast();
+}
+void cast_esvo_beams(const EsvoNodes& nodes, BeamPacket& packet) {
+  BeamPacketWalk<EsvoNodes>(nodes, packet).cast();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace voxdag {
+
+HWY_EXPORT(cast_dag_beams);
+HWY_EXPORT(cast_esvo_beams);
+
+void cast_beam_packet(const SvdagNodes& nodes, BeamPacket& packet) {
+  HWY_DYNAMIC_DISPATCH(cast_dag_beams)(nodes, packet);
+}
+
+void cast_beam_packet(const EsvoNodes& nodes, BeamPacket& packet) {
+  HWY_DYNAMIC_DISPATCH(cast_esvo_beams)(nodes, packet);
+}
+
+}  // namespace voxdag
+#endif

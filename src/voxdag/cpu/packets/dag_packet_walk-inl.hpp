@@ -1,0 +1,159 @@
+// The walk of up to 64 rays of like direction: what its parts share. Included once for each
+// instruction set, by cast_dag_packet.cpp, which says how it goes.
+#if defined(VOXDAG_DAG_PACKET_WALK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef VOXDAG_DAG_PACKET_WALK_INL
+#undef VOXDAG_DAG_PACKET_WALK_INL
+#else
+#define VOXDAG_DAG_PACKET_WALK_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "voxdag/cpu/packets/bounded_dag.hpp"
+#include "voxdag/cpu/packets/dag_packet.hpp"
+#include "voxdag/cpu/packets/packet_rays-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace voxdag {
+namespace HWY_NAMESPACE {
+
+#if VOXDAG_PACKET_LANES
+
+class DagPacketWalk : PacketRays {
+ public:
+  /// `hits` is null where it is only asked which rays meet anything.
+  DagPacketWalk(const BoundedDag& dag, PacketHits* hits)
+      : nodes_(dag.nodes()), words_(dag.words()), hits_(hits) {}
+
+  Rays cast(const RayPacket& packet);
+
+ private:
+  /// A node to visit.
+  struct alignas(32) Visit : Cell {
+    Rays rays;
+    std::uint32_t node;
+    std::uint32_t skipped;  ///< Children not to look at, mirrored.
+  };
+  /// In Visit::skipped: the rays end at this cell; of a leaf block, they end at its octants, or
+  /// some may.
+  static constexpr std::uint32_t kEndsHere = 0x100, kOctantsEnd = 0x200, kOctantsMayEnd = 0x400;
+  /// Of the children of a node, by their mirrored index.
+  struct Children {
+    std::uint32_t met;       ///< Those that any ray can meet.
+    std::uint32_t all_end;   ///< Those at which all rays end that meet them.
+    std::uint32_t some_end;  ///< Those at which any ray can end.
+    std::uint32_t octants_end,
+        octants_may_end;  ///< Leaf blocks of which the same holds for octants.
+  };
+  /// The cells, named by the bits that positions in them share.
+  struct CommonCell {
+    std::uint32_t corner[3];
+    int level;  ///< The finest that holds all positions.
+  };
+
+  /// By `mirrored` and a node's child mask, then by mirrored child index, the number of children
+  /// that are stored before that child.
+  using RankTable = std::array<std::array<std::array<std::uint8_t, 8>, 256>, 8>;
+  static constexpr RankTable ranks() {
+    RankTable table{};
+    for (std::uint32_t m = 0; m < 8; ++m)
+      for (std::uint32_t mask = 0; mask < 256; ++mask)
+        for (std::uint32_t child = 0; child < 8; ++child)
+          table[m][mask][child] =
+              static_cast<std::uint8_t>(std::popcount(mask & ((1u << (child ^ m)) - 1)) & 7);
+    return table;
+  }
+  const std::uint8_t* ranks_of(std::uint32_t mask) const {
+    alignas(64) static constexpr RankTable kRanks = ranks();
+    return kRanks[rays_.mirrored][mask].data();
+  }
+  /// Sets all voxels of the octants that have any.
+  static std::uint64_t filled_octants(std::uint64_t block) {
+    block |= block >> 4 & 0x0F0F0F0F0F0F0F0Fu;
+    block |= block >> 2 & 0x3333333333333333u;
+    block |= block >> 1 & 0x5555555555555555u;
+    return (block & 0x0101010101010101u) * 0xFF;
+  }
+  /// Of a voxel of a leaf block: its place along an axis, in [0,4).
+  static constexpr std::uint32_t place_of(std::uint32_t voxel, std::uint32_t axis) {
+    return (voxel >> axis & 1u) | (voxel >> (2 + axis) & 2u);
+  }
+  /// What mirrored_mask() does, on both levels of a leaf block.
+  static std::uint64_t mirrored_block(std::uint64_t m, std::uint32_t mirrored) {
+    const auto swap = [&m](int by, std::uint64_t low) { m = (m & low) << by | (m >> by & low); };
+    if ((mirrored & 1u) != 0) {
+      swap(1, 0x5555555555555555u);
+      swap(8, 0x00FF00FF00FF00FFu);
+    }
+    if ((mirrored & 2u) != 0) {
+      swap(2, 0x3333333333333333u);
+      swap(16, 0x0000FFFF0000FFFFu);
+    }
+    if ((mirrored & 4u) != 0) {
+      swap(4, 0x0F0F0F0F0F0F0F0Fu);
+      m = m << 32 | m >> 32;
+    }
+    return m;
+  }
+
+  void common_cells(CommonCell& starts, CommonCell& reach, int finest) const;
+  int finest_without_stop() const;
+  std::size_t begin(Rays all, Visit* stack) const;
+  void walk();
+  HWY_INLINE void set_planes(const std::uint32_t corner[3], int level, hn::Vec<DU8> boxes);
+  HWY_INLINE Children bound_children(int child_level) const;
+  HWY_INLINE void cut_by_boxes(int i, hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const;
+  HWY_INLINE std::uint32_t boxes_met_by(int i) const;
+  HWY_INLINE Children children_met_by(int i, int child_level) const;
+  HWY_INLINE Rays rays_meeting(std::uint32_t child, Rays rays) const;
+  HWY_NOINLINE Rays rays_ending(std::uint32_t child, int child_level, Rays rays) const;
+  void visit_children(const Visit& visit, Visit* stack, std::size_t& top);
+  void end_at_children(const Visit& visit, std::uint32_t met);
+  void cast_in_block(const Visit& visit);
+  void cast_vector_in_block(const std::uint32_t corner[3], std::uint64_t block, std::size_t first,
+                            Rays rays);
+  void cast_one_by_one_in_block(const Visit& visit, std::uint64_t block, Rays rays);
+  void end_at_octants(const Visit& visit);
+  HWY_INLINE void set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
+                           const float start[2], const float per_t[2], Children& children) const;
+  /// Whether ray i ends at the cell of this level with the lower corner `low`, which it meets.
+  bool ends_at(int i, const float low[3], int level) const {
+    if (level < rays_.coarsest) return false;
+    float exit = HUGE_VALF;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float t = (rays_.origin[axis][i] - low[axis]) * rays_.inverse[axis][i];
+      exit = t < exit ? t : exit;
+    }
+    return side_of(level) <= rays_.stop_start[i] + rays_.stop_per_t[i] * exit;
+  }
+  void end(Rays rays, const std::uint32_t corner[3], int level) {
+    searching_ &= ~rays;
+    if (hits_ == nullptr) return;
+    for (; rays != 0; rays &= rays - 1) {
+      const int i = lowest_bit64(rays);
+      for (int axis = 0; axis < 3; ++axis) hits_->corner[axis][i] = corner[axis];
+      hits_->level[i] = level;
+    }
+  }
+  void set_hit_t();
+
+  const SvdagNodes& nodes_;
+  const std::uint32_t* words_;
+  PacketHits* hits_;
+  Rays searching_ = 0;              ///< Those that have not met anything.
+  alignas(64) float planes_[6][8];  ///< Of the boxes at hand: the lower ones by axis, the upper.
+};
+
+#endif  // VOXDAG_PACKET_LANES
+
+}  // namespace HWY_NAMESPACE
+}  // namespace voxdag
+HWY_AFTER_NAMESPACE();
+
+#endif

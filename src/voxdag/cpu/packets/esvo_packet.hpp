@@ -1,0 +1,44 @@
+#pragma once
+/// Rays of like direction that are cast at an ESVO together.
+#include "voxdag/cpu/packets/ray_packet.hpp"
+#include "voxdag/trace/esvo_cast.hpp"
+
+namespace voxdag {
+
+/// And what of an EsvoHit is more than a cell.
+struct EsvoHits : PacketHits {
+  std::uint64_t slot[RayPacket::kMaxRays];  ///< EsvoVoxel::slot.
+  std::uint8_t child[RayPacket::kMaxRays];  ///< EsvoVoxel::child.
+  ContourPlane plane[RayPacket::kMaxRays];  ///< EsvoHit::plane.
+
+  EsvoHit operator[](std::size_t i) const {
+    EsvoHit hit;
+    static_cast<CellHit&>(hit) = PacketHits::operator[](i);
+    hit.voxel = {slot[i], child[i]};
+    hit.plane = plane[i];
+    return hit;
+  }
+  void set(std::size_t i, const EsvoHit& hit) {
+    PacketHits::set(i, hit);
+    slot[i] = hit.voxel.slot;
+    child[i] = static_cast<std::uint8_t>(hit.voxel.child);
+    plane[i] = hit.plane;
+  }
+};
+
+template <EsvoLayout Nodes>
+struct PacketTarget<Nodes> {
+  using Hits = EsvoHits;
+  static constexpr bool kByDirection = false;
+};
+
+/// Casts the packet's rays. What each meets is what cast() in trace/esvo_cast.hpp finds for it, to
+/// the bit, on any instruction set. The rays' levels of detail must agree in the coarsest level.
+void cast_packet(const EsvoNodes& nodes, const RayPacket& packet, EsvoHits& hits);
+void cast_packet(const ContourNodes& nodes, const RayPacket& packet, EsvoHits& hits);
+
+/// Which of the rays meet anything, as PacketHits::met.
+std::uint64_t cast_packet_any(const EsvoNodes& nodes, const RayPacket& packet);
+std::uint64_t cast_packet_any(const ContourNodes& nodes, const RayPacket& packet);
+
+}  // namespace voxdag

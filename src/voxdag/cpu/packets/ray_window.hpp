@@ -1,0 +1,126 @@
+#pragma once
+/// A part of a stream of rays, put in an order in which those that follow one another are alike.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <type_traits>
+
+#include "voxdag/cpu/packets/ray_packet.hpp"
+
+namespace voxdag {
+
+/// Up to kMaxRays rays. Rays of a packet must be mirrored alike; more likeness makes it faster.
+/// Neighbours in a stream of primary or shadow rays are alike as they are: of those it takes few,
+/// so that they stay in the nearest cache. Those of ambient occlusion are not: they may be put in
+/// the order of their directions, in cells of about a hundredth of the sphere, so that a packet has
+/// rays of many neighbouring pixels that run about the same way.
+class RayWindow {
+ public:
+  static constexpr int kMaxRays = 4096;
+
+  RayWindow() = default;
+  RayWindow(const RayWindow&) = delete;
+  RayWindow& operator=(const RayWindow&) = delete;
+
+  /// Takes make_ray(0), make_ray(1) and so on, one at least and `available` at most. Where it
+  /// returns references, they must outlive what the window holds. Those that miss are told to
+  /// on_miss(i, ray). Without `by_direction` the others keep their order but for what mirrors them.
+  template <class MakeRay, class OnMiss>
+  void fill(int available, bool by_direction, const MakeRay& make_ray, const OnMiss& on_miss) {
+    const auto take_one = [&](int i) {
+      if constexpr (std::is_lvalue_reference_v<std::invoke_result_t<const MakeRay&, int>>)
+        rays_[i] = &make_ray(i);
+      else
+        rays_[i] = ::new (static_cast<void*>(made_ + sizeof(CastRay) * i)) CastRay(make_ray(i));
+    };
+    taken_ = size_ = 0;
+    if (take(std::min(available, kAlike), on_miss, take_one)) return;
+    take(std::min(available, kMaxRays), on_miss, take_one);
+    sort(by_direction && are_unlike() ? 0 : kCellBits);
+  }
+
+  /// How many rays fill() took.
+  int taken() const { return taken_; }
+  /// How many of them do not miss: these are in the window.
+  int size() const { return size_; }
+  /// The i of the ray at this place, 0 <= place < size().
+  int index(int place) const { return order_[place]; }
+  /// Sets the rays from this place on that make a packet.
+  void set_packet(int place, RayPacket& packet) const {
+    const int most = std::min(size_ - place, static_cast<int>(RayPacket::kMaxRays));
+    const std::uint32_t mirrored = rays_[order_[place]]->ray.mirrored;
+    packet.size = 0;
+    for (int end = place + most; place < end; ++place) {
+      const CastRay* next = rays_[order_[place]];
+      if (next->ray.mirrored != mirrored) return;
+      packet.rays[packet.size++] = next;
+    }
+  }
+
+ private:
+  static constexpr int kCellBits = 6, kKeys = 8 << kCellBits;
+  /// How many are taken of those that are alike.
+  static constexpr int kAlike = 256;
+
+  /// Takes rays, which take_one(i) puts in their place, until there are `end`. Returns whether
+  /// those taken are all mirrored alike.
+  template <class OnMiss, class TakeOne>
+  bool take(int end, const OnMiss& on_miss, const TakeOne& take_one) {
+    std::uint32_t octants = 0;  // bit m: there is a ray with `mirrored` m
+    for (; taken_ < end; ++taken_) {
+      take_one(taken_);
+      const GridRay& taken = rays_[taken_]->ray;
+      if (taken.misses()) {
+        on_miss(taken_, taken);
+        continue;
+      }
+      octants |= 1u << taken.mirrored;
+      order_[size_++] = static_cast<std::uint16_t>(taken_);
+    }
+    return (octants & (octants - 1)) == 0;
+  }
+
+  /// The octant, then along a Morton curve the cell of the direction in the cube [0,1]³, where its
+  /// largest component is 1.
+  static std::uint32_t key_of(const GridRay& ray) {
+    std::uint32_t key = ray.mirrored << kCellBits;
+    for (int axis = 0; axis < 3; ++axis) {
+      // 1 / component in steps of 1, 1.5, 2, 3.
+      const std::uint32_t steps = (bits_of_float(ray.inverse[axis]) - bits_of_float(1.0f)) >> 22;
+      const std::uint32_t cell = steps < 3 ? steps : 3;
+      key |= ((cell & 1u) | (cell & 2u) << 2) << axis;
+    }
+    return key;
+  }
+
+  /// Whether neighbours are often in different octants, going by some of them.
+  bool are_unlike() const {
+    constexpr int kStep = 16;
+    int unlike = 0, pairs = 0;
+    for (int i = 1; i < size_; i += kStep, ++pairs)
+      unlike += rays_[order_[i]]->ray.mirrored != rays_[order_[i - 1]]->ray.mirrored ? 1 : 0;
+    return 4 * unlike > pairs;
+  }
+
+  /// By all of the key but its lowest bits; equal ones stay in order.
+  void sort(int ignored_bits) {
+    std::uint16_t begin[kKeys + 1] = {}, keys[kMaxRays];
+    for (int i = 0; i < size_; ++i) {
+      keys[i] = static_cast<std::uint16_t>(key_of(rays_[order_[i]]->ray) >> ignored_bits);
+      ++begin[keys[i] + 1];
+    }
+    for (int key = 0; key < kKeys >> ignored_bits; ++key)
+      begin[key + 1] = static_cast<std::uint16_t>(begin[key + 1] + begin[key]);
+    std::uint16_t sorted[kMaxRays];
+    for (int i = 0; i < size_; ++i) sorted[begin[keys[i]]++] = order_[i];
+    std::copy_n(sorted, size_, order_);
+  }
+
+  alignas(CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // where they come as values
+  const CastRay* rays_[kMaxRays];
+  std::uint16_t order_[kMaxRays];
+  int taken_ = 0, size_ = 0;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,79 @@
+#include "voxdag/displace/displacement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <tuple>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/grid.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
+#include "voxdag/surface/material_textures.hpp"
+
+namespace voxdag {
+namespace {
+
+double longest_side(const Mesh& mesh) {
+  const Box3d bounds = referenced_bounds(mesh);
+  const Vec3d extent = bounds.hi - bounds.lo;
+  return std::max({extent.x, extent.y, extent.z});
+}
+
+/// Whether the mesh would be less than a voxel beside what it is displaced by, in any grid.
+bool is_absurd(double amount, double side) {
+  return !(std::fabs(amount) <= std::ldexp(side, kMaxLevels));
+}
+
+std::string absurd(double amount, double side) {
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "a displacement by %.6g units is too much for a mesh of %.6g units", amount, side);
+  return text;
+}
+
+}  // namespace
+
+std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
+                                             std::vector<std::string>& warnings,
+                                             Progress* progress) {
+  std::vector<Displacement> displacements(appearance.materials.size());
+  if (appearance.uvs.empty()) return displacements;
+  const double side = longest_side(mesh);
+  std::map<std::tuple<int, TextureWrap, TextureWrap>, std::shared_ptr<const HeightTexture>> loaded;
+  for (std::size_t i = 0; i < displacements.size(); ++i) {
+    const Material& material = appearance.materials[i];
+    const TextureUse& use = material.displacement_map;
+    if (!use.exists()) continue;
+    if (progress != nullptr) progress->throw_if_cancelled();
+    const TextureImage& image = appearance.images[static_cast<std::size_t>(use.image)];
+    const double base = material.displacement_base, gain = material.displacement_gain;
+    if (const double most = std::max(std::fabs(base), std::fabs(base + gain));
+        is_absurd(most, side)) {
+      warnings.push_back(image.name + ": " + absurd(most, side) +
+                         ": the surface stays without displacement");
+      continue;
+    }
+    const auto [place, is_new] = loaded.try_emplace({use.image, use.wrap_u, use.wrap_v});
+    if (is_new) try {
+        place->second = std::make_shared<HeightTexture>(
+            make_height_texture(decode_texture_image(image), {use.wrap_u, use.wrap_v}));
+      } catch (const Error& error) {
+        warnings.push_back(std::string(error.what()) + ": the surface stays without displacement");
+      }
+    displacements[i] = {place->second, base, gain, use.uv, 0};
+  }
+  return displacements;
+}
+
+std::vector<Displacement> displace_all(const Mesh& mesh, const Appearance& appearance,
+                                       std::shared_ptr<const HeightTexture> heights, double amount,
+                                       double box_size) {
+  const double side = longest_side(mesh);
+  if (is_absurd(amount, side)) throw Error(absurd(amount, side));
+  if (appearance.uvs.empty() && !(box_size > 0)) box_size = side / 16;
+  return std::vector<Displacement>(std::max<std::size_t>(appearance.materials.size(), 1),
+                                   {std::move(heights), 0, amount, {}, std::max(box_size, 0.0)});
+}
+
+}  // namespace voxdag

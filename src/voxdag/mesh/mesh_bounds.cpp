@@ -1,0 +1,12 @@
+#include "voxdag/mesh/mesh_bounds.hpp"
+
+namespace voxdag {
+
+Box3d referenced_bounds(const Mesh& mesh) {
+  Box3f bounds = Box3f::empty();
+  for (const Triangle& triangle : mesh.triangles)
+    for (std::uint32_t index : triangle) bounds.extend(mesh.vertices[index]);
+  return {static_cast<Vec3d>(bounds.lo), static_cast<Vec3d>(bounds.hi)};
+}
+
+}  // namespace voxdag

@@ -1,0 +1,67 @@
+#pragma once
+/// A hash table that gives vertices with equal bits one index.
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "voxdag/core/vec.hpp"
+
+namespace voxdag {
+
+inline std::uint64_t hash_bits(Vec3f position) {
+  const auto key = std::bit_cast<std::array<std::uint32_t, 3>>(position);
+  std::uint64_t h = (key[0] | std::uint64_t{key[1]} << 32) * 0x9E3779B97F4A7C15ull;
+  h = (h ^ h >> 32 ^ key[2]) * 0xD6E8FEB86659FD93ull;
+  return (h ^ h >> 29) * 0x9E3779B97F4A7C15ull;
+}
+
+/// Vertices with distinct bits, numbered in the order in which they were added.
+class VertexTable {
+ public:
+  /// Makes room for `vertices` in a table of `slots`; both grow where they must.
+  explicit VertexTable(std::size_t vertices = 0, std::size_t slots = 64) : slots_(slots, kFree) {
+    vertices_.reserve(vertices);
+  }
+
+  std::uint32_t find_or_add(Vec3f position) {
+    std::size_t i = home(position);
+    for (; slots_[i] != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
+      if (has_bits(vertices_[slots_[i]], position)) return slots_[i];
+    const auto vertex = static_cast<std::uint32_t>(vertices_.size());
+    slots_[i] = vertex;
+    vertices_.push_back(position);
+    if (vertices_.size() > slots_.size() / 16 * 15) grow();
+    return vertex;
+  }
+
+  const std::vector<Vec3f>& vertices() const { return vertices_; }
+  std::vector<Vec3f> take_vertices() { return std::move(vertices_); }
+
+ private:
+  static constexpr std::uint32_t kFree = ~0u;
+
+  static bool has_bits(Vec3f a, Vec3f b) {
+    using Bits = std::array<std::uint32_t, 3>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+  }
+  std::size_t home(Vec3f position) const {
+    return static_cast<std::size_t>((hash_bits(position) >> 32) * slots_.size() >> 32);
+  }
+
+  void grow() {
+    std::fill(slots_.begin(), slots_.end(), kFree);
+    slots_.resize(2 * slots_.size(), kFree);
+    for (std::uint32_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+      std::size_t i = home(vertices_[vertex]);
+      while (slots_[i] != kFree) i = i + 1 == slots_.size() ? 0 : i + 1;
+      slots_[i] = vertex;
+    }
+  }
+
+  std::vector<std::uint32_t> slots_;
+  std::vector<Vec3f> vertices_;
+};
+
+}  // namespace voxdag

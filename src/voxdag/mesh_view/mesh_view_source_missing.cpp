@@ -1,0 +1,31 @@
+/// MeshViewSource of a library that was built without Embree.
+#include "voxdag/core/error.hpp"
+#include "voxdag/mesh_view/mesh_view_source.hpp"
+
+namespace voxdag {
+
+class MeshViewSource::Scene {};
+
+namespace {
+
+[[noreturn]] void refuse() {
+  throw Error(
+      "view samples from a mesh need Embree 3, which this voxdag was built without (install "
+      "libembree-dev and build again)");
+}
+
+}  // namespace
+
+MeshViewSource::MeshViewSource(Mesh /*mesh*/, const MeshViewOptions& /*options*/) { refuse(); }
+
+MeshViewSource::MeshViewSource(Mesh /*mesh*/, Appearance /*appearance*/,
+                               const MeshViewOptions& /*options*/,
+                               std::vector<std::string>* /*warnings*/, Progress* /*progress*/) {
+  refuse();
+}
+
+MeshViewSource::~MeshViewSource() = default;
+
+void MeshViewSource::sample(const Camera&, const ViewTile&, std::span<ViewSample>) const {}
+
+}  // namespace voxdag

@@ -1,0 +1,47 @@
+#pragma once
+/// The lines of an OBJ or MTL file.
+#include <string>
+#include <string_view>
+
+#include "voxdag/readers/text_scan.hpp"
+
+namespace voxdag {
+
+/// The next corner of a face line; empty at its end or at a comment.
+inline std::string_view next_corner(std::string_view& line) {
+  const std::string_view token = next_token(line);
+  return token.starts_with('#') ? std::string_view{} : token;
+}
+
+/// Triangles in the fan of a face line.
+inline std::size_t count_fan_triangles(std::string_view corners) {
+  std::size_t count = 0;
+  while (!next_corner(corners).empty()) ++count;
+  return count < 3 ? 0 : count - 2;
+}
+
+/// Calls line(text, position) for every line of a chunk, leading blanks removed and continued lines
+/// joined. `position` points to the line's place in the file.
+template <class Line>
+void for_each_line(std::string_view chunk, char line_end, const Line& body) {
+  std::string joined;
+  while (!chunk.empty()) {
+    std::string_view line = next_line(chunk, line_end);
+    const char* const position = line.data();
+    while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+    if (line.empty() || line.front() == '#') continue;
+    if (line.back() == '\r') line.remove_suffix(1);
+    if (line.ends_with('\\')) {
+      joined.assign(line);
+      while (joined.ends_with('\\')) {
+        joined.back() = ' ';
+        joined += next_line(chunk, line_end);
+        if (joined.ends_with('\r')) joined.pop_back();
+      }
+      line = joined;
+    }
+    body(line, position);
+  }
+}
+
+}  // namespace voxdag

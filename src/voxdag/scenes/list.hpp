@@ -1,0 +1,26 @@
+#pragma once
+/// The makers behind make_scene, one file each. `size` is in the range of the scene's entry.
+/// `progress` may be null; a maker throws Cancelled when it is asked to stop.
+#include <cstdint>
+
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/scenes/scenes.hpp"
+
+namespace voxdag::scenes {
+
+Mesh make_city(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset city_preset(double size);
+
+Mesh make_courtyard(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset courtyard_preset(double size);
+
+Mesh make_hairball(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset hairball_preset(double size);
+
+Mesh make_sponge(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset sponge_preset(double size);
+
+Mesh make_terrain(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset terrain_preset(double size);
+
+}  // namespace voxdag::scenes

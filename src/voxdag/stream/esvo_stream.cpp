@@ -1,0 +1,243 @@
+#include "voxdag/stream/esvo_stream.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/esvo_parse.hpp"
+#include "voxdag/io/checksum.hpp"
+#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/layout/validate_esvo.hpp"
+
+namespace voxdag {
+
+void EsvoStream::fail(const std::string& place, const std::string& reason) const {
+  throw Error(path_.string(), place, reason);
+}
+
+EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) : path_(path) {
+  {
+    // Mapped, but of the blocks nothing is touched.
+    const MappedFile mapping(path);
+    try {
+      const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
+      check_vdag_checksums(chunks_but_blocks(chunks));
+      metadata_ = read_esvo_metadata(chunks);
+      const auto directory = read_esvo_directory(chunks);
+      directory_.assign(directory.begin(), directory.end());
+      slots_offset_ = esvo_chunk_offset(chunks);
+    } catch (const Error& error) {
+      fail(error.place(), error.reason());
+    }
+  }
+  file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) fail("", std::strerror(errno));
+  std::uint64_t end = 0;
+  for (std::size_t i = 0; i < directory_.size(); ++i) {
+    if (directory_[i].begin != end || directory_[i].slots == 0 ||
+        directory_[i].slots % kEsvoPageSlots != 0)
+      fail("block " + std::to_string(i), "not where the directory says");
+    end += directory_[i].slots;
+  }
+  if (directory_.empty()) return;  // no voxels
+  find_children();
+  const std::uint64_t wanted = std::min(memory / 8, end);
+  pool_.resize(wanted / kEsvoPageSlots * kEsvoPageSlots);
+  is_cut_.resize(pool_.size());
+  if (!pool_.empty()) free_[0] = pool_.size();
+
+  const auto root = static_cast<std::size_t>(
+      std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.parent < 0; }) -
+      blocks_.begin());
+  if (root == blocks_.size()) fail("directory", "no block is the root's");
+  if (const std::uint64_t least = most_slots_of_a_path(); pool_.size() < least)
+    fail("", "the memory given is less than the " + std::to_string(least * 8) +
+                 " bytes of a block and those above it");
+  blocks_[root].siblings = {Vec3i{}};
+  load(root);
+  const std::uint64_t at = blocks_[root].position;
+  root_ = at + view().info(at).first_descriptor;
+  if (metadata_.root != directory_[root].begin + view().info(at).first_descriptor)
+    fail("root", "not the first descriptor of its block");
+}
+
+EsvoStream::~EsvoStream() {
+  if (file_ >= 0) close(file_);
+}
+
+void EsvoStream::read(std::uint64_t offset, void* data, std::size_t bytes) const {
+  for (std::size_t done = 0; done < bytes;) {
+    const ssize_t got = pread(file_, static_cast<char*>(data) + done, bytes - done,
+                              static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("byte " + std::to_string(offset + done), std::strerror(errno));
+    if (got == 0) fail("byte " + std::to_string(offset + done), "the file has become shorter");
+    done += static_cast<std::size_t>(got);
+  }
+}
+
+void EsvoStream::find_children() {
+  blocks_.resize(directory_.size());
+  for (std::size_t i = 0; i < directory_.size(); ++i) {
+    const std::uint64_t parent = directory_[i].parent;
+    if (parent == EsvoBlockEntry::kNoParent) continue;
+    const auto after = std::upper_bound(
+        directory_.begin(), directory_.end(), parent,
+        [](std::uint64_t slot, const EsvoBlockEntry& b) { return slot < b.begin; });
+    const auto above = static_cast<std::size_t>(after - directory_.begin()) - 1;
+    if (above == i || parent >= directory_[above].begin + directory_[above].slots)
+      fail("block " + std::to_string(i), "its parent is no other block");
+    blocks_[i].parent = static_cast<std::int64_t>(above);
+    blocks_[i].parent_slot = static_cast<std::uint32_t>(parent - directory_[above].begin);
+    blocks_[above].children.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+/// Of a block and those above it. Throws if they go round in a circle.
+std::uint64_t EsvoStream::most_slots_of_a_path() const {
+  std::uint64_t most = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    std::uint64_t slots = 0;
+    int blocks = 0;
+    for (auto at = static_cast<std::int64_t>(i); at >= 0;
+         at = blocks_[static_cast<std::size_t>(at)].parent) {
+      slots += directory_[static_cast<std::size_t>(at)].slots;
+      if (++blocks > kMaxLevels) fail("block " + std::to_string(i), "too many blocks above it");
+    }
+    most = std::max(most, slots);
+  }
+  return most;
+}
+
+bool EsvoStream::can_load(std::size_t block) const {
+  const std::int64_t parent = blocks_[block].parent;
+  return parent < 0 || is_loaded(static_cast<std::size_t>(parent));
+}
+
+bool EsvoStream::has_room(std::size_t block) const {
+  return std::any_of(free_.begin(), free_.end(),
+                     [&](const auto& range) { return range.second >= directory_[block].slots; });
+}
+
+std::uint64_t EsvoStream::allocate(std::uint32_t slots) {
+  for (auto range = free_.begin(); range != free_.end(); ++range) {
+    if (range->second < slots) continue;
+    const auto [begin, length] = *range;
+    free_.erase(range);
+    if (length > slots) free_[begin + slots] = length - slots;
+    return begin;
+  }
+  assert(false);
+  return 0;
+}
+
+void EsvoStream::release(std::uint64_t position, std::uint32_t slots) {
+  auto range = free_.emplace(position, slots).first;
+  const auto next = std::next(range);
+  if (next != free_.end() && range->first + range->second == next->first) {
+    range->second += next->second;
+    free_.erase(next);
+  }
+  if (range == free_.begin()) return;
+  const auto before = std::prev(range);
+  if (before->first + before->second != range->first) return;
+  before->second += range->second;
+  free_.erase(range);
+}
+
+void EsvoStream::cut(std::size_t block) {
+  Block& b = blocks_[block];
+  const std::uint64_t slot = blocks_[static_cast<std::size_t>(b.parent)].position + b.parent_slot;
+  ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
+  b.descriptor = descriptor.children;
+  descriptor.children = (descriptor.children & ~0xFFu) | descriptor.valid_mask();
+  pool_[slot] = descriptor.to_slot();
+  is_cut_[slot] = true;
+  cut_[slot] = static_cast<std::int64_t>(block);
+}
+
+void EsvoStream::hang(std::size_t block, std::uint32_t first_descriptor) {
+  const Block& b = blocks_[block];
+  const std::uint64_t slot = blocks_[static_cast<std::size_t>(b.parent)].position + b.parent_slot;
+  ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
+  descriptor.children = b.descriptor;
+  const std::int64_t distance =
+      static_cast<std::int64_t>(b.position + first_descriptor) - static_cast<std::int64_t>(slot);
+  pool_[slot + descriptor.child_pointer()] =
+      static_cast<std::uint32_t>(static_cast<std::int32_t>(distance));
+  pool_[slot] = descriptor.to_slot();
+  is_cut_[slot] = false;
+  cut_.erase(slot);
+}
+
+void EsvoStream::load(std::size_t block) {
+  assert(!is_loaded(block) && can_load(block));
+  const EsvoBlockEntry& entry = directory_[block];
+  Block& b = blocks_[block];
+  const std::string place = "block " + std::to_string(block);
+  const std::uint64_t position = allocate(entry.slots);
+  const std::span<std::uint64_t> slots(pool_.data() + position, entry.slots);
+  EsvoBlockCheck check;
+  try {
+    read(slots_offset_ + entry.begin * 8, slots.data(), slots.size_bytes());
+    if (xxh3_64(std::as_bytes(slots)) != entry.checksum) fail(place, "checksum is wrong");
+    check = check_esvo_block(slots, entry, b.siblings, metadata_.grid.levels);
+    if (check.links.size() != b.children.size())
+      fail(place, "the directory tells otherwise of the blocks below");
+    for (EsvoFarLink& link : check.links) {
+      const auto child = std::find_if(b.children.begin(), b.children.end(), [&](std::uint32_t c) {
+        return blocks_[c].parent_slot == link.slot;
+      });
+      if (child == b.children.end() || directory_[*child].level != link.level ||
+          directory_[*child].cell != link.cell)
+        fail(place + ", slot " + std::to_string(link.slot),
+             "the directory tells otherwise of the block of its children");
+      blocks_[*child].siblings = std::move(link.siblings);
+    }
+  } catch (const Error& error) {
+    release(position, entry.slots);
+    if (!error.file().empty()) throw;
+    fail(place + (error.place().empty() ? "" : ", " + error.place()), error.reason());
+  }
+  b.position = position;
+  for (const std::uint32_t child : b.children) cut(child);
+  if (b.parent >= 0) {
+    hang(block, view().info(position).first_descriptor);
+    ++blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
+  }
+  ++counts_.blocks_loaded;
+  counts_.blocks_used += b.was_loaded ? 0 : 1;
+  b.was_loaded = true;
+  ++counts_.blocks_read;
+  counts_.bytes_loaded += slots.size_bytes();
+  counts_.bytes_read += slots.size_bytes();
+}
+
+bool EsvoStream::can_evict(std::size_t block) const {
+  return is_loaded(block) && blocks_[block].parent >= 0 && blocks_[block].loaded_children == 0;
+}
+
+void EsvoStream::evict(std::size_t block) {
+  assert(can_evict(block));
+  Block& b = blocks_[block];
+  for (const std::uint32_t child : b.children) {
+    const std::uint64_t slot = b.position + blocks_[child].parent_slot;
+    is_cut_[slot] = false;
+    cut_.erase(slot);
+  }
+  // cut() remembers the descriptor with its far pointer's place, which is all that hang() needs.
+  cut(block);
+  --blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
+  release(b.position, directory_[block].slots);
+  b.position = kNowhere;
+  --counts_.blocks_loaded;
+  ++counts_.blocks_evicted;
+  counts_.bytes_loaded -= std::uint64_t{directory_[block].slots} * 8;
+}
+
+}  // namespace voxdag

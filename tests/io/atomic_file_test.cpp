@@ -1,0 +1,296 @@
+#include "voxdag/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <string>
+
+#include "support/temp_dir.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/nameless_file.hpp"
+
+namespace voxdag {
+namespace {
+
+std::string error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(AtomicFile, AppearsOnlyWhenCommitted) {
+  const TempDir dir;
+  AtomicFile file(dir / "out");
+  file.write("complete");
+  EXPECT_FALSE(std::filesystem::exists(dir / "out"));
+  file.commit();
+  EXPECT_EQ(read_text(dir / "out"), "complete");
+  EXPECT_EQ(dir.count(), 1);
+}
+
+/// Whether files without a name can be made there.
+bool has_nameless_files(const TempDir& dir) {
+  const int descriptor = open_nameless_file(dir.path());
+  if (descriptor >= 0) close(descriptor);
+  return descriptor >= 0;
+}
+
+TEST(AtomicFile, HasNoNameAtAllUntilCommitted) {
+  const TempDir dir;
+  if (!has_nameless_files(dir)) GTEST_SKIP() << "the file system has no files without a name";
+  AtomicFile file(dir / "out");
+  file.write("half");
+  EXPECT_EQ(dir.count(), 0);
+}
+
+/// From here on this process may not give names to files.
+void forbid_linkat() {
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, __NR_linkat, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  const sock_fprog program{std::size(filter), filter};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+      prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0)
+    std::exit(2);
+}
+
+TEST(AtomicFile, IsCopiedWhereFilesWithoutANameMayNotHaveOne) {
+  const TempDir dir;
+  const std::string text(3 << 20, 'x');
+  const auto write_without_names = [&] {
+    forbid_linkat();
+    AtomicFile file(dir / "out");
+    file.write(text);
+    file.commit();
+    std::exit(0);
+  };
+  EXPECT_EXIT(write_without_names(), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(read_text(dir / "out"), text);
+  EXPECT_EQ(dir.count(), 1);
+}
+
+TEST(AtomicFile, AnExceptionLeavesNothingAndKeepsTheOldFile) {
+  const TempDir dir;
+  write_text(dir / "out", "old");
+  EXPECT_THROW(
+      {
+        AtomicFile file(dir / "out");
+        file.write("new");
+        throw Cancelled();
+      },
+      Cancelled);
+  EXPECT_EQ(read_text(dir / "out"), "old");
+  EXPECT_EQ(dir.count(), 1);
+}
+
+TEST(AtomicFile, UnfinishedOnesAreRemovedBeforeASignalEndsTheProcess) {
+  const TempDir dir;
+  AtomicFile complete(dir / "complete"), partial(dir / "partial");
+  complete.write("whole");
+  complete.commit();
+  partial.write("half");
+  remove_unfinished_files();
+  EXPECT_EQ(read_text(dir / "complete"), "whole");
+  EXPECT_EQ(dir.count(), 1);
+  EXPECT_NE(error_of([&] { partial.commit(); }).find("partial"), std::string::npos);
+}
+
+TEST(AtomicFile, ReplacesTheOldFileAndKeepsItsMode) {
+  const TempDir dir;
+  write_text(dir / "out", "old");
+  chmod((dir / "out").c_str(), 0640);
+  AtomicFile file(dir / "out");
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(read_text(dir / "out"), "new");
+  struct stat info {};
+  ASSERT_EQ(stat((dir / "out").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0640u);
+}
+
+TEST(AtomicFile, ReplacesWhatASymbolicLinkPointsTo) {
+  const TempDir dir;
+  write_text(dir / "real", "old");
+  std::filesystem::create_symlink("real", dir / "link");
+  AtomicFile file(dir / "link");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "link"));
+  EXPECT_EQ(read_text(dir / "real"), "new");
+}
+
+TEST(AtomicFile, MakesWhatASymbolicLinkPointsTo) {
+  const TempDir dir;
+  std::filesystem::create_symlink("absent", dir / "link");
+  std::filesystem::create_symlink(dir / "link", dir / "second");
+  std::filesystem::create_symlink("round", dir / "round");
+  write_whole_file(dir / "second", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "link"));
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "second"));
+  EXPECT_EQ(read_text(dir / "absent"), "new");
+  EXPECT_NE(error_of([&] { AtomicFile file(dir / "round"); }).find("symbolic links"),
+            std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_symlink(dir / "round"));
+}
+
+TEST(AtomicFile, WritesToADescriptorFromWhereItStands) {
+  const TempDir dir;
+  for (const int flags : {O_RDWR, O_WRONLY | O_APPEND}) {
+    write_text(dir / "out", "0123456789");
+    const int descriptor = open((dir / "out").c_str(), flags);
+    lseek(descriptor, 4, SEEK_SET);
+    AtomicFile file("/dev/fd/" + std::to_string(descriptor));
+    file.write("abc");
+    const std::string why = error_of([&] { file.overwrite(1, "x", 1); });
+    file.commit();
+    const bool is_appended = (flags & O_APPEND) != 0;
+    EXPECT_EQ(why.find("cannot write") != std::string::npos, is_appended) << why;
+    EXPECT_EQ(read_text(dir / "out"), is_appended ? "0123456789abc" : "0123axc789");
+    EXPECT_EQ(lseek(descriptor, 0, SEEK_CUR), is_appended ? 13 : 7);
+    close(descriptor);
+  }
+}
+
+TEST(AtomicFile, HoldsWhatWasWrittenInPiecesOfAnySize) {
+  const TempDir dir;
+  std::string expected;
+  AtomicFile file(dir / "out");
+  for (const std::size_t size :
+       {1, 1000, 1 << 20, 3, (1 << 20) - 1, 5 << 20, 0, 7, 700000, 700000}) {
+    std::string piece(size, '\0');
+    for (std::size_t i = 0; i < size; ++i) piece[i] = static_cast<char>(i * 31 + expected.size());
+    file.write(piece);
+    expected += piece;
+    EXPECT_EQ(file.position(), expected.size());
+  }
+  file.write_zeros(10000);
+  expected.append(10000, '\0');
+  file.commit();
+  EXPECT_EQ(read_text(dir / "out"), expected);
+}
+
+TEST(AtomicFile, OverwritesEarlierBytes) {
+  const TempDir dir;
+  AtomicFile file(dir / "out");
+  file.write("count=??, data");
+  file.overwrite(6, "42", 2);
+  file.write("!");
+  file.commit();
+  EXPECT_EQ(read_text(dir / "out"), "count=42, data!");
+}
+
+TEST(AtomicFile, TwoOfOneNameDoNotMeet) {
+  const TempDir dir;
+  AtomicFile first(dir / "out"), second(dir / "out");
+  first.write("first");
+  second.write("second");
+  first.commit();
+  second.commit();
+  EXPECT_EQ(read_text(dir / "out"), "second");
+  EXPECT_EQ(dir.count(), 1);
+}
+
+TEST(AtomicFile, AMovedFileIsRemovedOnce) {
+  const TempDir dir;
+  {
+    AtomicFile first(dir / "out");
+    first.write("text");
+    AtomicFile second(std::move(first));
+    second.commit();
+  }
+  EXPECT_EQ(read_text(dir / "out"), "text");
+}
+
+TEST(AtomicFile, AFullDeviceIsAnError) {
+  AtomicFile file("/dev/full");
+  EXPECT_EQ(error_of([&] {
+              file.write("lost");
+              file.commit();
+            }),
+            "/dev/full: byte 0: cannot write: No space left on device");
+}
+
+TEST(AtomicFile, AFullDeviceIsAnErrorForLargeWritesToo) {
+  AtomicFile file("/dev/full");
+  const std::string large(3 << 20, 'x');
+  EXPECT_EQ(error_of([&] { file.write(large); }),
+            "/dev/full: byte 0: cannot write: No space left on device");
+}
+
+TEST(AtomicFile, AFileThatGrowsPastTheLimitIsAnErrorAndIsRemoved) {
+  const TempDir dir;
+  rlimit old_limit{};
+  getrlimit(RLIMIT_FSIZE, &old_limit);
+  const rlimit limit{3 << 20, old_limit.rlim_max};
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const std::string message = error_of([&] {
+    AtomicFile file(dir / "out");
+    const std::string piece(700000, 'x');
+    for (int i = 0; i < 10; ++i) file.write(piece);
+    file.commit();
+  });
+  setrlimit(RLIMIT_FSIZE, &old_limit);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(message, (dir / "out").string() + ": byte 3145728: cannot write: File too large");
+  EXPECT_EQ(dir.count(), 0);
+}
+
+TEST(AtomicFile, AMissingDirectoryIsKnownAtOnce) {
+  const TempDir dir;
+  EXPECT_EQ(error_of([&] { AtomicFile file(dir / "none/out"); }),
+            (dir / "none/out").string() + ": byte 0: cannot write: No such file or directory");
+}
+
+TEST(AtomicFile, ADirectoryIsNotAFile) {
+  const TempDir dir;
+  EXPECT_EQ(error_of([&] { AtomicFile file(dir.path()); }),
+            dir.path().string() + ": byte 0: cannot write: Is a directory");
+  EXPECT_EQ(error_of([&] { AtomicFile file(dir.path() / ""); }),
+            (dir.path() / "").string() + ": byte 0: cannot write: Is a directory");
+}
+
+TEST(AtomicFile, ADirectoryWithoutPermissionIsAnError) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TempDir dir;
+  chmod(dir.path().c_str(), 0500);
+  EXPECT_EQ(error_of([&] { AtomicFile file(dir / "out"); }),
+            (dir / "out").string() + ": byte 0: cannot write: Permission denied");
+}
+
+TEST(AtomicFile, ADeviceIsWrittenDirectly) {
+  AtomicFile file("/dev/null");
+  file.write("gone");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, TheLongestNameWorks) {
+  const TempDir dir;
+  const std::string name(255, 'n');
+  AtomicFile file(dir / name);
+  file.write("text");
+  file.commit();
+  EXPECT_EQ(read_text(dir / name), "text");
+}
+
+}  // namespace
+}  // namespace voxdag
