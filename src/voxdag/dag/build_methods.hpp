@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/dag/memory_budget.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "voxdag/core/int128.hpp"
-#include "voxdag/dag/memory_budget.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/dag/page_array.hpp"
 
 namespace voxdag {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/dag/memory_budget.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 

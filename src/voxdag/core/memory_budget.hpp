@@ -1,0 +1,166 @@
+#pragma once
+/// A limit on memory that readers, textures and builders share.
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <new>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+
+/// Thrown where work would hold more memory than its limit allows.
+class OverMemory : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Counts the bytes that work holds, against a limit. Thread-safe.
+class MemoryBudget {
+ public:
+  /// `limit` in bytes for everything counted here and the `base` bytes that the process holds
+  /// already; 0 means no limit.
+  explicit MemoryBudget(std::uint64_t limit = 0, std::uint64_t base = 0)
+      : limit_(limit), base_(base) {}
+
+  /// Counts `bytes` before they are allocated. Throws OverMemory, and counts nothing, if they would
+  /// exceed the limit.
+  void reserve(std::uint64_t bytes) {
+    const std::uint64_t now = used_.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+    if (limit_ != 0 && now + base_ > limit_) {
+      used_.fetch_sub(bytes, std::memory_order_relaxed);
+      exceeded_.store(true, std::memory_order_relaxed);
+      throw_over_memory(base_ + now);
+    }
+    raise_peak(now);
+  }
+  /// Returns bytes that reserve() or add() counted.
+  void release(std::uint64_t bytes) noexcept { used_.fetch_sub(bytes, std::memory_order_relaxed); }
+
+  /// Counts bytes that are allocated already. Sets exceeded() instead of throwing.
+  void add(std::uint64_t bytes) noexcept {
+    const std::uint64_t now = used_.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+    raise_peak(now);
+    if (limit_ != 0 && now + base_ > limit_) exceeded_.store(true, std::memory_order_relaxed);
+  }
+  void remove(std::uint64_t bytes) noexcept { release(bytes); }
+
+  std::uint64_t limit() const { return limit_; }
+  std::uint64_t base() const { return base_; }
+  std::uint64_t used() const { return used_.load(std::memory_order_relaxed); }
+  std::uint64_t peak() const { return peak_.load(std::memory_order_relaxed); }
+  /// Bytes that can still be reserved.
+  std::uint64_t left() const {
+    if (limit_ == 0) return std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t held = base_ + used();
+    return held < limit_ ? limit_ - held : 0;
+  }
+  /// Whether more than the limit was asked for at any time. Work that used add() looks between
+  /// tasks and stops.
+  bool exceeded() const { return exceeded_.load(std::memory_order_relaxed); }
+
+  /// Throws OverMemory: "the memory limit of A MiB is too small: at least B MiB are needed".
+  [[noreturn]] void throw_over_memory(std::uint64_t needed_bytes) const {
+    const auto mebibytes = [](std::uint64_t bytes) {
+      return std::to_string((bytes + (std::uint64_t{1} << 20) - 1) >> 20) + " MiB";
+    };
+    throw OverMemory("the memory limit of " + mebibytes(limit_) + " is too small: at least " +
+                     mebibytes(needed_bytes) + " are needed");
+  }
+
+ private:
+  void raise_peak(std::uint64_t now) noexcept {
+    std::uint64_t peak = peak_.load(std::memory_order_relaxed);
+    while (now > peak && !peak_.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {
+    }
+  }
+
+  std::uint64_t limit_, base_;
+  std::atomic<std::uint64_t> used_{0}, peak_{0};
+  std::atomic<bool> exceeded_{false};
+};
+
+/// Bytes reserved from a budget for as long as this lives. Move-only. A null budget counts nothing.
+class MemoryReservation {
+ public:
+  MemoryReservation() = default;
+  /// Throws OverMemory.
+  MemoryReservation(MemoryBudget* budget, std::uint64_t bytes) : budget_(budget), bytes_(bytes) {
+    if (budget_ != nullptr) budget_->reserve(bytes_);
+  }
+  MemoryReservation(MemoryReservation&& other) noexcept
+      : budget_(std::exchange(other.budget_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
+  MemoryReservation& operator=(MemoryReservation&& other) noexcept {
+    std::swap(budget_, other.budget_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  ~MemoryReservation() {
+    if (budget_ != nullptr) budget_->release(bytes_);
+  }
+
+  /// Reserves or releases the difference to what is reserved now. Throws OverMemory.
+  void resize(std::uint64_t bytes) {
+    if (budget_ != nullptr && bytes > bytes_) budget_->reserve(bytes - bytes_);
+    if (budget_ != nullptr && bytes < bytes_) budget_->release(bytes_ - bytes);
+    bytes_ = bytes;
+  }
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  MemoryBudget* budget_ = nullptr;
+  std::uint64_t bytes_ = 0;
+};
+
+/// An allocator that reserves from a budget what it allocates: CountedVector cannot outgrow the
+/// limit. A null budget counts nothing. Containers keep the budget when they are moved or swapped.
+template <class T>
+class CountedAllocator {
+ public:
+  using value_type = T;
+  using propagate_on_container_copy_assignment = std::true_type;
+  using propagate_on_container_move_assignment = std::true_type;
+  using propagate_on_container_swap = std::true_type;
+
+  CountedAllocator(MemoryBudget* budget = nullptr) noexcept : budget_(budget) {}
+  template <class U>
+  CountedAllocator(const CountedAllocator<U>& other) noexcept : budget_(other.budget()) {}
+
+  /// Throws OverMemory or std::bad_alloc.
+  T* allocate(std::size_t count) {
+    if (count > std::numeric_limits<std::size_t>::max() / sizeof(T))
+      throw std::bad_array_new_length();
+    const std::size_t bytes = count * sizeof(T);
+    if (budget_ != nullptr) budget_->reserve(bytes);
+    try {
+      return static_cast<T*>(::operator new (bytes, std::align_val_t{alignof(T)}));
+    } catch (...) {
+      if (budget_ != nullptr) budget_->release(bytes);
+      throw;
+    }
+  }
+  // Not inlined: GCC 12 takes the vector's own pointers for freed ones where it sees all of this.
+  [[gnu::noinline]] void deallocate(T* memory, std::size_t count) noexcept {
+    ::operator delete (memory, std::align_val_t{alignof(T)});
+    if (budget_ != nullptr) budget_->release(count * sizeof(T));
+  }
+
+  MemoryBudget* budget() const { return budget_; }
+  friend bool operator==(const CountedAllocator& a, const CountedAllocator& b) {
+    return a.budget_ == b.budget_;
+  }
+
+ private:
+  MemoryBudget* budget_;
+};
+
+template <class T>
+using CountedVector = std::vector<T, CountedAllocator<T>>;
+
+}  // namespace voxdag

@@ -1,0 +1,23 @@
+#pragma once
+/// What readers may do and use.
+#include <filesystem>
+#include <vector>
+
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+struct ReadOptions {
+  Progress* progress = nullptr;    ///< Null: nobody listens.
+  MemoryBudget* memory = nullptr;  ///< Counts what is read and the scratch memory. Null: no limit.
+  /// Whether a mesh file may name files outside of its own folder. False: such a name is an error.
+  bool allow_outside = false;
+  /// Whether assimp may use all its importers. False: only those that survive fuzzing.
+  bool any_assimp_importer = false;
+  /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
+  /// that the caller does not overwrite them. They need not exist.
+  std::vector<std::filesystem::path>* named_files = nullptr;
+};
+
+}  // namespace voxdag
