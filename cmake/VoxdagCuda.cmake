@@ -1,7 +1,7 @@
 # VOXDAG_HAS_CUDA: nvcc was found, and CUDA is a language of this build. Nothing needs it: without
 # it src/voxdag/cuda says that there is no device.
 set(VOXDAG_HAS_CUDA OFF)
-if(VOXDAG_CUDA)
+if(VOXDAG_CUDA AND "cuda" IN_LIST VOXDAG_ROOMS)
   find_program(VOXDAG_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda/bin)
   if(VOXDAG_NVCC)
     if(NOT CMAKE_CUDA_ARCHITECTURES)
@@ -21,7 +21,6 @@ if(VOXDAG_CUDA)
     endif()
     # The runtime is linked statically: what is built runs where no CUDA is installed.
     find_package(CUDAToolkit REQUIRED)
-    list(APPEND VOXDAG_LIBRARY_PACKAGES CUDAToolkit)
     set(VOXDAG_HAS_CUDA ON)
   else()
     message(STATUS "voxdag: nvcc not found: no `--device cuda`")

@@ -1,29 +1,38 @@
-# Every package comes from Debian 12. What is optional is found or skipped with one line.
+# Finds the packages of the parts that are built. All come from Debian 12. Optional ones are found or
+# skipped with one line.
+set(optional_packages assimp embree CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
 
-# What the library links: an installed voxdag looks for the same packages (voxdagConfig.cmake.in).
-set(VOXDAG_LIBRARY_PACKAGES
-  Threads TBB hwy PNG JPEG OpenEXR nlohmann_json FastFloat)
+# The packages that an installed voxdag needs, by part: voxdagConfig.cmake.in reads them.
+set(VOXDAG_LIBRARY_PACKAGES Threads)
+foreach(room ${VOXDAG_ROOMS})
+  list(APPEND VOXDAG_LIBRARY_PACKAGES ${VOXDAG_ROOM_${room}_PACKAGES})
+endforeach()
+list(REMOVE_DUPLICATES VOXDAG_LIBRARY_PACKAGES)
+
 foreach(package ${VOXDAG_LIBRARY_PACKAGES})
+  if(package IN_LIST optional_packages)
+    continue()
+  endif()
   if(package STREQUAL "OpenEXR")
-    # Debian's Imath names a Python library of a package that nobody needs, at length.
+    # Debian's Imath prints a paragraph about a Python library that voxdag does not use.
     set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
   endif()
   find_package(${package} REQUIRED)
   unset(CMAKE_MESSAGE_LOG_LEVEL)
 endforeach()
 
-find_package(assimp QUIET)
-if(assimp_FOUND)
-  list(APPEND VOXDAG_LIBRARY_PACKAGES assimp)
-else()
-  message(STATUS "voxdag: assimp not found: meshes other than OBJ, PLY, STL and glTF will be refused")
+if("assimp" IN_LIST VOXDAG_LIBRARY_PACKAGES)
+  find_package(assimp QUIET)
+  if(NOT assimp_FOUND)
+    message(STATUS "voxdag: assimp not found: voxdag reads OBJ, PLY, STL, OFF and glTF only")
+  endif()
 endif()
 
-find_package(embree 3 QUIET)
-if(embree_FOUND)
-  list(APPEND VOXDAG_LIBRARY_PACKAGES embree)
-else()
-  message(STATUS "voxdag: Embree 3 (libembree-dev) not found: no `render --primary mesh`, no comparison with it in `bench trace`")
+if("embree" IN_LIST VOXDAG_LIBRARY_PACKAGES)
+  find_package(embree 3 QUIET)
+  if(NOT embree_FOUND)
+    message(STATUS "voxdag: Embree 3 (libembree-dev) not found: no `render --mesh`, no comparison with it in `bench trace`")
+  endif()
 endif()
 
 if(VOXDAG_BUILD_APPS)

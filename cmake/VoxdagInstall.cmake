@@ -1,17 +1,37 @@
-# `cmake --install`: the command line, the headers, the static libraries and the package that
-# find_package(voxdag CONFIG) finds. voxdag::voxdag is all parts; voxdag::trace and so on are one.
+# `cmake --install` installs the command line, the public headers, the static libraries and the
+# package that find_package(voxdag CONFIG) finds. voxdag::voxdag is all parts; voxdag::trace and so
+# on are one part each.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/voxdag)
-get_property(parts GLOBAL PROPERTY VOXDAG_PARTS)
+get_property(parts GLOBAL PROPERTY VOXDAG_TARGETS)
+
+# What voxdagConfig.cmake knows of each part.
+set(VOXDAG_ROOM_TABLE "")
+foreach(room ${VOXDAG_ROOMS})
+  set(packages ${VOXDAG_ROOM_${room}_PACKAGES})
+  foreach(optional assimp embree CUDAToolkit)
+    if(NOT ${optional}_FOUND)
+      list(REMOVE_ITEM packages ${optional})
+    endif()
+  endforeach()
+  string(APPEND VOXDAG_ROOM_TABLE "set(voxdag_${room}_rooms ${VOXDAG_ROOM_${room}_ROOMS})\n"
+                                  "set(voxdag_${room}_packages ${packages})\n")
+endforeach()
 
 install(TARGETS voxdag ${parts} EXPORT voxdagTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT voxdagTargets NAMESPACE voxdag:: DESTINATION ${package_dir})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/voxdag DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.hpp")
+# The public headers and what they include; the other headers are not installed.
+install(CODE "
+  set(LIST \"${PROJECT_SOURCE_DIR}/cmake/public_headers.txt\")
+  set(SOURCE \"${PROJECT_SOURCE_DIR}/src\")
+  set(ROOMS \"${VOXDAG_ROOMS}\")
+  set(STAGE \"${PROJECT_BINARY_DIR}/installed_headers\")
+  include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")")
+install(DIRECTORY ${PROJECT_BINARY_DIR}/installed_headers/voxdag DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(VOXDAG_BUILD_APPS)
   install(TARGETS voxdag_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -18,5 +18,5 @@ function(voxdag_library name)
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_link_libraries(${target} ${scope} ${ARG_LINK})
-  set_property(GLOBAL APPEND PROPERTY VOXDAG_PARTS ${target})
+  set_property(GLOBAL APPEND PROPERTY VOXDAG_TARGETS ${target})
 endfunction()

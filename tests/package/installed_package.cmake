@@ -1,5 +1,5 @@
-# Installs the build in BUILD_DIR under WORK_DIR, builds SOURCE_DIR/examples against what was
-# installed, and runs it.
+# Installs the build in BUILD_DIR under WORK_DIR, builds SOURCE_DIR/examples and two small projects
+# against what was installed, and runs them.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
   if(NOT status EQUAL 0)
@@ -21,3 +21,45 @@ if(NOT out MATCHES "voxel 512 0 512 at t = (0\\.99|1)")
   message(FATAL_ERROR "the example prints something else:\n${out}")
 endif()
 run(${WORK_DIR}/prefix/bin/voxdag verify ${WORK_DIR}/cube.vdag --mesh ${SOURCE_DIR}/examples/cube.obj)
+
+# Every public header compiles in a project that has only what was installed.
+file(STRINGS ${SOURCE_DIR}/cmake/public_headers.txt headers REGEX "^[a-z]")
+set(text "")
+foreach(header ${headers})
+  string(APPEND text "#include \"voxdag/${header}\"\n")
+endforeach()
+file(WRITE ${WORK_DIR}/headers/headers.cpp "${text}int main() {}\n")
+file(WRITE ${WORK_DIR}/headers/CMakeLists.txt "cmake_minimum_required(VERSION 3.22)
+project(headers LANGUAGES CXX)
+find_package(voxdag CONFIG REQUIRED)
+add_executable(headers headers.cpp)
+target_link_libraries(headers PRIVATE voxdag::voxdag)
+")
+run(${CMAKE_COMMAND} -S ${WORK_DIR}/headers -B ${WORK_DIR}/headers/build -G ${GENERATOR}
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/headers/build)
+file(GLOB_RECURSE internal ${WORK_DIR}/prefix/*-inl.hpp)
+if(internal)
+  message(FATAL_ERROR "internal headers were installed: ${internal}")
+endif()
+
+# A program that builds DAGs needs no package for images, meshes or files, neither to configure nor
+# to run.
+set(disabled "")
+foreach(package PNG JPEG OpenEXR nlohmann_json FastFloat assimp embree CUDAToolkit)
+  list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/dag_only -B ${WORK_DIR}/dag_only -G ${GENERATOR}
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix ${disabled})
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/dag_only)
+run(${WORK_DIR}/dag_only/dag_only)
+if(NOT out MATCHES "^1352 voxels")  # 16³ without the 14³ inside
+  message(FATAL_ERROR "dag_only prints something else:\n${out}")
+endif()
+run(readelf -d ${WORK_DIR}/dag_only/dag_only)
+string(REGEX MATCHALL "NEEDED[^\n]*" needed "${out}")
+foreach(library ${needed})
+  if(NOT library MATCHES "lib(tbb|hwy|stdc\\+\\+|m|gcc_s|c|atomic|pthread)\\.so|ld-linux")
+    message(FATAL_ERROR "a program that links voxdag::dag needs ${library}")
+  endif()
+endforeach()

@@ -1,0 +1,79 @@
+#include "rooms.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/temp_dir.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSourceDir = VOXDAG_SOURCE_DIR;
+const fs::path kTable = kSourceDir / "src/voxdag/rooms.txt";
+
+void write_source(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  write_text(file, text);
+}
+
+TEST(Rooms, EverySourceIncludesOnlyWhatItsRoomMay) {
+  const auto broken = broken_includes(kSourceDir / "src/voxdag", read_rooms(kTable));
+  for (const std::string& line : broken) ADD_FAILURE() << line;
+}
+
+TEST(Rooms, EveryTargetLinksOnlyWhatItsRoomMay) {
+  const auto broken = broken_links(kSourceDir / "src/voxdag", read_rooms(kTable));
+  for (const std::string& line : broken) ADD_FAILURE() << line;
+}
+
+TEST(Rooms, ForbiddenLinksAreFound) {
+  const TempDir tree;
+  write_source(tree / "voxelize/CMakeLists.txt",
+               "voxdag_library(voxelize\n  SOURCES a.cpp\n  LINK voxdag_mesh PNG::PNG)\n"
+               "target_link_libraries(voxdag_voxelize PRIVATE voxdag_file)\n"
+               "target_compile_options(voxdag_voxelize PRIVATE -O3)\n");
+  const auto broken = broken_links(tree.path(), read_rooms(kTable));
+  ASSERT_EQ(broken.size(), 2u);
+  EXPECT_EQ(broken[0], "voxelize/CMakeLists.txt: links PNG::PNG");
+  EXPECT_EQ(broken[1], "voxelize/CMakeLists.txt: links voxdag_file");
+}
+
+TEST(Rooms, UseWhatTheirRoomsUse) {
+  const Rooms rooms = read_rooms(kTable);
+  EXPECT_TRUE(rooms.at("esvo").rooms.count("image"));
+  EXPECT_TRUE(rooms.at("cpu").rooms.count("layout"));
+}
+
+TEST(Rooms, AViewerNeedsNoBuilder) {
+  const Rooms rooms = read_rooms(kTable);
+  for (const char* viewer : {"trace", "render", "file"})
+    for (const char* builder : {"mesh", "readers", "voxelize", "dag", "esvo"})
+      EXPECT_FALSE(rooms.at(viewer).rooms.count(builder)) << viewer << " may include " << builder;
+}
+
+TEST(Rooms, TheDagBuilderNeedsNoFileFormats) {
+  const Rooms rooms = read_rooms(kTable);
+  for (const char* builder : {"voxelize", "dag"})
+    for (const char* format : {"io", "image", "readers", "file"})
+      EXPECT_FALSE(rooms.at(builder).rooms.count(format)) << builder << " may include " << format;
+}
+
+TEST(Rooms, AForbiddenIncludeIsFoundWithItsLine) {
+  const TempDir tree;
+  write_source(tree / "mesh/mesh.hpp", "#include \"voxdag/mesh/other.hpp\"\n");
+  write_source(tree / "mesh/other.hpp", "#include <vector>\n");
+  write_source(tree / "trace/cast.hpp", "#pragma once\n  #  include \"voxdag/mesh/mesh.hpp\"\n");
+  const auto broken = broken_includes(tree.path(), read_rooms(kTable));
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0], "trace/cast.hpp:2: includes voxdag/mesh/mesh.hpp");
+}
+
+TEST(Rooms, AFolderThatTheTableDoesNotNameIsFound) {
+  const TempDir tree;
+  write_source(tree / "misc/odd.cpp", "");
+  EXPECT_EQ(broken_includes(tree.path(), read_rooms(kTable)).size(), 1u);
+}
+
+}  // namespace
+}  // namespace voxdag
