@@ -1,6 +1,7 @@
-/// What the documentation shows is what the program takes.
+/// Checks the documentation against the program and the files of the repository.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -15,9 +16,18 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kSource = VOXDAG_SOURCE_DIR;
-const fs::path kDocuments[] = {kSource / "README.md", kSource / "docs/cli.md"};
 
-/// The blocks of a Markdown text that are fenced as ```LANGUAGE.
+/// Every Markdown page of the repository.
+std::vector<fs::path> documents() {
+  std::vector<fs::path> pages = {kSource / "README.md", kSource / "HACKING.md",
+                                 kSource / "CHANGELOG.md", kSource / "bench/README.md",
+                                 kSource / "bench/results/README.md"};
+  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs"))
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  return pages;
+}
+
+/// Returns the blocks of a Markdown text that are fenced as ```LANGUAGE.
 std::vector<std::string> fenced_blocks(const std::string& text, const std::string& language) {
   std::vector<std::string> blocks;
   std::istringstream lines(text);
@@ -34,7 +44,7 @@ std::vector<std::string> fenced_blocks(const std::string& text, const std::strin
   return blocks;
 }
 
-/// The words of every line "voxdag COMMAND ..." up to a comment or a pipe.
+/// Returns the words of every line "voxdag COMMAND ..." up to a comment or a pipe.
 std::vector<std::vector<std::string>> documented_commands(const std::string& text) {
   std::vector<std::vector<std::string>> commands;
   for (const std::string& block : fenced_blocks(text, "")) {
@@ -51,17 +61,19 @@ std::vector<std::vector<std::string>> documented_commands(const std::string& tex
 
 TEST(Docs, EveryCommandShownHasTheOptionsShown) {
   std::set<std::string> seen;
-  for (const fs::path& document : kDocuments)
+  for (const fs::path& document : documents())
     for (const std::vector<std::string>& command : documented_commands(read_text(document))) {
       seen.insert(command[1]);
-      // `voxdag bench build` has its options one command further down.
+      // The options of `voxdag bench build` belong to its second word.
       const bool nested = command[1] == "bench";
       const std::string help =
           run_voxdag(nested ? std::vector{command[1], command[2], std::string("--help")}
                             : std::vector{command[1], std::string("--help")})
               .out;
       for (const std::string& word : command) {
-        if (!word.starts_with('-')) continue;
+        // "-o" and "--eye", but not "-20,3,1".
+        if (word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])))
+          continue;
         const std::regex option("(^|[ ,])" + word + "[ ,\n]");
         EXPECT_TRUE(std::regex_search(help, option))
             << document << ": " << command[1] << " " << word;
@@ -81,12 +93,45 @@ TEST(Docs, TheExampleIsUnderFortyLines) {
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 40);
 }
 
-TEST(Docs, EveryFileLinkedToIsThere) {
-  const std::regex link(R"(\]\(([^):#]+)\))");
-  for (const fs::path& document : kDocuments) {
+/// Returns the anchor that GitHub gives a heading: lower case, spaces as hyphens, no punctuation.
+std::string anchor_of(const std::string& heading) {
+  std::string anchor;
+  for (const char c : heading)
+    if (c == ' ')
+      anchor += '-';
+    else if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_')
+      anchor += static_cast<char>(std::tolower(c));
+  return anchor;
+}
+
+std::set<std::string> anchors_of(const std::string& text) {
+  std::set<std::string> anchors;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with('#')) anchors.insert(anchor_of(line.substr(line.find(' ') + 1)));
+  return anchors;
+}
+
+TEST(Docs, EveryLinkLeadsToAFileAndItsHeading) {
+  const std::regex link(R"(\]\(([^):#]*)(#([^)]+))?\))");
+  for (const fs::path& document : documents()) {
     const std::string text = read_text(document);
-    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it)
-      EXPECT_TRUE(fs::exists(document.parent_path() / (*it)[1].str())) << (*it)[1];
+    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
+      const std::string file = (*it)[1], heading = (*it)[3];
+      const fs::path target = file.empty() ? document : document.parent_path() / file;
+      EXPECT_TRUE(fs::exists(target)) << document << ": " << file;
+      const bool found = heading.empty() || anchors_of(read_text(target)).count(heading) != 0;
+      EXPECT_TRUE(found) << document << ": " << file << "#" << heading;
+    }
+  }
+}
+
+TEST(Docs, TheIndexNamesEveryPage) {
+  const std::string index = read_text(kSource / "docs/README.md");
+  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs")) {
+    const std::string name = entry.path().filename();
+    if (!name.ends_with(".md") || name == "README.md") continue;
+    EXPECT_NE(index.find("(" + name + ")"), std::string::npos) << name;
   }
 }
 

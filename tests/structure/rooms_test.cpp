@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+#include <sstream>
+
 #include "support/temp_dir.hpp"
 
 namespace voxdag {
@@ -15,6 +18,28 @@ const fs::path kTable = kSourceDir / "src/voxdag/rooms.txt";
 void write_source(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
   write_text(file, text);
+}
+
+/// Returns the rooms that the picture in HACKING.md shows: lines "  folder/  text  -> a b".
+Rooms read_map(const fs::path& document) {
+  const std::regex folder(R"(^  (\w+)/ .* -> ([\w ]+)$)");
+  std::istringstream lines(read_text(document));
+  std::string table;
+  for (std::string line; std::getline(lines, line);)
+    if (std::smatch parts; std::regex_match(line, parts, folder))
+      table += parts[1].str() + ": " + (parts[2] == "nothing" ? "" : parts[2].str()) + "\n";
+  const TempDir dir;
+  write_text(dir / "map.txt", table);
+  return read_rooms(dir / "map.txt");
+}
+
+TEST(Rooms, TheMapInHackingShowsTheTable) {
+  const Rooms map = read_map(kSourceDir / "HACKING.md"), table = read_rooms(kTable);
+  for (const auto& [folder, room] : table)
+    EXPECT_TRUE(map.count(folder) != 0 && map.at(folder).rooms == room.rooms)
+        << "HACKING.md: correct the line of " << folder << "/ in the map";
+  for (const auto& [folder, room] : map)
+    EXPECT_TRUE(table.count(folder)) << "HACKING.md: remove " << folder << "/ from the map";
 }
 
 TEST(Rooms, EverySourceIncludesOnlyWhatItsRoomMay) {
