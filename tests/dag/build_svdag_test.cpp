@@ -55,7 +55,7 @@ std::vector<QuantizedTriangle> random_triangles(std::mt19937_64& random, int lev
   return triangles;
 }
 
-constexpr BuildOptions kBySorting{BuildMethod::kSort, 0};
+constexpr BuildOptions kBySorting{BuildMethod::kSort, nullptr};
 
 TEST(BuildSvdag, IsTheMinimalDagOfTheBruteForceCover) {
   std::mt19937_64 random(1);
@@ -162,7 +162,7 @@ TEST(BuildSvdag, TheWordsDependOnNeitherThreadsNorVectorWidth) {
 TEST(BuildSvdag, TrianglesOutsideTheGridGiveNoVoxels) {
   const Mesh outside{{{20, 20, 20}, {30, 20, 20}, {20, 30, 20}}, {{0, 1, 2}}, {}, {}};
   for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
-    const Svdag dag = build_svdag(outside, unit_grid(4), {method, 0}).dag;
+    const Svdag dag = build_svdag(outside, unit_grid(4), {method, nullptr}).dag;
     EXPECT_TRUE(dag.view().is_empty());
     EXPECT_EQ(count_svdag(dag.view()).voxels, 0u);
     validate_svdag(dag.view());
@@ -174,7 +174,7 @@ TEST(BuildSvdag, ATriangleThatReachesFarOutOfTheGridIsClipped) {
   const Mesh mesh{
       {{-1e9f, 5.5f, -1e9f}, {1e9f, 5.5f, -1e9f}, {0, 5.5f, 1e9f}}, {{0, 1, 2}}, {}, {}};
   for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
-    const Svdag dag = build_svdag(mesh, unit_grid(6), {method, 0}).dag;
+    const Svdag dag = build_svdag(mesh, unit_grid(6), {method, nullptr}).dag;
     EXPECT_EQ(count_svdag(dag.view()).voxels, 64u * 64u);
   }
 }
@@ -192,8 +192,9 @@ TEST(BuildSvdag, RefusesAMemoryLimitItCannotKeep) {
   std::mt19937_64 random(5);
   const Mesh mesh = mesh_of(random_triangles(random, 12, 40));
   for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
+    MemoryBudget memory(1000);
     try {
-      build_svdag(mesh, unit_grid(12), {method, 1000});
+      build_svdag(mesh, unit_grid(12), {method, &memory});
       FAIL();
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("memory limit"), std::string::npos);
@@ -207,7 +208,7 @@ TEST(BuildSvdag, StopsWhenCancelled) {
   for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(build_svdag(mesh, unit_grid(12), {method, 0}, &progress), Cancelled);
+    EXPECT_THROW(build_svdag(mesh, unit_grid(12), {method, nullptr}, &progress), Cancelled);
   }
 }
 

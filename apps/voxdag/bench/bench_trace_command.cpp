@@ -11,6 +11,7 @@
 #include "bench/trace/bench_trace.hpp"
 #include "bench/trace/trace_casters.hpp"
 #include "cli/commands.hpp"
+#include "cli/memory_option.hpp"
 #include "cli/number_check.hpp"
 #include "cli/parse.hpp"
 #include "inspect/scene_file.hpp"
@@ -46,11 +47,6 @@ constexpr std::array kScenes{ListedScene{"crytek_sponza", "sponza.obj"},
                              ListedScene{"sanmiguel_core", "sanmiguel_core.ply"},
                              ListedScene{"lucy", "lucy.ply"}, ListedScene{"hairball", nullptr}};
 
-/// The part of the machine's memory that a build may take.
-std::uint64_t memory_limit() {
-  return machine_json().at("memory_bytes").get<std::uint64_t>() / 10 * 7;
-}
-
 Mesh mesh_of(const ListedScene& scene, const fs::path& folder, Progress& progress) {
   if (scene.file == nullptr) return make_scene(scene.name);
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
@@ -61,8 +57,9 @@ Mesh mesh_of(const ListedScene& scene, const fs::path& folder, Progress& progres
 /// Builds the scene and measures it.
 void bench_listed(const ListedScene& listed, const Mesh& mesh, int levels, const TracePlan& plan,
                   Progress& progress, TraceResults& results) {
+  MemoryBudget memory = command_budget(0);
   BuildOptions build;
-  build.memory_limit = memory_limit();
+  build.memory = &memory;
   VdagMetadata metadata;
   metadata.grid = fit_grid(mesh, levels);
   const Svdag dag = build_svdag(mesh, metadata.grid, build, &progress).dag;

@@ -8,6 +8,7 @@
 #include "build/build_esvo.hpp"
 #include "cli/commands.hpp"
 #include "cli/human.hpp"
+#include "cli/memory_option.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/process_usage.hpp"
@@ -27,7 +28,8 @@ struct BuildArguments {
   std::optional<int> levels;
   std::optional<double> voxel_size;
   std::optional<Box3d> bounds;
-  BuildOptions options;
+  BuildMethod method = BuildMethod::kHashConsed;
+  std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
   bool as_esvo = false;
   EsvoArguments esvo;
@@ -44,6 +46,11 @@ BuildMethod parse_method(const std::string& text) {
   if (text != "hash" && text != "sort")
     throw std::invalid_argument(fmt::format("\"{}\" is neither hash nor sort", text));
   return text == "sort" ? BuildMethod::kSort : BuildMethod::kHashConsed;
+}
+
+std::uint64_t bytes_of(const Mesh& mesh) {
+  return mesh.vertices.capacity() * sizeof(Vec3f) + mesh.triangles.capacity() * sizeof(Triangle) +
+         mesh.triangle_materials.capacity() * sizeof(std::uint32_t);
 }
 
 /// Wall-clock seconds of what a build does, one after the other.
@@ -103,7 +110,8 @@ void build_as_esvo(const BuildArguments& arguments, Session& session) {
     return choose_grid(mesh, surface, arguments);
   };
   build.settings = settings_of(arguments);
-  build.memory_limit = arguments.options.memory_limit;
+  build.memory_limit =
+      arguments.memory_limit != 0 ? arguments.memory_limit : default_memory_limit();
   build.stats = arguments.stats;
   build_esvo_file(arguments.esvo, build, session);
 }
@@ -144,7 +152,9 @@ void build(const BuildArguments& arguments, Session& session) {
   Stopwatch watch;
   StageSeconds seconds;
 
+  MemoryBudget memory = command_budget(arguments.memory_limit);
   Mesh mesh = read_mesh(session.subject, &progress);
+  MemoryReservation mesh_memory(&memory, bytes_of(mesh));
   seconds.read = watch.lap();
 
   DagReport report;
@@ -153,8 +163,10 @@ void build(const BuildArguments& arguments, Session& session) {
                             mesh.vertices.size(), mesh.triangles.size()};
   report.metadata.program = "voxdag " VOXDAG_VERSION;
   report.metadata.build = settings_of(arguments);
-  const BuildResult result = build_svdag(mesh, report.metadata.grid, arguments.options, &progress);
+  const BuildResult result =
+      build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
   mesh = {};
+  mesh_memory.resize(0);
   seconds.build = watch.lap();
 
   progress.throw_if_cancelled();
@@ -205,11 +217,10 @@ void add_build_command(CLI::App& app, Session& session) {
   add_parsed_option(
       command, "--bounds", arguments->bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
       "Where the grid is: a cube from the lower corner on (default: the mesh's bounds)");
-  add_parsed_option(command, "--method", arguments->options.method, parse_method, "hash|sort",
+  add_parsed_option(command, "--method", arguments->method, parse_method, "hash|sort",
                     "hash: depth-first with a hash of nodes; sort: the paper's. Same result")
       ->group(kOfDags);
-  add_parsed_option(command, "--memory", arguments->options.memory_limit, parse_memory, "LIMIT",
-                    "Stop instead of using more memory: 512M, 16GiB");
+  add_memory_option(command, arguments->memory_limit);
   command.add_flag("--stats", arguments->stats, "Show the nodes of each level too");
   add_esvo_options(command, arguments->esvo);
   add_threads_option(command, session);

@@ -1,23 +1,11 @@
 #include "voxdag/dag/build_svdag.hpp"
 
-#include <unistd.h>
-
-#include <cstdio>
-#include <fstream>
 #include <string>
 
 #include "voxdag/dag/build_methods.hpp"
 
 namespace voxdag {
 namespace {
-
-/// Bytes of memory that the process has resident, 0 where the system does not tell.
-std::uint64_t resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t total = 0, resident = 0;
-  if (!(statm >> total >> resident)) return 0;
-  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
 
 std::string mebibytes(std::uint64_t bytes) {
   return std::to_string((bytes + (std::uint64_t{1} << 20) - 1) >> 20) + " MiB";
@@ -39,10 +27,8 @@ void throw_over_memory(const MemoryBudget& budget, double fraction) {
 
 BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options,
                         Progress* progress) {
-  // The mesh, the program, and what stacks and half-filled pages of tables take uncounted.
-  constexpr std::uint64_t kUncounted = std::uint64_t{12} << 20;
-  const std::uint64_t base = resident_bytes() + kUncounted;
-  MemoryBudget budget(options.memory_limit, base);
+  MemoryBudget unlimited;
+  MemoryBudget& budget = options.memory != nullptr ? *options.memory : unlimited;
   budget.add(0);
   if (budget.exceeded()) throw_over_memory(budget, 0);
   StopWatch watch;

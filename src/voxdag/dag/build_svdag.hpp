@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -21,8 +22,9 @@ enum class BuildMethod {
 
 struct BuildOptions {
   BuildMethod method = BuildMethod::kHashConsed;
-  /// Bytes that the process may use in all, the mesh included; 0 means no limit.
-  std::uint64_t memory_limit = 0;
+  /// Counts the memory of the build and sets its limit. The mesh is not counted here: its owner
+  /// does that. Null: no limit.
+  MemoryBudget* memory = nullptr;
 };
 
 /// What a build took. Seconds are wall-clock.
