@@ -143,9 +143,17 @@ TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
       2, "%04d");
   expect_failure(
       run_voxdag({"render", path("in.vdag"), "--path", path("absent.json"), "-o", path("%d.png")}),
-      1, "absent.json: cannot be read: No such file");
+      1, "absent.json: cannot open: No such file");
   expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("."), "-o", path("%d.png")}),
-                 1, "cannot be read: Is a directory");
+                 1, "is a directory");
+  expect_failure(
+      run_voxdag({"render", path("in.vdag"), "--path", "/dev/zero", "-o", path("%d.png")}), 1,
+      "/dev/zero: is neither a regular file nor a pipe");
+  write_text(path("large.json"), "");
+  std::filesystem::resize_file(path("large.json"), 17 << 20);
+  expect_failure(
+      run_voxdag({"render", path("in.vdag"), "--path", path("large.json"), "-o", path("%d.png")}),
+      1, "more than the limit of 16 MiB for a camera path");
 }
 
 }  // namespace

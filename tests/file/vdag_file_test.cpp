@@ -99,12 +99,11 @@ TEST(VdagFile, AnOpenFileMayBeReplaced) {
 TEST(VdagFile, OtherThingsThanFilesAreRefused) {
   const TempDir dir;
   EXPECT_EQ(error_of([&] { VdagFile file(dir / "none"); }),
-            (dir / "none").string() + ": cannot read: No such file or directory");
-  EXPECT_EQ(error_of([&] { VdagFile file(dir.path()); }),
-            dir.path().string() + ": cannot read: Is a directory");
+            (dir / "none").string() + ": cannot open: No such file or directory");
+  EXPECT_EQ(error_of([&] { VdagFile file(dir.path()); }), dir.path().string() + ": is a directory");
   ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(error_of([&] { VdagFile file(dir / "pipe"); }),
-            (dir / "pipe").string() + ": cannot read: not a regular file");
+            (dir / "pipe").string() + ": is not a regular file");
   write_text(dir / "empty", "");
   EXPECT_EQ(error_of([&] { VdagFile file(dir / "empty"); }),
             (dir / "empty").string() + ": empty file");

@@ -96,7 +96,7 @@ void check_none_of(const CLI::App& command, const std::string& group) {
 /// An ESVO is written piece by piece, its beginning last, and read again. Throws Error.
 void check_regular(const std::string& path) {
   std::error_code unknown;
-  if (output_place(path).descriptor >= 0 ||
+  if (resolve_output(path).descriptor >= 0 ||
       (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)))
     throw Error(path, "", "an ESVO can only be written to a regular file");
 }

@@ -20,7 +20,7 @@ bool is_device(const fs::path& path) {
 
 fs::path place_of(const std::string& path) {
   std::error_code unknown;
-  const fs::path file = output_place(path).file;
+  const fs::path file = resolve_output(path).file;
   const fs::path place = fs::weakly_canonical(fs::absolute(file, unknown), unknown);
   return unknown ? fs::path(path).lexically_normal() : place;
 }

@@ -62,7 +62,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
 void check_writable(const std::string& path) {
   std::error_code unknown;
   // Who reads it would see its end.
-  if (output_place(path).descriptor < 0 && std::filesystem::is_fifo(path, unknown) &&
+  if (resolve_output(path).descriptor < 0 && std::filesystem::is_fifo(path, unknown) &&
       access(path.c_str(), W_OK) == 0)
     return;
   AtomicFile{path};

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/io/open_input.hpp"
 
 namespace voxdag {
 namespace {
@@ -61,18 +58,11 @@ PathKey key_of(const Json& json, const Place& place) {
   return key;
 }
 
+constexpr std::uint64_t kMaxPathFileBytes = std::uint64_t{16} << 20;
+
 Json parse(const std::string& file) {
-  std::string text;
-  try {
-    std::ifstream in;
-    in.exceptions(std::ios::failbit | std::ios::badbit);
-    errno = 0;
-    in.open(file, std::ios::binary);
-    in.exceptions(std::ios::badbit);
-    text.assign(std::istreambuf_iterator<char>(in), {});
-  } catch (const std::ios::failure&) {  // a folder can be opened, but not read
-    throw Error(file, "", "cannot be read: " + std::system_category().message(errno));
-  }
+  const std::string text =
+      read_input(file, {kMaxPathFileBytes, "a camera path"}, InputKind::kFileOrPipe);
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {

@@ -1,7 +1,5 @@
 #include "voxdag/file/npy.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/io/open_input.hpp"
 
 namespace voxdag {
 namespace {
@@ -46,33 +45,26 @@ std::size_t items_per_row(const std::vector<std::uint64_t>& row_shape) {
 NpyReader::NpyReader(const std::filesystem::path& path, const std::string& dtype,
                      const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes)
     : path_(path), row_bytes_(items_per_row(row_shape) * item_bytes) {
-  descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0)
-    throw Error(path.string(), "", "cannot read: " + std::system_category().message(errno));
-  try {
-    const NpyHeader header = read_header();
-    if (header.dtype != dtype)
-      fail("items are " + dtype_literal(header.dtype) + ", expected " + dtype_literal(dtype));
-    if (header.shape.empty() || !std::equal(header.shape.begin() + 1, header.shape.end(),
-                                            row_shape.begin(), row_shape.end())) {
-      const std::string found =
-          header.shape.empty()
-              ? "()"
-              : shape_literal(std::to_string(header.shape[0]), std::span(header.shape).subspan(1));
-      fail("shape is " + found + ", expected " + shape_literal("N", row_shape));
-    }
-    if (header.fortran_order) fail("array is in Fortran order, expected C order");
-    rows_ = header.shape[0];
-    if (rows_ > std::numeric_limits<std::int64_t>::max() / row_bytes_ / 2)
-      fail("array of " + std::to_string(rows_) + " rows is too large");
-    check_size();
-  } catch (...) {
-    close(descriptor_);
-    throw;
+  OpenInput input = open_input(path, InputKind::kFileOrPipe);
+  input_ = std::move(input.descriptor);
+  file_bytes_ = input.size;
+  const NpyHeader header = read_header();
+  if (header.dtype != dtype)
+    fail("items are " + dtype_literal(header.dtype) + ", expected " + dtype_literal(dtype));
+  if (header.shape.empty() || !std::equal(header.shape.begin() + 1, header.shape.end(),
+                                          row_shape.begin(), row_shape.end())) {
+    const std::string found =
+        header.shape.empty()
+            ? "()"
+            : shape_literal(std::to_string(header.shape[0]), std::span(header.shape).subspan(1));
+    fail("shape is " + found + ", expected " + shape_literal("N", row_shape));
   }
+  if (header.fortran_order) fail("array is in Fortran order, expected C order");
+  rows_ = header.shape[0];
+  if (rows_ > std::numeric_limits<std::int64_t>::max() / row_bytes_ / 2)
+    fail("array of " + std::to_string(rows_) + " rows is too large");
+  check_size();
 }
-
-NpyReader::~NpyReader() { close(descriptor_); }
 
 std::size_t NpyReader::read_rows(void* out, std::size_t most_rows) {
   const auto count =
@@ -85,7 +77,7 @@ std::size_t NpyReader::read_rows(void* out, std::size_t most_rows) {
 void NpyReader::read_exactly(void* out, std::size_t bytes) {
   auto* to = static_cast<char*>(out);
   while (bytes > 0) {
-    const ssize_t got = read(descriptor_, to, bytes);
+    const ssize_t got = ::read(input_.get(), to, bytes);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail("cannot read: " + std::system_category().message(errno));
     if (got == 0) fail("truncated: " + std::to_string(bytes) + " more bytes expected");
@@ -118,9 +110,8 @@ NpyHeader NpyReader::read_header() {
 }
 
 void NpyReader::check_size() const {
-  struct stat info {};
-  if (fstat(descriptor_, &info) != 0 || !S_ISREG(info.st_mode)) return;
-  const auto size = static_cast<std::uint64_t>(info.st_size);
+  if (!file_bytes_) return;
+  const std::uint64_t size = *file_bytes_;
   const std::uint64_t expected = position_ + rows_ * row_bytes_;
   if (size != expected)
     throw Error(path_.string(), "byte " + std::to_string(std::min(size, expected)),

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/descriptor.hpp"
 
 namespace voxdag {
 
@@ -35,7 +36,6 @@ class NpyReader {
             const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes);
   NpyReader(const NpyReader&) = delete;
   NpyReader& operator=(const NpyReader&) = delete;
-  ~NpyReader();
 
   std::uint64_t rows() const { return rows_; }  ///< N
   std::size_t row_bytes() const { return row_bytes_; }
@@ -51,7 +51,8 @@ class NpyReader {
   [[noreturn]] void fail(const std::string& reason) const;
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor input_;
+  std::optional<std::uint64_t> file_bytes_;  ///< Of a regular file; none for a pipe.
   std::uint64_t position_ = 0;
   std::uint64_t rows_ = 0, rows_read_ = 0;
   std::size_t row_bytes_ = 0;

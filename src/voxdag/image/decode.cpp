@@ -1,9 +1,9 @@
 #include "voxdag/image/decode.hpp"
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/image/image_file.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
-#include "voxdag/io/file_bytes.hpp"
 
 namespace voxdag {
 namespace {
@@ -28,7 +28,7 @@ ImageRgba16 decode_image(std::span<const std::uint8_t> bytes, const std::string&
 }
 
 ImageRgba16 read_image(const std::filesystem::path& path) {
-  return decode_image(read_image_bytes(path), path.string());
+  return decode_image(encoded_bytes(map_image(path)), path.string());
 }
 
 }  // namespace voxdag

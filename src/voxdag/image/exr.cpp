@@ -11,7 +11,8 @@
 #include <span>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/file_bytes.hpp"
+#include "voxdag/image/image_file.hpp"
+#include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -61,8 +62,7 @@ void write_exr(const std::filesystem::path& path, const ImageF& image,
       out.setFrameBuffer(frame);
       out.writePixels(image.height);
     }
-    const std::string bytes = stream.str();
-    write_image_bytes(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    write_whole_file(path, stream.str());
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
@@ -72,7 +72,8 @@ void write_exr(const std::filesystem::path& path, const ImageF& image,
 
 ExrImage read_exr(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const std::vector<std::uint8_t> bytes = read_image_bytes(path);
+  const MappedFile mapping = map_image(path);
+  const std::span<const std::uint8_t> bytes = encoded_bytes(mapping);
   if (bytes.size() < 4 || bytes[0] != 0x76 || bytes[1] != 0x2F || bytes[2] != 0x31 || bytes[3] != 1)
     throw Error(file, "byte 0", "not an OpenEXR file");
   try {

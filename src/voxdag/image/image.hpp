@@ -82,7 +82,4 @@ struct ImageRgba16 {
   }
 };
 
-/// Readers refuse images of more pixels: the size in a hostile header must not be allocated.
-inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 28;
-
 }  // namespace voxdag

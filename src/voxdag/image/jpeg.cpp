@@ -10,7 +10,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/file_bytes.hpp"
+#include "voxdag/image/image_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -72,7 +72,7 @@ bool decode(std::span<const std::uint8_t> bytes, JpegErrors& errors, ImageRgb8& 
 }  // namespace
 
 ImageRgb8 read_jpeg(const std::filesystem::path& path) {
-  return decode_jpeg(read_image_bytes(path), path.string());
+  return decode_jpeg(encoded_bytes(map_image(path)), path.string());
 }
 
 ImageRgb8 decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name) {

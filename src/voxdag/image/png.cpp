@@ -8,7 +8,8 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/file_bytes.hpp"
+#include "voxdag/image/image_file.hpp"
+#include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -117,12 +118,13 @@ void write_png(const std::filesystem::path& path, const ImageRgb8& image) {
   png_alloc_size_t size = bytes.size();
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr))
     throw Error(path.string(), "", std::string("cannot write: ") + png.message);
-  write_image_bytes(path, {bytes.data(), size});
+  write_whole_file(path, {reinterpret_cast<const char*>(bytes.data()), size});
 }
 
 ImageRgb8 read_png(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const std::vector<std::uint8_t> bytes = read_image_bytes(path);
+  const MappedFile mapping = map_image(path);
+  const std::span<const std::uint8_t> bytes = encoded_bytes(mapping);
   require_whole(file, bytes);
   PngImage png;
   if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) || png.failed())

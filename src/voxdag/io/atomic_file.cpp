@@ -66,9 +66,9 @@ void forget(char* name) noexcept {
 
 }  // namespace
 
-void write_whole_file(const std::filesystem::path& path, std::string_view text) {
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
   AtomicFile file(path);
-  file.write(text);
+  file.write(bytes);
   file.commit();
 }
 
@@ -78,11 +78,11 @@ void remove_unfinished_files() noexcept {
 }
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
-  const OutputPlace place = output_place(path);
-  if (place.error != 0) fail(0, place.error);
-  target_ = place.file;
-  if (place.descriptor >= 0) {
-    share(place.descriptor);
+  const ResolvedOutput output = resolve_output(path);
+  if (output.error != 0) fail(0, output.error);
+  target_ = output.file;
+  if (output.descriptor >= 0) {
+    share(output.descriptor);
     return;
   }
   struct stat existing {};

@@ -75,8 +75,8 @@ class AtomicFile {
   std::vector<std::byte> buffer_;
 };
 
-/// A file of this text.
-void write_whole_file(const std::filesystem::path& path, std::string_view text);
+/// Writes a file of these bytes through AtomicFile: complete or not at all.
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Removes the temporary files of every AtomicFile that was not committed, for a signal handler
 /// about to end the process: async-signal-safe. A commit() after it fails. With more than 64 files

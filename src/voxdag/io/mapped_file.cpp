@@ -1,11 +1,10 @@
 #include "voxdag/io/mapped_file.hpp"
 
-#include <fcntl.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -15,37 +14,27 @@
 namespace voxdag {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
-  throw Error(path.string(), "", "cannot read: " + reason);
-}
-[[noreturn]] void fail(const std::filesystem::path& path, int error) {
-  fail(path, std::system_category().message(error));
-}
-
-/// Closes on every way out; the mapping outlives the descriptor.
-struct Descriptor {
-  int value;
-  ~Descriptor() {
-    if (value >= 0) close(value);
+int advice(MappedFile::Access access) {
+  switch (access) {
+    case MappedFile::Access::kSequential:
+      return MADV_SEQUENTIAL;
+    case MappedFile::Access::kSoon:
+      return MADV_WILLNEED;
+    default:
+      return MADV_RANDOM;
   }
-};
+}
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
-  // O_NONBLOCK: a pipe without a writer is refused below instead of waited for.
-  const Descriptor file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (file.value < 0) fail(path, errno);
-  struct stat info {};
-  if (fstat(file.value, &info) != 0) fail(path, errno);
-  if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
-  if (!S_ISREG(info.st_mode)) fail(path, "not a regular file");
-  const auto size = static_cast<std::size_t>(info.st_size);
+MappedFile::MappedFile(const std::filesystem::path& path, Access access, SizeLimit limit) {
+  const OpenInput input = open_input(path, InputKind::kRegularFile, limit);
+  const auto size = static_cast<std::size_t>(*input.size);
   if (size == 0) return;
-  void* const address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.value, 0);
-  if (address == MAP_FAILED) fail(path, errno);
-  // All of it is about to be read for the checksums.
-  madvise(address, size, MADV_WILLNEED);
+  void* const address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, input.descriptor.get(), 0);
+  if (address == MAP_FAILED)
+    throw Error(path.string(), "", "cannot map: " + std::system_category().message(errno));
+  madvise(address, size, advice(access));
   bytes_ = {static_cast<const std::byte*>(address), size};
 }
 
@@ -58,6 +47,13 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
 
 MappedFile::~MappedFile() {
   if (!bytes_.empty()) munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+void MappedFile::release(std::string_view part) const {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto first = (reinterpret_cast<std::uintptr_t>(part.data()) + page - 1) / page * page;
+  const auto last = reinterpret_cast<std::uintptr_t>(part.data() + part.size()) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
 }  // namespace voxdag

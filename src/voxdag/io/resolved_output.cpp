@@ -10,14 +10,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;  // as many as Linux follows
+constexpr int kMaxLinks = 40;  // Linux follows as many
 
-/// The number of the descriptor of this process that the path, if no link, names, or -1.
+/// Returns the descriptor of this process that the path itself names, or -1.
 int descriptor_at(const fs::path& path) {
   std::error_code none;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const fs::path place = fs::canonical(folder, none);
-  // Not by getpid(): /proc may be of another name space.
+  // /proc may belong to another PID namespace: getpid() would not name this process in it.
   if (place.empty() || (place != fs::canonical("/proc/self/fd", none) &&
                         place != fs::canonical("/proc/thread-self/fd", none)))
     return -1;
@@ -29,17 +29,17 @@ int descriptor_at(const fs::path& path) {
 
 }  // namespace
 
-OutputPlace output_place(const fs::path& path) {
-  OutputPlace place;
-  place.file = path;
+ResolvedOutput resolve_output(const fs::path& path) {
+  ResolvedOutput output;
+  output.file = path;
   for (int links = 0;; ++links) {
-    place.descriptor = descriptor_at(place.file);
+    output.descriptor = descriptor_at(output.file);
     std::error_code error;
-    if (place.descriptor >= 0 || !fs::is_symlink(place.file, error)) return place;
-    const fs::path next = fs::read_symlink(place.file, error);
-    place.error = error ? error.value() : links == kMostLinks ? ELOOP : 0;
-    if (place.error != 0) return place;
-    place.file = place.file.parent_path() / next;
+    if (output.descriptor >= 0 || !fs::is_symlink(output.file, error)) return output;
+    const fs::path next = fs::read_symlink(output.file, error);
+    output.error = error ? error.value() : links == kMaxLinks ? ELOOP : 0;
+    if (output.error != 0) return output;
+    output.file = output.file.parent_path() / next;
   }
 }
 

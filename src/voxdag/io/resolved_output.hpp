@@ -1,15 +1,15 @@
 #pragma once
-/// Where what is written to a path goes.
+/// Finds the file or descriptor that an output path names.
 #include <filesystem>
 
 namespace voxdag {
 
-struct OutputPlace {
-  std::filesystem::path file;  ///< The path with symbolic links followed, one to nothing too.
-  int descriptor = -1;  ///< Where the path names a descriptor of this process (/dev/stdout): that.
-  int error = 0;        ///< Of the system, where links go round or cannot be read; else 0.
+struct ResolvedOutput {
+  std::filesystem::path file;  ///< The path with symbolic links followed; need not exist.
+  int descriptor = -1;         ///< A descriptor of this process (/dev/stdout), or -1.
+  int error = 0;  ///< The system's error if links form a loop or cannot be read; else 0.
 };
 
-OutputPlace output_place(const std::filesystem::path& path);
+ResolvedOutput resolve_output(const std::filesystem::path& path);
 
 }  // namespace voxdag

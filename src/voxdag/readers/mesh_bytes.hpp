@@ -6,17 +6,17 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/input_file.hpp"
+#include "voxdag/io/mapped_file.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
 struct MeshBytes {
-  std::string_view bytes;           ///< The whole file; must stay valid during the call.
-  std::string name;                 ///< For error messages.
-  std::filesystem::path folder;     ///< Where relative references (glTF buffers) start.
-  Progress* progress = nullptr;     ///< May be null.
-  const InputFile* file = nullptr;  ///< Where `bytes` is mapped, if it is.
+  std::string_view bytes;            ///< The whole file; must stay valid during the call.
+  std::string name;                  ///< For error messages.
+  std::filesystem::path folder;      ///< Where relative references (glTF buffers) start.
+  Progress* progress = nullptr;      ///< May be null.
+  const MappedFile* file = nullptr;  ///< Where `bytes` is mapped, if it is.
 
   /// Marks a part as read for now: its pages need not stay in memory. Reports progress and throws
   /// Cancelled when asked to stop.

@@ -27,8 +27,8 @@ Appearance grey(const Mesh& mesh) {
 
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                              Progress* progress) {
-  const InputFile file(path);
-  const MeshBytes source{file.bytes(), path.string(), path.parent_path(), progress, &file};
+  const MappedFile file(path, MappedFile::Access::kSequential);
+  const MeshBytes source{file.text(), path.string(), path.parent_path(), progress, &file};
   if (source.bytes.empty()) throw source.error("the file is empty");
   MeshWithAppearance result;
   try {

@@ -32,8 +32,8 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
 }
 
 Mesh read_mesh(const std::filesystem::path& path, Progress* progress) {
-  const InputFile file(path);
-  const MeshBytes source{file.bytes(), path.string(), path.parent_path(), progress, &file};
+  const MappedFile file(path, MappedFile::Access::kSequential);
+  const MeshBytes source{file.text(), path.string(), path.parent_path(), progress, &file};
   if (source.bytes.empty()) throw source.error("the file is empty");
   try {
     switch (detect_mesh_format(source.bytes, path.extension().string())) {

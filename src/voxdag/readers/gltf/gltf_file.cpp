@@ -232,11 +232,12 @@ void GltfFile::open_buffers(std::string_view binary_chunk, bool has_chunk) {
       const std::string name = decode_percent(uri);
       if (name.find('\0') != name.npos) throw value.error("malformed URI");
       try {
-        buffer.file = std::make_unique<InputFile>(source_.folder / name);
+        buffer.file =
+            std::make_unique<MappedFile>(source_.folder / name, MappedFile::Access::kSequential);
       } catch (const Error& fault) {
         throw value.error("buffer '" + name + "': " + fault.reason());
       }
-      buffer.bytes = buffer.file->bytes();
+      buffer.bytes = buffer.file->text();
     }
     const std::uint64_t size = value["byteLength"].whole();
     if (size > buffer.bytes.size())

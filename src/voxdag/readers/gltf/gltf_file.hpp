@@ -45,7 +45,7 @@ class GltfValue {
 /// The bytes of a buffer, and what owns them.
 struct GltfBuffer {
   std::string_view bytes;
-  std::unique_ptr<InputFile> file;
+  std::unique_ptr<MappedFile> file;
   std::string decoded;
 };
 

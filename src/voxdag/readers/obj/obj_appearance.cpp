@@ -272,8 +272,8 @@ class ObjAppearanceReader {
   void read_library(const std::string& name, std::set<std::string>& described) {
     const std::filesystem::path path = path_of(name);
     try {
-      const InputFile file(path);
-      for (std::string& material : read_mtl(file.bytes(), path, appearance_, warnings_))
+      const MappedFile file(path, MappedFile::Access::kSequential);
+      for (std::string& material : read_mtl(file.text(), path, appearance_, warnings_))
         described.insert(std::move(material));
     } catch (const Error& error) {
       warnings_.push_back(std::string(error.what()) + ": its materials are grey");
