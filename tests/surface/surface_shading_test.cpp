@@ -53,8 +53,8 @@ TEST(SurfaceShading, PlainMaterialsHaveTheirColourAndThePlanesNormal) {
   EXPECT_EQ(sample.coverage, 1);
   EXPECT_EQ(sample.normal, (Vec3f{0, 0, 1}));
   EXPECT_TRUE(shading.is_uniform(1, kWhole, 0, 0, sample));
-  EXPECT_FALSE(shading.may_be_cut(1));
-  EXPECT_FALSE(shading.is_cut_away(1, kWhole));
+  EXPECT_FALSE(shading.may_be_alpha_masked(1));
+  EXPECT_FALSE(shading.is_alpha_masked(1, kWhole));
 }
 
 TEST(SurfaceShading, TexturesStandUpright) {
@@ -132,7 +132,7 @@ TEST(SurfaceShading, CoverageIsThePartThatPassesTheAlphaTest) {
   }());
   square.material().alpha_mode = AlphaMode::kMask;
   const SurfaceShading shading(square.mesh, square.appearance);
-  EXPECT_TRUE(shading.may_be_cut(0));
+  EXPECT_TRUE(shading.may_be_alpha_masked(0));
   const SurfaceSample lower = shading.mean(0, kWhole), upper = shading.mean(1, kWhole);
   EXPECT_NEAR(lower.coverage, 0.25f, 0.09f);
   EXPECT_NEAR(upper.coverage, 0.75f, 0.09f);
@@ -141,9 +141,9 @@ TEST(SurfaceShading, CoverageIsThePartThatPassesTheAlphaTest) {
       right{Vec2f{0.7f, 0.1f}, {0.8f, 0}, {0.7f, 0.2f}};
   EXPECT_EQ(shading.mean(0, left).coverage, 1);
   EXPECT_TRUE(shading.is_uniform(0, left, 0.01f, 0.01f, shading.mean(0, left)));
-  EXPECT_FALSE(shading.is_cut_away(0, left));
+  EXPECT_FALSE(shading.is_alpha_masked(0, left));
   EXPECT_EQ(shading.mean(0, right).coverage, 0);
-  EXPECT_TRUE(shading.is_cut_away(0, right));
+  EXPECT_TRUE(shading.is_alpha_masked(0, right));
   EXPECT_TRUE(shading.is_uniform(0, right, 0.01f, 0.01f, shading.mean(0, right)));
   EXPECT_FALSE(shading.is_uniform(0, kWhole, 1, 1, lower));
 }
@@ -153,14 +153,14 @@ TEST(SurfaceShading, MaterialsAndCornersMayBeWhollyTransparent) {
   square.material().alpha = 0.05f;
   square.material().alpha_mode = AlphaMode::kBlend;
   const SurfaceShading gone(square.mesh, square.appearance);
-  EXPECT_TRUE(gone.is_cut_away(0, kWhole));
+  EXPECT_TRUE(gone.is_alpha_masked(0, kWhole));
   EXPECT_EQ(gone.mean(0, kWhole).coverage, 0);
   square.material().alpha = 1;
   square.appearance.colors.assign(6, {});
   for (std::size_t c = 0; c < 3; ++c) square.appearance.colors[c].a = 0;
   const SurfaceShading half(square.mesh, square.appearance);
-  EXPECT_TRUE(half.is_cut_away(0, kWhole));
-  EXPECT_FALSE(half.is_cut_away(1, kWhole));
+  EXPECT_TRUE(half.is_alpha_masked(0, kWhole));
+  EXPECT_FALSE(half.is_alpha_masked(1, kWhole));
   EXPECT_EQ(half.mean(1, kWhole).coverage, 1);
 }
 

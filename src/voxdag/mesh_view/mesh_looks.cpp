@@ -34,7 +34,7 @@ MeshLooks::MeshLooks(const Mesh& mesh, Appearance appearance, const MeshViewOpti
   shading_.emplace(mesh, *appearance_, warnings, progress);
   bool all_have_normals = true;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    has_holes_ |= shading_->may_be_cut(static_cast<std::uint32_t>(t));
+    has_holes_ |= shading_->may_be_alpha_masked(static_cast<std::uint32_t>(t));
     all_have_normals &= has_normals(*appearance_, t);
   }
   if (!all_have_normals) smooth_normals_ = corner_normals(mesh, options.crease_degrees);
@@ -60,7 +60,7 @@ Vec3f MeshLooks::normal(std::uint32_t triangle, Vec2f point,
 }
 
 bool MeshLooks::is_hole(std::uint32_t triangle, Vec2f point) const {
-  return has_holes_ && shading_->may_be_cut(triangle) &&
+  return has_holes_ && shading_->may_be_alpha_masked(triangle) &&
          shading_->mean(triangle, std::span(&point, 1)).coverage < 0.5f;
 }
 

@@ -308,8 +308,8 @@ bool SurfaceShading::is_uniform(std::uint32_t t, std::span<const Vec2f> polygon,
                                 float normal_error, const SurfaceSample& mean) const {
   const Tables& tables = *tables_;
   const MaterialLook& look = tables.look(t);
-  if (may_be_cut(t)) {
-    if (mean.coverage == 0) return is_cut_away(t, polygon);
+  if (may_be_alpha_masked(t)) {
+    if (mean.coverage == 0) return is_alpha_masked(t, polygon);
     if (tables.corner_alphas(t).first < look.least_corner_alpha) return false;
     if (look.is_alpha_textured &&
         bounds_of(*look.color_texture, polygon, tables.uv(t), look.color_uv).lo[3] < 65535)
@@ -341,7 +341,7 @@ bool SurfaceShading::may_be_uniform(std::uint32_t t, std::span<const Vec2f> poly
   return dot(unit_or_zero(lo), unit_or_zero(hi)) >= std::cos(2 * normal_error) - 1e-5f;
 }
 
-bool SurfaceShading::is_cut_away(std::uint32_t t, std::span<const Vec2f> polygon) const {
+bool SurfaceShading::is_alpha_masked(std::uint32_t t, std::span<const Vec2f> polygon) const {
   const Tables& tables = *tables_;
   const MaterialLook& look = tables.look(t);
   if (tables.corner_alphas(t).second < look.least_corner_alpha) return true;
@@ -349,7 +349,7 @@ bool SurfaceShading::is_cut_away(std::uint32_t t, std::span<const Vec2f> polygon
          bounds_of(*look.color_texture, polygon, tables.uv(t), look.color_uv).hi[3] == 0;
 }
 
-bool SurfaceShading::may_be_cut(std::uint32_t t) const {
+bool SurfaceShading::may_be_alpha_masked(std::uint32_t t) const {
   const MaterialLook& look = tables_->look(t);
   return look.is_alpha_textured ||
          (look.least_corner_alpha > 0 &&

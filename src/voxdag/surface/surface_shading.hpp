@@ -56,10 +56,10 @@ class SurfaceShading {
                       float normal_error) const;
 
   /// True only if no point of the polygon passes the alpha test. May be false all the same.
-  bool is_cut_away(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
+  bool is_alpha_masked(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
-  /// False if is_cut_away is false for every polygon of the triangle.
-  bool may_be_cut(std::uint32_t triangle) const;
+  /// False if is_alpha_masked is false for every polygon of the triangle.
+  bool may_be_alpha_masked(std::uint32_t triangle) const;
 
   /// Bytes of the decoded textures and tables.
   std::uint64_t bytes() const;

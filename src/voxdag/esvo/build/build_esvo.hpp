@@ -1,22 +1,24 @@
 #pragma once
-/// From a triangle mesh to an efficient sparse voxel octree.
+/// Builds an efficient sparse voxel octree from a triangle mesh.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.
 ///
-/// The upper levels are decided breadth first, until a cell has about kTaskWeight voxels of surface
-/// or less: a task. Tasks run in parallel and end in Morton order; what a task makes becomes blocks
-/// at once, or, where it is little, part of the tree of the cell above, which becomes blocks when
-/// it is large enough. So memory holds the mesh, the upper levels and what a few tasks make,
-/// however large the octree is.
+/// The upper levels are decided breadth first, down to cells with about 65,000 voxels of surface or
+/// less: the tasks. Tasks are built in parallel and finish in Morton order. A large result becomes
+/// blocks at once; a small one becomes part of the tree of the cell above, which becomes blocks
+/// when it is large enough. So memory holds the mesh, the upper levels and the results of a few
+/// tasks, however large the octree is.
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/displace/displaced_triangles.hpp"
-#include "voxdag/esvo/build/cell_builder.hpp"
+#include "voxdag/esvo/build/esvo_settings.hpp"
 #include "voxdag/esvo/encode/pack_blocks.hpp"
+#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/surface/surface_shading.hpp"
 
 namespace voxdag {
 
@@ -25,14 +27,14 @@ struct EsvoOptions {
   PackOptions pack;
 };
 
-/// Where blocks go as they are finished, one after the other.
+/// Receives finished blocks, one after the other.
 class EsvoSink {
  public:
   virtual ~EsvoSink() = default;
   virtual void append(std::span<const std::uint64_t> slots) = 0;
 };
 
-/// Keeps them in memory.
+/// A sink that keeps the blocks in memory.
 class EsvoMemory : public EsvoSink {
  public:
   void append(std::span<const std::uint64_t> slots) override {
@@ -50,16 +52,17 @@ struct EsvoResult {
   EsvoCounts counts;
 };
 
-/// Builds the octree of the mesh's surface in `grid`. `shading` is that of the mesh, or null;
-/// `displaced` moves its surface, if it is not null.
-/// An octree without voxels (a mesh outside of the grid, or cut away wholly) has no blocks. The
-/// blocks depend on the arguments alone: not on threads or machine. Runs on the current TBB arena.
-/// Throws Error if far pointers do not reach (16 GiB), Cancelled, and what the sink throws.
+/// Builds the octree of the mesh's surface in `grid`. `shading` is the mesh's own, or null for a
+/// grey surface; `displaced`, if it is not null, moves the surface. A mesh without visible surface
+/// in the grid gives no blocks. The blocks depend on the arguments alone, not on the number of
+/// threads or the machine. Runs on the current TBB arena.
+/// Throws Error if the octree is so large (16 GiB) that far pointers do not reach, Cancelled, and
+/// what the sink throws.
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                       const SurfaceShading* shading, const DisplacedTriangles* displaced,
                       EsvoSink& sink, Progress* progress = nullptr);
 
-/// The same, in memory.
+/// Builds an octree in memory, without displacement.
 Esvo build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options = {},
                 const SurfaceShading* shading = nullptr, Progress* progress = nullptr);
 

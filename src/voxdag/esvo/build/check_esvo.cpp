@@ -133,7 +133,7 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
       if (!(point[axis] >= 0 && point[axis] < size)) return;
     if (shading != nullptr) {
       const Vec2f at[1] = {place};
-      if (source == triangle && shading->is_cut_away(source, at)) return;
+      if (source == triangle && shading->is_alpha_masked(source, at)) return;
     }
     looked_at.fetch_add(1, std::memory_order_relaxed);
     Walk walk{esvo, point};

@@ -4,8 +4,8 @@
 #include "voxdag/esvo/shape/fit_contour.hpp"
 
 namespace voxdag {
-VoxelDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cell,
-                              std::span<const std::uint32_t> triangles, ConvexPolyhedron& shape) {
+CellDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cell,
+                             std::span<const std::uint32_t> triangles, ConvexPolyhedron& shape) {
   const Grid& grid = source.grid;
   const int log2_size = grid.levels - level;
   const Box3d box = world_box(grid, cell, log2_size);
@@ -53,7 +53,7 @@ VoxelDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cel
       extents[i].add((along.hi - shift) * scale + margin);
     }
   }
-  VoxelDecision decision;
+  CellDecision decision;
   const std::optional<FittedContour> fitted = fit_contour(shape, candidates, extents);
   if (!fitted || !fitted->pays()) return decision;
   decision.contour = fitted->contour;

@@ -1,19 +1,20 @@
 #pragma once
-/// Light that is baked into colours: how much of it reaches places on the surface.
+/// The light that a build bakes into colours.
 #include <functional>
 
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
+/// A place on the surface.
 struct SurfacePlace {
   Vec3d point;     ///< In voxels of the finest level, from the grid's lower corner.
-  Vec3f normal{};  ///< Unit length, as it will be seen.
-  Vec3f face{};    ///< Unit length, of the triangle itself, on the same side as `normal`.
+  Vec3f normal{};  ///< Unit length; the shading normal.
+  Vec3f face{};    ///< Unit length; the triangle's own normal, on the side of `normal`.
 };
 
-/// The part of the light that arrives, 0 to 1. Called by several threads at a time; what it returns
-/// depends on the place alone.
+/// Returns the part of the light that reaches a place, 0 to 1. Several threads call it at a time;
+/// the result depends on the place alone.
 using SurfaceLight = std::function<float(const SurfacePlace&)>;
 
 }  // namespace voxdag

@@ -22,8 +22,9 @@ struct SurfaceTriangle {
   std::uint32_t source = 0;     ///< Triangle of the mesh.
   bool is_displaced = false;    ///< Its normal is its own, not that of the source.
   std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
-  std::optional<SurfaceSample> look;  ///< That of all its points, if they look the same.
-  ContourDirection across_edges[3];   ///< In the plane and perpendicular to the open edges.
+  /// The sample of every point, if they are all the same.
+  std::optional<SurfaceSample> constant_sample;
+  ContourDirection across_edges[3];  ///< In the plane and perpendicular to the open edges.
   Vec3d corners[3];
   /// The barycentric coordinates of a point p of corners 1 and 2 of the source triangle:
   /// base + (dot(u, p), dot(v, p)).

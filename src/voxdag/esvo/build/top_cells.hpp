@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/esvo/build/cell_builder.hpp"
+#include "voxdag/esvo/build/built_voxel.hpp"
 #include "voxdag/esvo/build/triangle_source.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -16,27 +16,23 @@ struct TopCell {
   Vec3i cell{};  ///< In cells of the level.
   std::uint32_t parent = kNoParent;
   int child = 0;                         ///< Which of the parent's children it is.
-  std::vector<std::uint32_t> triangles;  ///< Those that may meet it, if it is a task.
-  ConvexPolyhedron shape;                ///< Cut by its own contour, too.
-  VoxelDecision decision;
-  double weight = 0;              ///< CellBuilder::weight.
-  bool is_displaced = false;      ///< Has displaced triangles: a task is decided when it is built.
+  std::vector<std::uint32_t> triangles;  ///< Those that may meet it. Empty if it is no task.
+  ConvexPolyhedron shape;                ///< Already cut by the cell's own contour.
+  CellDecision decision;
+  double weight = 0;              ///< See PieceStack::weight(); an estimate if `is_displaced`.
+  bool is_displaced = false;      ///< Has displaced triangles: a task decides it when it is built.
   bool is_task = false;           ///< Its children are not among the cells.
   int children_left = 0;          ///< Children that are cells and not finished.
-  std::vector<BuiltVoxel> built;  ///< The children that are finished.
+  std::vector<BuiltVoxel> built;  ///< The finished children.
 };
 
-/// Decides the cells down to tasks, parents before children. The first is the root, which is no
-/// leaf. Cells with displaced triangles become tasks when they are small; above that they get
-/// contours around what encloses the triangles. Cells of very many triangles get none. Throws
-/// Cancelled.
+/// Decides the cells down to tasks, parents before children. The first cell is the root, which is
+/// never a leaf. Small cells with displaced triangles are tasks; larger ones get contours around
+/// what encloses the triangles. Cells with very many triangles get no contours. Throws Cancelled.
 std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
                                     const SurfaceShading* shading, Progress* progress);
 
-/// The tasks in Morton order.
+/// Returns the tasks in Morton order.
 std::vector<std::size_t> task_order(const std::vector<TopCell>& cells);
-
-/// Starts the cell with its triangles; displaced ones are tessellated to the size of a voxel.
-void load(CellBuilder& builder, const TriangleSource& source, const TopCell& cell);
 
 }  // namespace voxdag

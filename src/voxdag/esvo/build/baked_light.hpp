@@ -1,0 +1,16 @@
+#pragma once
+/// The light that is baked into the colours of a cell.
+#include <optional>
+
+#include "voxdag/esvo/build/piece_sampler.hpp"
+#include "voxdag/esvo/build/surface_light.hpp"
+
+namespace voxdag {
+
+/// Returns the mean of `light` over the pieces of a cell, of which there is at least one. Returns
+/// nothing if the cell is larger than a voxel and the light differs in it by more than
+/// `color_error` (sRGB encoded).
+std::optional<float> baked_light(const SurfaceLight& light, const Cell& cell,
+                                 const PieceSampler& sampler, float color_error);
+
+}  // namespace voxdag

@@ -1,0 +1,46 @@
+#pragma once
+/// Puts finished tasks in order: large trees go to the sink as blocks, small ones become part of
+/// the tree of the cell above.
+#include <vector>
+
+#include "voxdag/esvo/build/build_esvo.hpp"
+#include "voxdag/esvo/build/top_cells.hpp"
+
+namespace voxdag {
+
+/// A finished task.
+struct FinishedTask {
+  std::size_t cell = 0;  ///< Index of the task among the top cells.
+  BuiltVoxel voxel;
+  bool has_blocks = false;
+  PackedBlocks blocks;  ///< Everything below the voxel, if has_blocks.
+};
+
+/// Returns whether a tree is large enough for blocks of its own.
+bool needs_blocks(const EsvoTree& tree);
+
+class BlockAssembler {
+ public:
+  /// Refers to its arguments; finishes the cells.
+  BlockAssembler(std::vector<TopCell>& cells, const EsvoOptions& options, EsvoSink& sink)
+      : cells_(cells), options_(options), sink_(sink) {}
+
+  /// Takes the tasks in Morton order.
+  void add(FinishedTask& task);
+
+  /// Appends the block of the root after the last task.
+  EsvoResult finish();
+
+ private:
+  std::uint64_t append(const PackedBlocks& blocks);
+  void arrive(std::size_t cell, BuiltVoxel&& voxel);
+
+  std::vector<TopCell>& cells_;
+  const EsvoOptions& options_;
+  EsvoSink& sink_;
+  std::uint64_t position_ = 0;
+  EsvoResult result_;
+  BuiltVoxel root_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,28 @@
+#pragma once
+/// A finished voxel with the part of the octree below it.
+#include <optional>
+#include <span>
+
+#include "voxdag/esvo/build/decide_cell.hpp"
+#include "voxdag/esvo/build/surface_sum.hpp"
+#include "voxdag/esvo/encode/esvo_tree.hpp"
+
+namespace voxdag {
+
+struct BuiltVoxel {
+  bool exists = false;  ///< False: no surface, or the alpha test removes all of it.
+  bool is_leaf = false;
+  std::optional<Contour> contour;
+  SurfaceSum sum;
+  EsvoTree tree;  ///< Node 0 is the voxel; empty if the voxel is a leaf.
+};
+
+/// Joins the eight children of a voxel, in order, to the voxel. Consumes the children.
+BuiltVoxel join_children(const CellDecision& decision, std::span<BuiltVoxel, 8> children,
+                         bool attributes);
+
+/// Reduces a tree to its node 0 after everything below it was packed into blocks. `first_child` is
+/// the slot of the first child's descriptor.
+void keep_packed_root(EsvoTree& tree, std::uint64_t first_child);
+
+}  // namespace voxdag

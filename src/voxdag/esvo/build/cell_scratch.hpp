@@ -1,0 +1,16 @@
+#pragma once
+/// The scratch memory that each thread needs to decide and build cells.
+#include "voxdag/esvo/build/decide_cell.hpp"
+#include "voxdag/esvo/build/piece_stack.hpp"
+
+namespace voxdag {
+
+struct CellScratch {
+  CellScratch(const EsvoSettings& settings, const CellAppearance& appearance)
+      : decider(settings, appearance) {}
+
+  PieceStack pieces;
+  CellDecider decider;
+};
+
+}  // namespace voxdag

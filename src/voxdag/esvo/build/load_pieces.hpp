@@ -1,0 +1,17 @@
+#pragma once
+/// Loads the triangles of a cell for building.
+#include <cstdint>
+#include <span>
+
+#include "voxdag/esvo/build/piece_sampler.hpp"
+#include "voxdag/esvo/build/piece_stack.hpp"
+#include "voxdag/esvo/build/triangle_source.hpp"
+
+namespace voxdag {
+
+/// Starts the cell of a level (`cell` counts cells of that level) with those of `triangles` that
+/// meet it. Displaced triangles are tessellated to the size of a voxel.
+void load_pieces(PieceStack& pieces, const PieceSampler& sampler, const TriangleSource& source,
+                 int level, Vec3i cell, std::span<const std::uint32_t> triangles);
+
+}  // namespace voxdag

@@ -1,0 +1,85 @@
+#pragma once
+/// The pieces of triangles in a cell and in the cells on the path below it, one list on top of the
+/// other.
+///
+/// Each level of the recursion cuts the pieces of the cell above at the cell's middle planes. Which
+/// children a triangle meets is exact (design: exact cover): the polygons are only its shape.
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/esvo/build/cell.hpp"
+#include "voxdag/voxelize/cell_classify.hpp"
+
+namespace voxdag {
+
+/// Names a cell whose pieces are on a PieceStack; stays valid while lists are pushed and popped
+/// above it.
+struct StackedCell {
+  int log2_size = 0;
+  Vec3i origin{};                  ///< In the coordinates of the triangles, in voxels.
+  std::size_t begin = 0, end = 0;  ///< Its pieces.
+
+  bool is_empty() const { return begin == end; }
+};
+
+class PieceStack {
+ public:
+  /// Which children the pieces of a cell meet.
+  struct Split {
+    std::uint32_t children = 0;  ///< Bit mask of the children that some piece meets.
+    std::size_t first = 0;       ///< Of `classified_`.
+  };
+
+  /// Removes all triangles and begins a cell of 2^log2_size voxels at `origin` in the grid, in
+  /// voxels.
+  void start(int log2_size, Vec3i origin);
+  /// Adds a triangle, whose coordinates begin at the cell's origin. `id` is the caller's.
+  void add(const SurfaceTriangle& triangle, std::uint32_t id);
+
+  /// Returns the cell that start() began.
+  StackedCell root() const { return {log2_size_, {}, 0, pieces_.size()}; }
+  Cell view(const StackedCell& cell) const {
+    return {cell.log2_size, cell.origin, origin_, triangles_,
+            std::span(pieces_).subspan(cell.begin, cell.end - cell.begin)};
+  }
+
+  /// Returns the area of the root's surface in voxels², and one for each triangle.
+  double weight() const;
+  /// Lists the ids of the triangles that meet each child of the root.
+  void list_children(std::array<std::vector<std::uint32_t>, 8>& children) const;
+
+  /// Removes those pieces of the topmost cell for which `is_removed(view, piece)` is true.
+  template <class Predicate>
+  void remove_if(StackedCell& cell, const Predicate& is_removed) {
+    const Cell cell_view = view(cell);
+    const auto first = pieces_.begin() + static_cast<std::ptrdiff_t>(cell.begin);
+    pieces_.erase(
+        std::remove_if(first, pieces_.end(),
+                       [&](const TrianglePiece& piece) { return is_removed(cell_view, piece); }),
+        pieces_.end());
+    cell.end = pieces_.size();
+  }
+
+  /// Classifies the pieces of the topmost cell. Each begin_split() needs an end_split().
+  Split begin_split(const StackedCell& cell);
+  void end_split(const Split& split) { classified_.resize(split.first); }
+  /// Pushes the pieces of `cell` that lie in one of its children; returns that child.
+  StackedCell push_child(const StackedCell& cell, const Split& split, int child);
+  /// Removes a child's pieces, which push_child() pushed last.
+  void pop(const StackedCell& child) { pieces_.resize(child.begin); }
+
+ private:
+  ChildConditions classify(const TrianglePiece& piece, int log2_size, Vec3i origin) const;
+  void push_part(std::size_t of, const ChildConditions& classified, int child);
+  void set_area(TrianglePiece& piece) const;
+
+  int log2_size_ = 0;
+  Vec3i origin_{};
+  std::vector<SurfaceTriangle> triangles_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<TrianglePiece> pieces_;
+  std::vector<ChildConditions> classified_;  // by piece of the cells that are being split
+};
+
+}  // namespace voxdag
