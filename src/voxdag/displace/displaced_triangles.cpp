@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "voxdag/displace/displaced_point.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
-#include "voxdag/surface/tangent_frames.hpp"
 
 namespace voxdag {
 namespace {
@@ -15,169 +15,85 @@ Vec3f unit_or_zero(Vec3f v) {
   return length2 > 0 ? v * (1 / std::sqrt(length2)) : Vec3f{};
 }
 
-/// How much a texture that is projected along each axis counts for a normal.
-Vec3f projection_weights(Vec3f n) {
-  const auto weight = [](float x) {
-    const float w = std::max(std::abs(x) - 0.4f, 0.0f);
-    return w * w;
-  };
-  const Vec3f w{weight(n.x), weight(n.y), weight(n.z)};
-  return w * (1 / (w.x + w.y + w.z));  // One component is 0.57 at least.
-}
+/// Returns the corner of a triangle that lies on two of its edges, given as bits.
+std::uint32_t corner_on(std::uint8_t edges) { return edges == 0b101 ? 0 : edges == 0b011 ? 1 : 2; }
 
-/// A position seen along an axis, in units of `size`.
-Vec2f projected(Vec3d p, int axis, double size) {
-  const double u = (axis == 0 ? p.z : p.x) / size, v = (axis == 1 ? p.z : -p.y) / size;
-  return {static_cast<float>(u - std::floor(u)), static_cast<float>(v - std::floor(v))};
-}
+/// The least and the greatest of the heights that it is given, 0 to 65535.
+class HeightRange {
+ public:
+  /// Adds the heights in a box of texture coordinates.
+  void add(const HeightTexture& heights, Vec2f lo, Vec2f hi) {
+    const HeightTexture::Bounds bounds = heights.bounds(lo, hi);
+    least_ = std::min(least_, bounds.lo[0]);
+    most_ = std::max(most_, bounds.hi[0]);
+  }
+  /// Returns how far they move points along a normal, in world units.
+  Interval along(const Displacement& d) const {
+    const double p = d.base + d.gain * least_ / 65535, q = d.base + d.gain * most_ / 65535;
+    return {std::min(p, q), std::max(p, q)};
+  }
+
+ private:
+  std::uint16_t least_ = 65535, most_ = 0;
+};
 
 }  // namespace
 
 DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
                                        std::vector<Displacement> displacements)
-    : mesh_(mesh), appearance_(appearance), displacements_(std::move(displacements)) {
-  for (const Displacement& d : displacements_)
+    : mesh_{mesh, appearance, std::move(displacements)} {
+  for (const Displacement& d : mesh_.displacements)
     if (d.moves()) radius_ = std::max({radius_, std::abs(d.base), std::abs(d.base + d.gain)});
-  if (radius_ > 0) group();
+  if (radius_ > 0) seams_ = DisplacementSeams(mesh_);
   bounds_.resize(mesh.triangles.size());
   parallel_for(bounds_.size(), 256,
                [&](std::size_t i) { bounds_[i] = find_bounds(static_cast<std::uint32_t>(i)); });
 }
 
-std::array<Vec3f, 3> DisplacedTriangles::normals(std::uint32_t t) const {
-  if (!appearance_.normals.empty()) {
-    const Vec3f* const n = appearance_.normals.data() + 3 * std::size_t{t};
-    if (n[0] != Vec3f{} && n[1] != Vec3f{} && n[2] != Vec3f{}) return {n[0], n[1], n[2]};
-  }
-  const Vec3f n = face_normal(mesh_, t);
-  return {n, n, n};
-}
-
-double DisplacedTriangles::density(std::uint32_t t) const {
-  const Displacement& d = displacement(t);
-  if (!d.moves()) return 0;
-  const double w = d.heights->width(), h = d.heights->height();
-  if (d.box_size > 0) return std::max(w, h) / d.box_size;
-  const CornerIndex c = 3 * t;
-  const Vec2f p = d.uv.linear(uv(c + 1) - uv(c)), q = d.uv.linear(uv(c + 2) - uv(c));
-  const double texels = std::abs(double{p.x} * q.y - double{p.y} * q.x) * w * h;
-  const Vec3d a(position(c));
-  const Vec3d area = cross(Vec3d(position(c + 1)) - a, Vec3d(position(c + 2)) - a);
-  const double world = std::sqrt(dot(area, area));
-  return world > 0 ? std::sqrt(texels / world) : 0;
-}
-
-double DisplacedTriangles::edge_density(CornerIndex edge) const {
-  const Displacement& d = displacement(edge / 3);
-  if (!d.moves()) return 0;
-  const double w = d.heights->width(), h = d.heights->height();
-  if (d.box_size > 0) return std::max(w, h) / d.box_size;
-  const Vec2f along = d.uv.linear(uv(next_corner(edge)) - uv(edge));
-  const Vec3d length = Vec3d(position(next_corner(edge))) - Vec3d(position(edge));
-  const double texels = std::hypot(along.x * w, along.y * h);
-  const double world = std::sqrt(dot(length, length));
-  return world > 0 ? texels / world : 0;
-}
-
-float DisplacedTriangles::level_of(double density, double edge_limit) {
-  // Edges end up between half the limit and the limit.
-  return static_cast<float>(std::log2(density * edge_limit * 0.7));
-}
-
-float DisplacedTriangles::height(const Displacement& d, Vec3d position, Vec3f unit_normal, Vec2f uv,
-                                 float level) const {
-  if (!(d.box_size > 0)) return d.heights->sample_between(level, d.uv(uv))[0] * (1.0f / 65535);
-  const Vec3f weights = projection_weights(unit_normal);
-  float sum = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    if (weights[axis] > 0)
-      sum += weights[axis] *
-             d.heights->sample_between(level, projected(position, axis, d.box_size))[0];
-  return sum * (1.0f / 65535);
-}
-
-Vec3d DisplacedTriangles::offset(std::uint32_t t, Vec3d position, Vec3f normal, Vec2f uv,
-                                 float level) const {
-  const Displacement& d = displacement(t);
-  const Vec3f n = unit_or_zero(normal);
-  if (n == Vec3f{}) return {};
-  return Vec3d(n) * (d.base + d.gain * static_cast<double>(height(d, position, n, uv, level)));
-}
-
-Vec3d DisplacedTriangles::corner_offset(const Group& group, Vec3d position, double limit) const {
-  if (group.is_pinned) return {};
-  Vec3d sum;
-  for (std::uint32_t i = 0; i < group.count; ++i) {
-    const CornerIndex c = members_[group.first + i];
-    sum = sum +
-          offset(c / 3, position, normals(c / 3)[c % 3], uv(c), level_of(density(c / 3), limit));
-  }
-  return sum * (1.0 / group.count);
-}
-
-Vec3d DisplacedTriangles::edge_offset(const Group& group, Vec3d position, float along,
-                                      double limit) const {
-  if (group.is_pinned) return {};
-  double texels = 0;
-  for (std::uint32_t i = 0; i < group.count; ++i)
-    texels = std::max(texels, edge_density(members_[group.first + i]));
-  const float level = level_of(texels, limit);
-  Vec3d sum;
-  for (std::uint32_t i = 0; i < group.count; ++i) {
-    CornerIndex a = members_[group.first + i], b = next_corner(a);
-    if (places_[b] < places_[a]) std::swap(a, b);
-    const std::array<Vec3f, 3> n = normals(a / 3);
-    sum = sum + offset(a / 3, position, n[a % 3] + (n[b % 3] - n[a % 3]) * along,
-                       uv(a) + (uv(b) - uv(a)) * along, level);
-  }
-  return sum * (1.0 / group.count);
-}
-
-const Vec3d& DisplacedTriangles::displace(const Pass& pass, Vertex& v) const {
+const Vec3d& DisplacedTriangles::displace(const Pass& pass, PieceCorner& v) const {
   if (v.is_displaced) return v.displaced;
   v.is_displaced = true;
   const CornerIndex first = 3 * pass.triangle;
-  const std::array<float, 3> b{1 - v.b1 - v.b2, v.b1, v.b2};
   if (v.edges == 0) {
-    const Vec2f at =
-        uv(first) + (uv(first + 1) - uv(first)) * v.b1 + (uv(first + 2) - uv(first)) * v.b2;
-    v.displaced = v.position + offset(pass.triangle, v.position, v.normal, at, pass.level);
+    const Vec2f uv = mesh_.uv(first) + (mesh_.uv(first + 1) - mesh_.uv(first)) * v.b1 +
+                     (mesh_.uv(first + 2) - mesh_.uv(first)) * v.b2;
+    v.displaced =
+        v.position + triangle_offset(mesh_, pass.triangle, v.position, v.normal, uv, pass.level);
   } else if (std::has_single_bit(v.edges)) {
-    // What both neighbours know: how far from the end with the lesser place the point is.
+    const std::array<float, 3> b{1 - v.b1 - v.b2, v.b1, v.b2};
     const CornerIndex edge = first + static_cast<unsigned>(std::countr_zero(v.edges));
-    const CornerIndex end = next_corner(edge);
-    const float along = b[(places_[end] < places_[edge] ? edge : end) - first];
-    v.displaced =
-        v.position + edge_offset(groups_[edge_groups_[edge]], v.position, along, pass.limit);
+    const float along = b[seams_.ends(edge).last - first];
+    v.displaced = v.position + edge_offset(mesh_, seams_, seams_.edge_group(edge), v.position,
+                                           along, pass.limit);
   } else {
-    const auto corner = static_cast<std::uint32_t>(v.edges == 0b101 ? 0 : v.edges == 0b011 ? 1 : 2);
-    v.displaced =
-        v.position + corner_offset(groups_[corner_groups_[first + corner]], v.position, pass.limit);
+    v.displaced = v.position + corner_offset(mesh_, seams_.corner_group(first + corner_on(v.edges)),
+                                             v.position, pass.limit);
   }
   return v.displaced;
 }
 
 DisplacedTriangles::Pass::Pass(const DisplacedTriangles& all, std::uint32_t base, double edge_limit)
     : triangle(base), limit(edge_limit) {
-  double densest = all.density(base);
-  level = level_of(densest, edge_limit);
-  const std::array<Vec3f, 3> n = all.normals(base);
+  const DisplacedMesh& mesh = all.mesh_;
+  double densest = texel_density(mesh, base);
+  level = height_level(densest, edge_limit);
+  const std::array<Vec3f, 3> n = mesh.normals(base);
   constexpr std::uint8_t edges[3] = {0b101, 0b011, 0b110};
   for (std::uint32_t c = 0; c < 3; ++c) {
-    corners[c].position = Vec3d(all.position(3 * base + c));
+    const CornerIndex corner = 3 * base + c;
+    corners[c].position = Vec3d(mesh.position(corner));
     corners[c].normal = n[c];
     corners[c].b1 = c == 1 ? 1.0f : 0.0f;
     corners[c].b2 = c == 2 ? 1.0f : 0.0f;
     corners[c].edges = edges[c];
     if (!all.is_displaced(base)) continue;
-    const Group& edge = all.groups_[all.edge_groups_[3 * base + c]];
-    const Group& corner = all.groups_[all.corner_groups_[3 * base + c]];
-    densest = std::max({densest, all.edge_density(all.members_[edge.first]),
-                        all.density(all.members_[corner.first] / 3)});
+    // Off seams a corner moves as the first member of its group does.
+    densest = std::max({densest, edge_texel_density(mesh, all.seams_.edge_group(corner).members[0]),
+                        texel_density(mesh, all.seams_.corner_group(corner).members[0] / 3)});
   }
   if (!all.is_displaced(base)) return;
-  const HeightTexture& heights = *all.displacement(base).heights;
-  const float blurriest = level_of(densest, edge_limit);
+  const HeightTexture& heights = *mesh.displacement(base).heights;
+  const float blurriest = height_level(densest, edge_limit);
   const float texel = blurriest > 0 ? 1.5f * std::exp2(std::floor(blurriest) + 1) : 0;
   blur = {texel / static_cast<float>(heights.width()),
           texel / static_cast<float>(heights.height())};
@@ -185,23 +101,18 @@ DisplacedTriangles::Pass::Pass(const DisplacedTriangles& all, std::uint32_t base
 
 bool DisplacedTriangles::is_seam(std::uint32_t t, std::uint8_t edges) const {
   if (edges == 0) return false;
-  const auto differs = [](const Group& group) { return group.count > 1 || group.is_pinned; };
   for (std::uint32_t k = 0; k < 3; ++k)
-    if ((edges >> k & 1) != 0 && differs(groups_[edge_groups_[3 * t + k]])) return true;
+    if ((edges >> k & 1) != 0 && seams_.edge_group(3 * t + k).is_seam()) return true;
   if (std::has_single_bit(edges)) return false;
-  const auto corner = static_cast<std::uint32_t>(edges == 0b101 ? 0 : edges == 0b011 ? 1 : 2);
-  return differs(groups_[corner_groups_[3 * t + corner]]);
+  return seams_.corner_group(3 * t + corner_on(edges)).is_seam();
 }
 
-DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const Vertex& a, const Vertex& b,
-                                           const Vertex& c) const {
-  const Displacement& d = displacement(pass.triangle);
-  const std::array<const Vertex*, 3> corners{&a, &b, &c};
+DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const PieceCorner& a,
+                                           const PieceCorner& b, const PieceCorner& c) const {
+  const std::array<const PieceCorner*, 3> corners{&a, &b, &c};
   DisplacedPiece piece;
-  Box3d flat = Box3d::empty();
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vertex& v = *corners[i];
-    flat.extend(v.position);
+    const PieceCorner& v = *corners[i];
     piece.corners[i] = v.position;
     piece.normals[i] = i > 0 && v.normal == a.normal ? piece.normals[0] : unit_or_zero(v.normal);
     if (is_seam(pass.triangle, v.edges)) piece.reach[i] = radius_;
@@ -210,46 +121,51 @@ DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const Vertex& a, co
   const Vec3f middle = unit_or_zero(n[0] + n[1] + n[2]);
   const float shortest = std::min({dot(n[0], middle), dot(n[1], middle), dot(n[2], middle)});
   if (!(shortest > 0.3f)) {
+    // Normals that differ so much may point anywhere between.
     piece.slack = radius_;
     return piece;
   }
+  piece.shortest = shortest;
+  piece.heights = heights_of(pass, piece, corners);
+  // Normals that are nearly equal count as equal.
+  piece.slack = 2e-3 * radius_;
+  return piece;
+}
 
-  HeightTexture::Bounds range{{65535}, {0}};
-  const auto include = [&](Vec2f lo, Vec2f hi) {
-    const HeightTexture::Bounds bounds = d.heights->bounds(lo - pass.blur, hi + pass.blur);
-    range.lo[0] = std::min(range.lo[0], bounds.lo[0]);
-    range.hi[0] = std::max(range.hi[0], bounds.hi[0]);
-  };
+/// Returns how far a piece's heights may move its points, but for those on seams.
+Interval DisplacedTriangles::heights_of(const Pass& pass, const DisplacedPiece& piece,
+                                        const std::array<const PieceCorner*, 3>& corners) const {
+  const Displacement& d = mesh_.displacement(pass.triangle);
+  HeightRange range;
   if (d.box_size > 0) {
+    Box3d flat = Box3d::empty();
+    for (const Vec3d& corner : piece.corners) flat.extend(corner);
     for (int axis = 0; axis < 3; ++axis) {
+      const std::array<Vec3f, 3>& n = piece.normals;
       const float most =
           std::max({std::abs(n[0][axis]), std::abs(n[1][axis]), std::abs(n[2][axis])});
-      if (most / shortest < 0.4f) continue;
-      const Vec2f lo = projected(flat.lo, axis, d.box_size);
+      if (most / piece.shortest < 0.4f) continue;  // projection_weights() gives it no weight.
+      const Vec2f lo = projected_uv(flat.lo, axis, d.box_size);
       const Vec3d extent = (flat.hi - flat.lo) * (1 / d.box_size);
       const Vec2f size{static_cast<float>(axis == 0 ? extent.z : extent.x),
                        static_cast<float>(axis == 1 ? extent.z : extent.y)};
-      // Along y the texture runs down.
+      // The texture runs down along y.
       const Vec2f start = axis == 1 ? lo : Vec2f{lo.x, lo.y - size.y};
-      include(start, start + size);
+      range.add(*d.heights, start - pass.blur, start + size + pass.blur);
     }
   } else {
     const CornerIndex first = 3 * pass.triangle;
     Vec2f lo{}, hi{};
-    for (const Vertex* v : corners) {
-      const Vec2f p = d.uv(uv(first) + (uv(first + 1) - uv(first)) * v->b1 +
-                           (uv(first + 2) - uv(first)) * v->b2);
-      lo = v == &a ? p : Vec2f{std::min(lo.x, p.x), std::min(lo.y, p.y)};
-      hi = v == &a ? p : Vec2f{std::max(hi.x, p.x), std::max(hi.y, p.y)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2f p =
+          d.uv(mesh_.uv(first) + (mesh_.uv(first + 1) - mesh_.uv(first)) * corners[i]->b1 +
+               (mesh_.uv(first + 2) - mesh_.uv(first)) * corners[i]->b2);
+      lo = i == 0 ? p : Vec2f{std::min(lo.x, p.x), std::min(lo.y, p.y)};
+      hi = i == 0 ? p : Vec2f{std::max(hi.x, p.x), std::max(hi.y, p.y)};
     }
-    include(lo, hi);
+    range.add(*d.heights, lo - pass.blur, hi + pass.blur);
   }
-  const double p = d.base + d.gain * range.lo[0] / 65535, q = d.base + d.gain * range.hi[0] / 65535;
-  piece.heights = {std::min(p, q), std::max(p, q)};
-  piece.shortest = shortest;
-  // Normals that are nearly equal count as equal.
-  piece.slack = 2e-3 * radius_;
-  return piece;
+  return range.along(d);
 }
 
 Box3d DisplacedTriangles::find_bounds(std::uint32_t t) const {
@@ -257,7 +173,7 @@ Box3d DisplacedTriangles::find_bounds(std::uint32_t t) const {
   if (is_displaced(t))
     return enclose(pass, pass.corners[0], pass.corners[1], pass.corners[2]).box();
   Box3d box = Box3d::empty();
-  for (const Vertex& corner : pass.corners) box.extend(corner.position);
+  for (const PieceCorner& corner : pass.corners) box.extend(corner.position);
   return box;
 }
 
@@ -272,9 +188,9 @@ std::uint32_t DisplacedTriangles::regions_met(std::uint32_t t, std::span<const B
   return piece_meets(pass, pass.corners[0], pass.corners[1], pass.corners[2], regions, met, small);
 }
 
-std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, Vertex& a, Vertex& b, Vertex& c,
-                                              std::span<const Box3d, 8> regions, std::uint32_t set,
-                                              double small) const {
+std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, PieceCorner& a, PieceCorner& b,
+                                              PieceCorner& c, std::span<const Box3d, 8> regions,
+                                              std::uint32_t set, double small) const {
   const Box3d box = enclose(pass, a, b, c).box();
   std::uint32_t met = 0, surely = 0;
   for (std::uint32_t left = set; left != 0; left &= left - 1) {
@@ -285,9 +201,9 @@ std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, Vertex& a, Verte
       surely |= left & -left;
   }
   const Vec3d size = box.hi - box.lo;
-  if (met == surely || std::max({size.x, size.y, size.z}) < small || is_small(pass, a, b, c))
+  if (met == surely || std::max({size.x, size.y, size.z}) < small || is_small(a, b, c, pass.limit))
     return met;
-  for_each_part(pass, a, b, c, [&](Vertex& p, Vertex& q, Vertex& r) {
+  for_each_part(a, b, c, pass.limit, [&](PieceCorner& p, PieceCorner& q, PieceCorner& r) {
     if ((met & ~surely) != 0) surely |= piece_meets(pass, p, q, r, regions, met & ~surely, small);
   });
   return surely;
@@ -296,10 +212,10 @@ std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, Vertex& a, Verte
 MicroTriangle DisplacedTriangles::micro_at(std::uint32_t triangle, Vec2f place,
                                            double edge_limit) const {
   Pass pass(*this, triangle, edge_limit);
-  std::array<Vertex, 3> piece = pass.corners;
-  // How far inside of a piece the place lies: negative outside.
-  const auto depth_in = [&](const Vertex& a, const Vertex& b, const Vertex& c) {
-    const auto side = [&](const Vertex& p, const Vertex& q) {
+  std::array<PieceCorner, 3> piece = pass.corners;
+  // Returns how far inside of a piece the place lies; negative outside.
+  const auto depth_in = [&](const PieceCorner& a, const PieceCorner& b, const PieceCorner& c) {
+    const auto side = [&](const PieceCorner& p, const PieceCorner& q) {
       const Vec2d from{static_cast<double>(p.b1), static_cast<double>(p.b2)};
       const Vec2d along = Vec2d{static_cast<double>(q.b1), static_cast<double>(q.b2)} - from;
       const Vec2d to = Vec2d{static_cast<double>(place.x), static_cast<double>(place.y)} - from;
@@ -307,15 +223,16 @@ MicroTriangle DisplacedTriangles::micro_at(std::uint32_t triangle, Vec2f place,
     };
     return std::min({side(a, b), side(b, c), side(c, a)});
   };
-  while (!is_small(pass, piece[0], piece[1], piece[2])) {
+  while (!is_small(piece[0], piece[1], piece[2], pass.limit)) {
     double deepest = -HUGE_VAL;
-    std::array<Vertex, 3> part = piece;
-    for_each_part(pass, piece[0], piece[1], piece[2], [&](Vertex& a, Vertex& b, Vertex& c) {
-      const double depth = depth_in(a, b, c);
-      if (!(depth > deepest)) return;
-      deepest = depth;
-      part = {a, b, c};
-    });
+    std::array<PieceCorner, 3> part = piece;
+    for_each_part(piece[0], piece[1], piece[2], pass.limit,
+                  [&](PieceCorner& a, PieceCorner& b, PieceCorner& c) {
+                    const double depth = depth_in(a, b, c);
+                    if (!(depth > deepest)) return;
+                    deepest = depth;
+                    part = {a, b, c};
+                  });
     piece = part;
   }
   MicroTriangle micro;

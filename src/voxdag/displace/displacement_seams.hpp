@@ -1,0 +1,63 @@
+#pragma once
+/// Which corners and edges of a displaced mesh coincide, and where their displacements differ.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "voxdag/displace/displaced_mesh.hpp"
+
+namespace voxdag {
+
+/// Corners at one place, or edges between the same two places. Immutable.
+class DisplacementSeams {
+ public:
+  /// A set of coinciding corners or edges.
+  struct Group {
+    /// One corner or edge for each different displacement; there is at least one.
+    std::span<const CornerIndex> members;
+    bool is_pinned;  ///< It does not move, because a triangle without displacement has it too.
+
+    /// Returns whether triangles disagree on how the group moves.
+    bool is_seam() const { return members.size() > 1 || is_pinned; }
+  };
+
+  DisplacementSeams() = default;
+  explicit DisplacementSeams(const DisplacedMesh& mesh);
+
+  Group corner_group(CornerIndex corner) const { return group(corner_groups_[corner]); }
+  Group edge_group(CornerIndex edge) const { return group(edge_groups_[edge]); }
+
+  /// Returns an edge's two ends in an order that all coinciding edges share.
+  struct Ends {
+    CornerIndex first, last;
+  };
+  Ends ends(CornerIndex edge) const {
+    const CornerIndex next = next_corner(edge);
+    return places_[next] < places_[edge] ? Ends{next, edge} : Ends{edge, next};
+  }
+
+ private:
+  struct StoredGroup {
+    std::uint32_t first = 0, count = 0;  ///< Of `members_`.
+    bool is_pinned = false;
+  };
+
+  Group group(std::uint32_t index) const {
+    const StoredGroup& stored = groups_[index];
+    return {{members_.data() + stored.first, stored.count}, stored.is_pinned};
+  }
+  void number_places(const Mesh& mesh);
+  void group_corners(const DisplacedMesh& mesh);
+  void group_edges(const DisplacedMesh& mesh);
+  template <class Agree>
+  void add_group(const DisplacedMesh& mesh, std::span<const CornerIndex> all, const Agree& agree);
+  bool edges_agree(const DisplacedMesh& mesh, CornerIndex a, CornerIndex b) const;
+
+  std::size_t place_count_ = 0;
+  std::vector<std::uint32_t> places_;  ///< By CornerIndex: equal for equal positions.
+  std::vector<std::uint32_t> corner_groups_, edge_groups_;  ///< By CornerIndex.
+  std::vector<StoredGroup> groups_;
+  std::vector<CornerIndex> members_;
+};
+
+}  // namespace voxdag
