@@ -1,5 +1,5 @@
-# VOXDAG_HAS_CUDA: nvcc was found, and CUDA is a language of this build. Nothing needs it: without
-# it src/voxdag/cuda says that there is no device.
+# Sets VOXDAG_HAS_CUDA if nvcc was found, and enables CUDA as a language. Without nvcc,
+# src/voxdag/cuda reports that there is no device.
 set(VOXDAG_HAS_CUDA OFF)
 if(VOXDAG_CUDA AND "cuda" IN_LIST VOXDAG_ROOMS)
   find_program(VOXDAG_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda/bin)
@@ -13,13 +13,13 @@ if(VOXDAG_CUDA AND "cuda" IN_LIST VOXDAG_ROOMS)
       set(CMAKE_CUDA_COMPILER_LAUNCHER ${VOXDAG_CCACHE})
     endif()
     enable_language(CUDA)
-    # CMake 3.25 of Debian 12 does not know that nvcc 12 and later compile C++20.
+    # CMake 3.25 of Debian 12 does not know that nvcc 12 and later support C++20.
     if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
       set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
       set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
       list(APPEND CMAKE_CUDA_COMPILE_FEATURES cuda_std_20)
     endif()
-    # The runtime is linked statically: what is built runs where no CUDA is installed.
+    # The static runtime lets programs run on machines without an installed CUDA.
     find_package(CUDAToolkit REQUIRED)
     set(VOXDAG_HAS_CUDA ON)
   else()

@@ -1,5 +1,5 @@
 # voxdag_library(NAME [SOURCES a.cpp ...] [LINK other_part ... external::target ...])
-# One folder of src/voxdag is one target, voxdag_NAME. A folder without sources is header-only.
+# adds the target voxdag_NAME of a folder of src/voxdag. A folder without sources is header-only.
 function(voxdag_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   set(target voxdag_${name})

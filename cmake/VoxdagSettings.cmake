@@ -1,4 +1,4 @@
-# Compiler settings shared by every target of the project: C++20, warnings, sanitizers.
+# Compiler settings of every target of the project: C++20, warnings, sanitizers.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -12,7 +12,7 @@ if(VOXDAG_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(voxdag_settings INTERFACE)
-# No contraction: the same arithmetic, so the same hits and the same bytes, on every machine.
+# -ffp-contract=off: equal arithmetic, and so equal hits and bytes, on every machine.
 target_compile_options(voxdag_settings INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off>)
 if(VOXDAG_WERROR)

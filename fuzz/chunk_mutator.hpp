@@ -1,6 +1,6 @@
 #pragma once
-/// Takes files of chunks (docs/format.md) apart and puts them together with the right offsets and
-/// checksums, so that mutations reach what is behind them.
+/// Mutates files of chunks (docs/format.md): splits them, changes the chunks, and joins them with
+/// correct offsets and checksums, so that mutations reach the checks after the checksums.
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -15,12 +15,14 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace voxdag {
 
+/// A chunk of a file.
 struct Piece {
   VdagChunkEntry entry;
   std::string bytes;
 };
 
-inline std::vector<Piece> take_apart(const std::string& file) {
+/// Returns the chunks of a file, at most 8; stops at the first damaged table entry.
+inline std::vector<Piece> split_chunks(const std::string& file) {
   std::vector<Piece> pieces;
   if (file.size() < sizeof(VdagHeader)) return pieces;
   const auto count = peek<VdagHeader>(file, 0).chunk_count;
@@ -33,7 +35,8 @@ inline std::vector<Piece> take_apart(const std::string& file) {
   return pieces;
 }
 
-inline std::string put_together(const std::vector<Piece>& pieces) {
+/// Returns the file of these chunks.
+inline std::string join_chunks(const std::vector<Piece>& pieces) {
   std::string file(vdag_align(entry_offset(pieces.size())), '\0');
   VdagHeader header{};
   std::memcpy(header.magic, kVdagMagic, sizeof kVdagMagic);
@@ -53,7 +56,7 @@ inline std::string put_together(const std::vector<Piece>& pieces) {
   return file;
 }
 
-/// Changes one word a little, or copies one word over another: what is likely to stay a DAG.
+/// Changes one word a little, or copies one word over another. The result is often still a DAG.
 template <class T>
 void change_word(std::string& bytes, std::mt19937& rng) {
   const std::size_t count = bytes.size() / sizeof(T);
@@ -72,7 +75,7 @@ inline void change_bytes(std::string& bytes) {
   bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, most));
 }
 
-/// Changes a bit of a chunk's entry in the table.
+/// Flips a bit of a chunk's id or flags in the table.
 inline void change_entry(VdagChunkEntry& entry, std::mt19937& rng) {
   std::string bytes(sizeof entry, '\0');
   poke(bytes, 0, entry);
@@ -80,27 +83,27 @@ inline void change_entry(VdagChunkEntry& entry, std::mt19937& rng) {
   entry = peek<VdagChunkEntry>(bytes, 0);
 }
 
-/// A mutation for LLVMFuzzerCustomMutator: `change(pieces, rng)` changes one of the pieces, which
-/// are not none; `seed_file(rng)` makes a small file of any kind.
+/// Mutates a file for LLVMFuzzerCustomMutator. `change(pieces, rng)` changes one of the chunks, of
+/// which there is at least one; `seed_file(rng)` returns a small file of any kind.
 template <class Change, class SeedFile>
 std::size_t mutate_chunks(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed,
                           const Change& change, const SeedFile& seed_file) {
   std::mt19937 rng(seed);
   if (rng() % 32 == 0) return LLVMFuzzerMutate(data, size, max_size);
-  std::vector<Piece> pieces = take_apart(std::string(reinterpret_cast<const char*>(data), size));
+  std::vector<Piece> pieces = split_chunks(std::string(reinterpret_cast<const char*>(data), size));
   std::string file;
   if (pieces.empty() || rng() % 256 == 0) {
     file = seed_file(rng);
   } else {
     for (unsigned i = 0; i <= rng() % 4; ++i) change(pieces, rng);
-    file = put_together(pieces);
+    file = join_chunks(pieces);
   }
   if (file.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
   std::memcpy(data, file.data(), file.size());
   return file.size();
 }
 
-/// For LLVMFuzzerTestOneInput: walk(parse(the bytes)), unless `parse` finds them damaged.
+/// Calls walk(parse(bytes)) for LLVMFuzzerTestOneInput, and ignores an Error of `parse`.
 template <class Parse, class Walk>
 int read_and_walk(const std::uint8_t* data, std::size_t size, const Parse& parse,
                   const Walk& walk) {

@@ -1,8 +1,8 @@
-// The reader of ESVO files: any bytes give an Error or an octree that every walk survives. Give
-// room for blocks of several pages: fuzz_esvo -max_len=131072.
-//
-// The mutator knows the container and the blocks' checksums; see chunk_mutator.hpp. It starts with
-// small random octrees with contours.
+/// Fuzzes the reader of ESVO files: any bytes give an Error, or an octree that every walk survives.
+/// Blocks of several pages need -max_len=131072.
+///
+/// The mutator keeps the container and the checksums of the blocks correct (chunk_mutator.hpp). It
+/// needs no corpus: it starts with small random octrees with contours.
 #include <cstdlib>
 #include <span>
 #include <string>
@@ -22,7 +22,7 @@ namespace {
 
 struct TooMany {};
 
-/// The first parts of leaves, with what is stored of them.
+/// Returns the origins of the first parts of leaves, and reads their attributes.
 std::vector<Vec3i> first_parts(const EsvoView& view) {
   constexpr std::size_t kMost = 500;  // a small file can stand for 2^60 voxels
   std::vector<Vec3i> blocks;
@@ -64,7 +64,7 @@ void walk(const EsvoContents& contents) {
   cast_rays(ContourNodes(view), contents.metadata.grid, targets);
 }
 
-/// Gives the directory the checksums of the blocks.
+/// Writes the checksums of the blocks into the directory.
 void repair_blocks(std::vector<Piece>& pieces) {
   const auto find = [&](std::uint32_t id) {
     return std::find_if(pieces.begin(), pieces.end(),
@@ -82,7 +82,7 @@ void repair_blocks(std::vector<Piece>& pieces) {
   }
 }
 
-/// Changes one of the slots that hold something.
+/// Changes one of the slots that are not zero.
 void change_slot(std::string& bytes, std::mt19937& rng) {
   std::vector<std::size_t> used;
   for (std::size_t at = 0; at + 8 <= bytes.size(); at += 8)

@@ -1,6 +1,5 @@
-/// Feeds bytes to each of the library's own mesh readers. The first byte chooses the reader; the
-/// result must be a sound mesh or an Error. What it
-/// says of its look must fit the mesh.
+/// Fuzzes the library's own mesh readers. The first byte chooses the reader; the others are the
+/// file. The result must be a sound mesh, whose appearance fits it, or an Error.
 #include <cmath>
 #include <cstdlib>
 
@@ -14,7 +13,7 @@
 
 namespace {
 
-/// Attributes of a mesh that is read have the mesh's size, whatever is wrong with them.
+/// Checks that attributes have the mesh's size, even if parts of them are malformed.
 void check_appearance(int reader, const voxdag::MeshBytes& source, const voxdag::Mesh& mesh) {
   using namespace voxdag;
   std::vector<std::string> warnings;

@@ -1,4 +1,4 @@
-// The header parser of .npy: any text gives a header or an Error.
+/// Fuzzes the header parser of .npy: any text gives a header or an Error.
 #include <cstddef>
 #include <cstdint>
 

@@ -1,9 +1,8 @@
-// The .vdag reader: any bytes give an Error or a DAG that every walk survives; one that is also
-// canonical and minimal must be the one that the reference builder makes of its voxels.
-//
-// The mutator knows the container: it changes chunks and puts them together with the right offsets
-// and checksums, so that mutations reach what is behind them. It needs no corpus: from nothing it
-// starts with small DAGs of random voxels.
+/// Fuzzes the .vdag reader: any bytes give an Error, or a DAG that every walk survives. A DAG that
+/// is also canonical and minimal must equal the one that the reference builder makes of its voxels.
+///
+/// The mutator keeps the offsets and checksums of the container correct (chunk_mutator.hpp). It
+/// needs no corpus: it starts with small DAGs of random voxels.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds voxdag on a Debian 12 that may have only git, makes a procedural scene, voxelizes it at
-# 8192³, prints the summary, and leaves the picture demo.png.
+# Builds voxdag on a Debian 12 that has only git, makes a procedural scene, voxelizes it at 8192³,
+# prints the summary, and renders the picture demo.png.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
@@ -13,6 +13,6 @@ cmake --build build/demo -- -j "$(nproc)"
 voxdag() { build/demo/apps/voxdag/voxdag "$@"; }
 voxdag scene courtyard -o build/demo/courtyard.ply
 voxdag build build/demo/courtyard.ply -r 8192 -o build/demo/courtyard.vdag
-# shellcheck disable=SC2046  # the view is several options
+# shellcheck disable=SC2046  # the view is several words
 voxdag render build/demo/courtyard.vdag -o demo.png --size 1920x1080 --samples 4 \
   $(voxdag scene courtyard --view)

@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
-# Builds voxdag for the CUDA device of this machine, runs the tests that need one, and measures rays
-# per second. One call of under 8 minutes; no network where the packages are there.
+# Builds voxdag for the CUDA device of this machine, runs the tests that need a device, and measures
+# rays per second. Takes less than 8 minutes, and needs no network if the packages are installed.
 #
 #   scripts/gpu-check.sh [OPTION...]
-#     --tests        build and tests, no measurements
-#     --sanitize     the tests under compute-sanitizer, too
-#     --out FOLDER   where the results go (default: bench/results/DEVICE-NAME)
-#     --pack FILE    needs the CUDA toolkit, but no device: builds for all devices and packs the
-#                    programs, the libraries that they need and the scenes into FILE, a .tar.gz
-#     --packed FILE  checks what was packed: needs the driver alone, and no older a C library
+#     --tests        builds and tests, measures nothing
+#     --sanitize     also runs the tests under compute-sanitizer
+#     --out FOLDER   folder of the results (default: bench/results/DEVICE-NAME)
+#     --pack FILE    builds for all devices, and packs the programs, their libraries and the scenes
+#                    into FILE, a .tar.gz; needs the CUDA toolkit, but no device
+#     --packed FILE  tests and measures the packed programs; needs only the driver, and a C library
+#                    that is not older than the one of the packing machine
 #
-# Crytek Sponza is measured where VOXDAG_SCENES names a folder with sponza.obj, or the scenes lie
-# packed beside the checkout; a procedural courtyard always.
+# Measures a procedural courtyard, and Crytek Sponza if VOXDAG_SCENES names a folder with sponza.obj
+# or the packed scenes lie beside the checkout.
 set -euo pipefail
 
-usage() { sed -n '2,16s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '2,15s/^# \{0,1\}//p' "$0"; }
 die() { echo "gpu-check: $*" >&2; exit 1; }
 
 measure=yes sanitize=no folder='' pack='' packed=''
@@ -36,12 +37,12 @@ cd "$(dirname "$0")/.."
 . scripts/packages.sh
 export PATH="$PATH:/usr/local/cuda/bin"
 
-# What is left of the time, for the commands that may take long.
+# Runs a command within the time that is left.
 deadline=$((SECONDS + 470))
 [ -z "$pack" ] || deadline=$((SECONDS + 7200))
 within() { timeout --foreground $((deadline - SECONDS > 5 ? deadline - SECONDS : 5)) "$@"; }
 
-# build FOLDER [CMAKE-OPTION...]: leaves the programs in there.
+# build FOLDER [CMAKE-OPTION...]: builds the programs in FOLDER.
 build() {
   local build=$1
   local configure=(cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVOXDAG_CUDA=ON
@@ -58,7 +59,7 @@ build() {
   within cmake --build "$build" --target voxdag_app cuda_tests -- -j "$(nproc)"
 }
 
-# Prints where sponza.obj is, if anywhere.
+# Prints the path of sponza.obj, or nothing.
 find_sponza() {
   local scenes=${VOXDAG_SCENES-}
   if [ -z "$scenes" ] && [ -f ../shared/scenes/unpack.sh ]; then
@@ -76,7 +77,7 @@ if [ -n "$pack" ]; then
   cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests $content
   strip $content/voxdag $content/cuda_tests
   ! ldd $content/voxdag $content/cuda_tests | grep "not found" || die "libraries are missing"
-  # All but the C library, which belongs to the machine's loader.
+  # All libraries but the C library, which must match the loader of the other machine.
   ldd $content/voxdag $content/cuda_tests | awk '$3 ~ "^/" { print $3 }' | sort -u |
     grep -vE '/(lib(c|m|dl|rt|pthread|resolv|mvec)|ld-linux[^/]*)\.so' | xargs cp -Lt $content/lib
   sponza=$(find_sponza)
@@ -107,7 +108,7 @@ fi
 ours() { within env LD_LIBRARY_PATH="$libraries" "$@"; }
 voxdag() { ours $program "$@"; }
 
-# attempt COMMAND...: what fails does not keep the rest from being seen.
+# attempt COMMAND...: counts a failure and goes on.
 failures=0
 attempt() { "$@" || { echo "gpu-check: FAILED: $*" >&2; failures=$((failures + 1)); }; }
 
@@ -125,7 +126,7 @@ for where in cpu cuda; do
   attempt voxdag render $scene.vdag -o "$folder/courtyard-$where.png" --size 960x540 --device $where
 done
 
-# Fails where a hit of the device is not the CPU's.
+# Fails if a hit of the device differs from the CPU's.
 hits_agree() {
   awk -F '[:,]' '/"rival":/ { ours = $2 ~ "voxdag_cpu" } /"rival_agreement":/ && ours && $2 != 1 { exit 1 }' "$1"
 }

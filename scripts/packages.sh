@@ -1,7 +1,6 @@
 # shellcheck shell=bash disable=SC2034
-# The Debian 12 packages that voxdag is built and tested with: the one list of them.
-# Sourced by the other scripts; install_packages installs what is missing and nothing else, so
-# that a second run works offline.
+# The one list of Debian 12 packages that voxdag is built and tested with. The other scripts source
+# it. install_packages installs missing packages only, so a second run works offline.
 
 voxdag_packages=(
   # tools

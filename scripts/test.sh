@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds voxdag with warnings as errors and runs every test, on a Debian 12 that may have only git.
+# Builds voxdag with warnings as errors and runs every test, on a Debian 12 that has only git.
 #
 #   scripts/test.sh           formatting, the library under clang, everything under g++, the tests
-#   scripts/test.sh --tidy    clang-tidy over the sources as well (minutes more)
+#   scripts/test.sh --tidy    also runs clang-tidy (takes minutes more)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
@@ -33,12 +33,12 @@ cmake --build --preset release -- -j "$jobs"
 
 if [ "$tidy" = yes ]; then
   echo "== clang-tidy"
-  # What the clang build can compile: optional parts only where what they need was found.
+  # The sources that the clang build compiles: optional parts only if their packages were found.
   sed -n 's/^ *"file": "\(.*\.cpp\)",\?$/\1/p' build/clang/compile_commands.json | sort -u |
     xargs -r -d '\n' -n 1 -P "$jobs" clang-tidy -p build/clang --quiet --warnings-as-errors='*'
 fi
 
-# Real scenes are tested too where they lie beside the checkout.
+# Tests real scenes too if they lie beside the checkout.
 if [ -z "${VOXDAG_SCENES-}" ] && [ -f ../shared/scenes/unpack.sh ]; then
   bash ../shared/scenes/unpack.sh build/scenes
   export VOXDAG_SCENES=$PWD/build/scenes

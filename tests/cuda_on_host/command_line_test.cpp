@@ -1,4 +1,4 @@
-/// The program with a device: `--device cuda` does what `--device cpu` does.
+/// Runs the command line with the host device: `--device cuda` gives the results of `--device cpu`.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -18,12 +18,12 @@ class DeviceCommands : public Sponge {
                                            {9, 9, 9, 0, 0, 1, 0, HUGE_VALF}}));
   }
 
-  /// The command on this device.
+  /// Runs the command on a device.
   static ProcessResult run_on(const char* device, std::vector<std::string> words) {
     words.insert(words.end(), {"--device", device});
     return run_voxdag(words);
   }
-  /// Expects the file `output` that the command writes to be the same of both.
+  /// Expects the command to write the same file `output` on both devices.
   static void expect_like_cpu(std::vector<std::string> words, const std::string& output) {
     const ProcessResult cpu = run_on("cpu", words);
     ASSERT_EQ(cpu.status, 0) << cpu.err;

@@ -1,15 +1,15 @@
 #pragma once
-/// What the parts of the runtime share.
+/// Internals that the parts of the test runtime share.
 #include <cuda_runtime_api.h>
 
 #include <deque>
 #include <functional>
 
-/// Steps that are done one after the other.
+/// A queue of steps that run one after the other.
 struct CUstream_st {
-  /// Does the step later, or now where the device is eager.
+  /// Queues the step; an eager device runs it now.
   cudaError_t add(std::function<cudaError_t()> step);
-  /// Does all there are, up to the first that fails.
+  /// Runs all queued steps, up to the first that fails.
   cudaError_t finish();
 
   std::deque<std::function<cudaError_t()>> steps;
@@ -17,7 +17,7 @@ struct CUstream_st {
 
 namespace voxdag {
 
-/// While one lives the device's memory can be touched.
+/// Makes the device's memory accessible while it lives.
 class DeviceAtWork {
  public:
   DeviceAtWork();
@@ -26,9 +26,9 @@ class DeviceAtWork {
   ~DeviceAtWork();
 };
 
-/// Begins a call: an error where it is the one that is to fail.
+/// Begins a call of the runtime: returns an error if HostDevice::failing_call says so.
 cudaError_t begin_call();
-/// Returns `status`, and remembers it where it is an error.
+/// Returns `status`; an error also becomes the last error.
 cudaError_t end_call(cudaError_t status);
 
 }  // namespace voxdag

@@ -27,7 +27,7 @@ class CudaOnHost : public testing::Test {
   }
 };
 
-/// What the program says.
+/// Returns the message of the Error that work() throws, or "".
 template <class Work>
 std::string failure(const Work& work) {
   try {
@@ -109,14 +109,14 @@ void render_from_source(const DeviceScene& scene) {
 void measure(const DeviceScene& scene) {
   const RenderPlan plan(scene.host(), picture_grid(), small_picture());
   EXPECT_GT(TimedBeams(scene, plan.setup()).run(), 0);
-  const TimedCasts casts(scene, std::vector<CastRay>(10));  // that miss
+  const TimedCasts casts(scene, std::vector<CastRay>(10));  // they miss
   EXPECT_GT(casts.any() + casts.closest(), 0);
   std::vector<std::uint8_t> hits(10, 1);
   casts.copy_hits(hits);
   EXPECT_EQ(hits, std::vector<std::uint8_t>(10, 0));
 }
 
-/// Calls work(scene) with each of what a device does, of each kind of voxels.
+/// Calls body(work) for each kind of work of a device and each kind of voxels.
 template <class Body>
 void for_all_work(const Body& body) {
   const Svdag dag = picture_scene();
@@ -140,8 +140,8 @@ TEST_F(CudaOnHost, ACallThatFailsIsAnErrorThatLeavesNothingBehind) {
     for (;; ++failing) {
       host_device().failing_call = failing;
       const std::string why = failure(work);
-      if (host_device().failing_call) break;  // there were not so many
-      // Of those that wait before they give a queue back nobody asks how that went.
+      if (host_device().failing_call) break;  // fewer calls than that
+      // The result of a wait before a queue is destroyed is ignored.
       EXPECT_TRUE(why.empty() || why.find("unknown error") != std::string::npos)
           << "call " << failing << ": " << why;
       ASSERT_TRUE(host_device().holds_nothing()) << "call " << failing << ": " << why;

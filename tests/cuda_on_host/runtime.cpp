@@ -18,10 +18,10 @@ using voxdag::begin_call, voxdag::end_call, voxdag::host_device;
 
 cudaError_t last_error = cudaSuccess;
 
-/// The device's memory, by address. It ends at a page that nobody may touch.
+/// The pages of an array on the device. An inaccessible page follows them.
 struct Pages {
   std::byte* first;
-  std::size_t bytes;  // without that page
+  std::size_t bytes;  // without the inaccessible page
   std::size_t wanted;
 };
 std::map<const void*, Pages>& device_memory() {
@@ -33,15 +33,14 @@ void protect(int access) {
   for (const auto& [address, pages] : device_memory()) mprotect(pages.first, pages.bytes, access);
 }
 
-/// What has not been written yet is not zero; of large arrays only the beginning, as that takes
-/// time.
+/// Fills new memory with values other than zero; of large arrays only the beginning, to save time.
 void fill_with_noise(void* memory, std::size_t bytes) {
   std::memset(memory, 0xA5, std::min(bytes, std::size_t{1} << 20));
 }
 
 std::size_t page_bytes() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
 
-/// Whether all of it is the device's, in one array.
+/// Returns whether the bytes lie in one array of the device.
 bool is_on_device(const void* address, std::size_t bytes) {
   const auto next = device_memory().upper_bound(address);
   if (next == device_memory().begin()) return false;
@@ -103,7 +102,7 @@ cudaError_t CUstream_st::finish() {
 }
 
 struct CUevent_st {
-  /// When it was; an event may be gone before that.
+  /// The time of the event, once its step has run. The step can outlive the event.
   std::shared_ptr<std::optional<double>> seconds;
 };
 

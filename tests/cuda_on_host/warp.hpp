@@ -1,5 +1,5 @@
 #pragma once
-/// Threads of a kernel that run together, on the host.
+/// A warp of CUDA threads on the host.
 #include <cuda_runtime_api.h>
 #include <ucontext.h>
 
@@ -10,16 +10,17 @@
 
 namespace voxdag {
 
-/// Up to 32 threads, that take turns, each on a stack of its own.
+/// Up to 32 threads that take turns, each on its own stack.
 class Warp {
  public:
   static constexpr unsigned kSize = 32;
 
   Warp() : stacks_(new std::byte[kSize * kStackBytes]) {}
 
-  /// Calls `thread` for the place `first` in the block and those after it that are in the warp.
+  /// Runs `thread` for the threads of the warp that begins with thread `first` of the block.
   void run(const std::function<void()>& thread, const dim3& block, unsigned first);
-  /// For the thread that runs: waits until all have come here.
+  /// Called by a running thread: waits until all threads of the warp have called it, and returns
+  /// the value of the thread `by` lanes on.
   unsigned long long value_down(unsigned long long value, unsigned by);
 
  private:

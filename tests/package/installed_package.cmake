@@ -1,5 +1,5 @@
 # Installs the build in BUILD_DIR under WORK_DIR, builds SOURCE_DIR/examples and two small projects
-# against what was installed, and runs them.
+# against the installed package, and runs them.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
   if(NOT status EQUAL 0)

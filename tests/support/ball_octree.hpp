@@ -1,5 +1,6 @@
 #pragma once
-/// A ball's surface as an octree with contours, and any octree with colours and normals in blocks.
+/// Makes the octree of a ball's surface with contours, and packs any octree with colours and
+/// normals into blocks.
 #include <cmath>
 #include <memory>
 
@@ -8,7 +9,7 @@
 
 namespace voxdag {
 
-/// In units of the grid's side, the grid being [0,1]³.
+/// A ball in the grid [0,1]³.
 struct Ball {
   Vec3d centre{0.5, 0.5, 0.5};
   double radius = 0.4;
@@ -19,13 +20,13 @@ struct Ball {
   }
 };
 
-/// The contour that encloses the ball's surface in a cell; none where that is bent too much for
-/// one.
+/// Returns the contour that encloses the ball's surface in a cell, or none if the surface bends too
+/// much there.
 inline std::optional<Contour> ball_contour(const Ball& ball, Vec3d middle, double side) {
   const double half = side / 2, reach = half * std::sqrt(3.0);
   const Vec3d from_centre = middle - ball.centre;
   const double distance = std::sqrt(dot(from_centre, from_centre));
-  // How far the surface bends away from its tangent plane within the cell.
+  // Largest distance of the surface in the cell from its tangent plane.
   const double bend = reach * reach / (2 * ball.radius) * 1.5;
   if (bend > half / 2) return std::nullopt;
   const Vec3d normal = from_centre * (1 / distance);
@@ -45,7 +46,8 @@ inline std::optional<Contour> ball_contour(const Ball& ball, Vec3d middle, doubl
                        clamped(std::ceil(steps(at + room))));
 }
 
-/// The voxels that a ball's surface may pass, of level `level` in `cell`; null where it does not.
+/// Returns the octree of the voxels below `cell` of level `level` that the ball's surface may pass;
+/// null if there are none.
 inline std::unique_ptr<TestVoxel> ball_octree(const Ball& ball, int levels, bool with_contours,
                                               int level = 0, Vec3i cell = {}) {
   const double side = std::ldexp(1.0, -level);
@@ -67,7 +69,7 @@ inline std::unique_ptr<TestVoxel> ball_octree(const Ball& ball, int levels, bool
   return voxel;
 }
 
-/// Appends what is below `voxel` to the tree; value(middle of a voxel) gives its VoxelValue.
+/// Appends the descendants of `voxel` to the tree; value(centre of a voxel) returns its VoxelValue.
 template <class Value>
 void append_to_tree(const TestVoxel& voxel, int level, Vec3i cell, std::uint32_t at,
                     const Value& value, EsvoTree& tree) {
@@ -96,7 +98,7 @@ void append_to_tree(const TestVoxel& voxel, int level, Vec3i cell, std::uint32_t
                      value, tree);
 }
 
-/// The octree in blocks with colours and normals.
+/// Packs the octree into blocks with colours and normals.
 template <class Value>
 Esvo pack_with_values(const TestVoxel& root, int levels, const Value& value) {
   EsvoTree tree;

@@ -1,6 +1,6 @@
 #pragma once
-/// The minimal DAG of a set of voxels, made the slow and obvious way: the reference for the
-/// builder.
+/// Builds the minimal DAG of a set of voxels the slow and obvious way: the reference for the
+/// builders.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,8 +15,8 @@
 namespace voxdag {
 
 /// Builds the whole octree of `voxels` (coordinates in [0, 2^levels), duplicates allowed) level by
-/// level with std::map, merges equal nodes of a level, and numbers what is left in the canonical
-/// order of svdag.hpp. Shares no code with the library beyond the Svdag type itself.
+/// level with std::map, merges equal nodes of a level, and numbers the unique nodes in the
+/// canonical order of svdag.hpp. Shares no code with the library but the Svdag type.
 class BruteSvdagBuilder {
  public:
   BruteSvdagBuilder(int levels, const std::vector<Vec3i>& voxels) : levels_(levels) {
@@ -59,7 +59,7 @@ class BruteSvdagBuilder {
 
  private:
   using Cell = std::array<int, 3>;
-  using Children = std::array<int, 8>;  ///< Ids in the next level, -1 where there is no child.
+  using Children = std::array<int, 8>;  ///< Ids in the next level; -1: no child.
 
   static int child_count(const Children& children) {
     return static_cast<int>(8 - std::count(children.begin(), children.end(), -1));
@@ -69,7 +69,7 @@ class BruteSvdagBuilder {
     std::map<Cell, std::uint64_t> masks;
     for (const Vec3i v : voxels) {
       if (std::min({v.x, v.y, v.z}) < 0 || std::max({v.x, v.y, v.z}) >> levels_ != 0) std::abort();
-      // Voxel of a block in Morton order: the octant by the high bits, then the voxel by the low.
+      // Morton order in a block: the high bits choose the octant, the low bits the voxel.
       const int octant = (v.x >> 1 & 1) + 2 * (v.y >> 1 & 1) + 4 * (v.z >> 1 & 1);
       const int voxel = (v.x & 1) + 2 * (v.y & 1) + 4 * (v.z & 1);
       masks[{v.x >> 2, v.y >> 2, v.z >> 2}] |= std::uint64_t{1} << (8 * octant + voxel);
@@ -111,20 +111,21 @@ class BruteSvdagBuilder {
   }
 
   int levels_;
-  std::map<Cell, int> cells_;  ///< Non-empty cells of the level in hand, with their merged ids.
+  std::map<Cell, int> cells_;  ///< Non-empty cells of the current level, with their ids.
   std::vector<std::uint64_t> leaf_masks_;
   std::vector<std::vector<Children>> nodes_;  ///< [level][id]
   std::vector<std::map<int, int>> ranks_;     ///< [level]: id to canonical rank
   std::vector<std::vector<int>> order_;       ///< [level]: ids in canonical order
 };
 
-/// See BruteSvdagBuilder. O(voxels × levels × log): for small sets.
+/// Builds the DAG with a BruteSvdagBuilder. O(voxels × levels × log): for small sets.
 inline Svdag brute_svdag(int levels, const std::vector<Vec3i>& voxels) {
   return BruteSvdagBuilder(levels, voxels).build();
 }
 
-/// `count` random voxels of a grid of 2^levels, half of them in a small ball and mirrored copies of
-/// it, so that nodes at several levels are shared. Same seed, same voxels.
+/// Returns at least `count` random voxels of a grid of 2^levels. Half of them lie in a small corner
+/// that is repeated half a grid away, so that nodes of several levels are shared. Depends on the
+/// seed alone.
 inline std::vector<Vec3i> random_voxels(int levels, int count, unsigned seed) {
   std::mt19937 rng(seed);
   const std::int32_t last = (1 << levels) - 1;
@@ -137,7 +138,7 @@ inline std::vector<Vec3i> random_voxels(int levels, int count, unsigned seed) {
     if (i % 2 == 1) {
       const std::int32_t n = std::min(8, last + 1);
       v = {below(n), below(n), below(n)};
-      // The same cluster again, moved by half the grid: an equal subtree elsewhere.
+      // Repeats the voxel half a grid away: equal subtrees.
       const std::int32_t half = (last + 1) / 2;
       if (levels > 3) voxels.push_back({v.x + half, v.y, v.z + half});
     }

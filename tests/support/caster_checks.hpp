@@ -1,5 +1,5 @@
 #pragma once
-/// A caster against the scalar one, ray by ray, on every instruction set of the machine.
+/// Compares a caster with the scalar one, ray by ray, on every instruction set of the machine.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -24,7 +24,7 @@ inline bool same_hit(const EsvoHit& a, const EsvoHit& b) {
          (!a.is_through_contour() || a.plane.level == b.plane.level);
 }
 
-/// What a caster found for each ray.
+/// The results of a caster for each ray.
 template <class Found>
 struct CastResults {
   std::vector<Found> hits;
@@ -43,7 +43,7 @@ CastResults<Found> closest_hits(const Caster& caster, const std::vector<CastRay>
   return results;
 }
 
-/// The caster is given references, where closest_hits() gives copies.
+/// Hands the caster references to the rays; closest_hits() hands it copies.
 template <class Caster>
 std::vector<char> any_hits(const Caster& caster, const std::vector<CastRay>& rays) {
   std::vector<char> results(rays.size());
@@ -54,7 +54,7 @@ std::vector<char> any_hits(const Caster& caster, const std::vector<CastRay>& ray
   return results;
 }
 
-/// Returns what the scalar caster found.
+/// Expects the hits of the scalar caster, and returns them.
 template <class Nodes, class Caster>
 CastResults<typename FoundBy<Nodes>::Type> expect_same_hits(const Nodes& nodes,
                                                             const Caster& caster,
@@ -79,14 +79,14 @@ CastResults<typename FoundBy<Nodes>::Type> expect_same_hits(const Nodes& nodes,
   return expected;
 }
 
-/// Of unit voxels.
+/// Returns a grid of unit voxels.
 inline Grid grid_of(int levels) {
   Grid grid;
   grid.levels = levels;
   return grid;
 }
 
-/// Rays of every kind, each with t_max and t_min in and out of the grid.
+/// Returns `count` rays of every kind; t_min and t_max lie inside and outside of the grid.
 inline std::vector<CastRay> rays_of_every_kind(const Grid& grid, int count, unsigned seed) {
   TestRays make(grid, seed);
   std::vector<CastRay> rays;
@@ -96,7 +96,8 @@ inline std::vector<CastRay> rays_of_every_kind(const Grid& grid, int count, unsi
   return rays;
 }
 
-/// Gives the rays levels of detail, cells of up to `at_start` and then `per_t` of T.
+/// Gives the rays random levels of detail: cells of up to `at_start`, growing by up to `per_t` per
+/// T.
 inline void set_random_stops(std::vector<CastRay>& rays, float at_start, float per_t,
                              unsigned seed) {
   for (CastRay& ray : rays) {
@@ -106,8 +107,9 @@ inline void set_random_stops(std::vector<CastRay>& rays, float at_start, float p
   }
 }
 
-/// Bundles like those of 8×8 pixels that beams shorten: each ray of one starts after the same way
-/// from one point. They end at cells of up to six times `size_per_t`.
+/// Returns bundles of rays like the primary rays of 8×8 pixels after a beam: the rays of a bundle
+/// leave one point and start at one distance from it. They end at cells of up to six times
+/// `size_per_t`.
 inline std::vector<CastRay> ray_bundles(const Grid& grid, double width, double size_per_t) {
   const auto n = static_cast<double>(grid.resolution());
   std::vector<CastRay> rays;
@@ -126,7 +128,8 @@ inline std::vector<CastRay> ray_bundles(const Grid& grid, double width, double s
   return rays;
 }
 
-/// As occlusion casts them: 64 short rays from each point; every third is on a plane of the cells.
+/// Returns rays as ambient occlusion casts them: 64 short rays from each point. Every third point
+/// lies on a plane between cells.
 inline std::vector<CastRay> short_rays_of_points(const Grid& grid, int points) {
   std::vector<CastRay> rays;
   unsigned seed = 5;

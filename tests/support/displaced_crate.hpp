@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh to displace.
+/// A mesh for tests of displacement.
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -15,8 +15,8 @@ inline std::shared_ptr<const HeightTexture> stones() {
   return texture;
 }
 
-/// A closed box of 12 triangles with corners of its own for every face, and texture coordinates
-/// that do not agree along its edges.
+/// A closed box of 12 triangles. Every face has its own vertices, and texture coordinates disagree
+/// along the edges.
 struct Crate {
   Mesh mesh;
   Appearance appearance;

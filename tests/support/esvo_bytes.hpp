@@ -16,7 +16,7 @@ struct PackedEsvo {
   }
 };
 
-/// A random octree in blocks of about `max_slots` descriptors.
+/// Returns a random octree in blocks of about `max_slots` descriptors.
 inline PackedEsvo packed_esvo(int levels, std::uint32_t max_slots, std::uint32_t seed) {
   EsvoTree tree = random_tree({.levels = levels, .leaf_chance = 0.1}, seed);
   add_super_root(tree);

@@ -1,5 +1,5 @@
 #pragma once
-/// Octrees for tests, as nodes: random ones, and what a walk of the packed form reads back.
+/// Makes random octrees as nodes, and reads the nodes of a packed octree back.
 #include <bit>
 #include <cstdint>
 #include <random>
@@ -11,14 +11,14 @@ namespace voxdag::test {
 
 struct RandomTree {
   int levels = 5;
-  double density = 0.5;      ///< Of children.
-  double leaf_chance = 0.2;  ///< That a voxel above the finest level ends there.
+  double density = 0.5;      ///< Probability of a child.
+  double leaf_chance = 0.2;  ///< Probability that a voxel above the finest level is a leaf.
   double contour_chance = 0.5;
   bool with_values = true;
 };
 
-/// A tree of up to `levels` levels whose node 0 is the root, which is never empty. Contours are
-/// any.
+/// Returns a tree of up to `levels` levels. Node 0 is the root and is never empty. Contours have
+/// arbitrary values.
 inline EsvoTree random_tree(const RandomTree& want, std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto chance = [&](double p) { return static_cast<double>(random()) / 4294967296.0 < p; };
@@ -64,7 +64,7 @@ inline EsvoTree random_tree(const RandomTree& want, std::uint32_t seed) {
   return tree;
 }
 
-/// The nodes and contours of a packed octree, breadth first as random_tree makes them.
+/// Returns the nodes and contours of a packed octree, breadth first as random_tree() makes them.
 inline EsvoTree unpack(const EsvoView& esvo) {
   EsvoTree tree;
   std::vector<std::uint64_t> slots{esvo.root};

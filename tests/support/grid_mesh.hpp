@@ -1,12 +1,12 @@
 #pragma once
-/// Meshes made of a sheet of n × n squares, two triangles each.
+/// Makes sheets of n × n squares, two triangles each.
 #include <cstdint>
 
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag::test {
 
-/// The vertex in row i and column j, 0 to n, is vertex_at(i, j).
+/// Returns a sheet whose vertex in row i and column j, 0 to n, is vertex_at(i, j).
 template <class VertexAt>
 Mesh grid_mesh(int n, const VertexAt& vertex_at) {
   Mesh mesh;

@@ -1,5 +1,5 @@
 #pragma once
-/// What tests of pictures share: the grid that they show, and when two of them are the same.
+/// The grid of the test pictures, and a comparison of two pictures.
 #include <gtest/gtest.h>
 
 #include "voxdag/core/grid.hpp"
@@ -7,7 +7,7 @@
 
 namespace voxdag::test {
 
-/// [-1,1]³ in 64³ voxels.
+/// Returns the grid of 64³ voxels over [-1,1]³.
 inline constexpr int kPictureLevels = 6;
 
 inline Grid picture_grid() {
@@ -18,7 +18,7 @@ inline Grid picture_grid() {
   return grid;
 }
 
-/// To the bit, but for the number of rays.
+/// Expects two pictures to be equal to the bit, except the number of rays.
 inline void expect_same_picture(const RenderedImage& image, const RenderedImage& expected) {
   EXPECT_EQ(image.rgb, expected.rgb);
   EXPECT_EQ(image.radiance, expected.radiance);

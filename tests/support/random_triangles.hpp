@@ -1,14 +1,14 @@
 #pragma once
-/// Triangles that a voxelizer gets wrong if it gets anything wrong.
+/// Makes triangles that are hard for a voxelizer.
 #include <random>
 
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 
-/// A random triangle in a grid of 2^levels voxels: of any size from less than a voxel to the whole
-/// grid, and often a sliver, degenerate, axis-aligned, or with vertices on voxel corners, edges or
-/// faces.
+/// Returns a random triangle in a grid of 2^levels voxels. Its size is between less than a voxel
+/// and the whole grid. Often it is a sliver, degenerate or axis-aligned, or has vertices on voxel
+/// corners, edges or faces.
 inline QuantizedTriangle random_triangle(std::mt19937_64& random, int levels) {
   const auto below = [&](std::int64_t n) {
     return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n));

@@ -1,5 +1,5 @@
 #pragma once
-/// A directory of one test's own, removed with all that is in it.
+/// A temporary directory for one test.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -10,6 +10,7 @@
 
 namespace voxdag {
 
+/// Creates a directory, and removes it with its contents when it is destroyed.
 class TempDir {
  public:
   TempDir() {
@@ -25,7 +26,7 @@ class TempDir {
   }
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  /// How many entries the directory has.
+  /// Returns the number of entries in the directory.
   long count() const {
     return std::distance(std::filesystem::directory_iterator(path_),
                          std::filesystem::directory_iterator());

@@ -1,6 +1,6 @@
 #pragma once
-/// Octrees of voxels with contours, and their ESVO made in the plainest way: the reference for what
-/// reads them. Shares with the library only the stored words.
+/// Makes octrees with contours and packs them in the plainest way: the reference for readers of
+/// ESVOs. Shares only the stored words with the library.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -24,20 +24,20 @@ struct TestVoxel {
   }
 };
 
-/// The leaf that the first children lead to.
+/// Returns the leaf that is found by following first children.
 inline TestVoxel& first_leaf(TestVoxel& voxel) {
   for (const auto& child : voxel.children)
     if (child) return first_leaf(*child);
   return voxel;
 }
 
-/// Puts an octree into one block. Descriptors stand depth first, siblings together from an even
-/// slot on; of the pointers to children, one in `far_in` is far, more or less, and all that must.
+/// Packs an octree into one block. Descriptors are in depth-first order; siblings start at an even
+/// slot. About one in `far_in` child pointers is far, and all that must be.
 class TestEsvoAssembler {
  public:
   TestEsvoAssembler(unsigned far_in, unsigned seed) : far_in_(far_in), rng_(seed) {}
 
-  /// `root` is not a leaf.
+  /// Returns the packed octree. `root` must not be a leaf.
   Esvo assemble(const TestVoxel& root, int levels) {
     Esvo esvo;
     esvo.levels = levels;
@@ -79,7 +79,7 @@ class TestEsvoAssembler {
     while (slots_.size() % to != 0) slots_.push_back(0);
   }
 
-  /// Makes room for the descriptors of siblings; returns the first one's slot.
+  /// Appends slots for the descriptors of siblings; returns the first slot.
   std::uint64_t place(const std::vector<const TestVoxel*>& siblings) {
     const std::uint64_t count = siblings.size();
     if (slots_.size() / kEsvoPageSlots != (slots_.size() + count) / kEsvoPageSlots ||
@@ -101,14 +101,14 @@ class TestEsvoAssembler {
     return inner;
   }
 
-  /// Makes room for a far pointer, away from page headers.
+  /// Appends a slot for a far pointer that is not a page header; returns it.
   std::uint64_t place_far_pointer() {
     if (slots_.size() % kEsvoPageSlots == 0) slots_.push_back(0);
     slots_.push_back(0);
     return slots_.size() - 1;
   }
 
-  /// Writes the descriptor of `voxel` and all below it.
+  /// Writes the descriptors of `voxel` and its descendants.
   void fill(const TestVoxel& voxel, std::uint64_t slot, std::uint64_t far_slot) {
     std::uint32_t valid = 0, leaf = 0, with_contour = 0;
     const std::uint64_t first_contour = contours_.size();
@@ -144,7 +144,7 @@ class TestEsvoAssembler {
   std::vector<Reference> references_;
 };
 
-/// The octree of voxels of the finest level, as cubes.
+/// Returns the octree of voxels of the finest level, without contours.
 inline std::unique_ptr<TestVoxel> test_octree(int levels, const std::vector<Vec3i>& voxels) {
   auto root = std::make_unique<TestVoxel>();
   for (const Vec3i v : voxels) {
@@ -159,7 +159,7 @@ inline std::unique_ptr<TestVoxel> test_octree(int levels, const std::vector<Vec3
   return root;
 }
 
-/// Where eight leaves of a voxel fill it, they become one, up to level 1.
+/// Replaces eight sibling leaves by their parent as a leaf, up to level 1.
 inline void merge_full_voxels(TestVoxel& voxel, bool is_root = true) {
   bool is_full = true;
   for (auto& child : voxel.children) {
@@ -169,7 +169,7 @@ inline void merge_full_voxels(TestVoxel& voxel, bool is_root = true) {
   if (is_full && !is_root) voxel.children = {};
 }
 
-/// A random contour that leaves something of its voxel.
+/// Returns a random contour.
 inline Contour random_contour(std::mt19937& rng) {
   const auto below = [&](int n) { return static_cast<int>(rng() % static_cast<unsigned>(n)); };
   Vec3i normal{};
@@ -182,7 +182,7 @@ inline Contour random_contour(std::mt19937& rng) {
   return Contour::make(normal, low < high ? low : high, low < high ? high : low);
 }
 
-/// A random octree: voxels end early or go on, and have contours or none.
+/// Returns a random octree: some voxels are leaves above the finest level, some have contours.
 inline std::unique_ptr<TestVoxel> random_octree(std::mt19937& rng, int level, int levels) {
   auto voxel = std::make_unique<TestVoxel>();
   if (level > 0 && rng() % 5 < 3) voxel->contour = random_contour(rng);

@@ -1,5 +1,5 @@
 #pragma once
-/// PNG files of any kind for tests, by libpng.
+/// Writes PNG files of any kind for tests, with libpng.
 #include <png.h>
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// Writes `samples` by rows: 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA) for each pixel, of 8 or
+/// Writes `samples`, row by row: 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA) per pixel, of 8 or
 /// 16 bits.
 inline void write_test_png(const std::filesystem::path& path, int width, int height, int channels,
                            int bits, const std::vector<std::uint16_t>& samples,

@@ -1,5 +1,5 @@
 #pragma once
-/// Random and adversarial rays around a grid.
+/// Makes random and adversarial rays around a grid.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -9,20 +9,20 @@
 
 namespace voxdag {
 
-/// The ways in which test rays are awkward.
+/// The kinds of test rays.
 enum class RayKind {
   kGeneric,   ///< Random origin in or near the grid, random direction.
   kParallel,  ///< Along an axis, from any point or on planes and edges.
   kLattice,   ///< From one voxel corner, edge or face centre to another.
-  kDiagonal,  ///< Components of equal size, from a lattice point: ties everywhere.
+  kDiagonal,  ///< Components of equal size, from a lattice point: many ties.
   kZeroes,    ///< One or two components +0 or -0.
-  kTiny,      ///< One or two components denormal or hardly noticeable.
+  kTiny,      ///< One or two components denormal or very small.
   kFar,       ///< From very far away, towards a point of the grid.
   kOnFace,    ///< From a point on a voxel plane, in any direction.
   kCount,
 };
 
-/// Makes rays of every kind for one grid, in world units. Same seed, same rays.
+/// Makes rays of every kind for one grid, in world units. Depends on the seed alone.
 class TestRays {
  public:
   TestRays(const Grid& grid, unsigned seed)
@@ -83,7 +83,7 @@ class TestRays {
   int below(int n) { return static_cast<int>(rng_() % static_cast<unsigned>(n)); }
   double unit() { return std::uniform_real_distribution<double>(0, 1)(rng_); }
 
-  /// Everything below is in voxels.
+  // All values below are in voxels.
   Vec3d inside() { return {unit() * n_, unit() * n_, unit() * n_}; }
   Vec3d point() {
     if (below(2) == 0) return inside();

@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh to put textures on.
+/// A mesh for tests of textures.
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace voxdag {
 
-/// The unit square in the plane z = 0, as two triangles, the image upright on it.
+/// The unit square in the plane z = 0 as two triangles; the image stands upright on it.
 struct Square {
   Mesh mesh;
   Appearance appearance;
@@ -33,7 +33,7 @@ struct Square {
     use.image = static_cast<int>(appearance.images.size()) - 1;
     return use;
   }
-  /// RGB noise.
+  /// Returns an image of RGB noise.
   TextureUse noise(int size, std::uint32_t seed) {
     std::mt19937 rng(seed);
     std::vector<std::uint16_t> samples(static_cast<std::size_t>(size * size) * 3);

@@ -1,5 +1,5 @@
 #pragma once
-/// .vdag files in memory for tests: made, changed, and given right checksums again.
+/// Makes .vdag files in memory, changes them, and corrects their checksums.
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
@@ -30,14 +30,14 @@ inline VdagMetadata example_metadata(const SvdagView& view) {
   return metadata;
 }
 
-/// The bytes of the file that write_vdag makes.
+/// Returns the bytes of the file that write_vdag() writes.
 inline std::string vdag_file_bytes(const Svdag& dag) {
   const TempDir dir;
   write_vdag(dir / "file.vdag", dag.view(), example_metadata(dag.view()));
   return read_text(dir / "file.vdag");
 }
 
-/// The bytes with the alignment that parse_vdag asks for.
+/// A copy of bytes with the alignment that parse_vdag() needs.
 class AlignedBytes {
  public:
   explicit AlignedBytes(const std::string& bytes) : size_(bytes.size()), words_(size_ / 8 + 1) {
@@ -67,7 +67,7 @@ inline std::size_t entry_offset(std::size_t index) {
   return sizeof(VdagHeader) + index * sizeof(VdagChunkEntry);
 }
 
-/// Makes every checksum right that can be made right, so that what is behind them gets tested.
+/// Corrects every checksum that can be corrected, so that tests reach the checks after them.
 inline void repair_checksums(std::string& bytes) {
   if (bytes.size() < sizeof(VdagHeader)) return;
   const auto header = peek<VdagHeader>(bytes, 0);

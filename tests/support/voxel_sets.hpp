@@ -1,5 +1,5 @@
 #pragma once
-/// Voxel sets that trouble a traversal in different ways.
+/// Makes voxel sets that are hard for a traversal in different ways.
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -15,7 +15,7 @@ struct NamedVoxels {
   std::vector<Vec3i> voxels;
 };
 
-/// All voxels of a grid of 2^levels for which keep(v) is true.
+/// Returns all voxels of a grid of 2^levels for which keep(v) is true.
 template <class Keep>
 std::vector<Vec3i> voxels_where(int levels, const Keep& keep) {
   std::vector<Vec3i> voxels;
@@ -27,7 +27,7 @@ std::vector<Vec3i> voxels_where(int levels, const Keep& keep) {
   return voxels;
 }
 
-/// Empty, single, planar, curved, random, periodic and full sets.
+/// Returns empty, single, planar, curved, random, periodic and full sets.
 inline std::vector<NamedVoxels> voxel_sets(int levels, unsigned seed) {
   const std::int32_t n = 1 << levels;
   std::mt19937 rng(seed);

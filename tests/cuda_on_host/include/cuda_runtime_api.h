@@ -1,7 +1,7 @@
 #pragma once
-/// What voxdag uses of the CUDA runtime, for a device that tests make up: its kernels run on the
-/// host. The names and meanings are those of the CUDA Runtime API; host_device.hpp says how it
-/// behaves where that leaves room.
+/// The part of the CUDA runtime that voxdag uses, for a test device whose kernels run on the host.
+/// Names and meanings are those of the CUDA Runtime API. Where the API leaves the behaviour open,
+/// host_device.hpp defines it.
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -75,7 +75,7 @@ struct cudaLaunchConfig_t {
 
 extern constinit thread_local uint3 threadIdx, blockIdx;
 
-/// One for each thread of a launch, on the host: `thread` finds its place in threadIdx and
+/// Queues a launch on the host: calls `thread` for each thread, with its place in threadIdx and
 /// blockIdx.
 cudaError_t launch_on_host(const cudaLaunchConfig_t& config, std::function<void()> thread);
 
@@ -85,7 +85,7 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* config, void (*kernel)(
   return launch_on_host(*config, std::bind(kernel, std::forward<Arguments>(arguments)...));
 }
 
-/// Waits for the other threads of the warp; `value` of the thread `by` places on.
+/// Waits for the other threads of the warp; returns `value` of the thread `by` lanes on.
 unsigned long long __shfl_down_sync(unsigned warp, unsigned long long value, int by);
 inline unsigned long long atomicAdd(unsigned long long* sum, unsigned long long value) {
   return std::exchange(*sum, *sum + value);
