@@ -11,6 +11,7 @@
 #include <string>
 
 #include "readers/mesh_text.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/readers/obj/obj_reader.hpp"
 #include "voxdag/readers/off/off_reader.hpp"
 #include "voxdag/readers/ply/ply_reader.hpp"
@@ -193,6 +194,122 @@ TEST(Polygon, CrossingAndDegenerateOnesUseEveryCornerAndEnd) {
     EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
     EXPECT_EQ(cut(polygon), triangles);
   }
+}
+
+/// Ear clipping as in polygon.cpp, but every test looks at every corner.
+class BruteForceClipper {
+ public:
+  explicit BruteForceClipper(const Polygon& points) : points_(points) {
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      ring_.push_back(i);
+      was_reflex_.push_back(false);
+    }
+  }
+
+  std::vector<Triangle> run() {
+    const std::vector<std::uint32_t> all = ring_;
+    for (const std::uint32_t i : all) was_reflex_[i] = corner_area(i) <= 0;
+    clip(all, 0);
+    for (int leniency = 1; leniency <= 3; ++leniency)
+      for (const std::uint32_t corner : all) clip({corner}, leniency);
+    return triangles_;
+  }
+
+ private:
+  double area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return flat_area(points_, {a, b, c});
+  }
+  std::size_t place(std::uint32_t i) const {
+    return static_cast<std::size_t>(std::find(ring_.begin(), ring_.end(), i) - ring_.begin());
+  }
+  std::uint32_t neighbour(std::uint32_t i, int step) const {
+    const std::size_t at = place(i) + ring_.size();
+    return ring_.empty() ? i : ring_[(step < 0 ? at - 1 : at + 1) % ring_.size()];
+  }
+  double corner_area(std::uint32_t i) const { return area(neighbour(i, -1), i, neighbour(i, 1)); }
+
+  bool is_ear(std::uint32_t i, int leniency) const {
+    if (leniency == 3) return true;
+    const double size = corner_area(i);
+    if (size <= 0 || leniency == 2) return size >= 0;
+    const std::uint32_t a = neighbour(i, -1), c = neighbour(i, 1);
+    for (const std::uint32_t other : ring_) {
+      const Vec3f p = points_[other];
+      if (!was_reflex_[other] || corner_area(other) > 0) continue;
+      if (p == points_[a] || p == points_[i] || p == points_[c]) continue;
+      const double least = std::min({area(a, i, other), area(i, c, other), area(c, a, other)});
+      if (leniency == 0 ? least >= 0 : least > 0) return false;
+    }
+    return true;
+  }
+
+  void clip(std::vector<std::uint32_t> corners, int leniency) {
+    while (!corners.empty() && ring_.size() > 2) {
+      std::vector<std::uint32_t> waiting;
+      for (const std::uint32_t i : corners) {
+        const auto is_waiting = std::find(waiting.begin(), waiting.end(), i) != waiting.end();
+        if (ring_.size() <= 2 || place(i) == ring_.size() || is_waiting || !is_ear(i, leniency))
+          continue;
+        const std::uint32_t before = neighbour(i, -1), after = neighbour(i, 1);
+        triangles_.push_back({before, i, after});
+        ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(place(i)));
+        for (const std::uint32_t next : {before, after})
+          if (std::find(waiting.begin(), waiting.end(), next) == waiting.end())
+            waiting.push_back(next);
+      }
+      leniency = 0;
+      corners = waiting;
+    }
+  }
+
+  const Polygon& points_;
+  std::vector<std::uint32_t> ring_;
+  std::vector<bool> was_reflex_;
+  std::vector<Triangle> triangles_;
+};
+
+TEST(Polygon, CutsTheEarsThatABruteForceClipperCuts) {
+  std::mt19937 random(5);
+  int compared = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    const unsigned grid = 2 + static_cast<unsigned>(trial) % 7;
+    Polygon polygon(static_cast<std::size_t>(4 + trial % 25));
+    for (Vec3f& p : polygon)
+      p = {static_cast<float>(random() % grid), static_cast<float>(random() % grid), 1};
+    std::vector<std::uint32_t> all(polygon.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const std::vector<Triangle> triangles = cut(polygon);
+    if (flat_area(polygon, all) <= 0 || triangles == fan_of(polygon)) continue;
+    EXPECT_EQ(triangles, BruteForceClipper(polygon).run()) << trial;
+    ++compared;
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+/// Before, every test of a corner looked at every other corner of these polygons: over a minute.
+TEST(Polygon, RepeatedPositionsCostNothing) {
+  std::mt19937 random(7);
+  Polygon polygon(200000);
+  for (Vec3f& p : polygon)
+    p = {static_cast<float>(random() % 3), static_cast<float>(random() % 3), 0};
+  std::size_t polls = 0;
+  std::vector<Triangle> triangles = fan_of(polygon);
+  cut_polygon(triangles, polygon, [&] { ++polls; });
+  EXPECT_LT(polls, 10u);  // one for each million of nodes
+  EXPECT_NE(triangles, fan_of(polygon));
+}
+
+TEST(Polygon, CuttingCanBeStopped) {
+  Polygon star;
+  std::mt19937 random(9);
+  for (int i = 0; i < 20000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 20000;
+    const double radius = 0.2 + static_cast<double>(random() % 1000) / 1000;
+    star.push_back({static_cast<float>(radius * std::cos(angle)),
+                    static_cast<float>(radius * std::sin(angle)), 0});
+  }
+  std::vector<Triangle> triangles = fan_of(star);
+  EXPECT_THROW(cut_polygon(triangles, star, [] { throw Cancelled(); }), Cancelled);
 }
 
 TEST(Polygon, NotFiniteCornersKeepTheFan) {

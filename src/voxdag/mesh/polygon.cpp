@@ -1,118 +1,60 @@
-/// Ear clipping (G. H. Meisters, "Polygons have ears", 1975): a corner whose triangle holds no
-/// other corner is cut off, until a triangle is left. Only reflex corners can lie in the triangle
-/// of another, and they are looked up in a k-d tree. A corner once found to be no ear can become
-/// one only when a neighbour is cut off, so that each cut costs two tests.
+/// Ear clipping (G. H. Meisters, "Polygons have ears", 1975): a corner whose triangle contains no
+/// other corner is an ear. Ears are cut off until one triangle is left. Only reflex corners can lie
+/// in another corner's triangle, and a k-d tree finds them. A corner that is no ear can become one
+/// only when a neighbour is cut off, so that each cut costs two tests.
+///
+/// Corners at one position share one point of the tree, which is present while any of them is
+/// reflex and not cut off: repeated positions cost nothing.
 #include "voxdag/mesh/polygon.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <utility>
+#include <string>
 #include <vector>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/mesh/point_tree.hpp"
 
 namespace voxdag {
 namespace {
 
-struct Point {
-  double x = 0, y = 0;
-  friend bool operator==(const Point&, const Point&) = default;
-};
+using Point = PlanePoint;
 
-/// Twice the area of a triangle: positive if it turns left.
-double area(Point a, Point b, Point c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+/// Cancellation is polled each time that so many nodes of the tree have been visited.
+constexpr std::uint64_t kVisitsPerPoll = std::uint64_t{1} << 20;
+
+/// Returns how many nodes of the tree may be visited for a polygon of `corners` corners. Stars,
+/// combs and spirals of 100,000 corners need less than a fifth of it.
+std::uint64_t max_visits(std::size_t corners) {
+  return std::uint64_t{128} * corners * static_cast<std::uint64_t>(std::bit_width(corners));
 }
 
-/// Twice the area of a fan's triangle in space, as a vector.
-Vec3d area(const Triangle& triangle, std::span<const Vec3f> vertices) {
+/// Returns twice the area of a triangle in space, as a vector along its normal.
+Vec3d area_vector(const Triangle& triangle, std::span<const Vec3f> vertices) {
   const Vec3d a(vertices[triangle[0]]), b(vertices[triangle[1]]), c(vertices[triangle[2]]);
   return cross(b - a, c - a);
 }
 
-/// Points in a tree of halves, alternately by x and by y: which of them are in a triangle?
-class PointTree {
- public:
-  PointTree(const std::vector<Point>& points, std::vector<std::uint32_t> members)
-      : points_(points), members_(std::move(members)) {
-    build(0, members_.size(), 0);
-  }
-
-  /// Whether is_hit(member) is true for a member in the closed triangle, which turns left.
-  template <class IsHit>
-  bool any_in(Point a, Point b, Point c, const IsHit& is_hit) const {
-    const Point corners[3] = {a, b, c};
-    const Box box{{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
-                  {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}};
-    return search(corners, box, 0, members_.size(), 0, is_hit);
-  }
-
- private:
-  struct Box {
-    Point lo, hi;
-  };
-
-  double key(std::uint32_t member, int axis) const {
-    return axis == 0 ? points_[member].x : points_[member].y;
-  }
-
-  void build(std::size_t first, std::size_t last, int axis) {
-    if (last - first < 2) return;
-    const std::size_t middle = first + (last - first) / 2;
-    const auto at = [this](std::size_t i) {
-      return members_.begin() + static_cast<std::ptrdiff_t>(i);
-    };
-    std::nth_element(at(first), at(middle), at(last), [&](std::uint32_t i, std::uint32_t j) {
-      return std::pair(key(i, axis), i) < std::pair(key(j, axis), j);
-    });
-    build(first, middle, 1 - axis);
-    build(middle + 1, last, 1 - axis);
-  }
-
-  /// Searches the part of the triangle that lies in `box`, which is known to hold all of it that
-  /// concerns these members.
-  template <class IsHit>
-  bool search(const Point (&corners)[3], const Box& box, std::size_t first, std::size_t last,
-              int axis, const IsHit& is_hit) const {
-    if (first == last || is_outside(corners, box)) return false;
-    const std::size_t middle = first + (last - first) / 2;
-    const std::uint32_t member = members_[middle];
-    const Point p = points_[member];
-    if (area(corners[0], corners[1], p) >= 0 && area(corners[1], corners[2], p) >= 0 &&
-        area(corners[2], corners[0], p) >= 0 && is_hit(member))
-      return true;
-    Box low = box, high = box;
-    (axis == 0 ? low.hi.x : low.hi.y) = key(member, axis);
-    (axis == 0 ? high.lo.x : high.lo.y) = key(member, axis);
-    return search(corners, low, first, middle, 1 - axis, is_hit) ||
-           search(corners, high, middle + 1, last, 1 - axis, is_hit);
-  }
-
-  /// Whether an edge of the triangle, or the lack of room, keeps it out of the box.
-  static bool is_outside(const Point (&corners)[3], const Box& box) {
-    if (box.lo.x > box.hi.x || box.lo.y > box.hi.y) return true;
-    for (int i = 0; i < 3; ++i) {
-      const Point a = corners[i], b = corners[(i + 1) % 3];
-      const Point innermost{b.y > a.y ? box.lo.x : box.hi.x, b.x > a.x ? box.hi.y : box.lo.y};
-      if (area(a, b, innermost) < 0) return true;
-    }
-    return false;
-  }
-
-  const std::vector<Point>& points_;
-  std::vector<std::uint32_t> members_;
-};
-
 class EarClipper {
  public:
-  /// `points` are the corners of a polygon that turns left on the whole.
-  explicit EarClipper(const std::vector<Point>& points)
+  /// `points` are the corners of a polygon that turns left on the whole. `poll` may be empty.
+  EarClipper(const std::vector<Point>& points, const std::function<void()>& poll)
       : points_(points),
+        poll_(poll),
+        max_visits_(max_visits(points.size())),
         next_(points.size()),
         previous_(points.size()),
         is_waiting_(points.size(), false),
         left_(points.size()),
-        reflex_(points, link()) {}
+        position_(points.size(), kNoPosition),
+        is_blocking_(points.size(), false),
+        tree_(link()),
+        blocking_(points.size(), 0) {
+    for (std::uint32_t i = 0; i < points.size(); ++i) update(i);
+  }
 
   /// Calls on_triangle(a, b, c) with indices of corners: two times fewer than there are corners.
   template <class OnTriangle>
@@ -120,22 +62,25 @@ class EarClipper {
     std::vector<std::uint32_t> all(points_.size());
     std::iota(all.begin(), all.end(), 0u);
     clip(all, Ear::kClear, on_triangle);
-    // What is left crosses itself, or touches itself in more than corners.
+    // The remaining polygon crosses itself, or touches itself in more than corners.
     for (const Ear least : {Ear::kTouched, Ear::kConvex, Ear::kAny})
       for (const std::uint32_t corner : all) clip({corner}, least, on_triangle);
   }
 
  private:
-  /// What is asked of a corner, from the most on.
+  static constexpr std::uint32_t kNoPosition = ~0u;
+
+  /// What a corner must be to be cut off, from the strictest condition to none.
   enum class Ear {
-    kClear,    ///< Convex, and no other corner in its triangle or on its edges.
-    kTouched,  ///< Convex, and no other corner within its triangle.
+    kClear,    ///< Convex, and no other corner lies in its triangle or on its edges.
+    kTouched,  ///< Convex, and no other corner lies inside its triangle.
     kConvex,
     kAny
   };
 
-  /// Makes the ring of corners; returns those that are not convex.
-  std::vector<std::uint32_t> link() {
+  /// Links the corners to a ring. Returns the distinct positions of the corners that are not
+  /// convex, and sets `position_` of those corners.
+  std::vector<Point> link() {
     const auto count = static_cast<std::uint32_t>(points_.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       next_[i] = i + 1 == count ? 0 : i + 1;
@@ -144,29 +89,60 @@ class EarClipper {
     std::vector<std::uint32_t> reflex;
     for (std::uint32_t i = 0; i < count; ++i)
       if (corner_area(i) <= 0) reflex.push_back(i);
-    return reflex;
+    std::sort(reflex.begin(), reflex.end(), [&](std::uint32_t i, std::uint32_t j) {
+      const Point a = points_[i], b = points_[j];
+      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : i < j;
+    });
+    std::vector<Point> positions;
+    for (const std::uint32_t i : reflex) {
+      if (positions.empty() || positions.back() != points_[i]) positions.push_back(points_[i]);
+      position_[i] = static_cast<std::uint32_t>(positions.size()) - 1;
+    }
+    return positions;
   }
 
   double corner_area(std::uint32_t i) const {
-    return area(points_[previous_[i]], points_[i], points_[next_[i]]);
+    return signed_area(points_[previous_[i]], points_[i], points_[next_[i]]);
   }
   bool is_cut(std::uint32_t i) const { return next_[i] == i; }
 
-  bool is_ear(std::uint32_t i, Ear least) const {
+  /// Tells the tree whether corner `i` is reflex now. Corners that were convex at first never are.
+  void update(std::uint32_t i) {
+    const std::uint32_t position = position_[i];
+    if (position == kNoPosition) return;
+    const bool is_blocking = !is_cut(i) && !(corner_area(i) > 0);
+    if (is_blocking == is_blocking_[i]) return;
+    is_blocking_[i] = is_blocking;
+    blocking_[position] += is_blocking ? 1u : ~0u;
+    tree_.set_present(position, blocking_[position] != 0);
+  }
+
+  bool is_ear(std::uint32_t i, Ear least) {
     if (least == Ear::kAny) return true;
     const double size = corner_area(i);
     if (size <= 0 || least == Ear::kConvex) return size >= 0;  // No area: nothing can be in it.
     const Point a = points_[previous_[i]], b = points_[i], c = points_[next_[i]];
-    return !reflex_.any_in(a, b, c, [&](std::uint32_t other) {
-      const Point p = points_[other];
-      // Corners in the same place are how a polygon goes around its holes.
-      if (is_cut(other) || p == a || p == b || p == c || corner_area(other) > 0) return false;
-      return least == Ear::kClear || (area(a, b, p) > 0 && area(b, c, p) > 0 && area(c, a, p) > 0);
+    const bool is_blocked = tree_.any_in(a, b, c, visits_, [&](Point p) {
+      // Corners at one position are how a polygon goes around its holes.
+      if (p == a || p == b || p == c) return false;
+      return least == Ear::kClear ||
+             (signed_area(a, b, p) > 0 && signed_area(b, c, p) > 0 && signed_area(c, a, p) > 0);
     });
+    bound_work();
+    return !is_blocked;
   }
 
-  /// Cuts off what it can of `corners`, then of the neighbours of those, and so on. Neighbours wait
-  /// for the next round: triangles stay rounder.
+  void bound_work() {
+    if (visits_ > max_visits_)
+      throw Error("a polygon of " + std::to_string(points_.size()) +
+                  " corners is too intricate to be cut into triangles");
+    if (visits_ < next_poll_) return;
+    next_poll_ = visits_ + kVisitsPerPoll;
+    if (poll_) poll_();
+  }
+
+  /// Cuts off the ears among `corners`, then those among their neighbours, and so on. Neighbours
+  /// wait for the next round, which keeps triangles rounder.
   template <class OnTriangle>
   void clip(std::vector<std::uint32_t> corners, Ear least, const OnTriangle& on_triangle) {
     std::vector<std::uint32_t> waiting;
@@ -179,6 +155,7 @@ class EarClipper {
         previous_[after] = before;
         next_[i] = i;
         --left_;
+        for (const std::uint32_t changed : {i, before, after}) update(changed);
         for (const std::uint32_t neighbour : {before, after}) {
           if (is_waiting_[neighbour]) continue;
           is_waiting_[neighbour] = true;
@@ -193,17 +170,23 @@ class EarClipper {
   }
 
   const std::vector<Point>& points_;
+  const std::function<void()>& poll_;
+  const std::uint64_t max_visits_;
+  std::uint64_t visits_ = 0, next_poll_ = kVisitsPerPoll;
   std::vector<std::uint32_t> next_, previous_;  ///< A corner that is cut off is its own next.
   std::vector<bool> is_waiting_;
   std::size_t left_;
-  const PointTree reflex_;
+  std::vector<std::uint32_t> position_;  ///< By corner: its point of the tree, or kNoPosition.
+  std::vector<bool> is_blocking_;        ///< By corner: reflex and not cut off.
+  PointTree tree_;
+  std::vector<std::uint32_t> blocking_;  ///< By point of the tree: its blocking corners.
 };
 
-/// The corners of a polygon as seen against its unit normal: they turn left on the whole.
+/// Projects the corners of a polygon along its unit normal: they turn left on the whole.
 std::vector<Point> project(std::span<const std::uint32_t> corners, std::span<const Vec3f> vertices,
                            Vec3d normal) {
-  // The axis after the one that the normal is nearest to: well apart from it, and for a normal
-  // along an axis the projection is exact.
+  // The axis after the normal's longest component: it is far from parallel to the normal, and for a
+  // normal along an axis the projection is exact.
   const Vec3d size{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
   const Vec3d axis = size.x >= size.y && size.x >= size.z ? Vec3d{0, 1, 0}
                      : size.y >= size.z                   ? Vec3d{0, 0, 1}
@@ -222,15 +205,16 @@ std::vector<Point> project(std::span<const std::uint32_t> corners, std::span<con
 
 }  // namespace
 
-void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices) {
+void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices,
+                 const std::function<void()>& poll) {
   if (fan.size() < 2) return;
-  Vec3d normal;  // M. Newell's: the sum of the areas; the same for any fan of the polygon.
-  for (const Triangle& triangle : fan) normal = normal + area(triangle, vertices);
+  Vec3d normal;  // M. Newell's: the sum of the areas, which is equal for all fans of a polygon.
+  for (const Triangle& triangle : fan) normal = normal + area_vector(triangle, vertices);
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0) || !std::isfinite(length)) return;
   normal = normal * (1 / length);
   if (std::all_of(fan.begin(), fan.end(), [&](const Triangle& triangle) {
-        return dot(area(triangle, vertices), normal) >= 0;
+        return dot(area_vector(triangle, vertices), normal) >= 0;
       }))
     return;
 
@@ -239,7 +223,7 @@ void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices) {
   for (const Triangle& triangle : fan) corners.push_back(triangle[2]);
   const std::vector<Point> points = project(corners, vertices, normal);
   auto out = fan.begin();
-  EarClipper(points).run([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  EarClipper(points, poll).run([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     *out++ = {corners[a], corners[b], corners[c]};
   });
 }
