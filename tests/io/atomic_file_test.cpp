@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -20,6 +22,7 @@
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/nameless_file.hpp"
+#include "voxdag/io/unfinished_files.hpp"
 
 namespace voxdag {
 namespace {
@@ -111,6 +114,91 @@ TEST(AtomicFile, UnfinishedOnesAreRemovedBeforeASignalEndsTheProcess) {
   EXPECT_EQ(read_text(dir / "complete"), "whole");
   EXPECT_EQ(dir.count(), 1);
   EXPECT_NE(error_of([&] { partial.commit(); }).find("partial"), std::string::npos);
+}
+
+/// The file that a process leaves that dies in the system call `number` of writing "out". With
+/// `only_named`, the process makes no nameless files.
+std::filesystem::path leftover_of_a_process_killed_in(const TempDir& dir, unsigned number,
+                                                      bool only_named) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto flag = static_cast<unsigned>(O_TMPFILE & ~O_DIRECTORY);
+    sock_filter filter[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 4, 0),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, only_named ? __NR_openat : ~0u, 0, 2),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[2])),
+        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, flag, 2, 0),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EOPNOTSUPP),
+    };
+    const sock_fprog program{std::size(filter), filter};
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+        prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0)
+      _exit(2);
+    write_whole_file(dir / "out", "new");
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status)) << status;
+  const std::string prefix = "out.voxdag-" + std::to_string(child) + "-";
+  for (const auto& entry : std::filesystem::directory_iterator(dir.path()))
+    if (entry.path().filename().string().starts_with(prefix)) return entry.path();
+  return {};
+}
+
+TEST(AtomicFile, RemovesWhatAKilledProcessLeftWhenItWritesTheSameOutput) {
+  for (const unsigned call :
+       {static_cast<unsigned>(__NR_rename), static_cast<unsigned>(__NR_write)})
+    for (const bool only_named : {false, true}) {
+      const TempDir dir;
+      write_text(dir / "out", "old");
+      const auto left = leftover_of_a_process_killed_in(dir, call, only_named);
+      // A process that is killed while it writes a nameless file leaves nothing.
+      const bool leaves_one = only_named || call == __NR_rename || !has_nameless_files(dir);
+      EXPECT_EQ(!left.empty(), leaves_one);
+      EXPECT_EQ(dir.count(), leaves_one ? 2 : 1);
+      EXPECT_EQ(read_text(dir / "out"), "old");
+      { const AtomicFile other(dir / "other"); }
+      EXPECT_EQ(dir.count(), leaves_one ? 2 : 1);
+      write_whole_file(dir / "out", "newer");
+      EXPECT_EQ(dir.count(), 1);
+      EXPECT_EQ(read_text(dir / "out"), "newer");
+    }
+}
+
+TEST(AtomicFile, RemovesOnlyFilesThatACertainlyDeadProcessOfThisProgramLeft) {
+  const TempDir dir;
+  write_text(dir / "out", "old");
+  const auto left = leftover_of_a_process_killed_in(dir, __NR_rename, true);
+  ASSERT_FALSE(left.empty());
+  const std::string dead = left.filename().string().substr(0, left.filename().string().rfind('-'));
+  write_text(dir / ("out.voxdag-" + std::to_string(getpid()) + "-7"), "of a running process");
+  write_text(dir / (dead + "-01"), "no such serial number");
+  write_text(dir / (dead + "-1.vdag"), "another name");
+  write_text(dir / ("in" + dead.substr(3) + "-1"), "of another output");
+  write_text(dir / (dead + "-2"), "locked");
+  const int locked = open((dir / (dead + "-2")).c_str(), O_RDONLY);
+  ASSERT_EQ(flock(locked, LOCK_EX), 0);
+  std::filesystem::create_symlink("out", dir / (dead + "-3"));
+  std::filesystem::create_directory(dir / (dead + "-4"));
+  const long before = dir.count();
+  write_whole_file(dir / "out", "newer");
+  EXPECT_EQ(dir.count(), before - 1);
+  EXPECT_FALSE(std::filesystem::exists(left));
+  close(locked);
+}
+
+TEST(AtomicFile, GivesTheNewFileNoSetUserIdBit) {
+  const TempDir dir;
+  write_text(dir / "out", "old");
+  ASSERT_EQ(chmod((dir / "out").c_str(), 06755), 0);
+  write_whole_file(dir / "out", "new");
+  struct stat info {};
+  ASSERT_EQ(stat((dir / "out").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 07777, 0755u);
 }
 
 TEST(AtomicFile, ReplacesTheOldFileAndKeepsItsMode) {

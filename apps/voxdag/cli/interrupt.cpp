@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/unfinished_files.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,19 +5,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <iterator>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/io/descriptor.hpp"
 #include "voxdag/io/nameless_file.hpp"
 #include "voxdag/io/resolved_output.hpp"
+#include "voxdag/io/temporary_file.hpp"
+#include "voxdag/io/unfinished_files.hpp"
 
 namespace voxdag {
 namespace {
@@ -25,56 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-/// Room for the suffix within the 255 bytes that file systems allow a name.
-constexpr std::size_t kLongestStem = 200;
-
-fs::path temporary_name(const fs::path& target) {
-  static std::atomic<unsigned> serial{0};
-  const std::string stem = target.filename().string().substr(0, kLongestStem);
-  return target.parent_path() /
-         (stem + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(serial++));
-}
-
-/// Names of temporary files; who takes one out owns it.
-std::atomic<char*> unfinished[64];
-
-/// A copy of the name that a signal handler can find, or null where there is no room for it.
-char* note(const fs::path& name) {
-  char* copy = ::strdup(name.c_str());
-  if (copy == nullptr) return nullptr;
-  for (auto& slot : unfinished) {
-    char* free_slot = nullptr;
-    if (slot.compare_exchange_strong(free_slot, copy)) return copy;
-  }
-  std::free(copy);
-  return nullptr;
-}
-
-/// Whether remove_unfinished_files() has not taken it out.
-bool is_noted(const char* name) {
-  return std::any_of(std::begin(unfinished), std::end(unfinished),
-                     [name](const auto& slot) { return slot.load() == name; });
-}
-
-void forget(char* name) noexcept {
-  if (name == nullptr) return;
-  for (auto& slot : unfinished) {
-    char* expected = name;
-    if (slot.compare_exchange_strong(expected, nullptr)) return std::free(name);
-  }
-}
-
 }  // namespace
 
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
   AtomicFile file(path);
   file.write(bytes);
   file.commit();
-}
-
-void remove_unfinished_files() noexcept {
-  for (auto& slot : unfinished)
-    if (const char* name = slot.exchange(nullptr)) ::unlink(name);
 }
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
@@ -97,15 +52,18 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
   if (path.filename().empty()) fail(0, ENOENT);
   if (exists && access(target_.c_str(), W_OK) != 0) fail(0, errno);
 
+  remove_leftovers(target_);
   descriptor_ = open_nameless_file(target_.parent_path());
   is_nameless_ = descriptor_ >= 0;
   if (is_nameless_) {
     temporary_ = temporary_name(target_);
-    noted_ = note(temporary_);
+    noted_ = note_unfinished(temporary_);
+    lock_temporary(descriptor_);
   } else {
     create_named();
   }
-  if (exists) fchmod(descriptor_, existing.st_mode & 07777);
+  // Not the set-user-ID and set-group-ID bits: they were given to the old bytes.
+  if (exists) fchmod(descriptor_, existing.st_mode & 0777);
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
@@ -159,19 +117,21 @@ void AtomicFile::commit() {
   assert(descriptor_ >= 0);
   flush();
   if (is_nameless_) take_name();
+  // Keeps the lock until the file has its final name.
+  const Descriptor lock(fcntl(descriptor_, F_DUPFD_CLOEXEC, 0));
   // Some file systems (NFS, quotas) report a failed write only here.
   if (close(std::exchange(descriptor_, -1)) != 0) fail(position(), errno);
   if (temporary_.empty()) return;
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(position(), errno);
-  forget(std::exchange(noted_, nullptr));
+  forget_unfinished(std::exchange(noted_, nullptr));
   temporary_.clear();
 }
 
-/// Writes to what is open already, from where that is.
+/// Writes through a descriptor that is open already, from its current position.
 void AtomicFile::share(int descriptor) {
   const int flags = fcntl(descriptor, F_GETFL);
   if (flags < 0) fail(0, errno);
-  // Those that the program opened itself are nobody's output.
+  // Descriptors that this program opened itself are not outputs of its user.
   const bool is_own = (fcntl(descriptor, F_GETFD) & FD_CLOEXEC) != 0;
   if (is_own || (flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
   descriptor_ = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
@@ -187,10 +147,11 @@ void AtomicFile::create_named() {
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) fail(0, errno);
-  noted_ = note(temporary_);
+  noted_ = note_unfinished(temporary_);
+  lock_temporary(descriptor_);
 }
 
-/// Of a nameless file: the target's where there is none yet, else the temporary one.
+/// Gives a nameless file the name of the target if that is free, else the temporary name.
 void AtomicFile::take_name() {
   if (noted_ != nullptr && !is_noted(noted_)) fail(position(), ECANCELED);
   int error = name_file(descriptor_, target_);
@@ -202,14 +163,14 @@ void AtomicFile::take_name() {
   if (error != 0) copy_to_named();
 }
 
-/// For where the system makes nameless files, but does not let them have a name.
+/// Copies a nameless file to a named one, where the system refuses to give it a name.
 void AtomicFile::copy_to_named() {
   struct Nameless {
     int descriptor;
     ~Nameless() { close(descriptor); }
   };
   const Nameless from{std::exchange(descriptor_, -1)};
-  forget(std::exchange(noted_, nullptr));
+  forget_unfinished(std::exchange(noted_, nullptr));
   create_named();
   if (const int error = copy_file(from.descriptor, descriptor_); error != 0)
     fail(position(), error);
@@ -236,7 +197,7 @@ void AtomicFile::write_through(const std::byte* data, std::size_t bytes) {
 void AtomicFile::discard() noexcept {
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
   if (!temporary_.empty() && !is_nameless_) unlink(temporary_.c_str());
-  forget(std::exchange(noted_, nullptr));
+  forget_unfinished(std::exchange(noted_, nullptr));
   temporary_.clear();
 }
 

@@ -11,24 +11,29 @@
 
 namespace voxdag {
 
-/// Written to a file without a name in its folder (nameless_file.hpp), to which commit() gives the
-/// name: where the process is killed before, nothing is left. Where the file system has no such
-/// files it is written beside its name (NAME.tmp-PID-n), and commit() renames it. Destroyed before
-/// commit(), also by an exception that passes, it removes what it wrote; an older file of the name
-/// stays as it is.
+/// Writes to a file without a name (nameless_file.hpp) in the output's folder. commit() gives it
+/// the name. Where the file system has no nameless files, it writes to NAME.voxdag-PID-N, which
+/// commit() renames. If it is destroyed before commit(), also by an exception, it removes what it
+/// wrote, and an older file of the name stays as it is. A replaced file passes on its permissions,
+/// but no set-user-ID or set-group-ID bit.
 ///
-/// A name that exists and is neither a regular file nor a directory (a pipe, /dev/null) is written
-/// directly, and so is a descriptor of this process (/dev/stdout, /dev/fd/3), whatever it is of,
-/// from where it stands. A symbolic link stays; the file that it points to is made or replaced.
+/// A killed process (SIGKILL) leaves no part of an output under its name. It can leave a file
+/// NAME.voxdag-PID-N: a complete one if it was killed between naming a nameless file and renaming
+/// it over an older output, a partial one where there are no nameless files. The next AtomicFile
+/// for the same output removes such files (remove_leftovers in temporary_file.hpp).
+///
+/// An output that exists and is neither a regular file nor a directory (a pipe, /dev/null) is
+/// written directly. So is a descriptor of this process (/dev/stdout, /dev/fd/3), of any kind, from
+/// its current position. A symbolic link stays; the file that it points to is created or replaced.
 /// Data is not forced to the disk (no fsync): after a power cut the file may be damaged, which
-/// formats with checksums detect; a crash of the program alone cannot leave a partial file.
+/// formats with checksums detect.
 ///
-/// Every failure throws Error(path, "byte N", the system's reason). A process that may run
-/// under a file size limit has to ignore SIGXFSZ, and one that writes to pipes SIGPIPE, to see the
-/// error instead of the signal. Not thread-safe.
+/// Every failure throws Error(path, "byte N", the system's reason). A process that may run under a
+/// file size limit has to ignore SIGXFSZ, and one that writes to pipes SIGPIPE, to get the error
+/// instead of the signal. Not thread-safe.
 class AtomicFile {
  public:
-  /// Creates the file, so that an unwritable place is known before the work begins.
+  /// Creates the file, so that an unwritable place is an error before the work begins.
   explicit AtomicFile(const std::filesystem::path& path);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
@@ -43,7 +48,7 @@ class AtomicFile {
   void write_zeros(std::size_t bytes);
 
   /// Overwrites bytes already written, e.g. a count in a header. [offset, offset + bytes) must lie
-  /// below position(). Fails where the file cannot seek (a pipe, or what is only appended to).
+  /// below position(). Throws if the output cannot seek (a pipe, a file opened for appending).
   void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
 
   /// Bytes written so far.
@@ -63,13 +68,13 @@ class AtomicFile {
   void discard() noexcept;
   [[noreturn]] void fail(std::uint64_t at, int error) const;
 
-  std::filesystem::path path_;       ///< As given: what errors name.
+  std::filesystem::path path_;       ///< As given; errors name it.
   std::filesystem::path target_;     ///< With symbolic links resolved.
-  std::filesystem::path temporary_;  ///< Empty where the target is written directly.
-  char* noted_ = nullptr;            ///< That name, for remove_unfinished_files().
+  std::filesystem::path temporary_;  ///< Empty if the target is written directly.
+  char* noted_ = nullptr;            ///< Handle of that name in unfinished_files.hpp.
   bool is_nameless_ = false;         ///< The temporary name is not in use yet.
   int descriptor_ = -1;
-  off_t start_ = 0;  ///< Of what is written, in the file.
+  off_t start_ = 0;  ///< Offset in the file at which the output starts.
   bool is_appended_ = false;
   std::uint64_t flushed_ = 0;
   std::vector<std::byte> buffer_;
@@ -77,10 +82,5 @@ class AtomicFile {
 
 /// Writes a file of these bytes through AtomicFile: complete or not at all.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
-
-/// Removes the temporary files of every AtomicFile that was not committed, for a signal handler
-/// about to end the process: async-signal-safe. A commit() after it fails. With more than 64 files
-/// open at a time the others are left.
-void remove_unfinished_files() noexcept;
 
 }  // namespace voxdag

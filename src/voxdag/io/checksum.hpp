@@ -1,5 +1,5 @@
 #pragma once
-/// XXH3-64 (Yann Collet's xxHash), seed 0, of a run of bytes.
+/// Checksums: XXH3-64 (Yann Collet's xxHash) with seed 0.
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,9 +7,10 @@
 
 namespace voxdag {
 
+/// Returns the checksum of the bytes.
 std::uint64_t xxh3_64(std::span<const std::byte> bytes);
 
-/// The same of bytes that come piece by piece.
+/// Computes the checksum of bytes that arrive piece by piece.
 class Xxh3Stream {
  public:
   Xxh3Stream();
@@ -18,6 +19,7 @@ class Xxh3Stream {
   Xxh3Stream& operator=(Xxh3Stream&&) = delete;
 
   void add(std::span<const std::byte> bytes);
+  /// Returns the checksum of all bytes added so far.
   std::uint64_t digest() const;
 
  private:

@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-/// What stands for the file until it has a name. Needs /proc.
+/// A path to an open file that needs no name of its own. Needs /proc.
 struct OwnPath {
   char text[32];
   explicit OwnPath(int descriptor) {
@@ -37,7 +37,7 @@ int name_file(int descriptor, const std::filesystem::path& name) noexcept {
 
 int copy_file(int from, int to) noexcept {
   struct stat info {};
-  if (fstat(from, &info) != 0 || fchmod(to, info.st_mode & 07777) != 0) return errno;
+  if (fstat(from, &info) != 0 || fchmod(to, info.st_mode & 0777) != 0) return errno;
   for (off_t at = 0; at < info.st_size;) {
     const ssize_t copied = sendfile(to, from, &at, static_cast<std::size_t>(info.st_size - at));
     if (copied < 0 && errno != EINTR) return errno;

@@ -1,0 +1,48 @@
+#include "voxdag/io/unfinished_files.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+
+namespace voxdag {
+namespace {
+
+/// Who takes a name out of its slot owns it.
+std::atomic<char*> unfinished[64];
+
+}  // namespace
+
+char* note_unfinished(const std::filesystem::path& name) {
+  char* copy = ::strdup(name.c_str());
+  if (copy == nullptr) return nullptr;
+  for (auto& slot : unfinished) {
+    char* free_slot = nullptr;
+    if (slot.compare_exchange_strong(free_slot, copy)) return copy;
+  }
+  std::free(copy);
+  return nullptr;
+}
+
+bool is_noted(const char* name) {
+  return std::any_of(std::begin(unfinished), std::end(unfinished),
+                     [name](const auto& slot) { return slot.load() == name; });
+}
+
+void forget_unfinished(char* name) noexcept {
+  if (name == nullptr) return;
+  for (auto& slot : unfinished) {
+    char* expected = name;
+    if (slot.compare_exchange_strong(expected, nullptr)) return std::free(name);
+  }
+}
+
+void remove_unfinished_files() noexcept {
+  for (auto& slot : unfinished)
+    if (const char* name = slot.exchange(nullptr)) ::unlink(name);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,22 @@
+#pragma once
+/// The names of temporary files that a signal handler removes before the process ends.
+#include <filesystem>
+
+namespace voxdag {
+
+/// Notes the name of a temporary file. Returns a handle for the functions below, or null if too
+/// many names are noted already. Thread-safe.
+char* note_unfinished(const std::filesystem::path& name);
+
+/// Returns whether remove_unfinished_files() has not taken the name.
+bool is_noted(const char* name);
+
+/// Forgets a name, if remove_unfinished_files() has not taken it. Accepts null.
+void forget_unfinished(char* name) noexcept;
+
+/// Removes the temporary files of every AtomicFile that was not committed. Async-signal-safe: for
+/// signal handlers that are about to end the process. A commit() after it fails. It removes at most
+/// 64 files.
+void remove_unfinished_files() noexcept;
+
+}  // namespace voxdag
