@@ -7,12 +7,12 @@ voxdag_packages=(
   ca-certificates g++ cmake ninja-build
   # the library
   libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev
-  nlohmann-json3-dev libxxhash-dev libzstd-dev libassimp-dev libembree-dev
+  nlohmann-json3-dev libxxhash-dev libassimp-dev libembree-dev
   # the command line
   libcli11-dev libfmt-dev
 )
 voxdag_test_packages=(
-  libgtest-dev libbenchmark-dev zstd
+  libgtest-dev zstd
   clang clang-format clang-tidy
 )
 

@@ -2,12 +2,13 @@
 # Builds voxdag with warnings as errors and runs every test, on a Debian 12 that has only git.
 #
 #   scripts/test.sh           formatting, the library under clang, everything under g++, the tests
-#   scripts/test.sh --tidy    also runs clang-tidy (takes minutes more)
+#   scripts/test.sh --tidy    also runs clang-tidy and looks for types that are defined twice
+#                             (takes minutes more)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
-usage() { sed -n '2,5s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '2,6s/^# \{0,1\}//p' "$0"; }
 tidy=no
 case "${1-}" in
   "") ;;
@@ -36,6 +37,10 @@ if [ "$tidy" = yes ]; then
   # The sources that the clang build compiles: optional parts only if their packages were found.
   sed -n 's/^ *"file": "\(.*\.cpp\)",\?$/\1/p' build/clang/compile_commands.json | sort -u |
     xargs -r -d '\n' -n 1 -P "$jobs" clang-tidy -p build/clang --quiet --warnings-as-errors='*'
+
+  echo "== one definition of each type"
+  cmake --preset odr >/dev/null
+  cmake --build --preset odr -- -j "$jobs"
 fi
 
 # Tests real scenes too if they lie beside the checkout.
