@@ -39,7 +39,7 @@ template <class Nodes>
 LightSpec lamp_near(const Nodes& nodes, const Grid& grid, const Camera& camera) {
   const Vec3d way =
       normalized(camera.forward + normalized(camera.up) * 0.7 + normalized(camera.right) * 0.3);
-  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  const double side = grid.side();
   double free_way = 0.5 * side;
   const GridRay ray = make_grid_ray(grid, camera.eye, way, 0, free_way);
   CellHit cell;
@@ -214,7 +214,7 @@ std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double 
 }
 
 WorldRay to_world_ray(const Grid& grid, const GridRay& ray) {
-  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  const double side = grid.side();
   WorldRay world;
   for (int axis = 0; axis < 3; ++axis) {
     const bool is_mirrored = (ray.mirrored >> axis & 1u) != 0;

@@ -9,8 +9,7 @@ SurfaceOpenness::SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int
     : scene_(voxels),
       grid_(grid),
       rays_(rays),
-      distance_(static_cast<float>(distance /
-                                   (grid.voxel_size * static_cast<double>(grid.resolution())))),
+      distance_(static_cast<float>(distance / grid.side())),
       samples_(1, rays) {}
 
 float SurfaceOpenness::operator()(Vec3d point, Vec3f normal, Vec3f face) const {

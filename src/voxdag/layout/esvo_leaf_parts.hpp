@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/esvo.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
 
@@ -26,8 +27,7 @@ class LeafPartWalk {
     const int log2_size = esvo_.levels - level - 1;
     for (std::uint32_t left = d.valid_mask(); left != 0; left &= left - 1) {
       const int child = std::countr_zero(left);
-      const Vec3i at =
-          origin + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (std::int32_t{1} << log2_size);
+      const Vec3i at = origin + child_offset(child) * (std::int32_t{1} << log2_size);
       if (!meets_window(at, log2_size)) continue;
       const int slabs = slab_count_;
       if ((d.contour_mask() >> child & 1) != 0)
@@ -84,7 +84,7 @@ class LeafPartWalk {
     if (log2_size <= 2) return emit(at, log2_size);
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
     for (int child = 0; child < 8; ++child)
-      walk_leaf(at + Vec3i{child & 1, child >> 1 & 1, child >> 2} * half, log2_size - 1);
+      walk_leaf(at + child_offset(child) * half, log2_size - 1);
   }
 
   void emit(Vec3i at, int log2_size) {

@@ -58,7 +58,7 @@ void walk_leaf_blocks(const SvdagView& dag, const Box3i& window, int level, std:
   const std::uint32_t* pointer = node + 1;
   for (std::uint32_t left = child_mask(node); left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
-    const Vec3i child = origin + Vec3i{i & 1, i >> 1 & 1, i >> 2} * half;
+    const Vec3i child = origin + child_offset(i) * half;
     walk_leaf_blocks(dag, window, level + 1, *pointer++, child, fn);
   }
 }

@@ -226,9 +226,8 @@ void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices) {
   if (fan.size() < 2) return;
   Vec3d normal;  // M. Newell's: the sum of the areas; the same for any fan of the polygon.
   for (const Triangle& triangle : fan) normal = normal + area(triangle, vertices);
-  const double length = std::sqrt(dot(normal, normal));
-  if (!(length > 0) || !std::isfinite(length)) return;
-  normal = normal * (1 / length);
+  normal = normalized_or(normal, {});
+  if (normal == Vec3d{}) return;
   if (std::all_of(fan.begin(), fan.end(), [&](const Triangle& triangle) {
         return dot(area(triangle, vertices), normal) >= 0;
       }))

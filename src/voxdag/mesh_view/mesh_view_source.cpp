@@ -119,12 +119,12 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
 
   const Vec3f view = static_cast<Vec3f>(normalized(-direction));
   const Vec3d winding = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double length = std::sqrt(dot(winding, winding));
-  if (!(length > 0)) {  // Embree does not report triangles without area, but floats are not sure
+  const double area2 = length(winding);
+  if (!(area2 > 0)) {  // Embree does not report triangles without area, but floats are not sure
     sample.face = sample.normal = view;
     return sample;
   }
-  sample.face = static_cast<Vec3f>(winding * ((dot(winding, direction) > 0 ? -1 : 1) / length));
+  sample.face = static_cast<Vec3f>(winding * ((dot(winding, direction) > 0 ? -1 : 1) / area2));
   Vec3f normal = looks_.normal(triangle, to_float(at), footprint);
   // Files need not agree with themselves about which side is the front.
   if (dot(normal, sample.face) < 0) normal = -normal;

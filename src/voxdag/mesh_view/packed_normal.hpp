@@ -29,8 +29,7 @@ class PackedNormal {
     float x = unpack(bits_ & 0xFFFFu), y = unpack(bits_ >> 16);
     const float z = 1 - std::fabs(x) - std::fabs(y);
     if (z < 0) fold(x, y);
-    const Vec3f v{x, y, z};
-    return v * (1 / std::sqrt(dot(v, v)));
+    return normalized(Vec3f{x, y, z});
   }
 
   friend bool operator==(PackedNormal, PackedNormal) = default;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "voxdag/core/box.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
@@ -45,7 +46,7 @@ class CoarseCells {
     const std::uint32_t mask = nodes.child_mask(node, level);
     for (int i = 0; i < 8; ++i) {
       if ((mask >> i & 1u) == 0) continue;
-      const Vec3i child = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+      const Vec3i child = cell * 2 + child_offset(i);
       // Below the level nothing is read, and a voxel is no node.
       const bool is_last = level + 1 == level_;
       collect(nodes, is_last ? node : nodes.child(node, level, i), level + 1, child);

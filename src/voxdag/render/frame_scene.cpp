@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
@@ -15,9 +16,6 @@ constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
 /// Rooms and courtyards are less open and fill more of their box; statues in folded drapery and
 /// things with much inside them do not do both.
 constexpr double kInsideOpenness = 0.29, kInsideFill = 0.75;
-constexpr double kPi = 3.14159265358979323846;
-
-double length(Vec3d v) { return std::sqrt(dot(v, v)); }
 
 /// Two unit vectors that with `up` make a right-handed frame: east, north, up.
 struct Compass {
@@ -73,8 +71,7 @@ double openness(const CoarseCells& scene, const Explorer& explorer, const Grid& 
                 const Compass& compass) {
   constexpr std::size_t kCells = 500;
   constexpr int kDirections = 40;
-  const double cell_size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const double cell_size = grid.cell_size(scene.level());
   const std::size_t stride = std::max<std::size_t>(1, scene.cells().size() / kCells);
   int lines = 0, open = 0;
   for (std::size_t at = 0; at < scene.cells().size(); at += stride) {
@@ -102,7 +99,7 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
   const Camera camera = make_camera(view, 1, 1);
   const Vec3d right = normalized(camera.right), camera_up = normalized(camera.up);
   constexpr double kMargin = 1.06;
-  const double tan_y = std::tan(fov * kPi / 360) / kMargin, tan_x = tan_y * aspect;
+  const double tan_y = std::tan(fov * std::numbers::pi / 360) / kMargin, tan_x = tan_y * aspect;
 
   // A point (x,y,z) along right, up, forward is in the picture if |x - ex| <= tan_x * (z - ez), and
   // likewise for y: four half-spaces. How far the scene reaches along their normals gives the eye
@@ -116,8 +113,7 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
                            -ahead};
   double reach[6];
   std::fill(std::begin(reach), std::end(reach), -HUGE_VAL);
-  const double cell_size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const double cell_size = grid.cell_size(scene.level());
   const auto extend = [&](Vec3d middle, double side) {
     for (int i = 0; i < 6; ++i) {
       const Vec3d n = normals[i];
@@ -167,8 +163,7 @@ std::vector<InsideView> inside_views(const CoarseCells& scene, const Explorer& e
                                      double aspect) {
   constexpr int kPlaces = 160, kDirections = 48, kYaws = 24;
   if (scene.cells().empty()) return {};
-  const double cell_size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const double cell_size = grid.cell_size(scene.level());
   const Vec3d lo = grid.origin + static_cast<Vec3d>(scene.bounds().lo) * cell_size;
   const Vec3d extent = static_cast<Vec3d>(scene.bounds().hi - scene.bounds().lo) * cell_size;
   const double size = length(extent);
@@ -201,7 +196,7 @@ std::vector<InsideView> inside_views(const CoarseCells& scene, const Explorer& e
     for (int i = 0; i < kYaws; ++i) {
       View view;
       view.eye = eye;
-      view.target = eye + compass.direction(2 * kPi * i / kYaws, -0.02) * (size / 4);
+      view.target = eye + compass.direction(2 * std::numbers::pi * i / kYaws, -0.02) * (size / 4);
       view.up = compass.up;
       view.vertical_fov_degrees = fov;
       const Camera camera = make_camera(view, 1000, static_cast<int>(1000 / aspect) + 1);
@@ -214,8 +209,6 @@ std::vector<InsideView> inside_views(const CoarseCells& scene, const Explorer& e
                    [](const InsideView& a, const InsideView& b) { return a.score > b.score; });
   return views;
 }
-
-bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void check(const View& view) {
   if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
@@ -296,7 +289,7 @@ std::vector<View> scene_views(const VoxelScene& voxels, const Grid& grid, double
   const Explorer explorer(voxels, grid);
   const Vec3d up = guess_up(scene);
   const Compass compass(up);
-  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  const double side = grid.side();
   std::vector<View> views;
   const auto is_new = [&](const View& view) {
     const Vec3d forward = normalized(view.target - view.eye);

@@ -5,6 +5,7 @@
 /// (P. Shirley, C. Wang and K. Zimmerman, "Monte Carlo Techniques for Direct Lighting
 /// Calculations", 1996), the sun's disc by its projection.
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/render/basis.hpp"
 #include "voxdag/render/render_setup.hpp"
@@ -24,7 +25,6 @@ struct LightSample {
 VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Light& light,
                                           const SurfacePoint& point, const PixelSamples& pixel,
                                           int i) {
-  constexpr float kPi = 3.14159265f;
   const Vec3f to_light = light.position - point.surface.position;
   const int at = pixel.set * tables.light_count + i;
   LightSample sample;
@@ -67,7 +67,7 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
       const float depth2 = radius2 - distance2 * spread2;
       const float front = distance * (1 - rise) - std::sqrt(depth2 > 0 ? depth2 : 0.0f);
       sample.direction = unit * front;
-      emitted = 2 * kPi * cap * front * front;
+      emitted = 2 * std::numbers::pi_v<float> * cap * front * front;
       break;
     }
   }

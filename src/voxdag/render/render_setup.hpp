@@ -56,7 +56,7 @@ struct RenderSetup {
   /// Where the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without beams.
   const float* beam_starts = nullptr;
 
-  VOXDAG_HD double side() const { return grid.voxel_size * static_cast<double>(grid.resolution()); }
+  VOXDAG_HD double side() const { return grid.side(); }
 };
 
 // It is passed to kernels by value, whose parameters have room for 4 KB.

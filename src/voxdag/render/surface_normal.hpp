@@ -9,6 +9,7 @@
 /// few cells, gives hair a normal across its axis, and falls back to v where there is no layer at
 /// all.
 #include "voxdag/core/bits.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/sky.hpp"
 #include "voxdag/trace/cell_blocks.hpp"
@@ -16,7 +17,7 @@
 namespace voxdag {
 
 /// A symmetric 3×3 matrix.
-struct SymmetricMatrix {
+struct CovarianceMatrix {
   float xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
   VOXDAG_HD Vec3f operator*(Vec3f v) const {
@@ -32,7 +33,7 @@ struct SymmetricMatrix {
     yz += weight * v.y * v.z;
   }
   /// The inverse times the determinant.
-  VOXDAG_HD SymmetricMatrix adjugate() const {
+  VOXDAG_HD CovarianceMatrix adjugate() const {
     return {yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy,
             xz * yz - xy * zz, xy * yz - xz * yy, xy * xz - xx * yz};
   }
@@ -57,9 +58,9 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   const CellBlocks blocks = cell_blocks(nodes, level, block);
   float weight = 0;
   Vec3f mean{};
-  SymmetricMatrix moments;
+  CovarianceMatrix moments;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3i at = block + Vec3i{corner & 1, corner >> 1 & 1, corner >> 2};
+    const Vec3i at = block + child_offset(corner);
     std::uint64_t cells = blocks.masks[corner];
     const Vec3f base = static_cast<Vec3f>(at * 4 - cell) - offset;
     for (; cells != 0; cells &= cells - 1) {
@@ -78,7 +79,7 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   if (!(weight > 0)) return {front, 0, 0};
   mean = mean * (1 / weight);
   // A cell's own extent, 1/12, keeps the matrix regular.
-  SymmetricMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
+  CovarianceMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
   const float scale = 1 / weight;
   covariance.xx += moments.xx * scale;
   covariance.yy += moments.yy * scale;
@@ -87,7 +88,7 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   covariance.xz += moments.xz * scale;
   covariance.yz += moments.yz * scale;
   covariance.add_outer_product(mean, -1);
-  const SymmetricMatrix inverse = covariance.adjugate();
+  const CovarianceMatrix inverse = covariance.adjugate();
   Vec3f normal = front;
   for (int i = 0; i < 4; ++i) normal = normalized(inverse * normal);
   return {normal, dot(normal, covariance * normal), -dot(normal, mean)};

@@ -39,7 +39,7 @@ VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSe
                                               Vec3d direction, const Hit& hit, double depth) {
   const RenderSettings& settings = setup.settings;
   const int shift = setup.grid.levels - hit.level;
-  const double cell_size = setup.grid.voxel_size * static_cast<double>(std::int64_t{1} << shift);
+  const double cell_size = setup.grid.cell_size(hit.level);
   const Vec3f view = -static_cast<Vec3f>(normalized(direction));
   const Vec3f face = hit.face == Face::kNone ? view : static_cast<Vec3f>(face_normal(hit.face));
   const float cell_pixels = static_cast<float>(cell_size / (setup.camera.pixel_size() * depth));

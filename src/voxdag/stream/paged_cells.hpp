@@ -26,7 +26,7 @@ class PagedCells {
     return node.is_full ? 0xFFu : descriptor(node, level, false).valid_mask();
   }
   Node child(const Node& node, int level, int index) const {
-    return {node.cell * 2 + Vec3i{index & 1, index >> 1 & 1, index >> 2},
+    return {node.cell * 2 + child_offset(index),
             node.is_full || (descriptor(node, level, true).leaf_mask() >> index & 1u) != 0};
   }
 

@@ -21,6 +21,7 @@
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/trace/esvo_nodes.hpp"
 
 namespace voxdag {
@@ -108,9 +109,7 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
     }
     const auto index = static_cast<std::uint32_t>(lowest_bit64(top.pending)) ^ order;
     top.pending &= top.pending - 1;
-    const Vec3i cell = top.cell * 2 + Vec3i{static_cast<std::int32_t>(index & 1u),
-                                            static_cast<std::int32_t>(index >> 1 & 1u),
-                                            static_cast<std::int32_t>(index >> 2)};
+    const Vec3i cell = top.cell * 2 + child_offset(static_cast<int>(index));
     const double side =
         static_cast<double>(float_from_bits(static_cast<std::uint32_t>(127 - (level + 1)) << 23));
     double enter = first, exit = last;

@@ -146,8 +146,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
 /// contour or of a side of the cube. Zero where the ray starts inside.
 VOXDAG_HD inline Vec3f entered_normal(const GridRay& ray, const EsvoHit& hit) {
   if (!hit.is_through_contour()) return static_cast<Vec3f>(face_normal(entered_face(ray, hit)));
-  const auto n = static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane.contour));
-  return n * (1.0f / std::sqrt(dot(n, n)));
+  return normalized(static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane.contour)));
 }
 
 /// How far apart the planes of a contour are, in units of the grid's side.
@@ -156,7 +155,7 @@ VOXDAG_HD inline float thickness(const ContourPlane& plane) {
   const auto steps = static_cast<float>(length1(plane.contour.normal()) *
                                         (plane.contour.high() - plane.contour.low()));
   const float side = float_from_bits(static_cast<std::uint32_t>(127 - plane.level) << 23);
-  return side * steps / (std::sqrt(dot(n, n)) * Contour::kMaxPosition);
+  return side * steps / (length(n) * Contour::kMaxPosition);
 }
 
 /// As of any layout. The face of a ray that enters through a contour is the side that looks most

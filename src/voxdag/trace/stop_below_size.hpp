@@ -36,7 +36,7 @@ struct StopBelowSize {
 /// ray's apex is at t = 0, as it is for a pixel's footprint.
 VOXDAG_HD inline StopBelowSize stop_below_size(const Grid& grid, const GridRay& ray,
                                                double size_per_t) {
-  const double scale = size_per_t / (grid.voxel_size * static_cast<double>(grid.resolution()));
+  const double scale = size_per_t / grid.side();
   StopBelowSize stop;
   stop.at_start = static_cast<float>(scale * ray.t_start);
   stop.per_t = static_cast<float>(scale * ray.t_scale);

@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/packets/beam_packet.hpp"
 #include "voxdag/cpu/packets/packet_lanes-inl.hpp"
 
@@ -195,8 +196,8 @@ class BeamPacketWalk : PacketLanes {
         if (children.beams[order] == 0) continue;
         const auto child = static_cast<int>(order ^ order_);
         stack[top++] = {nodes_.child(visit.node, visit.level, child),
-                        visit.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2},
-                        visit.level + 1, children.beams[order], children.enter[order]};
+                        visit.cell * 2 + child_offset(child), visit.level + 1,
+                        children.beams[order], children.enter[order]};
       }
     }
   }

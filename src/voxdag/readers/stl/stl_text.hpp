@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "voxdag/core/vec.hpp"
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/readers/chunks.hpp"
 
 namespace voxdag {
