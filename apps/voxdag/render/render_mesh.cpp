@@ -35,7 +35,7 @@ void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelScen
   try {
     check_mesh_in_grid(mesh, scene, grid);
   } catch (const Error& error) {
-    throw Error(file, error.place(), error.reason());
+    throw error.in_file(file);
   }
 }
 
@@ -61,7 +61,7 @@ std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec
     print_warnings(warnings, session);
     return view_source;
   } catch (const Error& error) {
-    throw Error(arguments.file, error.place(), error.reason());
+    throw error.in_file(arguments.file);
   }
 }
 

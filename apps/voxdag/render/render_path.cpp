@@ -53,8 +53,8 @@ CameraPath camera_path(const PathFile& path, const std::string& file, const Voxe
     }
     return CameraPath(std::move(keys));
   } catch (const Error& error) {
-    throw Error(file, error.place().empty() ? fmt::format("key {}", keys.size()) : error.place(),
-                error.reason());
+    if (!error.place().empty()) throw error.in_file(file);
+    throw Error(file, fmt::format("key {}", keys.size()), error.reason());
   }
 }
 

@@ -10,7 +10,7 @@ auto named(const std::filesystem::path& path, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    throw Error(path.string(), error.place(), error.reason());
+    throw error.in_file(path.string());
   }
 }
 

@@ -6,7 +6,7 @@ MetadataJson parse_metadata_json(std::string_view text) {
   try {
     return MetadataJson::parse(text);
   } catch (const MetadataJson::parse_error& error) {
-    throw Error("", "byte " + std::to_string(error.byte), "not valid JSON");
+    throw Error("", ErrorPlace::byte(error.byte), "not valid JSON");
   } catch (const MetadataJson::exception& error) {  // a number out of range
     throw Error("", "", std::string("not valid JSON: ") + error.what());
   }

@@ -8,7 +8,7 @@ VdagFile::VdagFile(const std::filesystem::path& path) : mapping_(path) {
   try {
     contents_ = parse_vdag(mapping_.bytes());
   } catch (const Error& error) {
-    throw Error(path.string(), error.place(), error.reason());
+    throw error.in_file(path.string());
   }
 }
 

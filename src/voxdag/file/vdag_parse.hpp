@@ -50,8 +50,7 @@ auto read_metadata_chunk(const std::vector<VdagChunk>& chunks, const Parse& pars
   try {
     return parse(text);
   } catch (const Error& error) {
-    throw Error("", "chunk META" + (error.place().empty() ? "" : ", " + error.place()),
-                error.reason());
+    throw error.within(ErrorPlace::chunk("META"));
   }
 }
 

@@ -84,7 +84,7 @@ class EsvoStream {
     std::uint32_t descriptor = 0;  ///< The children word of the descriptor above, as in the file.
   };
 
-  [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
+  [[noreturn]] void fail(ErrorPlace place, const std::string& reason) const;
   void read(std::uint64_t offset, void* data, std::size_t bytes) const;
   void find_children();
   std::uint64_t most_slots_of_a_path() const;
