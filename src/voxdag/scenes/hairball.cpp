@@ -60,7 +60,7 @@ ScenePreset hairball_preset(double) {
   ScenePreset preset;
   preset.eye = {1.1, 0.5, 2.2};
   preset.fov_degrees = 46;
-  preset.sun_direction = normalized({-0.5, 0.9, 0.6});
+  preset.sun_direction = normalized(Vec3d{-0.5, 0.9, 0.6});
   // Once around it, coming near.
   constexpr int kKeys = 9;
   for (int i = 0; i < kKeys; ++i) {
