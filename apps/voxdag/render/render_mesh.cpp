@@ -30,7 +30,7 @@ void check_mesh_options(const MeshArguments& arguments) {
     throw CLI::ValidationError("--primary", "mesh needs --mesh");
 }
 
-void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelScene& scene,
+void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
                       const Grid& grid) {
   try {
     check_mesh_in_grid(mesh, scene, grid);
@@ -40,7 +40,7 @@ void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelScen
 }
 
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
-                                             const VoxelScene& scene, const Grid& grid,
+                                             const VoxelSet& scene, const Grid& grid,
                                              Session& session) {
   if (arguments.file.empty() || arguments.primary == "voxels") return nullptr;
   MeshWithAppearance source;

@@ -18,7 +18,7 @@ VOXDAG_HD constexpr std::uint64_t spread_bits3(std::uint64_t v) {
   return v;
 }
 
-/// Inverse of spread_bits3: gathers every third bit.
+/// Gathers every third bit, from bit 0 on: the inverse of spread_bits3.
 VOXDAG_HD constexpr std::uint32_t gather_bits3(std::uint64_t v) {
   v &= 0x1249249249249249ull;
   v = (v | v >> 2) & 0x10C30C30C30C30C3ull;
@@ -29,7 +29,7 @@ VOXDAG_HD constexpr std::uint32_t gather_bits3(std::uint64_t v) {
   return static_cast<std::uint32_t>(v);
 }
 
-/// Coordinates in [0, 2^21) to their code.
+/// Returns the code of coordinates in [0, 2^21).
 VOXDAG_HD constexpr std::uint64_t morton_encode(Vec3i p) {
   return spread_bits3(static_cast<std::uint32_t>(p.x)) |
          spread_bits3(static_cast<std::uint32_t>(p.y)) << 1 |

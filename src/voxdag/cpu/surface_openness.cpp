@@ -4,7 +4,7 @@
 
 namespace voxdag {
 
-SurfaceOpenness::SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int rays,
+SurfaceOpenness::SurfaceOpenness(const VoxelSet& voxels, const Grid& grid, int rays,
                                  double distance)
     : scene_(voxels),
       grid_(grid),

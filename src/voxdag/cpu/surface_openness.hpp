@@ -13,7 +13,7 @@ class SurfaceOpenness {
  public:
   /// Points to the voxels, which stand in `grid`. `rays` for each point, at least 1; `distance` in
   /// world units is how far occlusion reaches, positive.
-  SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int rays, double distance);
+  SurfaceOpenness(const VoxelSet& voxels, const Grid& grid, int rays, double distance);
 
   /// 0 (nothing arrives) to 1. `point` in world units, on a surface whose normal (of unit length)
   /// is `normal`, or, of the triangle that it is on, `face`: rays run on that side of it.

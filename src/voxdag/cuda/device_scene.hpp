@@ -4,7 +4,7 @@
 
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/layout/voxel_set.hpp"
 
 namespace voxdag {
 
@@ -14,11 +14,11 @@ class DeviceScene {
   /// Copies the voxels; `layout` says at which layout of a DAG rays are to be cast. What `scene`
   /// points to must outlive this object, too. Throws Error where the device has not enough free
   /// memory.
-  DeviceScene(const CudaDevice& device, const VoxelScene& scene,
+  DeviceScene(const CudaDevice& device, const VoxelSet& scene,
               DeviceLayout layout = DeviceLayout::kPaper);
 
   const CudaDevice& device() const;
-  const VoxelScene& host() const;    ///< The voxels in the host's memory.
+  const VoxelSet& host() const;      ///< The voxels in the host's memory.
   const DeviceVoxels& view() const;  ///< The same with pointers into the device's.
   void make_current() const;         ///< Has the calling thread work on the voxels' device.
 

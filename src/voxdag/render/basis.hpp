@@ -11,7 +11,8 @@ struct Basis {
   Vec3<T> u, v;
 };
 
-/// Source: Duff and others, "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+/// Returns the frame of a unit vector. Source: T. Duff and others, "Building an Orthonormal Basis,
+/// Revisited", JCGT 6(1), 2017.
 template <class T>
 VOXDAG_HD inline Basis<T> make_basis(Vec3<T> normal) {
   const T sign = normal.z < 0 ? T(-1) : T(1);

@@ -8,6 +8,7 @@
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/render/view.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,20 +35,20 @@ struct Compass {
 /// Casts rays into a scene at the detail that matters for choosing a view.
 class Explorer {
  public:
-  Explorer(const VoxelScene& voxels, const Grid& grid)
+  Explorer(const VoxelSet& voxels, const Grid& grid)
       : voxels_(voxels), grid_(grid), stop_{std::ldexp(1.0f, -9), 0, 2} {}
 
   /// Distance in world units to what a unit direction meets; +infinity if nothing.
   double distance(Vec3d from, Vec3d direction) const {
     const GridRay ray = make_grid_ray(grid_, from, direction, 0, HUGE_VAL);
     CellHit cell;
-    if (!voxels_.visit_nodes([&](const auto& nodes) { return cast(nodes, ray, stop_, cell); }))
+    if (!visit_nodes(voxels_, [&](const auto& nodes) { return cast(nodes, ray, stop_, cell); }))
       return HUGE_VAL;
     return ray.to_world_t(static_cast<double>(cell.t));
   }
 
  private:
-  VoxelScene voxels_;
+  VoxelSet voxels_;
   Grid grid_;
   StopBelowSize stop_;
 };
@@ -230,7 +231,7 @@ Vec3d up_across(Vec3d up, Vec3d forward) {
   return std::fabs(up.z) > std::fabs(up.y) ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1};
 }
 
-View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
+View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request) {
   View view;
   view.up = request.up.value_or(view.up);
@@ -280,8 +281,7 @@ View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
   return outside;
 }
 
-std::vector<View> scene_views(const VoxelScene& voxels, const Grid& grid, double aspect,
-                              int count) {
+std::vector<View> scene_views(const VoxelSet& voxels, const Grid& grid, double aspect, int count) {
   constexpr int kCoarseLevel = 7;
   constexpr double kApart = 0.12;    // of the scene's size, for views that look much the same way
   constexpr double kOtherWay = 0.3;  // cosine

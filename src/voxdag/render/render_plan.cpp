@@ -72,7 +72,7 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
 
 }  // namespace
 
-RenderPlan::RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderOptions& options)
+RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOptions& options)
     : samples_(make_samples(options)), exposure_(options.exposure) {
   assert(grid.levels == voxels.levels());
   const std::size_t pixels =

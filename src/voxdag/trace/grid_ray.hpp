@@ -1,28 +1,28 @@
 #pragma once
-/// A ray in the coordinates of the traversal, and with it the exact definition of what a ray meets.
+/// A ray in the coordinates of the traversal, and the exact definition of the voxels that it meets.
 ///
 /// Coordinates: the grid is the cube [1,2]³, so that the bits of a float's mantissa are the child
 /// indices of the cells that contain it (Laine and Karras, "Efficient Sparse Voxel Octrees",
-/// I3D 2010, section 4.1). Axes along which the ray runs up are mirrored (p -> 3 - p): here a ray
-/// runs down along every axis. Its origin is a multiple of 2^-23 in [1,2]; its parameter T is 0
-/// there and grows by 1 while the dominant axis crosses the grid once.
+/// I3D 2010, section 4.1). Axes along which the ray runs up are mirrored (p -> 3 - p), so that the
+/// ray runs down along every axis. Its origin is a multiple of 2^-23 in [1,2]. Its parameter T is 0
+/// at the origin, and grows by 1 while the ray crosses the grid along its dominant axis.
 ///
 /// The plane rule. The ray meets the plane p of an axis at
 ///     T(p) = (origin - p) * inverse                                     (plane_t below)
-/// in float arithmetic. Origin and p are multiples of 2^-23 in [1,2], so the difference is exact;
-/// the product is one correctly rounded operation by a positive constant. Rounding is monotone, so
-/// T(p) never decreases as p falls. It even increases strictly from one voxel plane to the next:
-/// neighbouring differences are at least 2^-20 apart and at most 1, a ratio of more than
-/// 1 + 2^-21, while rounding moves a product by at most a factor 1 +- 2^-24. There is no sum after
-/// the product, so no compiler can contract it: every machine finds the same T.
+/// in float arithmetic. Origin and p are multiples of 2^-23 in [1,2], so that the difference is
+/// exact; the product with a positive constant is rounded correctly, once. Rounding is monotone, so
+/// that T(p) never decreases as p falls. From one voxel plane to the next it even increases
+/// strictly: neighbouring differences are at least 2^-20 apart and at most 1, a ratio of more than
+/// 1 + 2^-21, while rounding changes a product by at most a factor 1 +- 2^-24. No sum follows the
+/// product, so that no compiler can contract it: every machine finds the same T.
 ///
 /// The voxel rule. At T the ray is, along each axis, beyond exactly the planes with T(p) <= T. That
-/// names one voxel for every T, and one cell of every coarser level, whose planes are a subset of
-/// the same planes: a walk of the octree visits just what a walk of the voxels visits. The ray
-/// meets the voxels that it is in at some T in [t_min, t_max], both ends included. So where it
-/// crosses several planes at one T (an edge or a corner, to float precision) it passes to the
-/// diagonal neighbour and meets none of the voxels between. A ray that starts on a plane is in the
-/// voxel ahead.
+/// defines one voxel for every T, and one cell of every coarser level: the planes of coarser cells
+/// are a subset of the voxels' planes, so that a walk of the octree visits the same voxels as a
+/// walk of the grid. The ray meets the voxels that it is in at some T in [t_min, t_max], both ends
+/// included. If it crosses several planes at one T (an edge or a corner, to float precision), it
+/// passes to the diagonal neighbour and meets none of the voxels between. A ray that starts on a
+/// plane is in the voxel ahead.
 ///
 /// Parallel axes. Inside the grid a direction component below 2^-32 of the largest is taken for
 /// zero: it would move the ray by less than 2^-32 of the grid. Such a ray stays, for all T, in the
@@ -55,20 +55,19 @@ struct GridRay {
 
   VOXDAG_HD bool misses() const { return !(t_min <= t_max); }
 
-  /// T at the plane `position` (mirrored, a multiple of 2^-23 in [1,2]) of `axis`.
+  /// Returns T at the plane `position` (mirrored, a multiple of 2^-23 in [1,2]) of `axis`.
   VOXDAG_HD float plane_t(int axis, float position) const {
     return (origin[axis] - position) * inverse[axis];
   }
 
-  /// T at which it leaves the grid.
+  /// Returns T at which the ray leaves the grid.
   VOXDAG_HD float exit_t() const {
     const float x = plane_t(0, 1), y = plane_t(1, 1), z = plane_t(2, 1);
     const float xy = x < y ? x : y;
     return xy < z ? xy : z;
   }
 
-  /// T of the world ray's parameter t, and back.
-  VOXDAG_HD double to_grid_t(double t) const { return (t - t_start) / t_scale; }
+  /// Returns the world ray's parameter t at T = grid_t.
   VOXDAG_HD double to_world_t(double grid_t) const { return std::fma(grid_t, t_scale, t_start); }
 };
 
