@@ -98,7 +98,7 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
     mesh = read_mesh(arguments.mesh_file, &session.progress);
     check_is_mesh_of(arguments.mesh_file, mesh, file.voxels(), file.grid());
   }
-  const std::string& name = file.source().name;
+  const std::string& name = file.metadata().source.name;
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
                    file.voxels(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
   TraceResults results;

@@ -20,13 +20,11 @@ class SceneFile {
   VoxelSet voxels() const {
     return std::visit([](const auto& file) { return VoxelSet(file.view()); }, file_);
   }
-  const Grid& grid() const {
-    return std::visit([](const auto& file) -> const Grid& { return file.grid(); }, file_);
-  }
-  const VdagSource& source() const {
-    return std::visit([](const auto& file) -> const VdagSource& { return file.metadata().source; },
+  const SceneMetadata& metadata() const {
+    return std::visit([](const auto& file) -> const SceneMetadata& { return file.metadata(); },
                       file_);
   }
+  const Grid& grid() const { return metadata().grid; }
 
  private:
   using File = std::variant<VdagFile, EsvoFile>;

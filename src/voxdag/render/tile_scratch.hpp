@@ -10,8 +10,6 @@ namespace voxdag {
 /// Every array but `active` is indexed by the tile's pixel, in the order of ViewTile.
 template <int kPixels>
 struct TileScratch {
-  static constexpr int kMaxPixels = kPixels;
-
   ViewSample samples[kPixels];
   SurfacePoint points[kPixels];
   std::int32_t active[kPixels];  ///< Pixels that cast rays, in order.

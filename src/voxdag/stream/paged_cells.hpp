@@ -1,5 +1,6 @@
 #pragma once
-/// How a walk reads the upper levels of an ESVO of which hardly anything is in memory at a time.
+/// The node layout for walks of the upper levels of an ESVO of which only a few blocks fit into
+/// memory.
 #include <cstdint>
 
 #include "voxdag/core/morton.hpp"
@@ -7,13 +8,13 @@
 
 namespace voxdag {
 
-/// A layout of nodes (trace/svdag_nodes.hpp) that loads the blocks that a walk comes to. As blocks
-/// move, its nodes are cells, and each is looked up from the root. For one thread.
+/// A node layout (trace/svdag_nodes.hpp) that loads the blocks that a walk reaches. Its nodes are
+/// cells, looked up from the root each time, because blocks move. For one thread.
 class PagedCells {
  public:
   struct Node {
     Vec3i cell;
-    bool is_full = false;  ///< Within a leaf.
+    bool is_full = false;  ///< Inside of a leaf.
   };
 
   explicit PagedCells(BlockSource& source) : source_(&source) {}
@@ -31,8 +32,8 @@ class PagedCells {
   }
 
  private:
-  /// Of a node that is not full. While its block of children is missing, it says that all children
-  /// are leaves.
+  /// Returns the descriptor of a node that is not full. If the block of its children is missing,
+  /// the descriptor marks all children as leaves, unless `with_children` loads the block.
   ChildDescriptor descriptor(const Node& node, int level, bool with_children) const {
     std::uint64_t slot = source_->view().root;
     for (int l = 0;;) {
