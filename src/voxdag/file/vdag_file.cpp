@@ -4,9 +4,9 @@
 
 namespace voxdag {
 
-VdagFile::VdagFile(const std::filesystem::path& path) : mapping_(path) {
+VdagFile::VdagFile(const std::filesystem::path& path) : file_(path) {
   try {
-    contents_ = parse_vdag(mapping_.bytes());
+    contents_ = parse_vdag(file_.bytes());
   } catch (const Error& error) {
     throw error.in_file(path.string());
   }

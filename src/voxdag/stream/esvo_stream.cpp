@@ -22,8 +22,9 @@ void EsvoStream::fail(ErrorPlace place, const std::string& reason) const {
 
 EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) : path_(path) {
   {
-    // Mapped, but of the blocks nothing is touched.
-    const MappedFile mapping(path);
+    // The mapping ends with this scope, before anything is walked, and its blocks are never
+    // touched.
+    const MappedFile mapping(path, MappedFile::Access::kRandom);
     try {
       const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
       check_vdag_checksums(chunks_but_blocks(chunks));
@@ -56,8 +57,8 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
       blocks_.begin());
   if (root == blocks_.size()) fail("directory", "has no root block");
   if (const std::uint64_t least = most_slots_of_a_path(); pool_.size() < least)
-    fail("", "the memory given is less than the " + std::to_string(least * 8) +
-                 " bytes of a block and those above it");
+    fail("", "the memory limit is less than the " + std::to_string(least * 8) +
+                 " bytes of a block and its ancestors");
   blocks_[root].siblings = {Vec3i{}};
   load(root);
   const std::uint64_t at = blocks_[root].position;
@@ -98,7 +99,8 @@ void EsvoStream::find_children() {
   }
 }
 
-/// Of a block and those above it. Throws if they go round in a circle.
+/// Returns the greatest number of slots of a block and its ancestors. Throws if blocks form a
+/// cycle.
 std::uint64_t EsvoStream::most_slots_of_a_path() const {
   std::uint64_t most = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -161,7 +163,7 @@ void EsvoStream::cut(std::size_t block) {
   cut_[slot] = static_cast<std::int64_t>(block);
 }
 
-void EsvoStream::hang(std::size_t block, std::uint32_t first_descriptor) {
+void EsvoStream::attach(std::size_t block, std::uint32_t first_descriptor) {
   const Block& b = blocks_[block];
   const std::uint64_t slot = blocks_[static_cast<std::size_t>(b.parent)].position + b.parent_slot;
   ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
@@ -207,7 +209,7 @@ void EsvoStream::load(std::size_t block) {
   b.position = position;
   for (const std::uint32_t child : b.children) cut(child);
   if (b.parent >= 0) {
-    hang(block, view().info(position).first_descriptor);
+    attach(block, view().info(position).first_descriptor);
     ++blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
   }
   ++counts_.blocks_loaded;
@@ -230,7 +232,8 @@ void EsvoStream::evict(std::size_t block) {
     is_cut_[slot] = false;
     cut_.erase(slot);
   }
-  // cut() remembers the descriptor with its far pointer's place, which is all that hang() needs.
+  // cut() stores the descriptor with the position of its far pointer, which is all that attach()
+  // needs.
   cut(block);
   --blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
   release(b.position, directory_[block].slots);

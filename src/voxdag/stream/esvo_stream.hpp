@@ -94,7 +94,7 @@ class EsvoStream {
   std::uint64_t allocate(std::uint32_t slots);
   void release(std::uint64_t position, std::uint32_t slots);
   void cut(std::size_t block);
-  void hang(std::size_t block, std::uint32_t first_descriptor);
+  void attach(std::size_t block, std::uint32_t first_descriptor);
 
   std::filesystem::path path_;
   int file_ = -1;
