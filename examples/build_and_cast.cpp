@@ -20,7 +20,7 @@ int main(int argc, char** argv) try {
   about.counts = voxdag::count_svdag(built.dag.view());
   voxdag::write_vdag(argv[2], built.dag.view(), about);
 
-  const voxdag::VdagFile file(argv[2]);  // mapped and checked
+  const voxdag::VdagFile file(argv[2]);  // read and checked
   const voxdag::Vec3d centre = file.grid().to_world({512, 512, 512});
   voxdag::Ray ray;
   ray.origin = static_cast<voxdag::Vec3f>(centre);

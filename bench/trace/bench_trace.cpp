@@ -75,9 +75,9 @@ struct OpenVdbSet {
   std::vector<std::uint8_t> hits;
 };
 
-std::vector<std::uint8_t> hits_of(const VoxelScene& voxels, const std::vector<CastRay>& casts) {
+std::vector<std::uint8_t> hits_of(const VoxelSet& voxels, const std::vector<CastRay>& casts) {
   std::vector<std::uint8_t> hits;
-  voxels.visit_nodes([&](const auto& nodes) {
+  visit_nodes(voxels, [&](const auto& nodes) {
     for (const CastRay& ray : casts) {
       CellHit cell;
       hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);

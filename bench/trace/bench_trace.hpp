@@ -16,7 +16,7 @@ namespace voxdag {
 struct TraceScene {
   std::string name;
   Grid grid;
-  VoxelScene voxels;
+  VoxelSet voxels;
   const Mesh* mesh = nullptr;  ///< What it was built from, for rivals that cast at triangles.
   std::filesystem::path file;  ///< The same as a .vdag, for rivals that are programs; or empty.
 };

@@ -180,11 +180,11 @@ std::vector<std::string> trace_layouts() {
   return all;
 }
 
-std::vector<std::string> trace_layouts(const VoxelScene& voxels) {
+std::vector<std::string> trace_layouts(const VoxelSet& voxels) {
   return voxels.esvo() != nullptr ? kEsvoLayouts : kDagLayouts;
 }
 
-std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelScene& voxels) {
+std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelSet& voxels) {
   if (const EsvoView* esvo = voxels.esvo()) {
     if (name == "contours") return std::make_unique<EsvoTraceLayout<ContourNodes>>(*esvo);
     if (name == "contours_scalar") return std::make_unique<EsvoScalarLayout<ContourNodes>>(*esvo);

@@ -7,7 +7,7 @@
 
 #include "bench/rivals/trace_rivals.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 
@@ -33,10 +33,10 @@ class TraceLayout {
 
 /// The layouts' names, of all voxels or of these, the default first.
 std::vector<std::string> trace_layouts();
-std::vector<std::string> trace_layouts(const VoxelScene& voxels);
+std::vector<std::string> trace_layouts(const VoxelSet& voxels);
 
 /// Throws Error where memory is short, or the layout is not one of these voxels. They must outlive
 /// the result.
-std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelScene& voxels);
+std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelSet& voxels);
 
 }  // namespace voxdag

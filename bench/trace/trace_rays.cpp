@@ -39,7 +39,7 @@ template <class Nodes>
 LightSpec lamp_near(const Nodes& nodes, const Grid& grid, const Camera& camera) {
   const Vec3d way =
       normalized(camera.forward + normalized(camera.up) * 0.7 + normalized(camera.right) * 0.3);
-  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  const double side = grid.side();
   double free_way = 0.5 * side;
   const GridRay ray = make_grid_ray(grid, camera.eye, way, 0, free_way);
   CellHit cell;
@@ -75,28 +75,29 @@ std::string_view name_of(RayClass rays) {
 }
 
 struct BeamPass::State {
-  State(const VoxelScene& scene_in, const Grid& grid, const RenderOptions& options)
+  State(const VoxelSet& scene_in, const Grid& grid, const RenderOptions& options)
       : scene(scene_in), plan(scene_in, grid, options) {}
 
-  VoxelScene scene;
+  VoxelSet scene;
   RenderPlan plan;
   std::vector<float> starts;
 };
 
-BeamPass::BeamPass(const VoxelScene& scene, const Grid& grid, const RenderOptions& options)
+BeamPass::BeamPass(const VoxelSet& scene, const Grid& grid, const RenderOptions& options)
     : state_(std::make_unique<State>(scene, grid, options)) {}
 
 BeamPass::~BeamPass() = default;
 
 void BeamPass::run() {
-  state_->scene.visit_nodes(
-      [&](const auto& nodes) { find_beam_starts(nodes, state_->plan.setup(), state_->starts); });
+  visit_nodes(state_->scene, [&](const auto& nodes) {
+    find_beam_starts(nodes, state_->plan.setup(), state_->starts);
+  });
 }
 
 const float* BeamPass::starts() const { return state_->starts.data(); }
 const RenderSetup& BeamPass::setup() const { return state_->plan.setup(); }
 
-RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const View& view,
+RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const View& view,
                               const RayOptions& ray_options) {
   RenderOptions options;
   options.width = ray_options.width;
@@ -110,7 +111,7 @@ RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const V
   options.beams = false;  // those towards lamps, which rivals do not have
   const Camera camera = make_camera(view, options.width, options.height);
   options.lights = {
-      scene.visit_nodes([&](const auto& nodes) { return lamp_near(nodes, grid, camera); })};
+      visit_nodes(scene, [&](const auto& nodes) { return lamp_near(nodes, grid, camera); })};
   return options;
 }
 
@@ -180,8 +181,7 @@ std::vector<CastRay> primary_rays(const RenderSetup& plain, const float* beam_st
   });
 }
 
-RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams,
-                         const RayOptions& options) {
+RecordedRays record_rays(const VoxelSet& scene, const BeamPass& beams, const RayOptions& options) {
   const RenderSetup& plain = beams.setup();
   RenderSetup with_beams = plain;
   with_beams.beam_starts = beams.starts();
@@ -196,7 +196,7 @@ RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams,
                           : c == RayClass::kAo ? options.occlusion_samples
                                                : 1;
     const std::vector<ViewTile> tiles = some_tiles(plain.camera, per_pixel, options.most_rays);
-    scene.visit_nodes([&](const auto& nodes) {
+    visit_nodes(scene, [&](const auto& nodes) {
       rays(c) = rays_of(tiles, [&](const ViewTile& tile, auto& of_tile) {
         record_tile(nodes, plain, with_beams, c, tile, of_tile);
       });
@@ -205,7 +205,7 @@ RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams,
   return recorded;
 }
 
-std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double aspect, int count) {
+std::vector<View> bench_views(const VoxelSet& scene, const Grid& grid, double aspect, int count) {
   const View usual = frame_scene(scene, grid, aspect, {});
   std::vector<View> views{usual};
   for (const View& view : scene_views(scene, grid, aspect, count))
@@ -214,7 +214,7 @@ std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double 
 }
 
 WorldRay to_world_ray(const Grid& grid, const GridRay& ray) {
-  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  const double side = grid.side();
   WorldRay world;
   for (int axis = 0; axis < 3; ++axis) {
     const bool is_mirrored = (ray.mirrored >> axis & 1u) != 0;

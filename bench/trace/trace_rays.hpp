@@ -10,7 +10,7 @@
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 
@@ -55,7 +55,7 @@ struct RecordedRays {
 /// Casts the beams of a whole picture on all threads.
 class BeamPass {
  public:
-  BeamPass(const VoxelScene& scene, const Grid& grid, const RenderOptions& options);
+  BeamPass(const VoxelSet& scene, const Grid& grid, const RenderOptions& options);
   ~BeamPass();
   BeamPass(const BeamPass&) = delete;
   BeamPass& operator=(const BeamPass&) = delete;
@@ -72,7 +72,7 @@ class BeamPass {
 };
 
 /// The picture that a view's rays are of.
-RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const View& view,
+RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const View& view,
                               const RayOptions& options);
 
 /// Of those that meet the grid, in the same order. Starts are RenderSetup::beam_starts: rays that
@@ -80,11 +80,11 @@ RenderOptions picture_options(const VoxelScene& scene, const Grid& grid, const V
 std::vector<CastRay> primary_rays(const RenderSetup& setup, const float* beam_starts);
 
 /// `beams` is of a picture of picture_options(), and has run.
-RecordedRays record_rays(const VoxelScene& scene, const BeamPass& beams, const RayOptions& options);
+RecordedRays record_rays(const VoxelSet& scene, const BeamPass& beams, const RayOptions& options);
 
 /// The views that are measured: inside views, or views around an object, and the one that `render`
 /// would take.
-std::vector<View> bench_views(const VoxelScene& scene, const Grid& grid, double aspect, int count);
+std::vector<View> bench_views(const VoxelSet& scene, const Grid& grid, double aspect, int count);
 
 /// A cast ray in world units: the same points at the same t.
 struct WorldRay {

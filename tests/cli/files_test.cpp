@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -168,13 +169,17 @@ TEST_F(Files, NamesThatAreTooLongAreFoundBeforeTheWork) {
 }
 
 TEST_F(Files, AMappedFileThatIsCutShortIsAnError) {
-  copy("in.vdag", "cut.vdag");
-  Process reading(voxdag_command(
-      {"render", path("cut.vdag"), "-o", path("cut.png"), "--size", "2000x2000", "--spp", "64"}));
-  reading.wait_until_it_maps(path("cut.vdag"));
-  write_text(path("cut.vdag"), "");
+  // A binary STL of six million triangles, all zeros: long enough to be read when it is cut short.
+  constexpr std::uint32_t kTriangles = 6'000'000;
+  std::string header(84, '\0');
+  std::memcpy(header.data() + 80, &kTriangles, sizeof kTriangles);
+  write_text(path("cut.stl"), header);
+  std::filesystem::resize_file(path("cut.stl"), 84 + std::uint64_t{50} * kTriangles);
+  Process reading(voxdag_command({"build", path("cut.stl"), "-r", "64", "-o", path("cut.vdag")}));
+  reading.wait_until_it_maps(path("cut.stl"));
+  write_text(path("cut.stl"), "");
   expect_failure(reading.wait(), 1, "cut short");
-  EXPECT_EQ(files_like("cut.png"), 0);
+  EXPECT_EQ(files_like("cut.vdag"), 0);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 #include "support/test_rays.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/layout/color_block.hpp"
@@ -58,8 +59,7 @@ class Leaves {
     const ChildDescriptor descriptor = esvo_.descriptor(slot);
     for (int child = 0; child < 8; ++child) {
       if ((descriptor.valid_mask() >> child & 1) == 0) continue;
-      const Vec3i at =
-          origin + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << (log2_size - 1));
+      const Vec3i at = origin + child_offset(child) * (1 << (log2_size - 1));
       if ((descriptor.leaf_mask() >> child & 1) == 0) {
         walk(esvo_.child(slot, descriptor, child), at, log2_size - 1);
         continue;

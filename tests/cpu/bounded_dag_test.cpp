@@ -7,6 +7,7 @@
 
 #include "support/brute_svdag.hpp"
 #include "support/voxel_sets.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {
@@ -39,7 +40,7 @@ int wrong_boxes(const BoundedDag& dag, const std::vector<Vec3i>& voxels, std::ui
   int wrong = 0, at = 0;
   for (int i = 0; i < 8; ++i) {
     if ((words[0] >> i & 1u) == 0) continue;
-    const Vec3i child = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+    const Vec3i child = cell * 2 + child_offset(i);
     const std::uint32_t pointer = words[2 + at], box = words[2 + children + at];
     EXPECT_EQ(pointer, dag.nodes().child(node, level, i));
     wrong += box == expected_box(voxels, levels, level + 1, child).bits ? 0 : 1;

@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -13,7 +14,7 @@
 namespace voxdag {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 
 /// The grid of 2^levels voxels is [-1,1]³.
 Grid test_grid(int levels) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/grid_mesh.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/layout/color_block.hpp"
@@ -44,7 +45,7 @@ std::vector<Leaf> leaves_of(const EsvoView& esvo) {
     const ChildDescriptor d = esvo.descriptor(slot);
     for (int i = 0; i < 8; ++i) {
       if ((d.valid_mask() >> i & 1) == 0) continue;
-      const Vec3i at = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+      const Vec3i at = cell * 2 + child_offset(i);
       if ((d.leaf_mask() >> i & 1) == 0) {
         self(self, esvo.child(slot, d, i), at, level + 1);
         continue;

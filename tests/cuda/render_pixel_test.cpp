@@ -34,7 +34,7 @@ std::vector<ViewSample> samples_of(const ViewSource& source, const RenderSetup& 
 
 /// As the device does it, in launches of a few blocks.
 template <class Nodes, class Caster>
-RenderedImage render_as_device(const VoxelScene& scene, const Nodes& nodes, const Caster& caster,
+RenderedImage render_as_device(const VoxelSet& scene, const Nodes& nodes, const Caster& caster,
                                const RenderOptions& options, const ViewSource* source) {
   const Grid grid = picture_grid();
   RenderPlan plan(scene, grid, options);

@@ -51,7 +51,7 @@ std::vector<Leaf> leaves_of(const EsvoView& esvo) {
   const auto walk = [&](const auto& self, std::uint64_t slot, int level, Vec3i cell) -> void {
     const ChildDescriptor d = esvo.descriptor(slot);
     for (int i = 0; i < 8; ++i) {
-      const Vec3i at = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+      const Vec3i at = cell * 2 + child_offset(i);
       if ((d.leaf_mask() >> i & 1) != 0)
         leaves.push_back({level + 1, at});
       else if ((d.valid_mask() >> i & 1) != 0)

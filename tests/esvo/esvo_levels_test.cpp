@@ -9,6 +9,7 @@
 
 #include "support/temp_dir.hpp"
 #include "support/test_png.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/layout/stored_values.hpp"
@@ -57,7 +58,7 @@ class EsvoLevels : public testing::Test {
       float sum = 0;
       for (int i = 0; i < 8; ++i) {
         if ((d.valid_mask() >> i & 1) == 0) continue;
-        const Vec3i at = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
+        const Vec3i at = cell * 2 + child_offset(i);
         Look look;
         EXPECT_TRUE(stored_color(esvo, {slot, i}, look.color));
         const bool is_leaf = (d.leaf_mask() >> i & 1) != 0;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "support/esvo_bytes.hpp"
 #include "support/temp_dir.hpp"
 #include "support/vdag_bytes.hpp"
@@ -81,6 +83,16 @@ TEST(EsvoFile, EveryBitFlipIsRefused) {
     changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
     EXPECT_NE(error_of(changed), "no error") << "byte " << bit / 8;
   }
+}
+
+TEST(EsvoFile, DoesNotChangeWhenTheFileIsRewrittenInPlace) {
+  const TempDir dir;
+  const PackedEsvo esvo = packed_esvo(5, 200, 1);
+  write_esvo(dir / "a.esvo", esvo);
+  const EsvoFile file(dir / "a.esvo");
+  const auto size = std::filesystem::file_size(dir / "a.esvo");
+  std::fstream(dir / "a.esvo") << std::string(size, '\xFF');
+  EXPECT_TRUE(std::equal(esvo.packed.slots.begin(), esvo.packed.slots.end(), file.view().slots));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ std::string error_of(const std::string& bytes) {
     }
   } catch (const Error& error) {
     EXPECT_EQ(error.file(), (dir / "a.npy").string());
-    return error.place() + ": " + error.reason();
+    return error.place().text() + ": " + error.reason();
   }
   return "no error";
 }

@@ -82,18 +82,18 @@ TEST(VdagCorruption, EveryBitFlipBehindRightChecksumsIsSurvived) {
 }
 
 TEST(VdagCorruption, BytesBehindTheEndAreRefused) {
-  EXPECT_EQ(error_of(small_file() + "x"), "byte " + std::to_string(small_file().size()) +
-                                              ": the file goes on after its end by 1 bytes");
+  EXPECT_EQ(error_of(small_file() + "x"),
+            "byte " + std::to_string(small_file().size()) + ": has 1 trailing bytes");
   std::string bytes = small_file() + std::string(64, '\0');
   poke(bytes, offsetof(VdagHeader, file_bytes), std::uint64_t{bytes.size()});
   repair_checksums(bytes);
   EXPECT_EQ(error_of(bytes),
-            "byte " + std::to_string(bytes.size() - 64) + ": bytes after the last chunk");
+            "byte " + std::to_string(bytes.size() - 64) + ": has bytes after the last chunk");
 }
 
 TEST(VdagCorruption, OtherVersionsAreRefusedByName) {
   EXPECT_EQ(error_of(repaired_with(8, std::uint32_t{7})),
-            "header: version 7 is newer than this program's 1");
+            "header: version 7 is newer than this program's version 1");
   EXPECT_EQ(error_of(repaired_with(8, std::uint32_t{0})), "header: version 0 does not exist");
 }
 
@@ -103,7 +103,7 @@ TEST(VdagCorruption, DamageIsNamedByItsPlace) {
   EXPECT_EQ(error_of(bytes), "chunk NODE: checksum is wrong");
   bytes = small_file();
   bytes[entry_offset(1) + 9] ^= 1;
-  EXPECT_EQ(error_of(bytes), "header: checksum of header and chunk table is wrong");
+  EXPECT_EQ(error_of(bytes), "header: checksum of the header and chunk table is wrong");
   bytes = small_file();
   bytes.back() ^= 1;
   EXPECT_EQ(error_of(bytes), "byte " + std::to_string(bytes.size() - 1) + ": padding is not zero");
@@ -111,17 +111,17 @@ TEST(VdagCorruption, DamageIsNamedByItsPlace) {
   EXPECT_EQ(error_of(bytes.substr(0, bytes.size() - 1)),
             "byte " + std::to_string(bytes.size() - 1) + ": truncated: the header says " +
                 std::to_string(bytes.size()) + " bytes");
-  EXPECT_EQ(error_of(bytes.substr(0, 20)), "byte 20: the file ends inside its header");
+  EXPECT_EQ(error_of(bytes.substr(0, 20)), "byte 20: truncated: the file ends inside its header");
 }
 
 TEST(VdagCorruption, AbsurdSizesAreRefusedBehindRightChecksums) {
   EXPECT_EQ(error_of(repaired_with(12, std::uint32_t{0xFFFFFFFF})),
-            "header: 4294967295 chunks are more than fit");
+            "header: 4294967295 chunks do not fit into the file");
   const std::size_t length = entry_offset(2) + offsetof(VdagChunkEntry, length);
   for (const std::uint64_t value :
        {~std::uint64_t{0}, ~std::uint64_t{63}, std::uint64_t{1} << 63, std::uint64_t{100000}})
     EXPECT_EQ(error_of(repaired_with(length, value)),
-              "chunk table, chunk NODE: reaches past the end of the file");
+              "chunk table, chunk NODE: extends past the end of the file");
 }
 
 TEST(VdagCorruption, ChunksMustStandInOrderWithoutGapsOrOverlap) {
@@ -135,9 +135,11 @@ TEST(VdagCorruption, ChunksMustStandInOrderWithoutGapsOrOverlap) {
 
 TEST(VdagCorruption, AChunkTwiceOrMissingIsRefused) {
   EXPECT_EQ(error_of(repaired_with(entry_offset(3), kChunkNodes)),
-            "chunk table, chunk NODE: stands there twice");
+            "chunk table, chunk NODE: duplicate chunk");
   std::string bytes = repaired_with(entry_offset(3), vdag_chunk_id("ATTR"));
-  EXPECT_EQ(error_of(bytes), "chunk table, chunk ATTR: needs a newer program");
+  EXPECT_EQ(
+      error_of(bytes),
+      "chunk table, chunk ATTR: unknown required chunk: this file needs a newer version of voxdag");
   poke(bytes, entry_offset(3) + 4, std::uint32_t{0});
   repair_checksums(bytes);
   EXPECT_EQ(error_of(bytes), "chunk table: chunk LEAF is missing");
@@ -169,7 +171,7 @@ TEST(VdagCorruption, FaultsInTheDagAreNamed) {
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1), std::uint64_t{1})),
             "chunk LEVL, level table: level 0 does not begin at word 0");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1) + 16, std::uint64_t{6})),
-            "chunk NODE: 7 words where the level table says 6");
+            "chunk NODE: 7 words, but the level table says 6");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 0), '[')),
             "chunk META, byte 8: not valid JSON");
 }

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 
 #include "support/vdag_bytes.hpp"
@@ -126,6 +127,18 @@ TEST(VdagFile, AGridThatNoFileMayHoldIsRefusedByTheWriter) {
   EXPECT_EQ(error_of([&] { write_vdag(dir / "a", dag.view(), metadata); }),
             (dir / "a").string() + ": grid.voxel_size: not positive");
   EXPECT_EQ(dir.count(), 0);
+}
+
+TEST(VdagFile, DoesNotChangeWhenTheFileIsRewrittenInPlace) {
+  const TempDir dir;
+  const Svdag dag = brute_svdag(6, random_voxels(6, 300, 7));
+  write_vdag(dir / "a.vdag", dag.view(), example_metadata(dag.view()));
+  const VdagFile file(dir / "a.vdag");
+  const auto size = std::filesystem::file_size(dir / "a.vdag");
+  std::fstream(dir / "a.vdag") << std::string(size, '\xFF');
+  EXPECT_EQ(owned(file.view()), dag);
+  std::filesystem::resize_file(dir / "a.vdag", 0);
+  EXPECT_EQ(owned(file.view()), dag);
 }
 
 }  // namespace

@@ -14,9 +14,7 @@ namespace {
 /// Voxels by walking the view from the root, Morton order.
 void walk(const SvdagView& dag, int level, std::uint64_t at, Vec3i cell,
           std::vector<Vec3i>& voxels) {
-  const auto child_cell = [](Vec3i c, int i) {
-    return Vec3i{2 * c.x + (i & 1), 2 * c.y + (i >> 1 & 1), 2 * c.z + (i >> 2)};
-  };
+  const auto child_cell = [](Vec3i c, int i) { return c * 2 + child_offset(i); };
   if (level == dag.levels - 2) {
     for (int i = 0; i < 64; ++i)
       if (dag.leaf_blocks[at] >> i & 1)

@@ -181,12 +181,11 @@ TEST(ValidateSvdag, EveryBitFlipIsFoundOrMakesAnotherCanonicalDag) {
       const std::function<void(int, std::uint64_t, Vec3i)> walk = [&](int level, std::uint64_t at,
                                                                       Vec3i cell) {
         for (int i = 0; i < 8; ++i) {
-          const Vec3i child{2 * cell.x + (i & 1), 2 * cell.y + (i >> 1 & 1), 2 * cell.z + (i >> 2)};
+          const Vec3i child = cell * 2 + child_offset(i);
           if (level == 3) {
             for (int j = 0; j < 8; ++j)
               if (dag.leaf_blocks[at] >> (8 * i + j) & 1)
-                voxels.push_back(
-                    {2 * child.x + (j & 1), 2 * child.y + (j >> 1 & 1), 2 * child.z + (j >> 2)});
+                voxels.push_back(child * 2 + child_offset(j));
           } else if (child_mask(&dag.nodes[at]) >> i & 1) {
             walk(level + 1, child_pointer(&dag.nodes[at], i), child);
           }

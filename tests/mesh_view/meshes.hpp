@@ -1,6 +1,7 @@
 #pragma once
 /// Small meshes with known surfaces.
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "voxdag/mesh/mesh.hpp"
@@ -27,7 +28,7 @@ inline Mesh cube_mesh() {
 
 /// The unit sphere by latitude and longitude; every other triangle winds the wrong way round.
 inline Mesh disordered_sphere_mesh(int rows) {
-  constexpr double kPi = 3.141592653589793;
+  constexpr double kPi = std::numbers::pi;
   const int columns = 2 * rows;
   Mesh mesh;
   for (int row = 0; row <= rows; ++row)

@@ -37,7 +37,7 @@ class ReadMesh : public testing::Test {
       read_mesh(path);
     } catch (const Error& error) {
       EXPECT_EQ(error.file(), path.string());
-      return error.place() + (error.place().empty() ? "" : ": ") + error.reason();
+      return error.place().text() + (error.place().empty() ? "" : ": ") + error.reason();
     }
     return "accepted";
   }

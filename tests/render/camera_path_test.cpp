@@ -14,8 +14,6 @@ CameraKey key(double time, Vec3d eye, Vec3d target = {0, 0, 0}, double fov = 50)
   return {time, {eye, target, {0, 1, 0}, fov}};
 }
 
-double length(Vec3d v) { return std::sqrt(dot(v, v)); }
-
 /// Keys at uneven times and distances, with a rest of the target.
 std::vector<CameraKey> walk() {
   return {key(0, {0, 0, 9}), key(1, {1, 0, 8}, {0, 0, 0}, 50), key(1.5, {6, 1, 3}, {0, 0, 0}, 70),

@@ -4,6 +4,7 @@
 
 #include "support/brute_svdag.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/view.hpp"
 
@@ -40,7 +41,7 @@ TEST(FrameScene, ShowsEveryVoxelOfAnObject) {
     const View view = frame_scene(dag.view(), grid, aspect, {});
     for (const Vec3i v : voxels)
       for (int corner = 0; corner < 8; ++corner) {
-        const Vec3i p = v + Vec3i{corner & 1, corner >> 1 & 1, corner >> 2};
+        const Vec3i p = v + child_offset(corner);
         EXPECT_TRUE(is_in_picture(view, aspect, grid.to_world(static_cast<Vec3d>(p))));
       }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "voxdag/core/error.hpp"
@@ -12,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 constexpr int kSamples = 256, kPixels = 64;
 
 Grid test_grid() {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "support/test_esvo.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/encode/pack_blocks.hpp"
 
 namespace voxdag {
@@ -64,8 +65,8 @@ inline std::unique_ptr<TestVoxel> ball_octree(const Ball& ball, int levels, bool
   if (with_contours && level > 0) voxel->contour = ball_contour(ball, middle, side);
   if (level == levels) return voxel;
   for (int i = 0; i < 8; ++i)
-    voxel->children[static_cast<std::size_t>(i)] = ball_octree(
-        ball, levels, with_contours, level + 1, cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2});
+    voxel->children[static_cast<std::size_t>(i)] =
+        ball_octree(ball, levels, with_contours, level + 1, cell * 2 + child_offset(i));
   return voxel;
 }
 
@@ -76,7 +77,7 @@ void append_to_tree(const TestVoxel& voxel, int level, Vec3i cell, std::uint32_t
   EsvoNode node;
   node.first_contour = static_cast<std::uint32_t>(tree.contours.size());
   node.first_value = static_cast<std::uint32_t>(tree.values.size());
-  const auto child_cell = [&](int i) { return cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2}; };
+  const auto child_cell = [&](int i) { return cell * 2 + child_offset(i); };
   for (int i = 0; i < 8; ++i) {
     const TestVoxel* child = voxel.children[static_cast<std::size_t>(i)].get();
     if (child == nullptr) continue;

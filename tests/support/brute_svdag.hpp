@@ -70,8 +70,7 @@ class BruteSvdagBuilder {
     for (const Vec3i v : voxels) {
       if (std::min({v.x, v.y, v.z}) < 0 || std::max({v.x, v.y, v.z}) >> levels_ != 0) std::abort();
       // Morton order in a block: the high bits choose the octant, the low bits the voxel.
-      const int octant = (v.x >> 1 & 1) + 2 * (v.y >> 1 & 1) + 4 * (v.z >> 1 & 1);
-      const int voxel = (v.x & 1) + 2 * (v.y & 1) + 4 * (v.z & 1);
+      const int octant = child_index(v, 1), voxel = child_index(v, 0);
       masks[{v.x >> 2, v.y >> 2, v.z >> 2}] |= std::uint64_t{1} << (8 * octant + voxel);
     }
     std::map<std::uint64_t, int> ids;

@@ -27,7 +27,7 @@ TEST(CellBlocks, HoldTheCellsOfEveryLevelAndNothingOutsideOfTheGrid) {
             const CellBlocks blocks = cell_blocks(SvdagNodes(dag.view()), level, {x, y, z});
             for (int b = 0; b < 8; ++b)
               for (std::uint32_t i = 0; i < 64; ++i) {
-                const Vec3i block = Vec3i{x, y, z} + Vec3i{b & 1, b >> 1 & 1, b >> 2};
+                const Vec3i block = Vec3i{x, y, z} + child_offset(b);
                 const Vec3i cell = block * 4 + morton_decode(i);
                 ASSERT_EQ(blocks.masks[b] >> i & 1u, cells.count({cell.x, cell.y, cell.z}));
               }

@@ -9,6 +9,7 @@
 #include "support/test_esvo.hpp"
 #include "support/test_rays.hpp"
 #include "support/voxel_sets.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/trace/cell_blocks.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
@@ -121,7 +122,7 @@ void list_planes(const TestVoxel& voxel, int level, Vec3i cell,
   }
   for (int i = 0; i < 8; ++i)
     if (const TestVoxel* child = voxel.children[static_cast<std::size_t>(i)].get())
-      list_planes(*child, level + 1, cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2}, planes);
+      list_planes(*child, level + 1, cell * 2 + child_offset(i), planes);
 }
 
 /// What no arithmetic can be blamed for: a shape that is met by more than a margin is met, and what
@@ -180,7 +181,7 @@ TEST(EsvoCast, RaysInAndAlongThePlanesOfContoursMissNothing) {
   int hits = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const ContourScene scene(3 + static_cast<int>(seed % 2), 100 + seed);
-    const double side = scene.grid.voxel_size * static_cast<double>(scene.grid.resolution());
+    const double side = scene.grid.side();
     std::vector<std::pair<Vec3d, Vec3d>> planes;
     list_planes(*scene.root, 0, {}, planes);
     for (int i = 0; i < 3000; ++i) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "reference_dda.hpp"
 #include "support/brute_svdag.hpp"
@@ -137,6 +139,38 @@ TEST(CastPrecision, IsWithinASixteenthOfAVoxelAt131072Cubed) {
     hits += hit.hit ? 1 : 0;
   }
   EXPECT_GT(hits, 5000);
+}
+
+TEST(CastPrecision, RaysFromAfarThatAreNearlyParallelToAnAxisMeetTheVoxelsOfTheirLine) {
+  Grid grid;
+  grid.levels = 7;
+  std::vector<Vec3i> wall;
+  for (std::int32_t z = 0; z < 128; ++z)
+    for (std::int32_t y = 0; y < 128; ++y) wall.push_back({64, y, z});
+  const Svdag dag = brute_svdag(grid.levels, wall);
+  std::mt19937 rng(31);
+  std::uniform_real_distribution<float> anywhere(-8, 136), log2_slope(-45, -28);
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Ray ray;
+    ray.origin = {i % 2 == 0 ? -3e9f : 3e9f, anywhere(rng), anywhere(rng)};
+    const auto slope = [&] { return std::exp2(log2_slope(rng)) * (rng() % 2 == 0 ? 1.0f : -1.0f); };
+    ray.direction = {i % 2 == 0 ? 1.0f : -1.0f, slope(), slope()};
+    ray.t_max = std::numeric_limits<float>::infinity();
+    const TrueLine line(grid, ray);
+    const Vec3r p = line.at((64.5L - line.origin.x) / line.direction.x);
+    const auto is_near_plane = [](Real at) { return std::fabs(at - std::round(at)) < 1e-4L; };
+    if (is_near_plane(p.y) || is_near_plane(p.z)) continue;
+    const Hit hit = closest_hit(SvdagNodes(dag.view()), grid, ray);
+    const bool is_inside = p.y > 0 && p.y < 128 && p.z > 0 && p.z < 128;
+    ASSERT_EQ(hit.hit, is_inside) << "ray " << i;
+    if (!is_inside) continue;
+    ASSERT_EQ(hit.voxel,
+              (Vec3i{64, static_cast<std::int32_t>(p.y), static_cast<std::int32_t>(p.z)}))
+        << "ray " << i;
+    ++hits;
+  }
+  EXPECT_GT(hits, 10000);
 }
 
 }  // namespace

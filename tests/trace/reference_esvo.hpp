@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/test_esvo.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/trace/grid_ray.hpp"
 
 namespace voxdag {
@@ -98,7 +99,7 @@ class ReferenceCast {
     }
     for (int i = 0; i < 8; ++i)
       if (const TestVoxel* child = voxel.children[static_cast<std::size_t>(i)].get())
-        visit(*child, level + 1, cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2}, range);
+        visit(*child, level + 1, cell * 2 + child_offset(i), range);
   }
 
   ReferenceRay ray_;

@@ -30,8 +30,7 @@ void check_random_path(std::mt19937_64& random, const QuantizedTriangle& t, int 
     int next = -1;
     for (int i = 0; i < 8; ++i) {
       const int child = (i + static_cast<int>(random() % 8)) % 8;
-      const Vec3i at{cell.x + (child & 1) * half, cell.y + (child >> 1 & 1) * half,
-                     cell.z + (child >> 2) * half};
+      const Vec3i at = cell + child_offset(child) * half;
       const bool expected = overlaps(t, origin + at, half);
       const bool alive = ((children.alive >> child) & 1) != 0;
       // Where the plane's 64-bit sums could overflow the cell is kept for its children to tell.
@@ -42,8 +41,7 @@ void check_random_path(std::mt19937_64& random, const QuantizedTriangle& t, int 
     }
     if (next < 0) return;
     conditions = children.conditions(next);
-    cell = {cell.x + (next & 1) * half, cell.y + (next >> 1 & 1) * half,
-            cell.z + (next >> 2) * half};
+    cell = cell + child_offset(next) * half;
   }
 }
 

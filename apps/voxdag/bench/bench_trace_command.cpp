@@ -14,9 +14,9 @@
 #include "cli/memory_option.hpp"
 #include "cli/number_check.hpp"
 #include "cli/parse.hpp"
-#include "inspect/scene_file.hpp"
 #include "render/render_mesh.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/file/scene_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/scenes/scenes.hpp"
@@ -91,16 +91,16 @@ TraceResults bench_list(const BenchTraceArguments& arguments, Session& session) 
 
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
-  if (file.scene().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
+  if (file.voxels().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
     throw Error("--openvdb", "", "takes the voxels of a DAG, not of an ESVO");
   Mesh mesh;
   if (!arguments.mesh_file.empty()) {
     mesh = read_mesh(arguments.mesh_file, &session.progress);
-    check_is_mesh_of(arguments.mesh_file, mesh, file.scene(), file.grid());
+    check_is_mesh_of(arguments.mesh_file, mesh, file.voxels(), file.grid());
   }
-  const std::string& name = file.source_name();
+  const std::string& name = file.metadata().source.name;
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
-                   file.scene(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
+                   file.voxels(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
   TraceResults results;
   bench_trace(scene, arguments.plan, session.progress, results);
   return results;

@@ -19,7 +19,7 @@ struct BakeArguments {
 
   double distance_in(const Grid& grid) const {
     if (distance > 0) return distance;
-    return kDefaultDistance * grid.voxel_size * static_cast<double>(grid.resolution());
+    return kDefaultDistance * grid.side();
   }
 };
 

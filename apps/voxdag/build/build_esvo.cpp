@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 
 #include "cli/human.hpp"
 #include "cli/number_check.hpp"
@@ -130,7 +131,7 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
 
   EsvoOptions options = arguments.options;
   options.settings.normal_error =
-      static_cast<float>(arguments.normal_degrees * 3.14159265358979 / 180);
+      static_cast<float>(arguments.normal_degrees * std::numbers::pi / 180);
   const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
   EsvoMetadata metadata;
   const std::optional<Box3d> bounds =

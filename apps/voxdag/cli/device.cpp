@@ -29,7 +29,7 @@ void add_device_option(CLI::App& command, DeviceChoice& choice) {
                     "Where rays are cast; auto: on a CUDA device where there is one (default cpu)");
 }
 
-std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelScene& scene,
+std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelSet& scene,
                                           DeviceLayout layout) {
   if (choice.kind == DeviceChoice::Kind::kCpu) return std::nullopt;
   try {

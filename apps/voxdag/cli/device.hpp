@@ -23,7 +23,7 @@ void add_device_option(CLI::App& command, DeviceChoice& choice);
 /// The voxels in the memory of the CUDA device that was asked for; nothing where the CPU is to
 /// work: with "auto" also where there is no device, or not enough memory on it. `scene` must
 /// outlive it. Throws Error where CUDA was asked for and cannot be.
-std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelScene& scene,
+std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelSet& scene,
                                           DeviceLayout layout = DeviceLayout::kPaper);
 
 /// "the CPU" or the device's name, for people.

@@ -6,7 +6,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
-#include "inspect/scene_file.hpp"
+#include "voxdag/file/scene_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -19,7 +19,7 @@ struct ExportArguments {
 
 void export_file(ExportArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
-  const VoxelSet voxels = file.scene();
+  const VoxelSet voxels = file.voxels();
   // Of an ESVO's leaves nobody knows before how many voxels they stand for.
   std::uint64_t count = 0;
   const Box3i window = arguments.options.window.value_or(whole_grid(voxels.levels()));

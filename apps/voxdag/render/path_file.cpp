@@ -70,7 +70,7 @@ Json parse(const std::string& file) {
     std::string reason = error.what();
     if (const std::size_t at = reason.find("syntax error"); at != std::string::npos)
       reason.erase(0, at);
-    throw Error(file, "byte " + std::to_string(error.byte), reason);
+    throw Error(file, ErrorPlace::byte(error.byte), reason);
   } catch (const Json::exception&) {  // a number that no double holds
     throw Error(file, "", "a number is out of range");
   }

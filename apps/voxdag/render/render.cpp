@@ -4,7 +4,6 @@
 
 #include "cli/commands.hpp"
 #include "cli/device.hpp"
-#include "inspect/scene_file.hpp"
 #include "render/frame_names.hpp"
 #include "render/render_arguments.hpp"
 #include "render/render_mesh.hpp"
@@ -14,6 +13,7 @@
 #include "render/render_summary.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
+#include "voxdag/file/scene_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -33,7 +33,7 @@ void render(RenderArguments& arguments, Session& session) {
     return render_streamed(arguments, passes, session);
   }
   const SceneFile file(session.subject);
-  const VoxelScene scene = file.scene();
+  const VoxelSet scene = file.voxels();
   arguments.options.width = arguments.size.width;
   arguments.options.height = arguments.size.height;
   arguments.options.filter = arguments.filter.value_or(scene.esvo() != nullptr);

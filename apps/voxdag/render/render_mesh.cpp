@@ -30,17 +30,17 @@ void check_mesh_options(const MeshArguments& arguments) {
     throw CLI::ValidationError("--primary", "mesh needs --mesh");
 }
 
-void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelScene& scene,
+void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
                       const Grid& grid) {
   try {
     check_mesh_in_grid(mesh, scene, grid);
   } catch (const Error& error) {
-    throw Error(file, error.place(), error.reason());
+    throw error.in_file(file);
   }
 }
 
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
-                                             const VoxelScene& scene, const Grid& grid,
+                                             const VoxelSet& scene, const Grid& grid,
                                              Session& session) {
   if (arguments.file.empty() || arguments.primary == "voxels") return nullptr;
   MeshWithAppearance source;
@@ -61,7 +61,7 @@ std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec
     print_warnings(warnings, session);
     return view_source;
   } catch (const Error& error) {
-    throw Error(arguments.file, error.place(), error.reason());
+    throw error.in_file(arguments.file);
   }
 }
 

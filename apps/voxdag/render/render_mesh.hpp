@@ -6,9 +6,9 @@
 
 #include "cli/session.hpp"
 #include "voxdag/core/grid.hpp"
+#include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/render/view_source.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -24,13 +24,13 @@ void add_mesh_options(CLI::App& command, MeshArguments& arguments);
 void check_mesh_options(const MeshArguments& arguments);
 
 /// Throws Error(file, ...) unless the mesh, which was read from the file, is that of the voxels.
-void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelScene& scene,
+void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
                       const Grid& grid);
 
 /// The mesh as a source of view samples, or null where the voxels are to be seen. Throws Error for
 /// a mesh that is not that of the voxels.
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
-                                             const VoxelScene& scene, const Grid& grid,
+                                             const VoxelSet& scene, const Grid& grid,
                                              Session& session);
 
 }  // namespace voxdag

@@ -28,7 +28,7 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 /// The camera path of a file. What its first key leaves out, frame_scene finds.
-CameraPath camera_path(const PathFile& path, const std::string& file, const VoxelScene& scene,
+CameraPath camera_path(const PathFile& path, const std::string& file, const VoxelSet& scene,
                        const Grid& grid, const RenderOptions& options) {
   std::vector<CameraKey> keys;
   try {
@@ -53,8 +53,8 @@ CameraPath camera_path(const PathFile& path, const std::string& file, const Voxe
     }
     return CameraPath(std::move(keys));
   } catch (const Error& error) {
-    throw Error(file, error.place().empty() ? fmt::format("key {}", keys.size()) : error.place(),
-                error.reason());
+    if (!error.place().empty()) throw error.in_file(file);
+    throw Error(file, fmt::format("key {}", keys.size()), error.reason());
   }
 }
 
@@ -152,7 +152,7 @@ void check_frame_pattern(const OutputFile& output, const PathArguments& argument
     refuse("has a place for a frame's number, which needs --path");
 }
 
-void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions& given,
+void render_path(const VoxelSet& scene, const Grid& grid, const RenderOptions& given,
                  const PathArguments& arguments, const FrameMaker& maker, Session& session) {
   constexpr double kMostFrames = 1e6;
   const PathFile file = read_path_file(arguments.file);

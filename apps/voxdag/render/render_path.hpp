@@ -9,8 +9,8 @@
 #include "cli/session.hpp"
 #include "render/render_passes.hpp"
 #include "voxdag/core/grid.hpp"
+#include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/render/render_options.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -42,7 +42,7 @@ struct FrameMaker {
 /// Renders the path's frames, from its first key to its last one. The sun stands still: where
 /// neither options nor path place it, it is where the first frame would have it. Exposure follows
 /// the frames smoothly. Throws Error for a path that is none.
-void render_path(const VoxelScene& scene, const Grid& grid, const RenderOptions& options,
+void render_path(const VoxelSet& scene, const Grid& grid, const RenderOptions& options,
                  const PathArguments& arguments, const FrameMaker& maker, Session& session);
 
 }  // namespace voxdag

@@ -18,7 +18,7 @@ void put(std::byte*& row, const T& value) {
 
 }  // namespace
 
-HitRows::HitRows(const VoxelScene& scene) : scene_(scene) {
+HitRows::HitRows(const VoxelSet& scene) : scene_(scene) {
   dtype_ = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
   row_bytes_ = 18;
   if (const EsvoView* esvo = scene.esvo()) {

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
+#include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/trace/hit.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
 
 namespace voxdag {
 
@@ -15,7 +15,7 @@ namespace voxdag {
 class HitRows {
  public:
   /// `scene` points to what the hits are of.
-  explicit HitRows(const VoxelScene& scene);
+  explicit HitRows(const VoxelSet& scene);
 
   /// As of NpyHeader.
   const std::string& dtype() const { return dtype_; }
@@ -27,7 +27,7 @@ class HitRows {
  private:
   void pack_one(const Hit& hit, std::byte* row) const;
 
-  VoxelScene scene_;
+  VoxelSet scene_;
   bool normals_ = false, colors_ = false;
   std::string dtype_;
   std::size_t row_bytes_ = 0;

@@ -9,11 +9,11 @@
 #include "cli/device.hpp"
 #include "cli/human.hpp"
 #include "cli/output_files.hpp"
-#include "inspect/scene_file.hpp"
 #include "trace/hit_rows.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/file/scene_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -28,7 +28,7 @@ struct TraceArguments {
 
 void trace(const TraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
-  const VoxelScene scene = file.scene();
+  const VoxelSet scene = file.voxels();
   const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
   std::optional<CudaTracer> cuda;
   if (device_dag) cuda.emplace(*device_dag, file.grid());

@@ -19,7 +19,8 @@ VOXDAG_HD inline int popcount(std::uint32_t v) {
 #endif
 }
 
-/// Of a value below 256. Without a call where the instruction set has no population count.
+/// Returns the number of set bits of v < 256. Calls no library function where the instruction set
+/// has no population count.
 VOXDAG_HD inline int popcount8(std::uint32_t v) {
 #if defined(__CUDA_ARCH__) || defined(__POPCNT__)
   return popcount(v);
@@ -36,7 +37,7 @@ VOXDAG_HD inline int popcount64(std::uint64_t v) {
 #endif
 }
 
-/// Index of the highest set bit; v must not be zero.
+/// Returns the index of the highest set bit; v must not be zero.
 VOXDAG_HD inline int highest_bit(std::uint32_t v) {
 #if defined(__CUDA_ARCH__)
   return 31 - __clz(static_cast<int>(v));
@@ -45,7 +46,7 @@ VOXDAG_HD inline int highest_bit(std::uint32_t v) {
 #endif
 }
 
-/// Index of the lowest set bit; v must not be zero.
+/// Returns the index of the lowest set bit; v must not be zero.
 VOXDAG_HD inline int lowest_bit64(std::uint64_t v) {
 #if defined(__CUDA_ARCH__)
   return __ffsll(static_cast<long long>(v)) - 1;
@@ -54,7 +55,7 @@ VOXDAG_HD inline int lowest_bit64(std::uint64_t v) {
 #endif
 }
 
-/// The float whose IEEE 754 bits are v.
+/// Returns the float whose IEEE 754 bits are v.
 VOXDAG_HD inline float float_from_bits(std::uint32_t v) {
 #if defined(__CUDA_ARCH__)
   return __uint_as_float(v);
@@ -65,7 +66,7 @@ VOXDAG_HD inline float float_from_bits(std::uint32_t v) {
 #endif
 }
 
-/// The IEEE 754 bits of f.
+/// Returns the IEEE 754 bits of f.
 VOXDAG_HD inline std::uint32_t bits_of_float(float f) {
 #if defined(__CUDA_ARCH__)
   return __float_as_uint(f);

@@ -1,5 +1,5 @@
 #pragma once
-/// An axis-aligned box. Whether `hi` belongs to it is said where it is used.
+/// An axis-aligned box. Each use says whether `hi` belongs to the box.
 #include <limits>
 
 #include "voxdag/core/vec.hpp"
@@ -10,7 +10,7 @@ template <class T>
 struct Box {
   Vec3<T> lo, hi;
 
-  /// The box that contains nothing; `extend` makes it the bounds of what follows.
+  /// Returns the box that contains nothing; extend() makes it the bounds of the points that follow.
   static constexpr Box empty() {
     constexpr T big = std::numeric_limits<T>::max(), small = std::numeric_limits<T>::lowest();
     return {{big, big, big}, {small, small, small}};

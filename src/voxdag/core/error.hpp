@@ -1,8 +1,10 @@
 #pragma once
-/// The one exception of the library.
+/// The one exception type of the library.
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "voxdag/core/error_place.hpp"
 
 namespace voxdag {
 
@@ -12,16 +14,20 @@ class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& reason) : std::runtime_error(reason), reason_(reason) {}
 
-  /// `place` says where in the file: "line 12", "byte 84", "chunk NODE".
-  Error(std::string file, std::string place, std::string reason)
-      : std::runtime_error(join(file, place, reason)),
+  Error(std::string file, ErrorPlace place, std::string reason)
+      : std::runtime_error(join(file, place.text(), reason)),
         file_(std::move(file)),
         place_(std::move(place)),
         reason_(std::move(reason)) {}
 
   const std::string& file() const { return file_; }
-  const std::string& place() const { return place_; }
+  const ErrorPlace& place() const { return place_; }
   const std::string& reason() const { return reason_; }
+
+  /// Returns this error with `file` for its file's name.
+  Error in_file(std::string file) const { return {std::move(file), place_, reason_}; }
+  /// Returns this error with its place taken to be within `outer`.
+  Error within(ErrorPlace outer) const { return {file_, std::move(outer) / place_, reason_}; }
 
  private:
   static std::string join(const std::string& file, const std::string& place,
@@ -32,7 +38,9 @@ class Error : public std::runtime_error {
     return line + reason;
   }
 
-  std::string file_, place_, reason_;
+  std::string file_;
+  ErrorPlace place_;
+  std::string reason_;
 };
 
 /// Thrown by long work that its caller cancelled (Ctrl-C).

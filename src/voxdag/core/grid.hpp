@@ -15,12 +15,19 @@ struct Grid {
   int levels = kMinLevels;
   Vec3d origin{};
   double voxel_size = 1;
-  /// 1/256-voxels per world unit, the factor that quantises vertices (design: exact cover). Stored
-  /// beside voxel_size because neither's rounded quotient gives the other back bit for bit.
+  /// The factor that quantises vertices: 1/256-voxels per world unit. Stored beside voxel_size,
+  /// because neither can be computed from the other to the last bit.
   double quantization_scale = kSubvoxels / voxel_size;
 
+  /// Voxels along a side.
   VOXDAG_HD constexpr std::int64_t resolution() const { return std::int64_t{1} << levels; }
-  /// World position to grid coordinates (voxel units, voxel (0,0,0) starts at 0).
+  /// The side of a cell of `level` (0..levels), in world units.
+  VOXDAG_HD constexpr double cell_size(int level) const {
+    return voxel_size * static_cast<double>(std::int64_t{1} << (levels - level));
+  }
+  /// The side of the whole grid, in world units.
+  VOXDAG_HD constexpr double side() const { return cell_size(0); }
+  /// Returns a world position in voxel units; voxel (0,0,0) starts at 0.
   VOXDAG_HD constexpr Vec3d to_grid(Vec3d world) const {
     return (world - origin) * (1.0 / voxel_size);
   }

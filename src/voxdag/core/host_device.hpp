@@ -6,8 +6,8 @@
 #define VOXDAG_HD
 #endif
 
-/// Inlined even across target attributes, so that the code is compiled for its caller's instruction
-/// set.
+/// Forces inlining even across target attributes, so that the code is compiled for its caller's
+/// instruction set.
 #if defined(__CUDACC__)
 #define VOXDAG_FORCE_INLINE __forceinline__
 #else

@@ -1,12 +1,12 @@
 #pragma once
-/// What lies between two numbers.
+/// An interval of numbers, with the arithmetic that bounds need.
 #include <algorithm>
 #include <cmath>
 
 namespace voxdag {
 
 struct Interval {
-  double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< Nothing, unless lo <= hi.
+  double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< Empty unless lo <= hi.
 
   void add(double v) {
     lo = v < lo ? v : lo;

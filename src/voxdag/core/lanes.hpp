@@ -1,7 +1,7 @@
 #pragma once
-/// Four floats or integers at once, on every machine: what the block encoders compute does not
-/// depend on the width of its vectors. Of the compilers' vector extension: arithmetic, comparisons
-/// (-1 where true) and `mask ? a : b` are per lane.
+/// Vectors of four floats or integers. They are four wide on every machine, so that the results of
+/// the block encoders do not depend on the machine's vectors. They use the compilers' vector
+/// extension: arithmetic, comparisons (-1 where true) and `mask ? a : b` work lane by lane.
 #include <cstdint>
 #include <cstring>
 #if defined(__SSE__)
@@ -16,7 +16,7 @@ using FloatLanes = float __attribute__((vector_size(16)));
 using IntLanes = std::int32_t __attribute__((vector_size(16)));
 inline constexpr int kLanes = 4;
 
-/// The four floats from `from` on, of any alignment.
+/// Loads four floats; `from` need not be aligned.
 inline FloatLanes load_lanes(const float* from) {
   FloatLanes lanes;
   std::memcpy(&lanes, from, sizeof lanes);
@@ -25,7 +25,7 @@ inline FloatLanes load_lanes(const float* from) {
 inline void store_lanes(float* to, FloatLanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
 inline FloatLanes all_lanes(float value) { return FloatLanes{value, value, value, value}; }
 inline IntLanes all_lanes(std::int32_t value) { return IntLanes{value, value, value, value}; }
-/// x, y, z and 0.
+/// Returns x, y, z and 0 as lanes.
 inline FloatLanes lanes_of(Vec3f v) { return FloatLanes{v.x, v.y, v.z, 0.0f}; }
 inline Vec3f vec_of(FloatLanes lanes) { return {lanes[0], lanes[1], lanes[2]}; }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Memory for what is read here and there, hundreds of megabytes of it.
+/// Memory for hundreds of megabytes that are read in random order.
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -7,11 +7,11 @@
 
 namespace voxdag {
 
-/// `bytes` of memory, on large pages where the system grants them: looking up small ones takes
-/// longer than reading what is on them. Throws std::bad_alloc.
+/// Returns `bytes` of memory, on large pages where the system grants them: with small pages, random
+/// reads spend more time on address translation than on the reads. Throws std::bad_alloc.
 std::shared_ptr<void> allocate_large(std::size_t bytes);
 
-/// An array of `count` elements that are not initialised. Throws std::bad_alloc.
+/// Returns an array of `count` uninitialised elements. Throws std::bad_alloc.
 template <class T>
 std::shared_ptr<T[]> make_large_array(std::size_t count) {
   static_assert(std::is_trivially_copyable_v<T>);

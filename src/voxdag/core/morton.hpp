@@ -18,7 +18,7 @@ VOXDAG_HD constexpr std::uint64_t spread_bits3(std::uint64_t v) {
   return v;
 }
 
-/// Inverse of spread_bits3: gathers every third bit.
+/// Gathers every third bit, from bit 0 on: the inverse of spread_bits3.
 VOXDAG_HD constexpr std::uint32_t gather_bits3(std::uint64_t v) {
   v &= 0x1249249249249249ull;
   v = (v | v >> 2) & 0x10C30C30C30C30C3ull;
@@ -29,7 +29,7 @@ VOXDAG_HD constexpr std::uint32_t gather_bits3(std::uint64_t v) {
   return static_cast<std::uint32_t>(v);
 }
 
-/// Coordinates in [0, 2^21) to their code.
+/// Returns the code of coordinates in [0, 2^21).
 VOXDAG_HD constexpr std::uint64_t morton_encode(Vec3i p) {
   return spread_bits3(static_cast<std::uint32_t>(p.x)) |
          spread_bits3(static_cast<std::uint32_t>(p.y)) << 1 |
@@ -42,8 +42,14 @@ VOXDAG_HD constexpr Vec3i morton_decode(std::uint64_t code) {
           static_cast<std::int32_t>(gather_bits3(code >> 2))};
 }
 
-/// Which child of the cell above it at bit `shift` of the coordinates a cell is in: of `shift` 0,
-/// which child it is.
+/// Returns the lower corner of child `index` (0..7: bits x=1, y=2, z=4) of a cell of 2³ children,
+/// in children.
+VOXDAG_HD constexpr Vec3i child_offset(int index) {
+  return {index & 1, index >> 1 & 1, index >> 2};
+}
+
+/// Returns the child index that bit `shift` of a cell's coordinates spells: with 0, the index of
+/// the cell among its parent's children; with s, that of its ancestor s levels up.
 VOXDAG_HD constexpr int child_index(Vec3i cell, int shift) {
   return (cell.x >> shift & 1) | (cell.y >> shift & 1) << 1 | (cell.z >> shift & 1) << 2;
 }

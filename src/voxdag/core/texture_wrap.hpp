@@ -1,5 +1,5 @@
 #pragma once
-/// What an image shows outside of [0,1].
+/// What a texture shows outside of [0,1].
 #include <cstdint>
 
 namespace voxdag {

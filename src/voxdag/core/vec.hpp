@@ -1,5 +1,6 @@
 #pragma once
 /// A vector of three components: points, directions and voxel coordinates.
+#include <cmath>
 #include <cstdint>
 
 #include "voxdag/core/host_device.hpp"
@@ -62,6 +63,30 @@ VOXDAG_HD constexpr Vec3<T> min(Vec3<T> a, Vec3<T> b) {
 template <class T>
 VOXDAG_HD constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
   return {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, a.z < b.z ? b.z : a.z};
+}
+
+VOXDAG_HD inline bool is_finite(Vec3f v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+VOXDAG_HD inline bool is_finite(Vec3d v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+VOXDAG_HD inline double length(Vec3d v) { return std::sqrt(dot(v, v)); }
+VOXDAG_HD inline float length(Vec3f v) { return std::sqrt(dot(v, v)); }
+
+/// Returns v scaled to unit length. Its squared length must be neither zero nor infinite.
+VOXDAG_HD inline Vec3d normalized(Vec3d v) { return v * (1.0 / std::sqrt(dot(v, v))); }
+VOXDAG_HD inline Vec3f normalized(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
+
+/// Returns v scaled to unit length, or `otherwise` if v's squared length is zero, infinite or NaN.
+VOXDAG_HD inline Vec3d normalized_or(Vec3d v, Vec3d otherwise) {
+  const double length2 = dot(v, v);
+  return length2 > 0 && length2 < HUGE_VAL ? v * (1.0 / std::sqrt(length2)) : otherwise;
+}
+VOXDAG_HD inline Vec3f normalized_or(Vec3f v, Vec3f otherwise) {
+  const float length2 = dot(v, v);
+  return length2 > 0 && length2 < HUGE_VALF ? v * (1.0f / std::sqrt(length2)) : otherwise;
 }
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the primary rays of a picture may start.
+/// Finds where the primary rays of a picture may start, by packets of beams.
 #include <vector>
 
 #include "voxdag/cpu/packets/beam_packet.hpp"
@@ -8,13 +8,13 @@
 
 namespace voxdag {
 
-/// Finds RenderSetup::beam_starts of a whole picture on all threads, for any layout that
-/// cast_beam_packet() takes: see render/primary_beams.hpp. Beams here are of 8×8 pixels, for rays
-/// in packets gain less by finer ones than these take, and 8×8 of them are cast together.
+/// Sets `starts` to RenderSetup::beam_starts of a whole picture, on all threads, for any layout
+/// that cast_beam_packet() takes (see render/primary_beams.hpp). The beams have 8×8 pixels: rays in
+/// packets gain less from finer beams than these cost. A packet holds 8×8 beams.
 template <class Nodes>
 void find_beam_starts(const Nodes& nodes, const RenderSetup& setup, std::vector<float>& starts) {
   constexpr int kSide = 8, kPixels = kCoarseBeamPixels, kParts = kPixels / kBeamPixels;
-  constexpr float kDown = 1 - 0x1p-20f;  // what a ray's own t is rounded by
+  constexpr float kDown = 1 - 0x1p-20f;  // covers the rounding of a ray's own t
   const Camera& camera = setup.camera;
   const int across = beams_across(camera.width) / kParts,
             down = beams_across(camera.height) / kParts;

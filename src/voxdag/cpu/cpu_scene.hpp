@@ -1,38 +1,38 @@
 #pragma once
-/// Voxels with what the CPU's casters need of them, made once for many pictures or batches.
+/// Voxels with the structures that the CPU's casters need, made once for many pictures or batches.
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <type_traits>
 
 #include "voxdag/cpu/packets/packet_caster.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 
-/// Points to the voxels. Made from a DAG it takes time and memory: see BoundedDag.
+/// Points to the voxels. Making it from a DAG takes time and memory: see BoundedDag.
 class CpuScene {
  public:
-  CpuScene(const SvdagView& dag)
-      : CpuScene(VoxelScene(dag)) {}  // NOLINT(google-explicit-constructor)
-  CpuScene(const EsvoView& esvo)
-      : CpuScene(VoxelScene(esvo)) {}  // NOLINT(google-explicit-constructor)
-  /// Where no more than `rays` will be cast and that is too few to be worth it, nothing is made.
-  CpuScene(const VoxelScene& voxels,  // NOLINT(google-explicit-constructor)
-           std::uint64_t rays = std::numeric_limits<std::uint64_t>::max())
+  // NOLINTBEGIN(google-explicit-constructor): any form of voxels can be rendered.
+  CpuScene(const SvdagView& dag) : CpuScene(VoxelSet(dag)) {}
+  CpuScene(const EsvoView& esvo) : CpuScene(VoxelSet(esvo)) {}
+  /// `rays` is how many rays will be cast at most: for few of them the packets' structure costs
+  /// more than it saves, and is not made.
+  CpuScene(const VoxelSet& voxels, std::uint64_t rays = std::numeric_limits<std::uint64_t>::max())
       : voxels_(voxels) {
     constexpr std::uint64_t kWordsPerRay = 16;
     if (const SvdagView* dag = voxels.dag();
         dag != nullptr && dag->node_words() / kWordsPerRay <= rays)
       packets_.emplace(BoundedDag(SvdagNodes(*dag)));
   }
+  // NOLINTEND
 
-  const VoxelScene& voxels() const { return voxels_; }
+  const VoxelSet& voxels() const { return voxels_; }
 
-  /// Returns body(nodes, caster), the caster being the fastest for these nodes.
+  /// Calls body(nodes, caster) with the fastest caster for these nodes and returns its result.
   template <class Body>
   auto visit(const Body& body) const {
-    return voxels_.visit_nodes([&](const auto& nodes) {
+    return visit_nodes(voxels_, [&](const auto& nodes) {
       if constexpr (std::is_same_v<std::remove_cvref_t<decltype(nodes)>, SvdagNodes>)
         return packets_ ? body(nodes, *packets_) : body(nodes, ScalarCaster<SvdagNodes>(nodes));
       else
@@ -41,7 +41,7 @@ class CpuScene {
   }
 
  private:
-  VoxelScene voxels_;
+  VoxelSet voxels_;
   std::optional<PacketCaster<BoundedDag>> packets_;
 };
 

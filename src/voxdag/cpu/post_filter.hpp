@@ -1,5 +1,5 @@
 #pragma once
-/// The filter of a picture's voxels, on the CPU.
+/// Runs the filter of render/post_filter.hpp on the CPU.
 #include <vector>
 
 #include "voxdag/render/post_filter.hpp"
@@ -7,11 +7,11 @@
 
 namespace voxdag {
 
-/// The filtered colours, on the threads of the current TBB arena; they do not depend on the number
-/// of threads.
+/// Returns the filtered colours. Runs on the threads of the current TBB arena; the result does not
+/// depend on their number.
 std::vector<Vec3f> filter_picture(const FilterInput& input);
 
-/// Filters the radiance of a picture, which is to have cell_pixels.
+/// Filters the radiance of a picture, which must have cell_pixels.
 void filter_picture(RenderedImage& image);
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// A picture of voxels, on the CPU.
+/// Renders a picture of voxels on the CPU.
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/render/render_options.hpp"
@@ -7,10 +7,10 @@
 
 namespace voxdag {
 
-/// Renders on the threads of the current TBB arena, tile by tile; the picture does not depend on
-/// their number. The surface points are those of `source`, or the voxels where it is null. Depth
+/// Renders tile by tile, on the threads of the current TBB arena; the picture does not depend on
+/// their number. The surface points are those of `source`, or of the voxels if it is null. Depth
 /// and normal are those of a pixel's first sample. The scene must be valid and have the grid's
-/// levels. Throws Error for options out of range, Cancelled.
+/// levels. Throws Error for options out of range, and Cancelled.
 RenderedImage render_image(const CpuScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress = nullptr, const ViewSource* source = nullptr);
 

@@ -4,13 +4,12 @@
 
 namespace voxdag {
 
-SurfaceOpenness::SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int rays,
+SurfaceOpenness::SurfaceOpenness(const VoxelSet& voxels, const Grid& grid, int rays,
                                  double distance)
     : scene_(voxels),
       grid_(grid),
       rays_(rays),
-      distance_(static_cast<float>(distance /
-                                   (grid.voxel_size * static_cast<double>(grid.resolution())))),
+      distance_(static_cast<float>(distance / grid.side())),
       samples_(1, rays) {}
 
 float SurfaceOpenness::operator()(Vec3d point, Vec3f normal, Vec3f face) const {

@@ -1,22 +1,23 @@
 #pragma once
-/// Ambient occlusion of points of a surface, for baking.
+/// Ambient occlusion at points of a surface, for baking.
 #include "voxdag/core/grid.hpp"
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/render/sample_tables.hpp"
 
 namespace voxdag {
 
-/// Which part of the sky's light reaches a point past the voxels near it: what
-/// render/ambient_occlusion.hpp computes for a pixel, with the same directions for all points, so
-/// that neighbours on a wall get values alike. Safe to ask from several threads.
+/// Computes which part of the sky's light passes the voxels near a point and reaches it, like
+/// render/ambient_occlusion.hpp for a pixel. All points have the same ray directions, so that
+/// neighbours on a wall get similar values. Thread-safe.
 class SurfaceOpenness {
  public:
-  /// Points to the voxels, which stand in `grid`. `rays` for each point, at least 1; `distance` in
-  /// world units is how far occlusion reaches, positive.
-  SurfaceOpenness(const VoxelScene& voxels, const Grid& grid, int rays, double distance);
+  /// Points to the voxels, which are in `grid`. Casts `rays` >= 1 rays per point. `distance` > 0 is
+  /// the reach of occlusion, in world units.
+  SurfaceOpenness(const VoxelSet& voxels, const Grid& grid, int rays, double distance);
 
-  /// 0 (nothing arrives) to 1. `point` in world units, on a surface whose normal (of unit length)
-  /// is `normal`, or, of the triangle that it is on, `face`: rays run on that side of it.
+  /// Returns 0 (no light arrives) to 1. `point`, in world units, lies on a surface with the unit
+  /// shading normal `normal`, on a triangle with the unit normal `face`: rays run on that side of
+  /// it.
   float operator()(Vec3d point, Vec3f normal, Vec3f face) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Renders tiles of a picture on the CPU's threads.
+/// Renders the tiles of a picture on the CPU's threads.
 #include <algorithm>
 #include <atomic>
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace voxdag {
 
-/// Tiles that cover the picture, in Morton order: what one thread does next is near what it did.
+/// Returns tiles that cover the picture, in Morton order: a thread's next tile is near its last.
 inline std::vector<ViewTile> make_tiles(int width, int height, int size) {
   const int across = (width + size - 1) / size, down = (height + size - 1) / size;
   std::vector<ViewTile> tiles;
@@ -49,13 +49,13 @@ void for_each_block(const Camera& camera, const Body& body) {
   });
 }
 
-/// Renders the picture of a setup, of which it changes the start of primary rays only.
+/// Renders the picture of a setup. Of the setup it sets only the starts of primary rays.
 template <class Nodes, class Caster>
 class TileRenderer {
  public:
   static constexpr int kMaxTileSize = 32;
 
-  /// `source` is null where the surface points are those of the voxels.
+  /// `source` is null for the surface points of the voxels.
   TileRenderer(const Nodes& nodes, const Caster& caster, const RenderSetup& setup, bool beams,
                const ViewSource* source)
       : nodes_(nodes), caster_(caster), setup_(setup), source_(source) {
@@ -84,8 +84,7 @@ class TileRenderer {
     return rays;
   }
 
-  /// Renders a tile in this thread, with another caster at the same voxels. Returns the number of
-  /// rays.
+  /// Renders a tile in this thread, with any caster at the same voxels. Returns the number of rays.
   template <class TileNodes, class TileCaster>
   std::uint64_t render_one(const TileNodes& nodes, const TileCaster& caster,
                            const ViewTile& tile) const {
@@ -96,7 +95,7 @@ class TileRenderer {
     return static_cast<std::uint64_t>(render_tile(nodes, caster, setup_, tile, *scratch, find));
   }
 
-  /// Fills the steps of primary rays, each cast by itself, as are their beams.
+  /// Sets the picture's steps of primary rays. Casts rays and beams one at a time.
   void count() const {
     const Camera& camera = setup_.camera;
     RenderSetup setup = setup_;

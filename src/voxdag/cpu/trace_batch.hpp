@@ -1,5 +1,5 @@
 #pragma once
-/// Many rays at once: batch visibility queries on the CPU.
+/// Batches of rays on the CPU.
 #include <span>
 
 #include "voxdag/core/grid.hpp"
@@ -10,9 +10,9 @@
 
 namespace voxdag {
 
-/// hits[i] becomes the first voxel along rays[i], which is in world units. The spans have equal
-/// length; `grid.levels` is the scene's, which must be valid. Runs on the threads of the current
-/// TBB arena; the result does not depend on them. Throws Cancelled.
+/// Sets hits[i] to the first voxel along rays[i], which is in world units. The spans must have
+/// equal length, the scene must be valid and have the grid's levels. Runs on the threads of the
+/// current TBB arena; the result does not depend on their number. Throws Cancelled.
 void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress = nullptr);
 

@@ -1,12 +1,13 @@
 #pragma once
-/// What one thread of the beam kernel does, for host and device: the tests run it on the host.
+/// The work of one thread of the beam kernel. Compiles for host and device: tests run it on the
+/// host.
 #include "voxdag/render/primary_beams.hpp"
 
 namespace voxdag {
 
-/// Sets the start of one 4×4 pixels of the picture: part i % 4 of coarse beam i / 4, which are
-/// counted row by row. The four threads of a coarse beam cast it all at once, which takes no longer
-/// than if one did and three waited.
+/// Sets the start of one beam of 4×4 pixels: part i % 4 of coarse beam i / 4. Coarse beams are
+/// counted row by row. All four threads of a coarse beam cast it, which takes no longer than if one
+/// did and three waited.
 template <class Nodes>
 VOXDAG_HD inline void set_beam_start(const Nodes& nodes, const RenderSetup& setup, std::uint32_t i,
                                      float* picture) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What a RenderSetup points to, in the memory of a CUDA device.
+/// The tables and buffers of a RenderSetup in the memory of a CUDA device.
 #include "voxdag/cuda/memory.hpp"
 #include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_plan.hpp"
@@ -8,21 +8,21 @@ namespace voxdag {
 
 class DeviceFrame {
  public:
-  /// On the current device. Throws Error where memory is short, before any is taken.
+  /// Allocates on the current device. Throws Error if memory is short, before it takes any.
   DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps);
 
-  /// With the device's pointers; beam_starts only with beams.
+  /// Has the device's pointers; beam_starts is null without beams.
   const RenderSetup& setup() const { return setup_; }
   float* beam_starts() const { return beam_starts_.data(); }
   unsigned long long* rays() const { return rays_.data(); }  ///< Zero at first.
 
-  /// What filters the picture, where the plan's options ask for it; else of no pixels.
+  /// The filter's input; without pixels unless the plan's options ask for the filter.
   const FilterInput& filter_input() const { return filter_input_; }
   const FilterSample* filter_samples() const { return filter_samples_.data(); }
   Vec3f* filtered() const { return filtered_.data(); }
 
-  /// Copies the picture, its filtered colours if it is so, and the number of its rays, once all
-  /// kernels are done.
+  /// Copies the picture and the number of its rays; with `is_filtered`, the filtered colours. All
+  /// kernels must be done.
   void copy_to(RenderedImage& image, bool is_filtered) const;
 
  private:

@@ -6,16 +6,16 @@
 namespace voxdag {
 
 struct DeviceScene::Memory {
-  explicit Memory(const VoxelScene& scene) : host(scene) {}
+  explicit Memory(const VoxelSet& scene) : host(scene) {}
 
   CudaDevice device;
-  VoxelScene host;
+  VoxelSet host;
   DeviceVoxels view;
   DeviceBuffer<std::uint32_t> nodes, wide_words;
   DeviceBuffer<std::uint64_t> leaf_blocks, slots;
 };
 
-DeviceScene::DeviceScene(const CudaDevice& device, const VoxelScene& scene, DeviceLayout layout) {
+DeviceScene::DeviceScene(const CudaDevice& device, const VoxelSet& scene, DeviceLayout layout) {
   check_cuda(cudaSetDevice(device.index), "starting the device");
   const auto memory = std::make_shared<Memory>(scene);
   memory->device = device;
@@ -46,7 +46,7 @@ DeviceScene::DeviceScene(const CudaDevice& device, const VoxelScene& scene, Devi
 }
 
 const CudaDevice& DeviceScene::device() const { return memory_->device; }
-const VoxelScene& DeviceScene::host() const { return memory_->host; }
+const VoxelSet& DeviceScene::host() const { return memory_->host; }
 const DeviceVoxels& DeviceScene::view() const { return memory_->view; }
 void DeviceScene::make_current() const {
   check_cuda(cudaSetDevice(memory_->device.index), "starting the device");

@@ -4,23 +4,22 @@
 
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/layout/voxel_set.hpp"
 
 namespace voxdag {
 
-/// Shares its memory with its copies; it is freed with the last of them.
+/// Copies share the device's memory; the last one frees it.
 class DeviceScene {
  public:
-  /// Copies the voxels; `layout` says at which layout of a DAG rays are to be cast. What `scene`
-  /// points to must outlive this object, too. Throws Error where the device has not enough free
-  /// memory.
-  DeviceScene(const CudaDevice& device, const VoxelScene& scene,
+  /// Copies the voxels to the device; `layout` is the layout of a DAG for rays. The host's voxels
+  /// must outlive this object. Throws Error if the device has not enough free memory.
+  DeviceScene(const CudaDevice& device, const VoxelSet& scene,
               DeviceLayout layout = DeviceLayout::kPaper);
 
   const CudaDevice& device() const;
-  const VoxelScene& host() const;    ///< The voxels in the host's memory.
-  const DeviceVoxels& view() const;  ///< The same with pointers into the device's.
-  void make_current() const;         ///< Has the calling thread work on the voxels' device.
+  const VoxelSet& host() const;      ///< The voxels in the host's memory.
+  const DeviceVoxels& view() const;  ///< The voxels in the device's memory.
+  void make_current() const;         ///< Selects the voxels' device for this thread.
 
  private:
   struct Memory;

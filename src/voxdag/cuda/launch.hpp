@@ -1,5 +1,5 @@
 #pragma once
-/// Starts kernels: for .cu files.
+/// Launches kernels; for .cu files.
 #include <cuda_runtime.h>
 
 #include <utility>
@@ -8,9 +8,9 @@
 
 namespace voxdag {
 
-/// Queues kernel(arguments...) for `blocks` of `threads`, one of each at least. Throws Error where
-/// that cannot be; `doing` says what failed: "casting rays". A call, not <<< >>>, so that tests can
-/// compile kernels for the host.
+/// Queues kernel(arguments...) for `blocks` of `threads`, at least one of each. Throws Error on
+/// failure; `doing` says what failed: "casting rays". It is a function instead of <<< >>>, so that
+/// tests can compile kernels for the host.
 template <class... Parameters, class... Arguments>
 void launch(const char* doing, void (*kernel)(Parameters...), dim3 blocks, dim3 threads,
             cudaStream_t stream, Arguments&&... arguments) {

@@ -1,6 +1,6 @@
 #pragma once
-/// A picture in pieces that keep a device busy for a fraction of a second each: a display that runs
-/// on it stays alive, progress is seen and work can be cancelled.
+/// Divides a picture into launches that take a fraction of a second each, so that a display on the
+/// same device stays responsive, progress is visible, and the work can be cancelled.
 #include <cstdint>
 #include <optional>
 
@@ -12,21 +12,22 @@ struct LaunchRange {
   int first_sample = 0, last_sample = 0;
 };
 
-/// Every sample of every block once, a block's samples in order. Pieces grow and shrink with the
-/// speed that they run at.
+/// Covers every sample of every block once, a block's samples in order. Adapts the size of launches
+/// to the speed at which they run.
 class LaunchPlan {
  public:
-  /// `work_per_sample` is about what a block's sample costs, in any unit, `first_work` what the
-  /// first piece may cost. No piece has more than `max_blocks` blocks or `max_samples` samples.
+  /// `work_per_sample` estimates the cost of a block's sample, in any unit; `first_work` limits the
+  /// cost of the first launch. No launch has more than `max_blocks` blocks or `max_samples`
+  /// samples.
   LaunchPlan(std::uint32_t blocks, int samples, double work_per_sample, double first_work,
              std::uint32_t max_blocks, int max_samples);
 
-  /// The next piece, until there is none.
+  /// Returns the next launch, or nothing at the end.
   std::optional<LaunchRange> next();
-  /// Tells how long a piece took.
+  /// Records how long a launch took.
   void measured(const LaunchRange& range, double seconds);
 
-  /// The part of all that the pieces so far are, 0 to 1.
+  /// Returns the part of the picture that the launches so far cover, 0 to 1.
   double fraction() const;
 
  private:
@@ -34,7 +35,7 @@ class LaunchPlan {
   int samples_, max_samples_;
   double work_per_sample_, work_per_launch_;
   std::uint32_t block_ = 0;
-  int sample_ = 0, end_sample_ = 0;  // of the pass over the blocks at hand
+  int sample_ = 0, end_sample_ = 0;  // of the current pass over the blocks
 };
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// Memory of a CUDA device and memory of the host that it can copy from and to by itself.
+/// Memory of a CUDA device, and pinned memory of the host for asynchronous copies.
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -9,11 +9,11 @@
 
 namespace voxdag {
 
-/// Throws Error, with what is needed and what is free, unless the current device has `bytes` of
-/// free memory for `what`: "the DAG".
+/// Throws Error, with the bytes needed and free, unless the current device has `bytes` of free
+/// memory. `what` names their content: "the DAG".
 void require_device_memory(std::uint64_t bytes, const char* what);
 
-/// What DeviceBuffer and PinnedBuffer do without knowing the type. Allocation throws Error.
+/// The untyped functions behind DeviceBuffer and PinnedBuffer. Allocation throws Error.
 void* allocate_device(std::uint64_t bytes, const char* what);
 void free_device(void* memory) noexcept;
 void* allocate_pinned(std::uint64_t bytes, const char* what);
@@ -21,14 +21,14 @@ void free_pinned(void* memory) noexcept;
 void copy_to_device(void* device, const void* host, std::uint64_t bytes);
 void copy_to_host(void* host, const void* device, std::uint64_t bytes);
 
-/// Bytes of an array; the largest number where there is none that is large enough.
+/// Returns the bytes of an array, or the largest number if they overflow.
 template <class T>
 constexpr std::uint64_t array_bytes(std::uint64_t count) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
   return count > kMost / sizeof(T) ? kMost : count * sizeof(T);
 }
 
-/// `count` uninitialised values, owned. `Free` gives the memory back.
+/// Owns an array of uninitialised values, which `Free` frees.
 template <class T, void (*Free)(void*) noexcept>
 class OwnedArray {
  public:
@@ -59,7 +59,7 @@ using DeviceBuffer = OwnedArray<T, free_device>;
 template <class T>
 using PinnedBuffer = OwnedArray<T, free_pinned>;
 
-/// On the current device. Throws Error where it has not enough memory; `what` names the array.
+/// Allocates on the current device. Throws Error if memory is short; `what` names the array.
 template <class T>
 DeviceBuffer<T> make_device_buffer(std::size_t count, const char* what) {
   return {allocate_device(array_bytes<T>(count), what), count};

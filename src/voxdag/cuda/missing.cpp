@@ -17,9 +17,9 @@ constexpr const char* kReason = "this program was built without CUDA";
 
 CudaDevices cuda_devices() { return {{}, kReason}; }
 
-DeviceScene::DeviceScene(const CudaDevice&, const VoxelScene&, DeviceLayout) { refuse(); }
+DeviceScene::DeviceScene(const CudaDevice&, const VoxelSet&, DeviceLayout) { refuse(); }
 const CudaDevice& DeviceScene::device() const { refuse(); }
-const VoxelScene& DeviceScene::host() const { refuse(); }
+const VoxelSet& DeviceScene::host() const { refuse(); }
 const DeviceVoxels& DeviceScene::view() const { refuse(); }
 void DeviceScene::make_current() const { refuse(); }
 

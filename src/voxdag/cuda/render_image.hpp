@@ -1,5 +1,5 @@
 #pragma once
-/// A picture of voxels, on a CUDA device.
+/// Renders a picture of voxels on a CUDA device.
 #include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/render/render_options.hpp"
@@ -7,10 +7,10 @@
 
 namespace voxdag {
 
-/// The picture that render_image() makes on the CPU, but for rounding. Surface points of a `source`
-/// are found on the threads of the current TBB arena while the device renders. tile_size means
-/// nothing here. Throws Error for options out of range, where the device has not enough memory or
-/// fails; Cancelled.
+/// Returns the picture that render_image() makes on the CPU, up to rounding. The threads of the
+/// current TBB arena find surface points of a `source` while the device renders. Ignores tile_size.
+/// Throws Error for options out of range, and if the device fails or has not enough memory;
+/// Cancelled.
 RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress = nullptr, const ViewSource* source = nullptr);
 

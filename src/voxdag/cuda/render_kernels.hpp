@@ -1,5 +1,5 @@
 #pragma once
-/// The kernels of render_image. All pointers are the device's; `setup` has such ones only.
+/// The kernels of render_image. All pointers, those in `setup` included, are the device's.
 #include <cuda_runtime_api.h>
 
 #include "voxdag/cuda/device_voxels.hpp"
@@ -10,7 +10,7 @@
 
 namespace voxdag {
 
-/// Sets `starts` for the coarse beams [first, last), which are counted row by row.
+/// Sets `starts` for the coarse beams [first, last), counted row by row.
 void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, float* starts, cudaStream_t stream);
 
@@ -18,11 +18,11 @@ void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uin
 void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream);
 
-/// render_pixel() for all pixels of the range; adds the number of rays to `*rays`.
+/// Runs render_pixel() for all pixels of the range and adds the number of rays to `*rays`.
 void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
 
-/// filtered_color() of every pixel.
+/// Sets `filtered` to filtered_color() of every pixel.
 void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,
                    cudaStream_t stream);
 

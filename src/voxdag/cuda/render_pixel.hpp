@@ -1,13 +1,14 @@
 #pragma once
-/// What one thread of the render kernels does, for host and device: the tests run it on the host.
+/// The work of one thread of the render kernel. Compiles for host and device: tests run it on the
+/// host.
 #include "voxdag/cuda/launch_plan.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/render_tile.hpp"
 
 namespace voxdag {
 
-/// A block of threads renders 16×8 pixels, a warp 8×4 of them, in Morton order, so that threads
-/// that run together cast rays that stay together.
+/// A block of threads renders 16×8 pixels, a warp 8×4 of them in Morton order, so that threads that
+/// run together cast rays that stay together.
 inline constexpr int kBlockWidth = 16, kBlockHeight = 8;
 inline constexpr std::uint32_t kBlockPixels = kBlockWidth * kBlockHeight;
 
@@ -19,7 +20,7 @@ VOXDAG_HD constexpr std::uint32_t block_count(int width, int height) {
          static_cast<std::uint32_t>((height + kBlockHeight - 1) / kBlockHeight);
 }
 
-/// A block's part of the picture, cut off at its edges: blocks go row by row.
+/// Returns a block's part of the picture, clipped at its edges. Blocks are counted row by row.
 VOXDAG_HD inline ViewTile block_tile(const Camera& camera, std::uint32_t block) {
   const std::uint32_t across = blocks_across(camera.width);
   ViewTile tile;
@@ -30,8 +31,8 @@ VOXDAG_HD inline ViewTile block_tile(const Camera& camera, std::uint32_t block) 
   return tile;
 }
 
-/// Where a thread's pixel lies in its block. Bits of the thread: x y x y x within the warp's 8×4
-/// pixels, lowest first, then x for the warp, then y.
+/// Return the position of a thread's pixel in its block. The bits of the thread are, lowest first,
+/// x y x y x within the warp's 8×4 pixels, then x and y y of the warp.
 VOXDAG_HD constexpr int thread_x(std::uint32_t thread) {
   return static_cast<int>((thread & 1u) | (thread >> 1 & 2u) | (thread >> 2 & 4u) |
                           (thread >> 2 & 8u));
@@ -40,9 +41,9 @@ VOXDAG_HD constexpr int thread_y(std::uint32_t thread) {
   return static_cast<int>((thread >> 1 & 1u) | (thread >> 2 & 2u) | (thread >> 4 & 4u));
 }
 
-/// The samples of a launch for the pixel of a thread. `view_samples` holds those of all blocks of
-/// the launch, kBlockPixels for each, row by row; null where the picture is of voxels. With them a
-/// launch has one sample per pixel. Returns the number of rays.
+/// Renders the samples of a launch for a thread's pixel. Returns the number of rays. `view_samples`
+/// holds those of all blocks of the launch, kBlockPixels for each, row by row; it is null for a
+/// picture of voxels. With view samples a launch has one sample per pixel.
 template <class Nodes, class Caster>
 VOXDAG_HD inline std::uint64_t render_pixel(const Nodes& nodes, const Caster& caster,
                                             const RenderSetup& setup, const LaunchRange& range,

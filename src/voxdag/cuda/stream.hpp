@@ -1,5 +1,5 @@
 #pragma once
-/// Queues of copies and kernels that run one after the other, and moments in them.
+/// CUDA streams, which are queues of copies and kernels, and events in them.
 #include <utility>
 
 #include "voxdag/cuda/check.hpp"
@@ -11,21 +11,21 @@ class CudaStream {
   CudaStream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "queue"); }
   CudaStream(const CudaStream&) = delete;
   CudaStream& operator=(const CudaStream&) = delete;
-  /// Waits: memory that work left behind by an exception uses may be freed next.
+  /// Waits for the stream: after an exception, its work may still use memory that is freed next.
   ~CudaStream() {
     cudaStreamSynchronize(stream_);
     cudaStreamDestroy(stream_);
   }
 
   cudaStream_t get() const { return stream_; }
-  /// Waits until all is done; `doing` names it for errors.
+  /// Waits until the stream is empty; `doing` names the work in errors.
   void wait(const char* doing) const { check_cuda(cudaStreamSynchronize(stream_), doing); }
 
  private:
   cudaStream_t stream_ = nullptr;
 };
 
-/// A moment in a queue.
+/// A moment in a stream.
 class CudaEvent {
  public:
   CudaEvent() { check_cuda(cudaEventCreate(&event_), "clock"); }
@@ -36,7 +36,7 @@ class CudaEvent {
   void record(const CudaStream& stream) const {
     check_cuda(cudaEventRecord(event_, stream.get()), "clock");
   }
-  /// Between two moments that have passed.
+  /// Returns the seconds between two moments that have passed.
   friend double seconds_between(const CudaEvent& begin, const CudaEvent& end) {
     float milliseconds = 0;
     check_cuda(cudaEventElapsedTime(&milliseconds, begin.event_, end.event_), "clock");

@@ -1,5 +1,5 @@
 #pragma once
-/// How fast a CUDA device casts rays that lie in its memory: for benchmarks.
+/// Times casts of rays in the memory of a CUDA device, for benchmarks.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -14,14 +14,14 @@ namespace voxdag {
 /// A set of rays in the memory of a DAG's device.
 class TimedCasts {
  public:
-  /// Throws Error where memory is short.
+  /// Throws Error if memory is short.
   TimedCasts(const DeviceScene& dag, std::span<const CastRay> rays);
 
-  /// Finds the first cell along each ray, or whether there is one. Returns the seconds from the
-  /// start of the kernel to its end.
+  /// Finds the first cell along each ray (closest), or whether there is one (any). Returns the
+  /// seconds from the start of the kernel to its end.
   double closest() const;
   double any() const;
-  /// hits[i] becomes 1 where ray i met something in the last of these casts, else 0.
+  /// Sets hits[i] to 1 if ray i met something in the last of these casts, else to 0.
   void copy_hits(std::span<std::uint8_t> hits) const;
 
  private:
@@ -29,15 +29,15 @@ class TimedCasts {
   std::shared_ptr<const State> state_;
 };
 
-/// The beams of a whole picture, on the DAG's device.
+/// The beams of a whole picture on the DAG's device.
 class TimedBeams {
  public:
-  /// Of `setup` camera, grid and settings count.
+  /// Uses the camera, grid and settings of `setup`.
   TimedBeams(const DeviceScene& dag, const RenderSetup& setup);
 
-  /// Casts them; returns the device's seconds.
+  /// Casts the beams and returns the device's seconds.
   double run() const;
-  /// Casts them; returns what RenderSetup::beam_starts has.
+  /// Casts the beams and returns their starts, as in RenderSetup::beam_starts.
   std::vector<float> starts() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Many rays at once: batch visibility queries on a CUDA device.
+/// Batches of rays on a CUDA device.
 #include <memory>
 #include <span>
 
@@ -11,16 +11,16 @@
 
 namespace voxdag {
 
-/// Casts rays from host memory in blocks; while one is traced, the one before is copied back and
-/// the next one there. Not for several threads at once.
+/// Casts rays from host memory in blocks. While the device traces one block, it copies the hits of
+/// the last block back and the rays of the next one there. Not thread-safe.
 class CudaTracer {
  public:
-  /// `grid.levels` is the DAG's. Throws Error where memory is short.
+  /// `grid.levels` must be the DAG's. Throws Error if memory is short.
   CudaTracer(const DeviceScene& dag, const Grid& grid);
 
-  /// hits[i] becomes the first voxel of the DAG along rays[i], which is in world units: to the bit
-  /// what trace_batch() finds on the CPU. The spans have equal length. Throws Cancelled, and Error
-  /// where the device fails.
+  /// Sets hits[i] to the first voxel of the DAG along rays[i], which is in world units: the same,
+  /// to the bit, as trace_batch() on the CPU. The spans must have equal length. Throws Cancelled,
+  /// and Error if the device fails.
   void trace(std::span<const Ray> rays, std::span<Hit> hits, Progress* progress = nullptr) const;
 
  private:

@@ -10,14 +10,15 @@
 
 namespace voxdag {
 
-/// hits[i] becomes the first voxel along rays[i], i < count.
+/// Sets hits[i] to the first voxel along rays[i], i < count.
 void launch_closest_hits(const DeviceVoxels& dag, const Grid& grid, const Ray* rays, Hit* hits,
                          std::uint32_t count, cudaStream_t stream);
 
-/// hits[i] tells whether rays[i] met anything, cells[i] what it met first.
+/// Sets hits[i] to 1 if rays[i] meets anything, else to 0, and cells[i] to the first cell that it
+/// meets.
 void launch_closest_cells(const DeviceVoxels& dag, const CastRay* rays, CellHit* cells,
                           std::uint8_t* hits, std::uint32_t count, cudaStream_t stream);
-/// Without what it met.
+/// Sets hits[i] in the same way, without the cells.
 void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t* hits,
                      std::uint32_t count, cudaStream_t stream);
 

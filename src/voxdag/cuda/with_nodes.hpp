@@ -1,5 +1,5 @@
 #pragma once
-/// From the layout that voxels have at run time to the types that kernels are compiled for.
+/// Selects the types for which kernels are compiled by the layout at run time.
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Calls body(nodes) with what rays are cast at.
+/// Calls body(nodes) with the nodes for rays.
 template <class Body>
 void with_nodes(const DeviceVoxels& voxels, const Body& body) {
   if (voxels.layout == DeviceLayout::kEsvo)
@@ -18,7 +18,7 @@ void with_nodes(const DeviceVoxels& voxels, const Body& body) {
     body(SvdagNodes(voxels.paper));
 }
 
-/// Calls body(nodes) with what beams are cast at and steps are counted on.
+/// Calls body(nodes) with the nodes for beams and for counting steps.
 template <class Body>
 void with_beam_nodes(const DeviceVoxels& voxels, const Body& body) {
   if (voxels.layout == DeviceLayout::kEsvo)

@@ -101,8 +101,7 @@ class Recursion {
   };
 
   static Vec3i child_cell(Vec3i at, std::int32_t half, int child) {
-    return {at.x + (child & 1) * half, at.y + ((child >> 1) & 1) * half,
-            at.z + ((child >> 2) & 1) * half};
+    return at + child_offset(child) * half;
   }
 
   /// Where the column of a cell is inside the triangle its plane alone matters.

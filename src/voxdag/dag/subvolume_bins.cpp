@@ -27,8 +27,7 @@ void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i cell, i
   const ChildConditions children = classify_children(setup, conditions, cell, half);
   for (std::uint32_t left = children.alive; left != 0; left &= left - 1) {
     const int child = std::countr_zero(left);
-    const Vec3i at{cell.x + (child & 1) * half, cell.y + ((child >> 1) & 1) * half,
-                   cell.z + (child >> 2) * half};
+    const Vec3i at = cell + child_offset(child) * half;
     descend(setup, children.conditions(child), at, log2_size - 1, log2_bin, triangle, entries);
   }
 }

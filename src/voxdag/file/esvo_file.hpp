@@ -1,32 +1,33 @@
 #pragma once
-/// An ESVO file opened for use.
+/// An octree from an ESVO file.
 #include <filesystem>
 
 #include "voxdag/file/esvo_parse.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/io/file_copy.hpp"
 
 namespace voxdag {
 
-/// Opens by mapping the file, checks every chunk and that the octree is safe to walk, and throws
-/// Error(path, place, reason) otherwise. Move-only; views stay valid when it is moved. Do not cut
-/// the file short while it is open (see MappedFile).
+/// Reads the file into memory, checks every chunk, and checks that the octree is safe to walk.
+/// Views stay valid when the object is moved, and when other programs change the file (see
+/// FileCopy).
 class EsvoFile {
  public:
+  /// Throws Error(path, place, reason) for a file that cannot be read or fails a check.
   explicit EsvoFile(const std::filesystem::path& path);
 
   const EsvoView& view() const { return contents_.view; }
   const EsvoMetadata& metadata() const { return contents_.metadata; }
   const Grid& grid() const { return contents_.metadata.grid; }
   std::span<const EsvoBlockEntry> directory() const { return contents_.directory; }
-  std::uint64_t file_bytes() const { return mapping_.bytes().size(); }
+  std::uint64_t file_bytes() const { return file_.bytes().size(); }
 
  private:
-  MappedFile mapping_;
+  FileCopy file_;
   EsvoContents contents_;
 };
 
-/// Whether the file at `path` is an ESVO: false for a DAG. Looks at its chunk table only. Throws
-/// Error(path, place, reason) for what is neither.
+/// Returns whether the file is an ESVO, and false for a DAG. Reads only its chunk table. Throws
+/// Error(path, place, reason) for a file that is neither.
 bool is_esvo_file(const std::filesystem::path& path);
 
 }  // namespace voxdag

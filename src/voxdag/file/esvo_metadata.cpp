@@ -8,19 +8,18 @@ namespace voxdag {
 
 std::string esvo_metadata_json(const EsvoMetadata& metadata) {
   const EsvoCounts& counts = metadata.counts;
-  const auto of_levels = [&](const EsvoCounts::PerLevel& values) {
+  const auto used_levels = [&](const EsvoCounts::PerLevel& values) {
     return std::vector<std::uint64_t>(values.begin(), values.begin() + metadata.grid.levels + 1);
   };
-  MetadataJson json;
-  json["grid"] = grid_json(metadata.grid);
+  MetadataJson json = begin_metadata_json(metadata);
   json["root"] = metadata.root;
-  json["counts"] = {{"voxels_per_level", of_levels(counts.voxels_per_level)},
-                    {"leaves_per_level", of_levels(counts.leaves_per_level)},
+  json["counts"] = {{"voxels_per_level", used_levels(counts.voxels_per_level)},
+                    {"leaves_per_level", used_levels(counts.leaves_per_level)},
                     {"descriptors", counts.descriptors},
                     {"far_pointers", counts.far_pointers},
                     {"contours", counts.contours},
                     {"blocks", counts.blocks}};
-  add_origin_json(json, metadata.source, metadata.program, metadata.build);
+  finish_metadata_json(json, metadata);
   return metadata_text(json);
 }
 
@@ -28,7 +27,7 @@ EsvoMetadata parse_esvo_metadata(std::string_view text) {
   const MetadataJson json = parse_metadata_json(text);
   const MetadataField root{json, ""};
   EsvoMetadata metadata;
-  metadata.grid = read_grid(root.at("grid"));
+  read_scene_metadata(root, metadata);
   metadata.root = root.at("root").count();
   const MetadataField counts = root.at("counts");
   const auto read_levels = [&](const char* name, EsvoCounts::PerLevel& values) {
@@ -42,9 +41,6 @@ EsvoMetadata parse_esvo_metadata(std::string_view text) {
   metadata.counts.far_pointers = counts.at("far_pointers").count();
   metadata.counts.contours = counts.at("contours").count();
   metadata.counts.blocks = counts.at("blocks").count();
-  metadata.source = read_source(root.at("source"));
-  metadata.program = root.at("program").text();
-  metadata.build = read_build(root.at("build"));
   return metadata;
 }
 

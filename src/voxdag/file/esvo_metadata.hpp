@@ -1,27 +1,24 @@
 #pragma once
-/// What an ESVO file says of its octree beside the octree: the JSON of its META chunk.
+/// The metadata of an ESVO in a .vdag file: the JSON of its META chunk.
+#include <cstdint>
 #include <string>
 #include <string_view>
 
-#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/file/scene_metadata.hpp"
 #include "voxdag/layout/esvo_counts.hpp"
 
 namespace voxdag {
 
-/// All of it depends on the input alone; see VdagMetadata.
-struct EsvoMetadata {
-  Grid grid;
-  std::uint64_t root = 0;  ///< Slot of the root's descriptor in ESVO.
+struct EsvoMetadata : SceneMetadata {
+  std::uint64_t root = 0;  ///< Slot of the root's descriptor in the chunk ESVO.
   EsvoCounts counts;
-  VdagSource source;
-  std::string program;
-  std::map<std::string, std::string> build;
   friend bool operator==(const EsvoMetadata&, const EsvoMetadata&) = default;
 };
 
+/// Returns the JSON text; see vdag_metadata_json().
 std::string esvo_metadata_json(const EsvoMetadata& metadata);
 
-/// Throws Error("", place, reason) as parse_vdag_metadata does.
+/// Parses the JSON text; see parse_vdag_metadata() for errors.
 EsvoMetadata parse_esvo_metadata(std::string_view json);
 
 }  // namespace voxdag

@@ -45,10 +45,10 @@ void check_esvo_contents(const EsvoContents& contents) {
   try {
     counts = validate_esvo(contents.view, contents.directory);
   } catch (const Error& error) {
-    throw Error("", "chunk ESVO, " + error.place(), error.reason());
+    throw error.within(ErrorPlace::chunk("ESVO"));
   }
   if (counts != contents.metadata.counts)
-    throw Error("", "chunk META, counts", "not those of the octree");
+    throw Error("", ErrorPlace::chunk("META") / "counts", "differ from the octree's");
 }
 
 EsvoContents parse_esvo(std::span<const std::byte> file) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Reading the bytes of an ESVO file, each step by itself; see vdag_parse.hpp, whose container it
-/// is in and whose rules for errors hold here too.
+/// Parses the bytes of an ESVO file, step by step. The container and the rules for errors are those
+/// of vdag_parse.hpp.
 #include <span>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// Whether these are the chunks of an ESVO: those of other files have no ESVO chunk.
+/// Returns whether these are the chunks of an ESVO: other files have no ESVO chunk.
 bool is_esvo(const std::vector<VdagChunk>& chunks);
 
 struct EsvoContents {
@@ -23,16 +23,16 @@ struct EsvoContents {
 
 EsvoMetadata read_esvo_metadata(const std::vector<VdagChunk>& chunks);
 std::span<const EsvoBlockEntry> read_esvo_directory(const std::vector<VdagChunk>& chunks);
-/// Where the blocks begin in the file.
+/// Returns the byte of the file at which the blocks begin.
 std::uint64_t esvo_chunk_offset(const std::vector<VdagChunk>& chunks);
-/// All but the blocks themselves, which have checksums of their own.
+/// Returns all chunks but ESVO, whose blocks have checksums of their own.
 std::vector<VdagChunk> chunks_but_blocks(const std::vector<VdagChunk>& chunks);
-/// Contents are not checked.
+/// Returns a view of the slots, without checking them.
 EsvoView read_esvo_view(const std::vector<VdagChunk>& chunks, const EsvoMetadata& metadata);
-/// validate_esvo, with the chunk named in the error, and the counts against those of `metadata`.
+/// Runs validate_esvo and compares the counts with those of `metadata`. Errors name the chunk.
 void check_esvo_contents(const EsvoContents& contents);
 
-/// All the steps: what it returns is safe to walk.
+/// Runs all the steps. The result is safe to walk.
 EsvoContents parse_esvo(std::span<const std::byte> file);
 
 }  // namespace voxdag

@@ -40,7 +40,7 @@ void EsvoFileWriter::finish(std::vector<EsvoBlockEntry> directory, const EsvoMet
   try {
     parse_esvo_metadata(json);
   } catch (const Error& error) {
-    throw Error(file_.path().string(), error.place(), error.reason());
+    throw error.in_file(file_.path().string());
   }
 
   const std::uint64_t begin = vdag_align(kTableEnd);

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes an ESVO file block by block: no more of it need be in memory at a time.
+/// Writes an ESVO file block by block, so that no more than a block need be in memory.
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -12,17 +12,17 @@
 
 namespace voxdag {
 
-/// Chunks ESVO, EBLK, META in this order, of docs/format.md. The file appears when it is complete;
-/// destroyed before finish(), it leaves nothing. Errors are Error(path, place, reason). The file
-/// must be one that can seek.
+/// Writes the chunks ESVO, EBLK and META of docs/format.md, in this order. The file appears when it
+/// is complete; if the writer is destroyed before finish(), nothing remains. Throws Error(path,
+/// place, reason). The file must be able to seek.
 class EsvoFileWriter {
  public:
   explicit EsvoFileWriter(const std::filesystem::path& path);
 
-  /// Whole blocks.
+  /// Appends whole blocks.
   void append(std::span<const std::uint64_t> slots);
 
-  /// `directory` names all blocks, in order; its checksums are filled in here.
+  /// Completes the file. `directory` lists all blocks, in order; finish() sets their checksums.
   void finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata);
 
  private:

@@ -14,7 +14,7 @@ Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
   const Box3i& window = *options.window;
   for (int axis = 0; axis < 3; ++axis) {
     if (window.lo[axis] >= window.hi[axis])
-      throw Error(path.string(), "window", "has no voxels: each end must lie behind its start");
+      throw Error(path.string(), "window", "is empty: each end must be greater than its start");
     if (window.lo[axis] < 0 || window.hi[axis] > grid.hi[axis])
       throw Error(path.string(), "window",
                   "reaches out of the grid of " + std::to_string(grid.hi.x) + " voxels a side");

@@ -1,17 +1,17 @@
 #pragma once
-/// What the exporters share: the window, the progress calls, the placement beside the output.
+/// The window, progress calls and placement file that the exporters share.
 #include <string>
 
 #include "voxdag/file/export.hpp"
 
 namespace voxdag {
 
-/// The window asked for, or the whole grid. Throws Error(path, "window", reason) if it is empty or
-/// reaches out of the grid.
+/// Returns the requested window, or the whole grid. Throws Error(path, "window", reason) if it is
+/// empty or extends beyond the grid.
 Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
                     const ExportOptions& options);
 
-/// for_each_leaf_block that tells options.progress how many voxels were done, not too often.
+/// Runs for_each_leaf_block and reports the number of voxels done to options.progress.
 template <class Fn>
 void export_leaf_blocks(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options,
                         const Fn& fn) {
@@ -23,16 +23,16 @@ void export_leaf_blocks(const VoxelSet& voxels, const Box3i& window, const Expor
   });
 }
 
-/// What an exported array holds, for PATH.json.
+/// The content of an exported array, for PATH.json.
 struct ArrayLayout {
-  std::string content;  ///< Of one element or row, in words.
+  std::string content;  ///< The meaning of an element or row, in words.
   std::string dtype;
-  /// Of a dense array over the window: the axes from the slowest to the fastest. Else empty.
+  /// The axes of a dense array, from the slowest to the fastest; empty for others.
   std::string axes;
 };
 
-/// Writes PATH.json: grid, window, layout, and how they place a voxel in the world. Nothing where
-/// `path` is a pipe or device.
+/// Writes PATH.json: the grid, the window, the layout, and how they place a voxel in the world.
+/// Writes nothing if `path` is a pipe or device.
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
                      const ArrayLayout& layout);
 

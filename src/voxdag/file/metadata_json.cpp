@@ -1,34 +1,14 @@
 #include "voxdag/file/metadata_json.hpp"
 
 namespace voxdag {
-
-MetadataJson parse_metadata_json(std::string_view text) {
-  try {
-    return MetadataJson::parse(text);
-  } catch (const MetadataJson::parse_error& error) {
-    throw Error("", "byte " + std::to_string(error.byte), "not valid JSON");
-  } catch (const MetadataJson::exception& error) {  // a number out of range
-    throw Error("", "", std::string("not valid JSON: ") + error.what());
-  }
-}
-
-std::string metadata_text(const MetadataJson& json) {
-  return json.dump(-1, ' ', false, MetadataJson::error_handler_t::replace);
-}
-
-MetadataJson grid_json(const Grid& grid) {
-  return {{"levels", grid.levels},
-          {"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
-          {"voxel_size", grid.voxel_size},
-          {"quantization_scale", grid.quantization_scale}};
-}
+namespace {
 
 Grid read_grid(const MetadataField& field) {
   Grid grid;
   const std::uint64_t levels = field.at("levels").count();
   if (levels < kMinLevels || levels > kMaxLevels)
-    field.at("levels").fail(std::to_string(levels) + " is not " + std::to_string(kMinLevels) +
-                            " to " + std::to_string(kMaxLevels));
+    field.at("levels").fail(std::to_string(levels) + " is not in the range " +
+                            std::to_string(kMinLevels) + " to " + std::to_string(kMaxLevels));
   grid.levels = static_cast<int>(levels);
   const MetadataField origin = field.at("origin");
   origin.expect_array(3);
@@ -38,17 +18,9 @@ Grid read_grid(const MetadataField& field) {
   grid.quantization_scale = field.at("quantization_scale").positive();
   const Vec3d far_corner = grid.bounds().hi;
   for (int axis = 0; axis < 3; ++axis)
-    if (!std::isfinite(far_corner[axis])) field.fail("reaches beyond the finite numbers");
-  if (!std::isfinite(1 / grid.voxel_size)) field.at("voxel_size").fail("too small");
+    if (!std::isfinite(far_corner[axis])) field.fail("the grid exceeds the range of doubles");
+  if (!std::isfinite(1 / grid.voxel_size)) field.at("voxel_size").fail("is too small");
   return grid;
-}
-
-void add_origin_json(MetadataJson& json, const VdagSource& source, const std::string& program,
-                     const std::map<std::string, std::string>& build) {
-  json["source"] = {
-      {"name", source.name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
-  json["program"] = program;
-  json["build"] = build;
 }
 
 VdagSource read_source(const MetadataField& field) {
@@ -60,6 +32,47 @@ std::map<std::string, std::string> read_build(const MetadataField& field) {
   std::map<std::string, std::string> build;
   for (const auto& [key, value] : field.value.items()) build[key] = field.at(key).text();
   return build;
+}
+
+}  // namespace
+
+MetadataJson parse_metadata_json(std::string_view text) {
+  try {
+    return MetadataJson::parse(text);
+  } catch (const MetadataJson::parse_error& error) {
+    throw Error("", ErrorPlace::byte(error.byte), "not valid JSON");
+  } catch (const MetadataJson::exception& error) {  // a number out of range
+    throw Error("", "", std::string("not valid JSON: ") + error.what());
+  }
+}
+
+std::string metadata_text(const MetadataJson& json) {
+  return json.dump(-1, ' ', false, MetadataJson::error_handler_t::replace);
+}
+
+MetadataJson begin_metadata_json(const SceneMetadata& metadata) {
+  const Grid& grid = metadata.grid;
+  MetadataJson json;
+  json["grid"] = {{"levels", grid.levels},
+                  {"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
+                  {"voxel_size", grid.voxel_size},
+                  {"quantization_scale", grid.quantization_scale}};
+  return json;
+}
+
+void finish_metadata_json(MetadataJson& json, const SceneMetadata& metadata) {
+  const VdagSource& source = metadata.source;
+  json["source"] = {
+      {"name", source.name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
+  json["program"] = metadata.program;
+  json["build"] = metadata.build;
+}
+
+void read_scene_metadata(const MetadataField& root, SceneMetadata& metadata) {
+  metadata.grid = read_grid(root.at("grid"));
+  metadata.source = read_source(root.at("source"));
+  metadata.program = root.at("program").text();
+  metadata.build = read_build(root.at("build"));
 }
 
 }  // namespace voxdag

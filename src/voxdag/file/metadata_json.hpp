@@ -1,18 +1,20 @@
 #pragma once
-/// What the JSON of all kinds of .vdag files has in common: reading with errors that say where, and
-/// the values that all have.
+/// Reading and writing the JSON of metadata: values with errors that name their place, and the
+/// members that all scene files have.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/file/scene_metadata.hpp"
 
 namespace voxdag {
 
 using MetadataJson = nlohmann::ordered_json;
 
-/// One value of the document with the path to it, for errors that say where.
+/// A value of the document with the path to it, which errors name.
 struct MetadataField {
   const MetadataJson& value;
   std::string path;
@@ -50,7 +52,7 @@ struct MetadataField {
     if (!value.is_string()) fail("not a string");
     return value.get<std::string>();
   }
-  /// An array of `size` counts.
+  /// Returns the values of an array of `size` counts.
   std::vector<std::uint64_t> counts(std::size_t size) const {
     expect_array(size);
     std::vector<std::uint64_t> values(size);
@@ -59,18 +61,17 @@ struct MetadataField {
   }
 };
 
-/// Throws Error("", "byte N", "not valid JSON").
+/// Parses the text. Throws Error with the byte at which it is not valid JSON.
 MetadataJson parse_metadata_json(std::string_view text);
 
 std::string metadata_text(const MetadataJson& json);
 
-MetadataJson grid_json(const Grid& grid);
-Grid read_grid(const MetadataField& field);
+/// Begins the document, with "grid".
+MetadataJson begin_metadata_json(const SceneMetadata& metadata);
+/// Adds "source", "program" and "build", the last members of the document.
+void finish_metadata_json(MetadataJson& json, const SceneMetadata& metadata);
 
-/// Adds "source", "program" and "build".
-void add_origin_json(MetadataJson& json, const VdagSource& source, const std::string& program,
-                     const std::map<std::string, std::string>& build);
-VdagSource read_source(const MetadataField& field);
-std::map<std::string, std::string> read_build(const MetadataField& field);
+/// Reads these members from the document's root.
+void read_scene_metadata(const MetadataField& root, SceneMetadata& metadata);
 
 }  // namespace voxdag

@@ -105,7 +105,7 @@ NpyHeader NpyReader::read_header() {
   try {
     return parse_npy_header(text, first_byte);
   } catch (const Error& error) {
-    throw Error(path_.string(), error.place(), error.reason());
+    throw error.in_file(path_.string());
   }
 }
 
@@ -114,13 +114,13 @@ void NpyReader::check_size() const {
   const std::uint64_t size = *file_bytes_;
   const std::uint64_t expected = position_ + rows_ * row_bytes_;
   if (size != expected)
-    throw Error(path_.string(), "byte " + std::to_string(std::min(size, expected)),
+    throw Error(path_.string(), ErrorPlace::byte(std::min(size, expected)),
                 (size < expected ? "truncated: " : "bytes behind the array: ") +
                     std::to_string(rows_) + " rows need " + std::to_string(expected) + " bytes");
 }
 
 void NpyReader::fail(const std::string& reason) const {
-  throw Error(path_.string(), "byte " + std::to_string(position_), reason);
+  throw Error(path_.string(), ErrorPlace::byte(position_), reason);
 }
 
 NpyWriter::NpyWriter(const std::filesystem::path& path, std::string dtype,

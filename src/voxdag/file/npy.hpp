@@ -1,8 +1,8 @@
 #pragma once
-/// NumPy's .npy arrays, read and written a run of rows at a time.
+/// Reads and writes NumPy's .npy arrays, some rows at a time.
 ///
-/// Format: numpy.lib.format, versions 1.0 to 3.0 read, 1.0 written; C order, little-endian. A row
-/// is one step along the first axis: of shape (N, 8) it is 8 items, of a structured array (N,) one.
+/// Format: numpy.lib.format; reads versions 1.0 to 3.0, writes 1.0; C order, little-endian. A row
+/// is one step along the first axis: 8 items for the shape (N, 8), one for a structured array (N,).
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -17,21 +17,21 @@
 namespace voxdag {
 
 struct NpyHeader {
-  std::string dtype;  ///< "<f4"; of a structured array the list as it stands, "[('t', '<f4')]".
+  std::string dtype;  ///< "<f4"; for a structured array the literal list, "[('t', '<f4')]".
   bool fortran_order = false;
   std::vector<std::uint64_t> shape;
   friend bool operator==(const NpyHeader&, const NpyHeader&) = default;
 };
 
-/// Parses the dictionary of a header. Throws Error("", "byte N", reason), N from `first_byte`.
+/// Parses the dictionary of a header. Throws Error with the byte, counted from `first_byte`.
 NpyHeader parse_npy_header(std::string_view text, std::uint64_t first_byte);
 
 /// Reads arrays of one expected type. Works on files and pipes; memory does not grow with N.
 class NpyReader {
  public:
   /// Opens `path` and checks that it has this dtype, C order and the shape (N, row_shape...).
-  /// `item_bytes` is the size of the dtype. A file must have exactly the bytes that its shape asks
-  /// for. Throws Error(path, "byte N", reason).
+  /// `item_bytes` is the size of the dtype. A file must have exactly the size that its shape
+  /// implies. Throws Error with path and byte.
   NpyReader(const std::filesystem::path& path, const std::string& dtype,
             const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes);
   NpyReader(const NpyReader&) = delete;
@@ -40,8 +40,8 @@ class NpyReader {
   std::uint64_t rows() const { return rows_; }  ///< N
   std::size_t row_bytes() const { return row_bytes_; }
 
-  /// Reads the next rows, at most `most_rows`, into `out` (row_bytes() each) and returns how
-  /// many they were: fewer than asked for only at the end, 0 behind it.
+  /// Reads the next rows, at most `most_rows`, into `out` (row_bytes() each). Returns their number,
+  /// which is less than `most_rows` only at the end, and 0 after it.
   std::size_t read_rows(void* out, std::size_t most_rows);
 
  private:
@@ -61,20 +61,21 @@ class NpyReader {
 /// Writes an array row by row into a file that appears when it is complete (see AtomicFile).
 class NpyWriter {
  public:
-  /// `dtype` as in NpyHeader, with `item_bytes` per item and an item count of the product of
-  /// `row_shape` per row ({} for a structured array of shape (N,)). If `rows` is not given, N is
-  /// what has been written at commit(); the output must then be able to seek.
+  /// `dtype` is as in NpyHeader, with `item_bytes` per item. A row has the product of `row_shape`
+  /// items
+  /// ({} for a structured array of shape (N,)). If `rows` is not given, N is the number of rows
+  /// written before commit(), and the output must be able to seek.
   NpyWriter(const std::filesystem::path& path, std::string dtype,
             std::vector<std::uint64_t> row_shape, std::size_t item_bytes,
             std::optional<std::uint64_t> rows = {});
 
   void write_rows(const void* data, std::size_t count) { write_bytes(data, count * row_bytes_); }
-  /// For rows that come in pieces: any number of bytes, going on where the last call ended.
+  /// Writes rows in pieces: any number of bytes, which follow those of the last call.
   void write_bytes(const void* data, std::size_t bytes);
   std::uint64_t rows_written() const { return bytes_written_ / row_bytes_; }
 
-  /// Completes the header and gives the file its name. If `rows` was given, that many must have
-  /// been written.
+  /// Completes the header and gives the file its name. If `rows` was given, exactly that many must
+  /// have been written.
   void commit();
 
  private:

@@ -40,7 +40,7 @@ class Parser {
 
  private:
   [[noreturn]] void fail(const std::string& reason) const {
-    throw Error("", "byte " + std::to_string(first_byte_ + at_), reason);
+    throw Error("", ErrorPlace::byte(first_byte_ + at_), reason);
   }
 
   /// The next character that is no space; 0 at the end.

@@ -4,11 +4,11 @@
 
 namespace voxdag {
 
-VdagFile::VdagFile(const std::filesystem::path& path) : mapping_(path) {
+VdagFile::VdagFile(const std::filesystem::path& path) : file_(path) {
   try {
-    contents_ = parse_vdag(mapping_.bytes());
+    contents_ = parse_vdag(file_.bytes());
   } catch (const Error& error) {
-    throw Error(path.string(), error.place(), error.reason());
+    throw error.in_file(path.string());
   }
 }
 

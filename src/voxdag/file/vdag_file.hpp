@@ -1,28 +1,28 @@
 #pragma once
-/// A .vdag file opened for use.
+/// A DAG from a .vdag file.
 #include <filesystem>
 
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/io/file_copy.hpp"
 
 namespace voxdag {
 
-/// Opens by mapping the file, checks every chunk and that the DAG is safe to walk, and throws
-/// Error(path, place, reason) otherwise. Canonical order, minimality and the counts are left to
-/// verify_vdag. Move-only; views stay valid when it is moved. Do not cut the file short while it is
-/// open (see MappedFile).
+/// Reads the file into memory, checks every chunk, and checks that the DAG is safe to walk. Leaves
+/// canonical order, minimality and the counts to verify_vdag. Views stay valid when the object is
+/// moved, and when other programs change the file (see FileCopy).
 class VdagFile {
  public:
+  /// Throws Error(path, place, reason) for a file that cannot be read or fails a check.
   explicit VdagFile(const std::filesystem::path& path);
 
   const SvdagView& view() const { return contents_.view; }
   const VdagMetadata& metadata() const { return contents_.metadata; }
   const Grid& grid() const { return contents_.metadata.grid; }
   const std::vector<VdagChunk>& chunks() const { return contents_.chunks; }
-  std::uint64_t file_bytes() const { return mapping_.bytes().size(); }
+  std::uint64_t file_bytes() const { return file_.bytes().size(); }
 
  private:
-  MappedFile mapping_;
+  FileCopy file_;
   VdagContents contents_;
 };
 

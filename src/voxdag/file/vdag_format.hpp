@@ -7,8 +7,8 @@
 ///   ...  chunk 0, zeros up to the next multiple of 64
 ///   ...  chunk 1, ...
 ///
-/// Everything is little-endian. Chunks stand in the table's order with nothing between them but the
-/// padding, and the file ends with the last one's padding.
+/// Everything is little-endian. Chunks are stored in the table's order, with only padding between
+/// them, and the file ends with the padding of the last one.
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +16,9 @@
 
 namespace voxdag {
 
-static_assert(std::endian::native == std::endian::little,
-              "files are mapped as they are: a big-endian host needs a converting reader");
+static_assert(
+    std::endian::native == std::endian::little,
+    "the bytes of a file are used as they are: a big-endian host needs a converting reader");
 
 inline constexpr unsigned char kVdagMagic[8] = {0x89, 'V', 'D', 'A', 'G', '\r', '\n', 0x1A};
 inline constexpr std::uint32_t kVdagVersion = 1;
@@ -29,8 +30,8 @@ struct VdagHeader {
   unsigned char magic[8];
   std::uint32_t version;
   std::uint32_t chunk_count;
-  std::uint64_t file_bytes;   ///< Of the whole file, padding included.
-  std::uint64_t checksum;     ///< XXH3-64 of header and table, with this field as zero.
+  std::uint64_t file_bytes;   ///< Size of the whole file, padding included.
+  std::uint64_t checksum;     ///< XXH3-64 of header and table, with this field taken as zero.
   std::uint64_t reserved[4];  ///< Zero.
 };
 static_assert(sizeof(VdagHeader) == 64 && offsetof(VdagHeader, checksum) == 24);
@@ -44,7 +45,7 @@ struct VdagChunkEntry {
 };
 static_assert(sizeof(VdagChunkEntry) == 32 && offsetof(VdagChunkEntry, checksum) == 24);
 
-/// A reader that does not know a chunk with this flag must refuse the file; it passes over others.
+/// A reader must refuse a file with an unknown chunk that has this flag; it skips unknown others.
 inline constexpr std::uint32_t kVdagChunkRequired = 1;
 
 constexpr std::uint32_t vdag_chunk_id(const char (&name)[5]) {
@@ -59,9 +60,10 @@ inline constexpr std::uint32_t kChunkNodes = vdag_chunk_id("NODE");   ///< u32 S
 inline constexpr std::uint32_t kChunkLeafBlocks = vdag_chunk_id("LEAF");  ///< u64 leaf_blocks.
 inline constexpr std::uint32_t kChunkEsvo = vdag_chunk_id("ESVO");  ///< u64 slots of all blocks.
 inline constexpr std::uint32_t kChunkEsvoBlocks =
-    vdag_chunk_id("EBLK");  ///< EsvoBlockEntry of each.
+    vdag_chunk_id("EBLK");  ///< EsvoBlockEntry of each block.
 
-/// "NODE"; other bytes than letters, digits and space as "?".
+/// Returns the id as text, such as "NODE", with "?" for bytes other than letters, digits and
+/// spaces.
 inline std::string vdag_chunk_name(std::uint32_t id) {
   std::string name;
   for (int i = 0; i < 4; ++i) {

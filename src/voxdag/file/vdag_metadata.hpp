@@ -1,41 +1,24 @@
 #pragma once
-/// What a .vdag file says about its DAG beside the DAG: the JSON of its META chunk.
-#include <cstdint>
-#include <map>
+/// The metadata of a DAG in a .vdag file: the JSON of its META chunk.
 #include <string>
 #include <string_view>
 
-#include "voxdag/core/grid.hpp"
+#include "voxdag/file/scene_metadata.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 
 namespace voxdag {
 
-/// The mesh that the voxels come from.
-struct VdagSource {
-  std::string name;  ///< File name without folders; UTF-8.
-  std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;
-  friend bool operator==(const VdagSource&, const VdagSource&) = default;
-};
-
-/// All of it depends on the input alone, so that equal inputs make equal files: nothing here may
-/// tell times, folders, thread counts or which of two equivalent methods ran.
-struct VdagMetadata {
-  Grid grid;
+struct VdagMetadata : SceneMetadata {
   SvdagCounts counts;
-  VdagSource source;
-  std::string program;  ///< "voxdag 0.1.0": who wrote the file.
-  std::map<std::string, std::string>
-      build;  ///< Settings that shape the result, e.g. "cover": "exact".
   friend bool operator==(const VdagMetadata&, const VdagMetadata&) = default;
 };
 
-/// The JSON text, keys in a fixed order, every double in the shortest form that reads back the
-/// same. Bytes of strings that are no UTF-8 become U+FFFD.
+/// Returns the JSON text: keys in a fixed order, every double in the shortest form that reads back
+/// as the same value. Bytes of strings that are not UTF-8 become U+FFFD.
 std::string vdag_metadata_json(const VdagMetadata& metadata);
 
-/// Reads it back. Throws Error("", place, reason) where it is no JSON, a value is missing, of the
-/// wrong type or out of range (levels, a finite origin, positive finite sizes).
+/// Parses the JSON text. Throws Error("", place, reason) if it is not JSON, or if a value is
+/// missing, of the wrong type or out of range: levels, a finite origin, positive finite sizes.
 VdagMetadata parse_vdag_metadata(std::string_view json);
 
 }  // namespace voxdag

@@ -13,11 +13,13 @@
 namespace voxdag {
 namespace {
 
-[[noreturn]] void fail(const std::string& place, const std::string& reason) {
-  throw Error("", place, reason);
+[[noreturn]] void fail(ErrorPlace place, const std::string& reason) {
+  throw Error("", std::move(place), reason);
 }
 
-std::string chunk_place(std::uint32_t id) { return "chunk " + vdag_chunk_name(id); }
+ErrorPlace chunk_place(std::uint32_t id) { return ErrorPlace::chunk(vdag_chunk_name(id)); }
+
+ErrorPlace table_place(std::uint32_t id) { return ErrorPlace("chunk table") / chunk_place(id); }
 
 VdagHeader read_header(std::span<const std::byte> file) {
   VdagHeader header;
@@ -25,24 +27,23 @@ VdagHeader read_header(std::span<const std::byte> file) {
   if (file.empty()) fail("", "empty file");
   if (std::memcmp(file.data(), kVdagMagic, magic_bytes) != 0) fail("header", "not a .vdag file");
   if (file.size() < sizeof header)
-    fail("byte " + std::to_string(file.size()), "the file ends inside its header");
+    fail(ErrorPlace::byte(file.size()), "truncated: the file ends inside its header");
   std::memcpy(&header, file.data(), sizeof header);
   // The version comes first: it decides what all the rest means.
   if (header.version > kVdagVersion)
-    fail("header", "version " + std::to_string(header.version) + " is newer than this program's " +
-                       std::to_string(kVdagVersion));
+    fail("header", "version " + std::to_string(header.version) +
+                       " is newer than this program's version " + std::to_string(kVdagVersion));
   if (header.version != kVdagVersion)
     fail("header", "version " + std::to_string(header.version) + " does not exist");
   if (header.file_bytes > file.size())
-    fail("byte " + std::to_string(file.size()),
+    fail(ErrorPlace::byte(file.size()),
          "truncated: the header says " + std::to_string(header.file_bytes) + " bytes");
   if (header.file_bytes < file.size())
-    fail("byte " + std::to_string(header.file_bytes),
-         "the file goes on after its end by " + std::to_string(file.size() - header.file_bytes) +
-             " bytes");
+    fail(ErrorPlace::byte(header.file_bytes),
+         "has " + std::to_string(file.size() - header.file_bytes) + " trailing bytes");
   if (header.chunk_count > kVdagMostChunks ||
       header.chunk_count > (file.size() - sizeof header) / sizeof(VdagChunkEntry))
-    fail("header", std::to_string(header.chunk_count) + " chunks are more than fit");
+    fail("header", std::to_string(header.chunk_count) + " chunks do not fit into the file");
   return header;
 }
 
@@ -51,33 +52,33 @@ void check_header_checksum(std::span<const std::byte> file, std::size_t table_en
   std::vector<std::byte> copy(file.begin(),
                               std::next(file.begin(), static_cast<std::ptrdiff_t>(table_end)));
   std::memset(copy.data() + offsetof(VdagHeader, checksum), 0, sizeof expected);
-  if (xxh3_64(copy) != expected) fail("header", "checksum of header and chunk table is wrong");
+  if (xxh3_64(copy) != expected) fail("header", "checksum of the header and chunk table is wrong");
   for (std::size_t i = offsetof(VdagHeader, reserved); i < sizeof(VdagHeader); ++i)
-    if (file[i] != std::byte{0}) fail("byte " + std::to_string(i), "reserved byte is not zero");
+    if (file[i] != std::byte{0}) fail(ErrorPlace::byte(i), "reserved byte is not zero");
 }
 
 void check_padding(std::span<const std::byte> file, std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t i = begin; i < end; ++i)
-    if (file[i] != std::byte{0}) fail("byte " + std::to_string(i), "padding is not zero");
+    if (file[i] != std::byte{0}) fail(ErrorPlace::byte(i), "padding is not zero");
 }
 
-/// A chunk that has to stand at `expected_offset`.
+/// Checks a row of the chunk table; its chunk must start at `expected_offset`.
 VdagChunk read_entry(std::span<const std::byte> file, const VdagChunkEntry& entry,
                      std::uint64_t expected_offset) {
-  const std::string place = "chunk table, " + chunk_place(entry.id);
+  const ErrorPlace place = table_place(entry.id);
   if ((entry.flags & ~kVdagChunkRequired) != 0) fail(place, "unknown flags");
   if (entry.offset != expected_offset)
-    fail(place, "at byte " + std::to_string(entry.offset) + " where byte " +
-                    std::to_string(expected_offset) + " is expected");
-  // Both are multiples of 64 and file.size() is below 2^63, so aligning cannot overflow.
+    fail(place, "starts at byte " + std::to_string(entry.offset) + ", expected byte " +
+                    std::to_string(expected_offset));
+  // `expected_offset` is at most file.size(), which is below 2^63, so aligning cannot overflow.
   if (entry.length > file.size() - expected_offset ||
       vdag_align(entry.length) > file.size() - expected_offset)
-    fail(place, "reaches past the end of the file");
+    fail(place, "extends past the end of the file");
   const bool required = (entry.flags & kVdagChunkRequired) != 0;
   constexpr std::uint32_t kKnown[] = {kChunkMeta,       kChunkLevels, kChunkNodes,
                                       kChunkLeafBlocks, kChunkEsvo,   kChunkEsvoBlocks};
   if (required && std::find(std::begin(kKnown), std::end(kKnown), entry.id) == std::end(kKnown))
-    fail(place, "needs a newer program");
+    fail(place, "unknown required chunk: this file needs a newer version of voxdag");
   return {entry.id, required, entry.offset, entry.checksum,
           file.subspan(entry.offset, entry.length)};
 }
@@ -92,20 +93,20 @@ std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file) {
   check_header_checksum(file, table_end, header.checksum);
 
   std::uint64_t end = vdag_align(table_end);
-  if (end > file.size()) fail("chunk table", "the file ends inside the padding");
+  if (end > file.size()) fail("chunk table", "truncated: the file ends inside the padding");
   check_padding(file, table_end, end);
   std::vector<VdagChunk> chunks;
   for (std::size_t i = 0; i < header.chunk_count; ++i) {
     VdagChunkEntry entry;
     std::memcpy(&entry, file.data() + sizeof header + i * sizeof entry, sizeof entry);
     for (const VdagChunk& other : chunks)
-      if (other.id == entry.id) fail("chunk table, " + chunk_place(entry.id), "stands there twice");
+      if (other.id == entry.id) fail(table_place(entry.id), "duplicate chunk");
     chunks.push_back(read_entry(file, entry, end));
     const std::uint64_t data_end = end + entry.length;
     end = vdag_align(data_end);
     check_padding(file, data_end, end);
   }
-  if (end != file.size()) fail("byte " + std::to_string(end), "bytes after the last chunk");
+  if (end != file.size()) fail(ErrorPlace::byte(end), "has bytes after the last chunk");
   return chunks;
 }
 
@@ -120,13 +121,15 @@ std::span<const std::byte> chunk_bytes(const std::vector<VdagChunk>& chunks, std
                                   [id](const VdagChunk& other) { return other.id == id; });
   if (chunk == chunks.end()) fail("chunk table", "chunk " + vdag_chunk_name(id) + " is missing");
   if (chunk->bytes.size() % multiple != 0)
-    fail(chunk_place(id), "length is not a multiple of " + std::to_string(multiple));
+    fail(chunk_place(id), "length in bytes is not a multiple of " + std::to_string(multiple));
   return chunk->bytes;
 }
 
 std::string_view metadata_chunk_text(const std::vector<VdagChunk>& chunks) {
   const std::span<const std::byte> bytes = chunk_bytes(chunks, kChunkMeta, 1);
-  if (bytes.size() > kVdagMostMetadataBytes) fail(chunk_place(kChunkMeta), "too long");
+  if (bytes.size() > kVdagMostMetadataBytes)
+    fail(chunk_place(kChunkMeta),
+         "is longer than " + std::to_string(kVdagMostMetadataBytes) + " bytes");
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -143,7 +146,7 @@ SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
                                         std::to_string(levels) + " levels");
   if (table.back() != nodes.size())
     fail(chunk_place(kChunkNodes), std::to_string(nodes.size()) +
-                                       " words where the level table says " +
+                                       " words, but the level table says " +
                                        std::to_string(table.back()));
   SvdagView view;
   view.levels = levels;
@@ -159,9 +162,10 @@ void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&)) {
   try {
     check(view);
   } catch (const Error& error) {
-    const bool leaf = error.place().starts_with("leaf"), table = error.place() == "level table";
+    const bool leaf = error.place().has(ErrorPlace::Kind::kLeafBlock);
+    const bool table = error.place().has(ErrorPlace::Kind::kLevelTable);
     const std::uint32_t id = leaf ? kChunkLeafBlocks : table ? kChunkLevels : kChunkNodes;
-    fail(chunk_place(id) + ", " + error.place(), error.reason());
+    throw error.within(chunk_place(id));
   }
 }
 
@@ -169,7 +173,7 @@ VdagContents parse_vdag(std::span<const std::byte> file) {
   VdagContents contents;
   contents.chunks = read_vdag_chunks(file);
   for (const VdagChunk& chunk : contents.chunks)
-    if (chunk.id == kChunkEsvo) fail("", "holds an ESVO, where a DAG is needed");
+    if (chunk.id == kChunkEsvo) fail("", "holds an ESVO, but a DAG is needed");
   check_vdag_checksums(contents.chunks);
   contents.metadata = read_vdag_metadata(contents.chunks);
   contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);

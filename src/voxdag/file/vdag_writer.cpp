@@ -55,7 +55,7 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
   try {
     parse_vdag_metadata(json);
   } catch (const Error& error) {
-    throw Error(path.string(), error.place(), error.reason());
+    throw error.in_file(path.string());
   }
   const std::vector<OutputChunk> chunks = {
       {kChunkMeta, bytes_of(json.data(), json.size())},

@@ -7,9 +7,10 @@
 
 namespace voxdag {
 
-/// The file appears under `path` when it is complete (see AtomicFile) and its bytes depend on the
-/// arguments alone. metadata.grid.levels must equal view.levels. Throws Error where it cannot be
-/// written, or where the grid has values that no file may hold (see parse_vdag_metadata).
+/// Writes the file, which appears under `path` when it is complete (see AtomicFile). Its bytes
+/// depend on the arguments alone. metadata.grid.levels must equal view.levels. Throws Error if the
+/// file cannot be written, or if the grid has values that no file may hold (see
+/// parse_vdag_metadata).
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata);
 

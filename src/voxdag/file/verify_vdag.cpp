@@ -6,7 +6,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/io/file_copy.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 
@@ -38,8 +38,8 @@ void run_check(VerifyReport& report, std::string name, std::initializer_list<std
 
 void compare(const std::string& name, std::uint64_t stated, std::uint64_t counted) {
   if (stated != counted)
-    throw Error("", "chunk META, counts." + name,
-                std::to_string(stated) + " where the DAG has " + std::to_string(counted));
+    throw Error("", ErrorPlace::chunk("META") / ("counts." + name),
+                std::to_string(stated) + ", but the DAG has " + std::to_string(counted));
 }
 
 void compare_levels(const std::string& name, const std::vector<std::uint64_t>& stated,
@@ -70,7 +70,7 @@ VerifyReport verify_esvo(std::span<const std::byte> file) {
   return report;
 }
 
-/// False for what is not even a container.
+/// Returns false for files that are not even containers.
 bool holds_esvo(std::span<const std::byte> file) {
   try {
     return is_esvo(read_vdag_chunks(file));
@@ -87,7 +87,7 @@ bool VerifyReport::passed() const {
 }
 
 VerifyReport verify_vdag(const std::filesystem::path& path) {
-  const MappedFile file(path);
+  const FileCopy file(path);
   if (holds_esvo(file.bytes())) return verify_esvo(file.bytes());
   VerifyReport report;
   VdagContents contents;

@@ -1,5 +1,5 @@
 #pragma once
-/// Every check of a .vdag file, one by one.
+/// Runs all checks of a .vdag file and reports each of them.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,8 +11,7 @@ struct VerifyCheck {
 
   std::string name;  ///< "container", "checksums", "metadata", "structure", ...
   Result result = Result::kSkipped;
-  std::string
-      detail;  ///< Where it failed: "PLACE: REASON"; why it was skipped; empty if it passed.
+  std::string detail;  ///< "PLACE: REASON" if it failed; why it was skipped; empty if it passed.
 };
 
 struct VerifyReport {
@@ -20,14 +19,14 @@ struct VerifyReport {
   bool passed() const;
 };
 
-/// Runs all checks that still make sense after a failed one and skips the others:
+/// Runs all checks, but skips those that make no sense after a failed one:
 ///   container        magic, version, sizes, chunk table, padding
-///   checksums        of every chunk
+///   checksums        every chunk has its checksum
 ///   metadata         the JSON and its values
 ///   structure        validate_svdag: acyclic by level, pointers in range, no empty nodes
 ///   canonical order  check_canonical: also that every node is reachable
 ///   minimality       check_minimal: no two equal nodes in a level
-///   counts           those of the metadata equal those of the DAG
+///   counts           the metadata has the counts of the DAG
 /// Throws Error only if the file cannot be read.
 VerifyReport verify_vdag(const std::filesystem::path& path);
 

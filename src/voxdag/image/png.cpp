@@ -36,7 +36,7 @@ void require_whole(const std::string& file, std::span<const std::uint8_t> bytes)
     if (std::memcmp(chunk + 4, "IEND", 4) == 0) return;
     at += length + 12;
   }
-  throw Error(file, "byte " + std::to_string(bytes.size()), "the PNG file is truncated");
+  throw Error(file, ErrorPlace::byte(bytes.size()), "the PNG file is truncated");
 }
 
 /// libpng's control structure, freed on every way out.

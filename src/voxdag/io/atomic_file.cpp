@@ -202,7 +202,7 @@ void AtomicFile::discard() noexcept {
 }
 
 void AtomicFile::fail(std::uint64_t at, int error) const {
-  throw Error(path_.string(), "byte " + std::to_string(at),
+  throw Error(path_.string(), ErrorPlace::byte(at),
               "cannot write: " + std::system_category().message(error));
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-/// What colour blocks and normal blocks have in common.
+/// How many values an attribute block holds, of colours and of normals alike.
 
 namespace voxdag {
 
-/// Values of an attribute block: the eight child slots of each of two consecutive descriptors.
+/// Values per block: one for each of the eight child slots of two consecutive descriptors.
 inline constexpr int kValuesPerBlock = 16;
 
 }  // namespace voxdag

@@ -1,15 +1,15 @@
 #pragma once
-/// The word that stands for a non-leaf voxel of an ESVO.
+/// The 64-bit word that describes the children of a non-leaf voxel of an ESVO.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.1 and Figure 2.
 ///
 ///   children  | child pointer 15 | far 1 | valid mask 8 | leaf mask 8 |    bits 31..0
 ///   contours  | contour pointer 24           | contour mask 8         |    bits 31..0
 ///
-/// A child slot i (x=1, y=2, z=4) is empty, or a voxel (valid), or a leaf (valid and leaf). The
-/// voxels that are no leaves have descriptors of their own, which stand together in the order of i;
-/// the child pointer leads to the first of them. Where they are too far away for 15 bits, or in
-/// another block, `far` is set and the pointer leads to a far pointer.
+/// Child slot i (x=1, y=2, z=4) is empty, or an inner voxel (valid), or a leaf (valid and leaf).
+/// The inner voxels have descriptors of their own, stored together in the order of i; the child
+/// pointer leads to the first of them. If they are too far away for 15 bits, or in another block,
+/// `far` is set and the pointer leads to a far pointer.
 #include <cassert>
 #include <cstdint>
 #include <type_traits>
@@ -24,18 +24,18 @@ struct ChildDescriptor {
 
   std::uint32_t children = 0, contours = 0;
 
-  /// A leaf or a contour must be a valid child.
+  /// Only valid children may be leaves or have contours.
   static ChildDescriptor make(std::uint32_t valid_mask, std::uint32_t leaf_mask,
                               std::uint32_t contour_mask) {
     assert(valid_mask < 256 && (leaf_mask & ~valid_mask) == 0 && (contour_mask & ~valid_mask) == 0);
     return {valid_mask << 8 | leaf_mask, contour_mask};
   }
-  /// `slots` from this descriptor on to the first child's, or to the far pointer.
+  /// `slots` is the distance from this descriptor to the first child's, or to the far pointer.
   void set_child_pointer(std::uint32_t slots, bool is_far) {
     assert(slots <= kMaxChildPointer);
     children = (children & 0xFFFFu) | slots << 17 | (is_far ? 1u << 16 : 0u);
   }
-  /// `words` of 32 bits from this descriptor on to its first contour.
+  /// `words` is the distance from this descriptor to its first contour, in words of 32 bits.
   void set_contour_pointer(std::uint32_t words) {
     assert(words <= kMaxContourPointer);
     contours = (contours & 0xFFu) | words << 8;
@@ -43,7 +43,7 @@ struct ChildDescriptor {
 
   VOXDAG_HD std::uint32_t valid_mask() const { return children >> 8 & 0xFFu; }
   VOXDAG_HD std::uint32_t leaf_mask() const { return children & 0xFFu; }
-  /// The children that have descriptors.
+  /// Returns the mask of the children that have descriptors.
   VOXDAG_HD std::uint32_t inner_mask() const { return valid_mask() & ~leaf_mask(); }
   VOXDAG_HD std::uint32_t child_pointer() const { return children >> 17; }
   VOXDAG_HD bool is_far() const { return (children >> 16 & 1u) != 0; }

@@ -1,17 +1,17 @@
 #pragma once
-/// Sixteen colours in 64 bits.
+/// A colour block: sixteen colours in 64 bits.
 ///
-/// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 3.5: DXT1 without the
-/// meaning that it gives to transparency.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.5: DXT1 without
+/// its mode for transparency.
 ///
 ///   bits  0..15   c0 as RGB-565: red 15..11, green 10..5, blue 4..0
-///   bits 16..31   c1, likewise
-///   bits 32..63   sixteen selectors of 2 bits, that of value i at bit 32 + 2i:
+///   bits 16..31   c1 in the same form
+///   bits 32..63   sixteen selectors of 2 bits; that of value i is at bit 32 + 2i:
 ///                 0 is c0, 1 is c1, 2 is 2/3 c0 + 1/3 c1, 3 is 1/3 c0 + 2/3 c1
 ///
-/// Unlike in DXT1 the order of c0 and c1 has no meaning. A channel of k of n steps (31, 63, 31) is
-/// the value k / n exactly. Colours are stored as textures hold them, sRGB-encoded, and
-/// interpolated so: a renderer decodes a value first and makes it linear light then.
+/// Unlike in DXT1, the order of c0 and c1 has no meaning. A channel with the field k of n steps
+/// (31, 63, 31) has exactly the value k / n. Colours are stored and interpolated in sRGB encoding,
+/// as in textures: a renderer decodes a value first, then converts it to linear light.
 #include <cassert>
 #include <cstdint>
 #include <type_traits>
@@ -31,7 +31,7 @@ struct Rgb565 {
     assert(r >= 0 && r < 32 && g >= 0 && g < 64 && b >= 0 && b < 32);
     return static_cast<std::uint32_t>(r << 11 | g << 5 | b);
   }
-  /// Of the low 16 bits.
+  /// Reads the low 16 bits.
   VOXDAG_HD static constexpr Rgb565 unpack(std::uint32_t bits) {
     return {static_cast<int>(bits >> 11 & 31), static_cast<int>(bits >> 5 & 63),
             static_cast<int>(bits & 31)};
@@ -42,7 +42,7 @@ struct Rgb565 {
 struct ColorBlock {
   std::uint64_t bits = 0;
 
-  /// `selectors` as they stand in bits 32..63.
+  /// `selectors` is the content of bits 32..63.
   VOXDAG_HD static constexpr ColorBlock pack(Rgb565 c0, Rgb565 c1, std::uint32_t selectors) {
     return {static_cast<std::uint64_t>(selectors) << 32 | c1.pack() << 16 | c0.pack()};
   }
@@ -53,13 +53,13 @@ struct ColorBlock {
   VOXDAG_HD constexpr Rgb565 c1() const {
     return Rgb565::unpack(static_cast<std::uint32_t>(bits) >> 16);
   }
-  /// Selector of value `index` in [0, 16).
+  /// Returns the selector of value `index` in [0, 16).
   VOXDAG_HD constexpr int selector(int index) const {
     assert(index >= 0 && index < kValuesPerBlock);
     return static_cast<int>(bits >> (32 + 2 * index) & 3u);
   }
 
-  /// Value `index` in [0, 16): red, green and blue in [0,1], sRGB-encoded.
+  /// Returns value `index` in [0, 16): red, green and blue in [0,1], sRGB-encoded.
   VOXDAG_HD constexpr Vec3f color(int index) const {
     const int chosen = selector(index);
     const int thirds_of_c1 = chosen < 2 ? 3 * chosen : chosen - 1;

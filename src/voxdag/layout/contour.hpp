@@ -11,7 +11,7 @@
 ///
 ///   position(low) <= dot(n, x) <= position(high),   position(p) = |n|1 (2p - 127) / 127
 ///
-/// so that 0 and 127 just touch the cube's corners, whatever the normal.
+/// so that positions 0 and 127 touch corners of the cube, whatever the normal.
 #include <cassert>
 #include <cstdint>
 
@@ -20,12 +20,12 @@
 namespace voxdag {
 
 struct Contour {
-  static constexpr int kMaxNormal = 31;     ///< Of each component, either sign.
-  static constexpr int kMaxPosition = 127;  ///< Of low and high.
+  static constexpr int kMaxNormal = 31;     ///< The largest absolute value of a component.
+  static constexpr int kMaxPosition = 127;  ///< The largest value of low and high.
 
   std::uint32_t bits = 0;
 
-  /// `normal` is not zero; low <= high.
+  /// `normal` must not be zero; low <= high.
   VOXDAG_HD static Contour make(Vec3i normal, int low, int high) {
     assert(0 <= low && low <= high && high <= kMaxPosition);
     const auto field = [](std::int32_t v) { return static_cast<std::uint32_t>(v) & 63u; };
@@ -39,18 +39,19 @@ struct Contour {
   friend bool operator==(const Contour&, const Contour&) = default;
 
  private:
-  /// The six bits below bit 32 - shift, with their sign.
+  /// Returns the six bits below bit 32 - shift as a signed number.
   VOXDAG_HD std::int32_t component(int shift) const {
     return static_cast<std::int32_t>(bits << shift) >> 26;
   }
 };
 static_assert(sizeof(Contour) == 4);
 
+/// Returns |n|1, the sum of the components' absolute values.
 VOXDAG_HD constexpr std::int32_t length1(Vec3i n) {
   return (n.x < 0 ? -n.x : n.x) + (n.y < 0 ? -n.y : n.y) + (n.z < 0 ? -n.z : n.z);
 }
 
-/// The bound of dot(n, x) that `position` (low or high) stands for. T is float or double.
+/// Returns the bound of dot(n, x) that `position` (low or high) encodes. T is float or double.
 template <class T>
 VOXDAG_HD constexpr T contour_position(std::int32_t normal_length1, int position) {
   return static_cast<T>(normal_length1 * (2 * position - Contour::kMaxPosition)) /

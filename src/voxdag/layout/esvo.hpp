@@ -4,24 +4,24 @@
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.
 ///
 /// Everything is one array of 64-bit slots. A block is a whole number of pages of 1024 slots (8 KB)
-/// and holds a part of the octree that hangs together:
+/// and holds a connected part of the octree:
 ///
 ///   descriptors   descriptor_slots, an even number
-///     slot 0 of each page    page header: how many slots it is from here to the block's info
+///     slot 0 of each page    page header: the distance in slots from here to the block's info
 ///     other slots            child descriptors, far pointers, gaps (zero)
 ///   EsvoBlockInfo            where everything is
-///   contours                 32-bit words, padded to a slot; lists of siblings may overlap
-///   attachments              each an array of one compression block for each pair of slots
+///   contours                 32-bit words, padded to a slot; siblings' lists may overlap
+///   attachments              arrays of compression blocks, one block for each pair of slots
 ///   padding                  zeros
 ///
 /// A far pointer is a signed 32-bit distance in slots from the descriptor that uses it to the first
-/// of its children's descriptors. Descriptors with the same parent stand together within one page;
-/// the two of a pair of slots (2i, 2i + 1) have the same parent, so that the voxels they describe
-/// share a compression block: value 8 * (slot & 1) + child of block slot / 2, slots counted from
-/// the block's begin.
+/// of its children's descriptors. Descriptors with the same parent are stored together within one
+/// page. The two descriptors of a pair of slots (2i, 2i + 1) have the same parent, so that the
+/// voxels that they describe share a compression block: child c of the descriptor in slot s has
+/// value 8 * (s & 1) + c of compression block s / 2, slots counted from the block's begin.
 ///
-/// All references in a block are relative to where they stand. Only far pointers lead out of it,
-/// to the first descriptors of other blocks.
+/// All references in a block are relative to their own position. Only far pointers leave a block;
+/// they lead to the first descriptors of other blocks.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -37,29 +37,29 @@ inline constexpr std::uint32_t kEsvoPageSlots = 1024;
 /// What an attachment holds.
 enum class EsvoAttachmentKind : std::uint32_t {
   kNone = 0,
-  kColors = 1,   ///< layout/color_block.hpp, one slot each.
-  kNormals = 2,  ///< layout/normal_block.hpp, two slots each.
+  kColors = 1,   ///< layout/color_block.hpp: one slot per block.
+  kNormals = 2,  ///< layout/normal_block.hpp: two slots per block.
 };
 
 struct EsvoAttachment {
   EsvoAttachmentKind kind;
   std::uint32_t begin;           ///< Slot from the block's begin.
   std::uint32_t slots_per_pair;  ///< Slots of one compression block.
-  std::uint32_t count;           ///< Compression blocks: descriptor_slots / 2.
+  std::uint32_t count;           ///< Number of compression blocks: descriptor_slots / 2.
 };
 static_assert(sizeof(EsvoAttachment) == 16);
 
-/// The info section; slots count from the block's begin.
+/// The info section. Slots are counted from the block's begin.
 struct EsvoBlockInfo {
   static constexpr std::uint32_t kMaxAttachments = 4;
 
-  std::uint32_t slots;             ///< Of the whole block.
-  std::uint32_t descriptor_slots;  ///< Where this section stands, too.
-  std::uint32_t first_descriptor;  ///< The group of siblings from which all others hang.
-  std::uint32_t far_pointers;      ///< How many there are.
+  std::uint32_t slots;             ///< Size of the whole block.
+  std::uint32_t descriptor_slots;  ///< Also the slot where this section begins.
+  std::uint32_t first_descriptor;  ///< First of the group of siblings that all others descend from.
+  std::uint32_t far_pointers;      ///< Number of them.
   std::uint32_t contour_begin;     ///< Slot of the first contour.
-  std::uint32_t contour_count;     ///< Stored: siblings' lists that are alike stand once.
-  std::uint32_t descriptors;       ///< How many there are.
+  std::uint32_t contour_count;     ///< Stored contours: equal lists of siblings are stored once.
+  std::uint32_t descriptors;       ///< Number of them.
   std::uint32_t attachment_count;
   EsvoAttachment attachments[kMaxAttachments];
 
@@ -77,12 +77,12 @@ struct EsvoVoxel {
   int child = 0;
 };
 
-/// What kernels and readers take: points to the slots, owns nothing.
+/// A view for kernels and readers: points to the slots and owns nothing.
 struct EsvoView {
   const std::uint64_t* slots = nullptr;
   std::uint64_t slot_count = 0;
   std::uint64_t root = 0;   ///< Slot of the root's descriptor.
-  int levels = kMinLevels;  ///< L: voxels of level L, the finest possible, have a side of 1.
+  int levels = kMinLevels;  ///< L: voxels of level L, the finest, have a side of 1.
 
   /// An octree without voxels has no slots at all.
   VOXDAG_HD bool is_empty() const { return slot_count == 0; }
@@ -90,20 +90,20 @@ struct EsvoView {
     return ChildDescriptor::from_slot(slots[slot]);
   }
 
-  /// The slot of the first of the children's descriptors; `descriptor` stands in `slot` and has an
-  /// inner child.
+  /// Returns the slot of the first of the children's descriptors. `descriptor` is that of `slot`
+  /// and must have an inner child.
   VOXDAG_HD std::uint64_t first_child(std::uint64_t slot, ChildDescriptor descriptor) const {
     const std::uint64_t to = slot + descriptor.child_pointer();
     if (!descriptor.is_far()) return to;
     const auto distance = static_cast<std::int32_t>(static_cast<std::uint32_t>(slots[to]));
     return slot + static_cast<std::uint64_t>(static_cast<std::int64_t>(distance));
   }
-  /// The slot of the descriptor of `child`, an inner child.
+  /// Returns the slot of the descriptor of `child`, which must be an inner child.
   VOXDAG_HD std::uint64_t child(std::uint64_t slot, ChildDescriptor descriptor, int child) const {
     const std::uint32_t before = descriptor.inner_mask() & ((1u << child) - 1u);
     return first_child(slot, descriptor) + static_cast<std::uint64_t>(popcount8(before));
   }
-  /// The contour of `child`, which has one.
+  /// Returns the contour of `child`, which must have one.
   VOXDAG_HD Contour contour(std::uint64_t slot, ChildDescriptor descriptor, int child) const {
     const std::uint32_t before = descriptor.contour_mask() & ((1u << child) - 1u);
     const std::uint64_t word =
@@ -111,7 +111,7 @@ struct EsvoView {
     return {static_cast<std::uint32_t>(slots[word >> 1] >> (32 * (word & 1)))};
   }
 
-  /// The slot of the info section of the block that holds descriptor slot `slot`.
+  /// Returns the slot of the info section of the block that holds descriptor slot `slot`.
   VOXDAG_HD std::uint64_t info_slot(std::uint64_t slot) const {
     const std::uint64_t page = slot & ~std::uint64_t{kEsvoPageSlots - 1};
     return page + static_cast<std::uint32_t>(slots[page]);
@@ -119,7 +119,7 @@ struct EsvoView {
   VOXDAG_HD const EsvoBlockInfo& info(std::uint64_t slot) const {
     return *reinterpret_cast<const EsvoBlockInfo*>(slots + info_slot(slot));
   }
-  /// The compression block of kind `kind` of the voxels of the descriptor in `slot`, or null.
+  /// Returns the compression block of `kind` for the children of the descriptor in `slot`, or null.
   VOXDAG_HD const std::uint64_t* attachment(std::uint64_t slot, EsvoAttachmentKind kind) const {
     const std::uint64_t at = info_slot(slot);
     const auto& block = *reinterpret_cast<const EsvoBlockInfo*>(slots + at);
@@ -130,12 +130,12 @@ struct EsvoView {
   }
 };
 
-/// Which of the 16 values of its compression blocks is the voxel's.
+/// Returns which of the 16 values of its compression blocks is the voxel's.
 VOXDAG_HD constexpr int attachment_value(const EsvoVoxel& voxel) {
   return static_cast<int>(voxel.slot & 1) * 8 + voxel.child;
 }
 
-/// Owns an octree in memory. Value type; the view is valid while the owner lives unchanged.
+/// An octree in memory. The view is valid while this object lives unchanged.
 struct Esvo {
   std::vector<std::uint64_t> slots;
   std::uint64_t root = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What an ESVO's bytes are for.
+/// How an ESVO's bytes divide into its parts.
 #include <span>
 
 #include "voxdag/layout/esvo.hpp"
@@ -7,17 +7,17 @@
 
 namespace voxdag {
 
-/// Of all blocks; the sum is 8 * EsvoView::slot_count.
+/// Bytes of all blocks; the total is 8 * EsvoView::slot_count.
 struct EsvoBytes {
   std::uint64_t descriptors = 0;
   std::uint64_t far_pointers = 0;
-  /// Of the descriptor array: unpaired slots, page headers, ends of pages.
+  /// Unused slots among the descriptors: unpaired slots, page headers, ends of pages.
   std::uint64_t gaps = 0;
   std::uint64_t info = 0;
   std::uint64_t contours = 0;
   std::uint64_t colors = 0;
   std::uint64_t normals = 0;
-  std::uint64_t padding = 0;  ///< Up to whole pages.
+  std::uint64_t padding = 0;  ///< Fills blocks up to whole pages.
 
   std::uint64_t total() const {
     return descriptors + far_pointers + gaps + info + contours + colors + normals + padding;

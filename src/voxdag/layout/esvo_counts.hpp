@@ -1,5 +1,5 @@
 #pragma once
-/// How much of everything an ESVO has.
+/// Counts of an ESVO's parts.
 #include <array>
 #include <cstdint>
 
@@ -8,13 +8,14 @@
 namespace voxdag {
 
 struct EsvoCounts {
-  using PerLevel = std::array<std::uint64_t, kMaxLevels + 1>;  ///< By level, 0 is the root's.
+  using PerLevel = std::array<std::uint64_t, kMaxLevels + 1>;  ///< Indexed by level; 0 is the root.
 
   PerLevel voxels_per_level{};  ///< Inner voxels and leaves.
   PerLevel leaves_per_level{};
   std::uint64_t descriptors = 0;
   std::uint64_t far_pointers = 0;
-  std::uint64_t contours = 0;  ///< Voxels that have one; blocks may share them.
+  std::uint64_t contours =
+      0;  ///< Voxels with a contour; voxels of a block may share stored contours.
   std::uint64_t blocks = 0;
 
   std::uint64_t voxels() const { return sum(voxels_per_level); }

@@ -1,13 +1,14 @@
 #pragma once
 /// An ESVO's leaves as voxels of the finest level.
 ///
-/// A leaf of that level is one voxel. A coarser one stands for those of its voxels whose cubes meet
-/// the slab of every contour that cuts the leaf, its own and its ancestors': all that its shape
-/// touches, and so all of the exact cover.
+/// A leaf of the finest level is one voxel. A coarser leaf stands for those of its voxels whose
+/// cubes meet the slab of every contour that cuts the leaf, the leaf's own and its ancestors'.
+/// These are all voxels that the leaf's shape touches, so that none of the exact cover is missing.
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/esvo.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
 
@@ -20,14 +21,13 @@ class LeafPartWalk {
   LeafPartWalk(const EsvoView& esvo, const Box3i& window, const Fn& fn)
       : esvo_(esvo), window_(window), fn_(fn) {}
 
-  /// All below the descriptor in `slot`, whose voxel is at `origin`.
+  /// Visits all leaves below the descriptor in `slot`, whose voxel begins at `origin`.
   void walk(std::uint64_t slot, int level, Vec3i origin) {
     const ChildDescriptor d = esvo_.descriptor(slot);
     const int log2_size = esvo_.levels - level - 1;
     for (std::uint32_t left = d.valid_mask(); left != 0; left &= left - 1) {
       const int child = std::countr_zero(left);
-      const Vec3i at =
-          origin + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (std::int32_t{1} << log2_size);
+      const Vec3i at = origin + child_offset(child) * (std::int32_t{1} << log2_size);
       if (!meets_window(at, log2_size)) continue;
       const int slabs = slab_count_;
       if ((d.contour_mask() >> child & 1) != 0)
@@ -79,12 +79,12 @@ class LeafPartWalk {
 
   void walk_leaf(Vec3i at, int log2_size) {
     if (!meets_window(at, log2_size)) return;
-    // A leaf of the finest level is there, whatever rounding says of its slabs.
+    // A leaf of the finest level counts, even if its slabs miss it by a rounding error.
     if (log2_size > 0 && !meets_slabs(at, log2_size)) return;
     if (log2_size <= 2) return emit(at, log2_size);
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
     for (int child = 0; child < 8; ++child)
-      walk_leaf(at + Vec3i{child & 1, child >> 1 & 1, child >> 2} * half, log2_size - 1);
+      walk_leaf(at + child_offset(child) * half, log2_size - 1);
   }
 
   void emit(Vec3i at, int log2_size) {
@@ -108,15 +108,16 @@ class LeafPartWalk {
 
 }  // namespace detail
 
-/// Calls fn(Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) for the voxels in the
-/// half-open `window` that a leaf stands for, 4³ at a time or less: a leaf may come several times,
-/// and so may a block, with other voxels. All in Morton order. The view must be valid.
+/// Calls fn(Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) with the voxels in the
+/// half-open `window` that each leaf stands for, in blocks of 4³, in Morton order. A large leaf
+/// comes once for each of its blocks; a block comes once for each of its leaves. The view must be
+/// valid.
 template <class Fn>
 void for_each_leaf_part(const EsvoView& esvo, const Box3i& window, const Fn& fn) {
   if (!esvo.is_empty()) detail::LeafPartWalk<Fn>(esvo, window, fn).walk(esvo.root, 0, {});
 }
 
-/// As of a DAG: fn(Vec3i origin, std::uint64_t mask), each block once.
+/// Calls fn(Vec3i origin, std::uint64_t mask) once for each block of 4³ with voxels, as for a DAG.
 template <class Fn>
 void for_each_leaf_block(const EsvoView& esvo, const Box3i& window, const Fn& fn) {
   Vec3i block{};

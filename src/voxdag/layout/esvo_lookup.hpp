@@ -5,8 +5,8 @@
 
 namespace voxdag {
 
-/// The voxel of `level` in [1, L] that holds `voxel`, one of the finest level in coordinates of the
-/// grid. There must be one, as where a ray hit: all above it are no leaves.
+/// Returns the voxel of `level` in [1, L] that holds the voxel of the finest level at `voxel`. It
+/// must exist, as it does at a ray's hit, and none of its ancestors may be a leaf.
 VOXDAG_HD inline EsvoVoxel esvo_voxel_at(const EsvoView& esvo, Vec3i voxel, int level) {
   std::uint64_t slot = esvo.root;
   for (int l = 1;; ++l) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Walks over the voxels of a DAG in Morton order, without holding them, and point look-ups.
+/// Iteration over the voxels of a DAG in Morton order, without a list of them in memory.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,13 +11,13 @@
 
 namespace voxdag {
 
-/// All voxels of the grid, as a half-open box of voxel coordinates.
+/// Returns all voxels of the grid, as a half-open box of voxel coordinates.
 inline Box3i whole_grid(int levels) {
   const std::int32_t n = std::int32_t{1} << levels;
   return {{0, 0, 0}, {n, n, n}};
 }
 
-/// kLeafSlabs[axis][k]: the voxels of a leaf block whose coordinate on the axis is k.
+/// kLeafSlabs[axis][k] is the mask of the voxels of a leaf block whose coordinate on the axis is k.
 inline constexpr std::array<std::array<std::uint64_t, 4>, 3> kLeafSlabs = [] {
   std::array<std::array<std::uint64_t, 4>, 3> slabs{};
   for (unsigned i = 0; i < 64; ++i) {
@@ -27,7 +27,7 @@ inline constexpr std::array<std::array<std::uint64_t, 4>, 3> kLeafSlabs = [] {
   return slabs;
 }();
 
-/// The voxels of the leaf block at `origin` that lie in the half-open `window`.
+/// Returns the mask of the voxels of the leaf block at `origin` that lie in the half-open `window`.
 inline std::uint64_t leaf_window_mask(Vec3i origin, const Box3i& window) {
   std::uint64_t mask = ~std::uint64_t{0};
   for (int axis = 0; axis < 3; ++axis) {
@@ -58,7 +58,7 @@ void walk_leaf_blocks(const SvdagView& dag, const Box3i& window, int level, std:
   const std::uint32_t* pointer = node + 1;
   for (std::uint32_t left = child_mask(node); left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
-    const Vec3i child = origin + Vec3i{i & 1, i >> 1 & 1, i >> 2} * half;
+    const Vec3i child = origin + child_offset(i) * half;
     walk_leaf_blocks(dag, window, level + 1, *pointer++, child, fn);
   }
 }
@@ -66,15 +66,15 @@ void walk_leaf_blocks(const SvdagView& dag, const Box3i& window, int level, std:
 }  // namespace detail
 
 /// Calls fn(Vec3i origin, std::uint64_t mask) for every leaf block that has voxels in the half-open
-/// `window`, in Morton order; the mask holds those voxels only. The window may reach out of the
-/// grid. The view must be valid. O(blocks met) time, stack of L frames.
+/// `window`, in Morton order; the mask holds only the voxels in the window. The window may extend
+/// beyond the grid. The view must be valid. O(blocks met) time, a stack of L frames.
 template <class Fn>
 void for_each_leaf_block(const SvdagView& dag, const Box3i& window, const Fn& fn) {
   if (!dag.is_empty()) detail::walk_leaf_blocks(dag, window, 0, 0, {0, 0, 0}, fn);
 }
 
-/// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in the order that
-/// for_each_leaf_block has for such a view: of a DAG in Morton order.
+/// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in the order of the view's
+/// for_each_leaf_block: Morton order for a DAG.
 template <class View, class Fn>
 void for_each_voxel(const View& voxels, const Box3i& window, const Fn& fn) {
   for_each_leaf_block(voxels, window, [&](Vec3i origin, std::uint64_t mask) {

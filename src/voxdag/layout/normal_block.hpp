@@ -1,24 +1,24 @@
 #pragma once
-/// Sixteen normals in 128 bits.
+/// A normal block: sixteen normals in 128 bits.
 ///
-/// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 3.5. A normal is one
-/// of 4x4 points of a grid, base + cu u_axis + cv v_axis with cu and cv of {-1, -1/3, 1/3, 1},
-/// normalised.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.5. A normal is
+/// one of the 4x4 points of a grid, base + cu u_axis + cv v_axis with cu and cv in {-1, -1/3, 1/3,
+/// 1}, normalised.
 ///
 ///   word 0   the base, a point of the cube [-1,1]³:
 ///              bits 31..29  face: 2 axis + (1 if the coordinate of that axis is -1, not 1);
-///                           6 and 7 are not used and read as 4 and 5
+///                           6 and 7 are unused; readers take them for 4 and 5
 ///              bits 28..14  U: the coordinate of axis + 1 (mod 3) is (U - 16384) / 16383
 ///              bits 13..0   V: the coordinate of axis + 2 (mod 3) is (V - 8192) / 8191
 ///   word 1   bits 15..0     the u axis: x 3..0, y 7..4, z 11..8 in two's complement and
 ///                           e 15..12; the vector is (x, y, z) 2^(e - 16)
-///            bits 31..16    the v axis, likewise
-///   word 2   the steps of cu, 2 bits for each value, that of value i at bit 2i: k is (2k - 3) / 3
-///   word 3   the steps of cv, likewise
+///            bits 31..16    the v axis in the same form
+///   word 2   the steps of cu, 2 bits per value, those of value i at bit 2i: k means (2k - 3) / 3
+///   word 3   the steps of cv in the same form
 ///
-/// Zero, one and minus one are coordinates exactly, so that the normals of axis-aligned and
-/// diagonal walls are. The base lies within 0.004 degrees of any direction, and the axes go down to
-/// steps of 2^-16 and up to 4, twice what a grid needs to hold a direction and its opposite.
+/// The coordinates 0, 1 and -1 are exact, and with them the normals of axis-aligned and diagonal
+/// walls. Some base lies within 0.004 degrees of any direction. The axes have steps from 2^-16 up
+/// to lengths of 4, twice what a grid needs to hold a direction and its opposite.
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -30,8 +30,8 @@
 
 namespace voxdag {
 
-/// A point of the surface of the cube [-1,1]³, in steps. U or V of 0 lies just outside and is read,
-/// but never written.
+/// A point on the surface of the cube [-1,1]³, in steps. A U or V of 0 lies just outside: readers
+/// accept it, writers never produce it.
 struct CubePoint {
   int face = 0;   ///< [0, 6)
   int u = 16384;  ///< [0, 32768)
@@ -69,7 +69,7 @@ struct GridAxis {
     assert(exponent >= 0 && exponent < 16);
     return static_cast<std::uint32_t>((x & 15) | (y & 15) << 4 | (z & 15) << 8 | exponent << 12);
   }
-  /// Of the low 16 bits.
+  /// Reads the low 16 bits.
   VOXDAG_HD static constexpr GridAxis unpack(std::uint32_t bits) {
     const auto component = [bits](int shift) {
       return static_cast<int>((bits >> shift & 15u) ^ 8u) - 8;
@@ -81,7 +81,7 @@ struct GridAxis {
     return Vec3f{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)} *
            scale(exponent);
   }
-  /// 2^(exponent - 16).
+  /// Returns 2^(exponent - 16).
   VOXDAG_HD static float scale(int exponent) {
     return float_from_bits(static_cast<std::uint32_t>(127 + exponent - kBias) << 23);
   }
@@ -91,7 +91,7 @@ struct GridAxis {
 struct NormalBlock {
   std::uint32_t words[4] = {};
 
-  /// `u_steps` and `v_steps` as they stand in words 2 and 3.
+  /// `u_steps` and `v_steps` are the contents of words 2 and 3.
   VOXDAG_HD static constexpr NormalBlock pack(CubePoint base, GridAxis u_axis, GridAxis v_axis,
                                               std::uint32_t u_steps, std::uint32_t v_steps) {
     return {{base.pack(), u_axis.pack() | v_axis.pack() << 16, u_steps, v_steps}};
@@ -100,19 +100,19 @@ struct NormalBlock {
   VOXDAG_HD constexpr CubePoint base() const { return CubePoint::unpack(words[0]); }
   VOXDAG_HD constexpr GridAxis u_axis() const { return GridAxis::unpack(words[1] & 0xFFFFu); }
   VOXDAG_HD constexpr GridAxis v_axis() const { return GridAxis::unpack(words[1] >> 16); }
-  /// Steps of value `index` in [0, 16) along the axes, [0, 3].
+  /// Return the steps, 0 to 3, of value `index` in [0, 16) along the axes.
   VOXDAG_HD constexpr int u_step(int index) const { return step(words[2], index); }
   VOXDAG_HD constexpr int v_step(int index) const { return step(words[3], index); }
 
-  /// base + cu u + cv v before it is normalised, for the steps of cu and cv.
+  /// Returns base + cu u + cv v, not normalised, for the steps of cu and cv.
   VOXDAG_HD static Vec3f grid_point(Vec3f base, Vec3f u, Vec3f v, int u_step, int v_step) {
     const float cu = static_cast<float>(2 * u_step - 3) / 3.0f;
     const float cv = static_cast<float>(2 * v_step - 3) / 3.0f;
     return base + u * cu + v * cv;
   }
 
-  /// Value `index` in [0, 16), of unit length. A point of the grid too near to zero to have a
-  /// direction gives the base's.
+  /// Returns value `index` in [0, 16), of unit length. If the grid's point is too close to zero to
+  /// have a direction, returns the direction of the base.
   VOXDAG_HD Vec3f normal(int index) const {
     const Vec3f base_point = base().position();
     Vec3f n =

@@ -1,13 +1,13 @@
 #pragma once
 /// The sparse voxel DAG in the layout of its paper.
 ///
-/// Source: Kämpe, Sintorn, Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, Figure 3.
+/// Source: Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
+/// Figure 3.
 ///
 /// A grid of N³ voxels, N = 2^L, has nodes of level 0 (the root) to L-1. Levels 0..L-3 are stored
 /// as 32-bit words: a word with the 8-bit child mask, then one pointer for each child present, in
 /// the order of the child index (x=1, y=2, z=4). A node of level L-2 is a leaf block, the 64-bit
-/// mask of its 4³ voxels in Morton order, so its byte i is the child mask of its child i, of level
-/// L-1.
+/// mask of its 4³ voxels in Morton order: byte i is the child mask of its child i, of level L-1.
 ///
 ///   nodes        | level 0 | level 1 | ... | level L-3 |       32-bit words
 ///   leaf_blocks  | level L-2 |                                  64-bit masks
@@ -15,10 +15,10 @@
 ///   node         | mask (8 of 32 bits) | pointer | ... |       1 + popcount(mask) words
 ///   pointer      of level < L-3: word index in `nodes`; of level L-3: index in `leaf_blocks`
 ///
-/// Canonical order: the nodes of each level stand in the order in which a depth-first walk from the
-/// root, children in Morton order, first meets them. The root is the first of its level. A level
-/// holds no two equal nodes, no node is empty and none is unreachable: the DAG is minimal and its
-/// words depend on the voxel set alone. A DAG without voxels has no nodes at all.
+/// Canonical order: the nodes of each level are stored in the order in which a depth-first walk
+/// from the root, children in Morton order, first meets them. No two nodes of a level are equal, no
+/// node is empty and every node can be reached: the DAG is minimal, and its words depend on the
+/// voxel set alone. A DAG without voxels has no nodes at all.
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -30,23 +30,23 @@
 
 namespace voxdag {
 
-/// What kernels and readers take: points into an Svdag or a mapped file, owns nothing.
+/// A view for kernels and readers: points into an Svdag or the bytes of a file and owns nothing.
 struct SvdagView {
   const std::uint32_t* nodes = nullptr;
   const std::uint64_t* leaf_blocks = nullptr;
   std::uint64_t leaf_block_count = 0;
-  /// Level l < L-2 is nodes[level_begin[l]] up to level_begin[l + 1]; the entries from L-2 on all
-  /// hold the number of words in `nodes`.
+  /// The words of level l < L-2 are nodes[level_begin[l]] up to nodes[level_begin[l + 1] - 1]. The
+  /// entries from L-2 on all hold the number of words in `nodes`.
   std::uint64_t level_begin[kMaxLevels + 1] = {};
   int levels = kMinLevels;  ///< L
 
   VOXDAG_HD std::uint64_t node_words() const { return level_begin[levels - 2]; }
   VOXDAG_HD bool is_empty() const { return leaf_block_count == 0; }
-  /// Bytes of the paper's layout: 4 + 4 per child for inner nodes, 8 per leaf block.
+  /// Returns the bytes of the paper's layout: 4 + 4 per child for inner nodes, 8 per leaf block.
   VOXDAG_HD std::uint64_t bytes() const { return node_words() * 4 + leaf_block_count * 8; }
 };
 
-/// Owns a DAG in memory. Value type; the view is valid while the owner lives unchanged.
+/// A DAG in memory. The view is valid while this object lives unchanged.
 struct Svdag {
   int levels = kMinLevels;
   std::vector<std::uint32_t> nodes;
@@ -67,12 +67,12 @@ struct Svdag {
 
 VOXDAG_HD inline std::uint32_t child_mask(const std::uint32_t* node) { return node[0] & 0xFFu; }
 
-/// The pointer to child `index`, which must be present.
+/// Returns the pointer to child `index`, which must be present.
 VOXDAG_HD inline std::uint32_t child_pointer(const std::uint32_t* node, int index) {
   return node[1 + popcount8(node[0] & ((1u << index) - 1u))];
 }
 
-/// The child mask of a leaf block as a node of level L-2: bit i tells if octant i has voxels.
+/// Returns the child mask of a leaf block: bit i says whether octant i has voxels.
 VOXDAG_HD inline std::uint32_t leaf_block_child_mask(std::uint64_t block) {
   std::uint32_t mask = 0;
   for (int i = 0; i < 8; ++i) mask |= ((block >> (8 * i)) & 0xFFu) != 0 ? 1u << i : 0u;

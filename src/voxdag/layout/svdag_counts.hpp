@@ -1,5 +1,5 @@
 #pragma once
-/// How many nodes a DAG has, and how many the octree has that it stands for.
+/// Counts of the nodes of a DAG, and of the octree that it represents.
 #include <cstdint>
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace voxdag {
 
-/// Levels 0..L-1, root first. Level L-1 is that of the 2³ nodes whose children are voxels; the DAG
-/// counts its unique ones although the layout stores them inside the leaf blocks.
+/// Levels 0..L-1, root first. The nodes of level L-1 are those of 2³ voxels. The counts of the DAG
+/// include the unique ones, although the layout stores them inside of leaf blocks.
 struct SvdagCounts {
   std::uint64_t voxels = 0;
   std::vector<std::uint64_t> svo_nodes_per_level;
@@ -19,8 +19,8 @@ struct SvdagCounts {
   friend bool operator==(const SvdagCounts&, const SvdagCounts&) = default;
 };
 
-/// Counts by one pass over the DAG from the root down. Serial; O(DAG) time, 16 bytes per node of
-/// the two largest neighbouring levels. The view must be valid (see validate_svdag).
+/// Counts the nodes in one pass over the DAG from the root down. Serial; O(DAG) time, 16 bytes per
+/// node of the two largest neighbouring levels. The view must be valid (see validate_svdag).
 SvdagCounts count_svdag(const SvdagView& dag);
 
 }  // namespace voxdag

@@ -5,7 +5,8 @@
 
 namespace voxdag {
 
-/// The mask of the leaf block that holds `voxel`; 0 if it has no voxels or lies outside the grid.
+/// Returns the mask of the leaf block that holds `voxel`: 0 if it has no voxels or lies outside of
+/// the grid.
 VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) {
   const auto outside = [&](std::int32_t c) { return c < 0 || c >> dag.levels != 0; };
   if (dag.is_empty() || outside(voxel.x) || outside(voxel.y) || outside(voxel.z)) return 0;
@@ -20,9 +21,8 @@ VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) 
   return dag.leaf_blocks[at];
 }
 
-/// Whether the cell `cell` of `level` (cells of 2^(L-level) voxels, coordinates in [0, 2^level))
-/// contains a voxel that is set. level in [0, L]; level L asks for one voxel.
-/// False outside the grid.
+/// Returns whether `cell` of `level` in [0, L] contains a voxel that is set. A cell of that level
+/// has 2^(L-level) voxels a side, and coordinates in [0, 2^level). False outside of the grid.
 VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level) {
   if (dag.is_empty() || (cell.x | cell.y | cell.z) >> level != 0) return false;
   std::uint32_t at = 0;
@@ -35,10 +35,10 @@ VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level
       at = child_pointer(node, child);
       continue;
     }
-    // Inside a leaf block: one octant of 2³ voxels, then one voxel of it.
+    // Inside of a leaf block: an octant of 2³ voxels, then one voxel of it.
     const std::uint64_t octant = (dag.leaf_blocks[at] >> (8 * child)) & 0xFF;
     if (level == dag.levels - 1) return octant != 0;
-    const int voxel = (cell.x & 1) | (cell.y & 1) << 1 | (cell.z & 1) << 2;
+    const int voxel = child_index(cell, 0);
     return ((octant >> voxel) & 1) != 0;
   }
   return true;

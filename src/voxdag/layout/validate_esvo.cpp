@@ -5,15 +5,14 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {
 
-[[noreturn]] void fail(const std::string& place, const std::string& reason) {
-  throw Error("", place, reason);
+[[noreturn]] void fail(ErrorPlace place, const std::string& reason) {
+  throw Error("", std::move(place), reason);
 }
-
-std::string slot_place(std::uint64_t slot) { return "slot " + std::to_string(slot); }
 
 std::uint32_t slots_per_pair(EsvoAttachmentKind kind) {
   return kind == EsvoAttachmentKind::kColors ? 1 : kind == EsvoAttachmentKind::kNormals ? 2 : 0;
@@ -24,21 +23,21 @@ EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
   constexpr std::size_t kInfoSlots = sizeof(EsvoBlockInfo) / 8;
   if (slots.size() < kEsvoPageSlots || slots.size() % kEsvoPageSlots != 0 ||
       slots.size() > 0xFFFFFFFFu)
-    fail("", "not a number of pages");
+    fail("", "its size is not a whole number of pages");
   const std::uint64_t at = slots[0];
   if (at < 2 || at % 2 != 0 || at + kInfoSlots > slots.size())
     fail("", "its page header points to no info section");
   EsvoBlockInfo info;
   std::memcpy(&info, slots.data() + at, sizeof info);
   if (info.slots != slots.size() || info.descriptor_slots != at)
-    fail("", "its info section has other sizes");
+    fail("", "its info section disagrees about its size");
   for (std::uint64_t page = 0; page < at; page += kEsvoPageSlots)
     if (slots[page] != at - page) fail("", "a page header is wrong");
   const auto fits = [&](std::uint64_t begin, std::uint64_t count) {
     return begin >= at + kInfoSlots && begin + count <= slots.size();
   };
   if (!fits(info.contour_begin, (std::uint64_t{info.contour_count} + 1) / 2))
-    fail("", "its contours are not in it");
+    fail("", "its contours lie outside of it");
   if (info.attachment_count > EsvoBlockInfo::kMaxAttachments) fail("", "too many attachments");
   for (std::uint32_t i = 0; i < info.attachment_count; ++i) {
     const EsvoAttachment& attachment = info.attachments[i];
@@ -46,7 +45,7 @@ EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
     if (expected == 0 || attachment.slots_per_pair != expected ||
         attachment.count != info.descriptor_slots / 2 ||
         !fits(attachment.begin, std::uint64_t{attachment.count} * expected))
-      fail("", "attachment " + std::to_string(i) + " is not what it should be");
+      fail("", "attachment " + std::to_string(i) + " is malformed");
   }
   return info;
 }
@@ -82,11 +81,11 @@ class BlockWalk {
   void check_group(std::uint64_t first, std::uint64_t count) {
     const std::uint64_t end = first + count;
     if (end > info_.descriptor_slots)
-      fail(slot_place(first), "a pointer to something else than descriptors");
+      fail(ErrorPlace::slot(first), "the siblings extend past the descriptors");
     if (first % kEsvoPageSlots == 0 || first / kEsvoPageSlots != (end - 1) / kEsvoPageSlots)
-      fail(slot_place(first), "siblings lie across a page header");
+      fail(ErrorPlace::slot(first), "the siblings lie across a page header");
     for (std::uint64_t slot = first; slot < end; ++slot) {
-      if (seen_[slot]) fail(slot_place(slot), "reached twice");
+      if (seen_[slot]) fail(ErrorPlace::slot(slot), "two pointers lead to this descriptor");
       seen_[slot] = true;
     }
   }
@@ -95,9 +94,11 @@ class BlockWalk {
     const std::uint64_t slot = step.slot;
     const ChildDescriptor d = view_.descriptor(slot);
     const int level = step.level + 1;
-    if (d.valid_mask() == 0) fail(slot_place(slot), "a descriptor without children");
-    if ((d.leaf_mask() & ~d.valid_mask()) != 0) fail(slot_place(slot), "a leaf that is no child");
-    if ((d.contour_mask() & ~d.valid_mask()) != 0) fail(slot_place(slot), "a contour of no child");
+    if (d.valid_mask() == 0) fail(ErrorPlace::slot(slot), "the descriptor has no children");
+    if ((d.leaf_mask() & ~d.valid_mask()) != 0)
+      fail(ErrorPlace::slot(slot), "the leaf mask marks an absent child");
+    if ((d.contour_mask() & ~d.valid_mask()) != 0)
+      fail(ErrorPlace::slot(slot), "the contour mask marks an absent child");
     EsvoCounts& counts = check_.counts;
     ++counts.descriptors;
     counts.voxels_per_level[static_cast<std::size_t>(level)] +=
@@ -106,19 +107,19 @@ class BlockWalk {
         static_cast<std::uint64_t>(popcount8(d.leaf_mask()));
     check_contours(slot, d);
     if (d.inner_mask() == 0) return;
-    if (level == view_.levels) fail(slot_place(slot), "children below the finest level");
+    if (level == view_.levels)
+      fail(ErrorPlace::slot(slot), "the voxels of the finest level have children");
 
     const std::uint64_t pointer = slot + d.child_pointer();
     if (d.child_pointer() == 0 || pointer >= info_.descriptor_slots)
-      fail(slot_place(slot), "a child pointer out of its block");
+      fail(ErrorPlace::slot(slot), "the child pointer leaves the block");
     Vec3i cells[8];
     std::size_t count = 0;
     for (int child = 0; child < 8; ++child)
-      if ((d.inner_mask() >> child & 1) != 0)
-        cells[count++] = step.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2};
+      if ((d.inner_mask() >> child & 1) != 0) cells[count++] = step.cell * 2 + child_offset(child);
     if (d.is_far()) {
       if (pointer % kEsvoPageSlots == 0 || seen_[pointer])
-        fail(slot_place(slot), "no far pointer where one should be");
+        fail(ErrorPlace::slot(slot), "the far pointer is missing");
       seen_[pointer] = true;
       ++counts.far_pointers;
       check_.links.push_back({static_cast<std::uint32_t>(slot),
@@ -139,12 +140,13 @@ class BlockWalk {
     const std::uint64_t begin = 2 * std::uint64_t{info_.contour_begin};
     const std::uint64_t first = 2 * slot + d.contour_pointer();
     if (first < begin || first + count > begin + info_.contour_count)
-      fail(slot_place(slot), "a contour pointer to something else than contours");
+      fail(ErrorPlace::slot(slot), "the contour pointer leaves the contours");
     for (int child = 0; child < 8; ++child) {
       if ((d.contour_mask() >> child & 1) == 0) continue;
       const Contour contour = view_.contour(slot, d, child);
-      if (contour.normal() == Vec3i{}) fail(slot_place(slot), "a contour without a normal");
-      if (contour.low() > contour.high()) fail(slot_place(slot), "a contour inside out");
+      if (contour.normal() == Vec3i{}) fail(ErrorPlace::slot(slot), "a contour has no normal");
+      if (contour.low() > contour.high())
+        fail(ErrorPlace::slot(slot), "a contour's planes are in the wrong order");
     }
   }
 
@@ -163,7 +165,7 @@ EsvoBlockCheck check_esvo_block(std::span<const std::uint64_t> slots, const Esvo
   EsvoBlockCheck check = BlockWalk(slots, info, levels).run(entry, siblings);
   if (check.counts.descriptors != info.descriptors ||
       check.counts.far_pointers != info.far_pointers || check.counts.contours < info.contour_count)
-    fail("", "its info section counts otherwise");
+    fail("", "its info section disagrees with its contents");
   check.counts.blocks = 1;
   return check;
 }
@@ -173,13 +175,13 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
   for (std::size_t i = 0; i < directory.size(); ++i) {
     const EsvoBlockEntry& block = directory[i];
     if (block.begin != end || block.slots > view.slot_count - end || block.slots == 0)
-      fail("block " + std::to_string(i), "not where the directory says");
-    if (block.reserved != 0) fail("block " + std::to_string(i), "reserved bytes are not zero");
+      fail(ErrorPlace::block(i), "is not where the directory says");
+    if (block.reserved != 0) fail(ErrorPlace::block(i), "reserved bytes are not zero");
     end += block.slots;
   }
-  if (end != view.slot_count) fail("directory", "slots that belong to no block");
+  if (end != view.slot_count) fail("directory", "some slots belong to no block");
   if (view.is_empty()) return {};
-  if (view.root >= view.slot_count) fail("root", "out of the octree");
+  if (view.root >= view.slot_count) fail("root", "lies outside of the octree");
 
   const auto block_at = [&](std::uint64_t slot) {
     const auto after =
@@ -193,7 +195,7 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
   };
   const std::size_t root_block = block_at(view.root);
   if (directory[root_block].parent != EsvoBlockEntry::kNoParent)
-    fail("root", "its block has a parent");
+    fail("root", "the root's block has a parent");
   std::vector<Open> stack{{root_block, {Vec3i{}}}};
   std::vector<bool> seen(directory.size());
   seen[root_block] = true;
@@ -203,38 +205,38 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
     const Open open = std::move(stack.back());
     stack.pop_back();
     const EsvoBlockEntry& entry = directory[open.block];
-    const std::string place = "block " + std::to_string(open.block);
+    const ErrorPlace place = ErrorPlace::block(open.block);
     EsvoBlockCheck check;
     try {
       check = check_esvo_block({view.slots + entry.begin, entry.slots}, entry, open.siblings,
                                view.levels);
     } catch (const Error& error) {
-      fail(place + (error.place().empty() ? "" : ", " + error.place()), error.reason());
+      throw error.within(place);
     }
     if (open.block == root_block &&
         view.root - entry.begin != view.info(entry.begin).first_descriptor)
-      fail("root", "not the first descriptor of its block");
+      fail("root", "is not the first descriptor of its block");
     counts += check.counts;
     for (EsvoFarLink& link : check.links) {
       const std::int64_t target = static_cast<std::int64_t>(entry.begin) + link.target;
-      const std::string from = place + ", " + slot_place(link.slot);
+      const ErrorPlace from = place / ErrorPlace::slot(link.slot);
       if (target < 0 || static_cast<std::uint64_t>(target) >= view.slot_count)
-        fail(from, "a far pointer out of the octree");
+        fail(from, "the far pointer leaves the octree");
       const std::size_t below = block_at(static_cast<std::uint64_t>(target));
       const EsvoBlockEntry& child = directory[below];
-      if (seen[below]) fail(from, "its children's block is reached twice");
+      if (seen[below]) fail(from, "two far pointers lead to the same block");
       seen[below] = true;
       if (child.parent != entry.begin + link.slot || child.level != link.level ||
           child.cell != link.cell)
-        fail(from, "the directory tells otherwise of the block of its children");
+        fail(from, "the directory disagrees with this slot about its child block");
       // The info section is looked at again, and for good, when the block's turn comes.
       const std::span<const std::uint64_t> slots(view.slots + child.begin, child.slots);
       if (check_info(slots).first_descriptor != static_cast<std::uint64_t>(target) - child.begin)
-        fail(from, "a far pointer to something else than the first descriptor of a block");
+        fail(from, "the far pointer does not lead to the first descriptor of a block");
       stack.push_back({below, std::move(link.siblings)});
     }
   }
-  if (counts.blocks != directory.size()) fail("directory", "a block that nothing leads to");
+  if (counts.blocks != directory.size()) fail("directory", "no pointer leads to some block");
   return counts;
 }
 

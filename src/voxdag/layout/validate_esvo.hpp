@@ -1,5 +1,5 @@
 #pragma once
-/// Whether the slots of an ESVO are what esvo.hpp says, for data that comes from outside.
+/// Validation of an ESVO from an untrusted source against the layout in esvo.hpp.
 #include <span>
 #include <vector>
 
@@ -11,32 +11,32 @@ namespace voxdag {
 
 /// A descriptor whose children are in another block.
 struct EsvoFarLink {
-  std::uint32_t slot = 0;   ///< Of the descriptor, from its block's begin.
-  std::int64_t target = 0;  ///< The first child, from the same begin.
-  int level = 0;            ///< Of the descriptor's voxel.
+  std::uint32_t slot = 0;   ///< The descriptor, counted from its block's begin.
+  std::int64_t target = 0;  ///< The first child, counted from the same begin.
+  int level = 0;            ///< Level of the descriptor's voxel.
   Vec3i cell{};
   std::vector<Vec3i> siblings;  ///< The cells of the children that have descriptors.
 };
 
-/// What is found in one block.
+/// The result of checking one block.
 struct EsvoBlockCheck {
   EsvoCounts counts;
   std::vector<EsvoFarLink> links;
 };
 
-/// One block by itself: its info section and page headers hold together; from its first group, of
-/// the descriptors of the voxels at `siblings`, every descriptor is reached once, stands between
-/// page headers with its siblings on one page, and no voxel of level `levels` has children;
-/// contours are in the block and have a normal. Of `entry` the level counts, and whether there is a
-/// parent. Throws Error("", place, reason) at the first fault; place is "slot 4711" of the block or
-/// empty. O(block) time, one bit of memory per slot.
+/// Checks one block by itself. The info section and the page headers must agree. The walk starts at
+/// the block's first group, the descriptors of the voxels at `siblings`: it must reach every
+/// descriptor once; siblings must lie on one page, between page headers; no voxel of level `levels`
+/// may have children; contours must lie in the block and have a normal. Uses the level of `entry`
+/// and whether it has a parent. Throws Error("", place, reason) at the first fault; the place is a
+/// slot of the block, or empty. O(block) time, one bit of memory per slot.
 EsvoBlockCheck check_esvo_block(std::span<const std::uint64_t> slots, const EsvoBlockEntry& entry,
                                 std::span<const Vec3i> siblings, int levels);
 
-/// Safety: a view that passes can be walked, and the attributes of its voxels looked up, by any
-/// code without a check. The blocks of the directory lie back to back and fill the slots; each is
-/// sound by itself, reached once from the root, and its entry says by which descriptor and for
-/// which cell. Returns the counts. Throws Error("", place, reason) at the first fault; place is
+/// Checks that any code can walk the view, and look up its voxels' attributes, without further
+/// checks. The blocks of the directory must lie back to back and fill the slots. Each must be sound
+/// by itself and reached once from the root, by the descriptor and for the cell that its entry
+/// says. Returns the counts. Throws Error("", place, reason) at the first fault; the place is
 /// "block 3" or "block 3, slot 4711". O(ESVO) time. `view.slots` must have slot_count words.
 EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> directory);
 

@@ -12,13 +12,13 @@ namespace {
 constexpr std::uint64_t kMostWords = std::uint64_t{1} << 32;
 
 [[noreturn]] void fail_at_word(int level, std::uint64_t word, const std::string& reason) {
-  throw Error("", "level " + std::to_string(level) + ", word " + std::to_string(word), reason);
+  throw Error("", ErrorPlace::level(level) / ErrorPlace::word(word), reason);
 }
 [[noreturn]] void fail_at_leaf_block(std::uint64_t index, const std::string& reason) {
-  throw Error("", "leaf block " + std::to_string(index), reason);
+  throw Error("", ErrorPlace::leaf_block(index), reason);
 }
 [[noreturn]] void fail_level_table(const std::string& reason) {
-  throw Error("", "level table", reason);
+  throw Error("", ErrorPlace::level_table(), reason);
 }
 
 void validate_level_table(const SvdagView& dag) {

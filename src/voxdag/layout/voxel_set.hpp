@@ -1,5 +1,5 @@
 #pragma once
-/// The voxels of the finest level, whatever form they are stored in.
+/// The voxels of a DAG or an ESVO behind one type.
 #include <variant>
 
 #include "voxdag/layout/esvo_leaf_parts.hpp"
@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// A view: points to what it was made from, which must be valid.
+/// A view: points to the DAG or ESVO that it was made from, which must be valid.
 class VoxelSet {
  public:
   VoxelSet(const SvdagView& dag) : view_(dag) {}   // NOLINT(google-explicit-constructor)
@@ -20,7 +20,8 @@ class VoxelSet {
     return std::visit([](const auto& view) { return view.levels; }, view_);
   }
 
-  /// As the functions of the same names for DAGs; of an ESVO see esvo_leaf_parts.hpp.
+  /// See the functions of these names in for_each_voxel.hpp, and for an ESVO in
+  /// esvo_leaf_parts.hpp.
   template <class Fn>
   void for_each_leaf_block(const Box3i& window, const Fn& fn) const {
     std::visit([&](const auto& view) { voxdag::for_each_leaf_block(view, window, fn); }, view_);

@@ -210,9 +210,8 @@ void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices,
   if (fan.size() < 2) return;
   Vec3d normal;  // M. Newell's: the sum of the areas, which is equal for all fans of a polygon.
   for (const Triangle& triangle : fan) normal = normal + area_vector(triangle, vertices);
-  const double length = std::sqrt(dot(normal, normal));
-  if (!(length > 0) || !std::isfinite(length)) return;
-  normal = normal * (1 / length);
+  normal = normalized_or(normal, {});
+  if (normal == Vec3d{}) return;
   if (std::all_of(fan.begin(), fan.end(), [&](const Triangle& triangle) {
         return dot(area_vector(triangle, vertices), normal) >= 0;
       }))

@@ -59,9 +59,9 @@ Wedge wedge_at(const Mesh& mesh, std::uint64_t corner) {
   };
   const Vec3d a = at(0), ab = at(1) - a, ac = at(2) - a;
   const Vec3d n = cross(ab, ac);
-  const double length = std::sqrt(dot(n, n));
-  if (!(length > 0)) return {};
-  return {n * (1 / length), std::atan2(length, dot(ab, ac))};
+  const double area2 = length(n);
+  if (!(area2 > 0)) return {};
+  return {n * (1 / area2), std::atan2(area2, dot(ab, ac))};
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Smooth normals for a mesh that has none.
+/// Smooth normals for a mesh without normals.
 #include <array>
 #include <vector>
 
@@ -8,12 +8,12 @@
 
 namespace voxdag {
 
-/// One normal for each corner of each triangle, on the side from which the triangle winds
-/// counter-clockwise: the mean of the triangles that meet at the corner's position, weighted by
-/// their angles there, of those whose planes differ from the triangle's own by at most
-/// `crease_degrees` (0 to 90; 0 gives faces). Which way a neighbour winds does not matter.
-/// Vertices at equal positions count as one. Corners of triangles without area get some vector.
-/// Deterministic; time and memory in proportion to the triangles.
+/// Returns one normal for each corner of each triangle, on the side from which the triangle winds
+/// counter-clockwise. It is the mean over the triangles that meet at the corner's position and
+/// whose planes differ from the triangle's own by at most `crease_degrees` (0 to 90; 0 gives flat
+/// normals), weighted by their angles there. The winding of neighbours does not matter. Vertices at
+/// equal positions count as one. Corners of triangles without area get an arbitrary vector.
+/// Deterministic; time and memory are proportional to the number of triangles.
 std::vector<std::array<PackedNormal, 3>> corner_normals(const Mesh& mesh, float crease_degrees);
 
 }  // namespace voxdag

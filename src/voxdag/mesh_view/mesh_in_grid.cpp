@@ -7,6 +7,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/trace/cell_blocks.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,7 +42,7 @@ bool has_voxel_near(const Nodes& nodes, Vec3i voxel) {
 
 }  // namespace
 
-void check_mesh_in_grid(const Mesh& mesh, const VoxelScene& scene, const Grid& grid) {
+void check_mesh_in_grid(const Mesh& mesh, const VoxelSet& scene, const Grid& grid) {
   constexpr std::size_t kSamples = 4096;
   const double side = static_cast<double>(grid.resolution());
   const std::size_t step = std::max<std::size_t>(1, mesh.triangles.size() / kSamples);
@@ -59,7 +60,7 @@ void check_mesh_in_grid(const Mesh& mesh, const VoxelScene& scene, const Grid& g
     const auto is_covered = [&](const auto& nodes) {
       return has_voxel_near(nodes, static_cast<Vec3i>(q));
     };
-    covered += scene.visit_nodes(is_covered) ? 1 : 0;
+    covered += visit_nodes(scene, is_covered) ? 1 : 0;
   }
   if (inside == 0)
     throw Error("the mesh lies elsewhere: around " + text(bounds) + ", the grid is " +

@@ -13,8 +13,8 @@ namespace {
 constexpr int kPacketSide = 4;
 constexpr int kPacket = kPacketSide * kPacketSide;
 
-/// Where a line meets the plane of a triangle, in double: the weights of corners 1 and 2; nothing
-/// where the two are all but parallel.
+/// Returns where a line meets the plane of a triangle, as the weights of corners 1 and 2; nothing
+/// if the two are nearly parallel.
 std::optional<Vec2d> meet_plane(const std::array<Vec3d, 3>& corners, Vec3d origin,
                                 Vec3d direction) {
   const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0], ao = origin - corners[0];
@@ -26,7 +26,7 @@ std::optional<Vec2d> meet_plane(const std::array<Vec3d, 3>& corners, Vec3d origi
   return Vec2d{dot(ac, moment) / facing, -dot(ab, moment) / facing};
 }
 
-/// A point of the triangle not far from `at`.
+/// Returns a point of the triangle close to `at`.
 Vec2d into_triangle(Vec2d at) {
   double u = std::clamp(at.x, 0.0, 1.0), v = std::clamp(at.y, 0.0, 1.0);
   if (const double sum = u + v; sum > 1) {
@@ -38,7 +38,7 @@ Vec2d into_triangle(Vec2d at) {
 
 Vec2f to_float(Vec2d v) { return {static_cast<float>(v.x), static_cast<float>(v.y)}; }
 
-/// The vector of unit length nearest to `normal` that does not face away from the viewer.
+/// Returns the unit vector closest to `normal` that does not face away from the viewer.
 Vec3f turned_to(Vec3f normal, Vec3f view) {
   constexpr float kLeastCosine = 0.02f;
   const float cosine = dot(normal, view);
@@ -50,19 +50,19 @@ Vec3f turned_to(Vec3f normal, Vec3f view) {
 class MeshViewSource::Scene {
  public:
   Scene(Mesh mesh, const MeshViewOptions& options)
-      : embree_(std::move(mesh), EmbreeMode::kRobust), looks_(embree_.mesh(), options) {}
+      : embree_(std::move(mesh), EmbreeMode::kRobust), appearance_(embree_.mesh(), options) {}
   Scene(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
         std::vector<std::string>* warnings, Progress* progress)
       : embree_(std::move(mesh), EmbreeMode::kRobust),
-        looks_(embree_.mesh(), std::move(appearance), options, warnings, progress) {}
+        appearance_(embree_.mesh(), std::move(appearance), options, warnings, progress) {}
 
-  /// Casts the rays of up to 4x4 pixels.
+  /// Casts the rays of up to 4×4 pixels.
   void sample_packet(const Camera& camera, const ViewTile& tile, int x0, int y0,
                      std::span<ViewSample> samples) const;
 
  private:
-  /// Where the line comes near the mesh, in Embree's coordinates: what is left of the ray suits
-  /// floats however far the viewer is.
+  /// Returns the point at which the line comes close to the mesh, in Embree's coordinates, so that
+  /// the rest of the ray suits floats even for a distant viewer.
   Vec3d near_origin(Vec3d eye, Vec3d direction) const {
     const Vec3d from = embree_.from_world(eye);
     const double length2 = dot(direction, direction);
@@ -70,27 +70,27 @@ class MeshViewSource::Scene {
     return direction * std::max(t, 0.0) + from;
   }
 
-  /// The ray, in Embree's coordinates, is that of the place (x,y) in the picture; `guess` is what
-  /// float arithmetic found.
+  /// Returns the sample of the ray, in Embree's coordinates, through (x,y) in the picture. `guess`
+  /// is the hit in float arithmetic.
   ViewSample view_sample(const Camera& camera, double x, double y, Vec3d origin, Vec3d direction,
                          std::uint32_t triangle, Vec2d guess) const;
 
-  /// Lets rays through what alpha has cut away.
+  /// Lets rays pass through alpha-masked parts.
   struct Context : RTCIntersectContext {
-    const MeshLooks* looks;
+    const MeshAppearance* appearance;
   };
   static void skip_holes(const RTCFilterFunctionNArguments* hits);
 
   EmbreeScene embree_;
-  MeshLooks looks_;
+  MeshAppearance appearance_;
 };
 
 void MeshViewSource::Scene::skip_holes(const RTCFilterFunctionNArguments* hits) {
-  const MeshLooks& looks = *static_cast<const Context*>(hits->context)->looks;
+  const MeshAppearance& appearance = *static_cast<const Context*>(hits->context)->appearance;
   for (unsigned i = 0; i < hits->N; ++i) {
     if (hits->valid[i] != -1) continue;
     const Vec2f at{RTCHitN_u(hits->hit, hits->N, i), RTCHitN_v(hits->hit, hits->N, i)};
-    if (looks.is_hole(RTCHitN_primID(hits->hit, hits->N, i), at)) hits->valid[i] = 0;
+    if (appearance.is_hole(RTCHitN_primID(hits->hit, hits->N, i), at)) hits->valid[i] = 0;
   }
 }
 
@@ -107,7 +107,7 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
       embree_.to_world(corners[0] * (1 - at.x - at.y) + corners[1] * at.x + corners[2] * at.y);
   sample.depth = static_cast<float>(dot(sample.point - camera.eye, camera.forward));
 
-  // What the pixel covers of the triangle, more or less: where its corners' rays meet the plane.
+  // The pixel's footprint on the triangle: where the rays of its corners meet the plane.
   std::array<Vec2f, 4> footprint;
   for (int i = 0; i < 4; ++i) {
     const double dx = i == 0 || i == 3 ? -0.5 : 0.5, dy = i < 2 ? -0.5 : 0.5;
@@ -115,18 +115,18 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
         meet_plane(corners, embree_.from_world(camera.eye), camera.direction(x + dx, y + dy));
     footprint[static_cast<std::size_t>(i)] = to_float(into_triangle(met.value_or(at)));
   }
-  sample.albedo = looks_.albedo(triangle, footprint);
+  sample.albedo = appearance_.albedo(triangle, footprint);
 
   const Vec3f view = static_cast<Vec3f>(normalized(-direction));
   const Vec3d winding = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double length = std::sqrt(dot(winding, winding));
-  if (!(length > 0)) {  // Embree does not report triangles without area, but floats are not sure
+  const double area2 = length(winding);
+  if (!(area2 > 0)) {  // Embree reports no triangles without area, but decides in float
     sample.face = sample.normal = view;
     return sample;
   }
-  sample.face = static_cast<Vec3f>(winding * ((dot(winding, direction) > 0 ? -1 : 1) / length));
-  Vec3f normal = looks_.normal(triangle, to_float(at), footprint);
-  // Files need not agree with themselves about which side is the front.
+  sample.face = static_cast<Vec3f>(winding * ((dot(winding, direction) > 0 ? -1 : 1) / area2));
+  Vec3f normal = appearance_.normal(triangle, to_float(at), footprint);
+  // The normals of a file may disagree with the winding.
   if (dot(normal, sample.face) < 0) normal = -normal;
   sample.normal = dot(normal, normal) > 0 ? turned_to(normalized(normal), view) : sample.face;
   return sample;
@@ -163,8 +163,8 @@ void MeshViewSource::Scene::sample_packet(const Camera& camera, const ViewTile& 
   Context context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  context.looks = &looks_;
-  if (looks_.has_holes()) context.filter = skip_holes;
+  context.appearance = &appearance_;
+  if (appearance_.has_holes()) context.filter = skip_holes;
   rtcIntersect16(valid.data(), embree_.scene(), &context, &packet);
   for (int i = 0; i < kPacket; ++i) {
     if (valid[i] == 0) continue;

@@ -1,8 +1,8 @@
 #pragma once
-/// A unit vector in 32 bits.
+/// A unit vector packed into 32 bits.
 ///
 /// Source: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal Vectors",
-/// EGSR 2010: the octahedron |x| + |y| + |z| = 1, its lower half folded out, as a square.
+/// EGSR 2010: the octahedron |x| + |y| + |z| = 1 with its lower half folded outwards is a square.
 #include <cmath>
 #include <cstdint>
 
@@ -10,13 +10,13 @@
 
 namespace voxdag {
 
-/// x in the low 16 bits, y in the high ones: signed, +-32767 is +-1. Good to 0.004 degrees. The
-/// default is the vector (0,0,1).
+/// The low 16 bits hold x, the high ones y, as signed integers: +-32767 is +-1. The error is at
+/// most 0.004 degrees. The default is the vector (0,0,1).
 class PackedNormal {
  public:
   constexpr PackedNormal() = default;
 
-  /// `v` is finite and not zero; its length does not matter.
+  /// `v` must be finite and not zero; its length does not matter.
   explicit PackedNormal(Vec3f v) {
     const float scale = 1 / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
     float x = v.x * scale, y = v.y * scale;
@@ -24,13 +24,12 @@ class PackedNormal {
     bits_ = pack(x) | pack(y) << 16;
   }
 
-  /// Of unit length.
+  /// Returns a vector of unit length.
   Vec3f unpack() const {
     float x = unpack(bits_ & 0xFFFFu), y = unpack(bits_ >> 16);
     const float z = 1 - std::fabs(x) - std::fabs(y);
     if (z < 0) fold(x, y);
-    const Vec3f v{x, y, z};
-    return v * (1 / std::sqrt(dot(v, v)));
+    return normalized(Vec3f{x, y, z});
   }
 
   friend bool operator==(PackedNormal, PackedNormal) = default;

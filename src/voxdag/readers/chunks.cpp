@@ -27,7 +27,7 @@ void throw_fault(const MeshBytes& source, const Fault& fault, char line_end) {
     throw source.error_at_byte(static_cast<std::size_t>(fault.position - source.bytes.data()),
                                fault.reason);
   const auto line = 1 + std::count(source.bytes.data(), fault.position, line_end);
-  throw Error(source.name, "line " + std::to_string(line), fault.reason);
+  throw Error(source.name, ErrorPlace::line(line), fault.reason);
 }
 
 }  // namespace voxdag

@@ -30,7 +30,7 @@ struct MeshBytes {
 
   Error error(const std::string& reason) const { return {name, "", reason}; }
   Error error_at_byte(std::size_t offset, const std::string& reason) const {
-    return {name, "byte " + std::to_string(offset), reason};
+    return {name, ErrorPlace::byte(offset), reason};
   }
 };
 

@@ -1,12 +1,13 @@
 #pragma once
-/// Ambient occlusion: how much of the sky's light reaches a point past what is near.
+/// Ambient occlusion: how much of the sky's light passes a point's surroundings and reaches it.
 ///
 /// Source: S. Laine and T. Karras, "Two Methods for Fast Ray-Cast Ambient Occlusion", EGSR 2010, as
-/// Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4, use
-/// it: what a surface at distance d hides is weighted with a falloff, here (1 - d/longest)², and
-/// instead of looking for the closest hit of rays of equal length, it is asked whether rays of
-/// random length meet anything, the lengths being such that the mean is the same. Rays may end at
-/// cells that subtend a given solid angle where they are: darker, but near contacts stay exact.
+/// used by Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
+/// section
+/// 4. The occlusion by a surface at distance d has the weight (1 - d/longest)². Instead of the
+/// closest hits of rays of equal length, the method tests whether rays of random length hit
+/// anything; the distribution of the lengths makes the mean the same. Rays may end at cells that
+/// subtend a given solid angle: the result is darker, but near contacts stay exact.
 #include "voxdag/render/basis.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
@@ -14,9 +15,9 @@
 
 namespace voxdag {
 
-/// Ray `i` of a point. Its direction is spread around the normal; what would run below the flat
-/// piece of surface, which the normal of a curved mesh does not know about, is mirrored at it.
-/// `longest` is in units of the grid's side; `cone` as RenderSettings::occlusion_cone.
+/// Returns ray `i` of a point. The directions are distributed around the shading normal; those
+/// below the plane of the surface itself, which can differ from it, are mirrored at that plane.
+/// `longest` is in units of the grid's side; `cone` as in RenderSettings::occlusion_cone.
 VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest, float cone,
                                        const SurfacePoint& point, const PixelSamples& pixel,
                                        int i) {
@@ -33,7 +34,7 @@ VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest
   return ray;
 }
 
-/// Sets scratch.open for the pixels that see something. Returns the number of rays.
+/// Sets scratch.open for the pixels that show something. Returns the number of rays.
 template <class Caster, class Scratch>
 VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& setup,
                                      const ViewTile& tile, Scratch& scratch) {

@@ -1,13 +1,9 @@
 #pragma once
-/// Unit vectors and the frames around them.
-#include <cmath>
+/// An orthonormal frame around a unit vector.
 
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
-
-VOXDAG_HD inline Vec3d normalized(Vec3d v) { return v * (1.0 / std::sqrt(dot(v, v))); }
-VOXDAG_HD inline Vec3f normalized(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
 
 /// Two unit vectors that with `normal` make a right-handed frame.
 template <class T>
@@ -15,7 +11,8 @@ struct Basis {
   Vec3<T> u, v;
 };
 
-/// Source: Duff and others, "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+/// Returns the frame of a unit vector. Source: T. Duff and others, "Building an Orthonormal Basis,
+/// Revisited", JCGT 6(1), 2017.
 template <class T>
 VOXDAG_HD inline Basis<T> make_basis(Vec3<T> normal) {
   const T sign = normal.z < 0 ? T(-1) : T(1);

@@ -7,20 +7,20 @@
 
 namespace voxdag {
 
-/// Maps pixels to rays. Kept in double: at 131,072³ a float eye would be off by voxels.
+/// Maps pixels to rays. In double, because at 131,072³ a float eye would be off by voxels.
 struct Camera {
   Vec3d eye;
   Vec3d forward;  ///< Unit length.
-  Vec3d right;  ///< In world units per unit of distance along `forward`: half the picture's width.
-  Vec3d up;     ///< Likewise half its height.
+  Vec3d right;    ///< Half the picture's width at depth 1, in world units.
+  Vec3d up;       ///< Half the picture's height at depth 1, in world units.
   int width = 1, height = 1;
 
-  /// Through the point (x,y) of the picture, in pixels from its top left corner. Its component
-  /// along `forward` is 1, so that a ray's t is its depth.
+  /// Returns the direction through the point (x,y) of the picture, in pixels from its top left
+  /// corner. Its component along `forward` is 1, so that a ray's t is its depth.
   VOXDAG_HD Vec3d direction(double x, double y) const {
     return forward + right * (2 * x / width - 1) + up * (1 - 2 * y / height);
   }
-  /// The width of a pixel at depth 1, in world units.
+  /// Returns the width of a pixel at depth 1, in world units.
   VOXDAG_HD double pixel_size() const { return 2 * std::sqrt(dot(up, up)) / height; }
 };
 

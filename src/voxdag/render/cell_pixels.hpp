@@ -1,20 +1,20 @@
 #pragma once
 /// The size of the cell that a pixel shows, in one byte: its logarithm in 3.5 fixed point.
 ///
-/// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 4.3.
-/// Without the logarithms of libraries, which differ in the last bit between host and device.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.3. Uses no
+/// library logarithm: those of host and device differ in the last bit.
 #include <cstdint>
 
 #include "voxdag/core/bits.hpp"
 
 namespace voxdag {
 
-/// A side in pixels, from 1 to 250, as 32 log2(side) to the nearest integer. Smaller sides, and
-/// what is no number, are 0, and larger ones 255. Zero is also for pixels that show no cell.
+/// Returns 32 log2(side), rounded to the nearest integer, for a side of 1 to 250 pixels. Returns 0
+/// for smaller sides and NaN, and 255 for larger ones. Pixels that show no cell have 0, too.
 VOXDAG_HD inline std::uint8_t pack_cell_pixels(float side) {
   if (!(side > 1.0f)) return 0;
   if (!(side < 256.0f)) return 255;
-  float rest = side * 1.010889286f;  // 2^(1/64): rounds what follows to the nearest
+  float rest = side * 1.010889286f;  // 2^(1/64): rounds the rest to the nearest
   std::uint32_t code = (bits_of_float(rest) >> 23) - 127;
   rest *= float_from_bits((127 - code) << 23);  // to [1,2)
   for (int bit = 0; bit < 5; ++bit) {
@@ -25,7 +25,7 @@ VOXDAG_HD inline std::uint8_t pack_cell_pixels(float side) {
   return static_cast<std::uint8_t>(code < 255 ? code : 255);
 }
 
-/// The side in pixels: 1 for 0, and a step is a 46th of it.
+/// Returns the side in pixels: 1 for code 0. Neighbouring codes differ by 1/46 of the side.
 VOXDAG_HD inline float unpack_cell_pixels(std::uint8_t code) {
   constexpr float kRoots[5] = {1.021897149f, 1.044273782f, 1.090507733f, 1.189207115f,
                                1.414213562f};  // 2^(1/32), 2^(1/16) and so on

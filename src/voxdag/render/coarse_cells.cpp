@@ -5,8 +5,8 @@
 
 namespace voxdag {
 
-CoarseCells::CoarseCells(const VoxelScene& scene, int max_level)
-    : CoarseCells(scene.visit_nodes([&](const auto& nodes) { return of(nodes, max_level); })) {}
+CoarseCells::CoarseCells(const VoxelSet& scene, int max_level)
+    : CoarseCells(visit_nodes(scene, [&](const auto& nodes) { return of(nodes, max_level); })) {}
 
 void CoarseCells::add(Vec3i cell) {
   cells_.push_back(cell);

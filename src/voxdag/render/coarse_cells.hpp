@@ -1,20 +1,21 @@
 #pragma once
-/// A scene at a resolution at which it can be thought about as a whole.
+/// A scene at a low resolution, to judge its shape as a whole.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "voxdag/core/box.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 
 /// The non-empty cells of one level of a scene.
 class CoarseCells {
  public:
-  /// The cells of level min(L, max_level), in Morton order.
-  CoarseCells(const VoxelScene& scene, int max_level);
-  /// Those of a layout of nodes, for which trace/svdag_nodes.hpp says what it is.
+  /// Collects the cells of level min(L, max_level), in Morton order.
+  CoarseCells(const VoxelSet& scene, int max_level);
+  /// Collects the cells of a node layout (see trace/svdag_nodes.hpp).
   template <class Nodes>
   static CoarseCells of(const Nodes& nodes, int max_level) {
     CoarseCells cells(std::min(nodes.levels(), max_level));
@@ -27,11 +28,11 @@ class CoarseCells {
   const std::vector<Vec3i>& cells() const { return cells_; }
   /// Half-open, in cells; empty() if there are none.
   const Box3i& bounds() const { return bounds_; }
-  /// False outside of the grid.
+  /// Returns false outside of the grid.
   bool contains(Vec3i cell) const;
 
-  /// How much of one side of the bounds, seen along `axis` (from below if `from_below`), the cells
-  /// within `depth` cells of it cover: 0 to 1.
+  /// Returns the part, 0 to 1, of one side of the bounds that cells cover within `depth` cells of
+  /// that side, seen along `axis` (from below if `from_below`).
   double side_cover(int axis, bool from_below, std::int32_t depth) const;
 
  private:
@@ -45,8 +46,8 @@ class CoarseCells {
     const std::uint32_t mask = nodes.child_mask(node, level);
     for (int i = 0; i < 8; ++i) {
       if ((mask >> i & 1u) == 0) continue;
-      const Vec3i child = cell * 2 + Vec3i{i & 1, i >> 1 & 1, i >> 2};
-      // Below the level nothing is read, and a voxel is no node.
+      const Vec3i child = cell * 2 + child_offset(i);
+      // Nodes of this level are not read, and voxels are no nodes.
       const bool is_last = level + 1 == level_;
       collect(nodes, is_last ? node : nodes.child(node, level, i), level + 1, child);
     }
@@ -62,7 +63,8 @@ class CoarseCells {
   Box3i bounds_ = Box3i::empty();
 };
 
-/// Meshes have y up, unless the scene lies flat on z or stands on much more of z than of y.
+/// Returns the likely up direction: y, or z if the scene lies flat on z, or stands on much more of
+/// the ground along z than along y.
 Vec3d guess_up(const CoarseCells& scene);
 
 }  // namespace voxdag

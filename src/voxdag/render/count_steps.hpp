@@ -1,14 +1,14 @@
 #pragma once
-/// What the primary rays of a picture cost: the measure of Laine and Karras, "Efficient Sparse
-/// Voxel Octrees", I3D 2010, Figure 9.
+/// Counts the steps of primary rays: the measure of Laine and Karras, "Efficient Sparse Voxel
+/// Octrees", I3D 2010, Figure 9.
 #include "voxdag/render/primary_beams.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/counting_nodes.hpp"
 
 namespace voxdag {
 
-/// Sets setup.image.steps of the 8×8 pixels at (x,y) to the steps of their first samples' rays,
-/// with equal parts of those of their beams where setup.beam_starts is set.
+/// Sets setup.image.steps of the 8×8 pixels at (x,y) to the steps of their first samples' rays. If
+/// setup.beam_starts is set, each pixel also gets an equal part of its beams' steps.
 template <class Nodes>
 VOXDAG_HD inline void count_steps(const Nodes& nodes, const RenderSetup& setup, int x, int y) {
   constexpr int kSide = kCoarseBeamPixels, kBeams = kSide / kBeamPixels;

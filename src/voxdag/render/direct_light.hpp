@@ -2,8 +2,9 @@
 /// Light from sun and lamps, with hard and soft shadows.
 ///
 /// Source: Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
-/// section 4: shadow rays from each view sample to points on the light, shortened to the interval
-/// in which a beam between them meets anything; where it meets nothing no ray is needed.
+/// section 4: shadow rays run from each view sample to points on the light. A beam between them
+/// shortens the rays to the interval in which the beam meets anything; if it meets nothing, no ray
+/// is cast.
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/light_sample.hpp"
 #include "voxdag/render/tile.hpp"
@@ -12,13 +13,13 @@
 
 namespace voxdag {
 
-/// Light `index`, lit by samples [begin, begin + count) of a pixel's.
+/// Samples [begin, begin + count) of each pixel for light `index`.
 struct LightBatch {
   int index = 0, begin = 0, count = 0;
 };
 
-/// Sets scratch.active to the pixels that need rays to the light, with their intervals, and
-/// scratch.pixels of all. Returns how many are active.
+/// Sets scratch.active to the pixels that need rays to the light, scratch.intervals for these, and
+/// scratch.pixels for all. Returns how many are active.
 template <class Nodes, class Scratch>
 VOXDAG_HD inline int find_shadowed_pixels(const Nodes& nodes, const RenderSetup& setup, int index,
                                           const ViewTile& tile, Scratch& scratch) {
@@ -61,7 +62,7 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
         if (!(sample.weight > 0)) return ray;
         const LightInterval& interval = scratch.intervals[pixel];
         ray.ray = make_grid_ray(point.start, sample.direction, interval.first, interval.last);
-        // Cells of the size that the picture shows: both agree on what is there.
+        // Ends at cells of the size that the picture shows, so that shadows and picture agree.
         ray.stop.at_start = point.cell_side;
         return ray;
       },
@@ -71,8 +72,8 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
       });
 }
 
-/// Adds what light `index` brings to scratch.irradiance and scratch.lit and scratch.unhindered.
-/// Returns the number of rays.
+/// Adds the light of light `index` to scratch.irradiance, scratch.lit_sum and
+/// scratch.unhindered_sum. Returns the number of rays.
 template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  int index, const ViewTile& tile, Scratch& scratch) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The primary rays of a tile through an ESVO: shapes cut by contours, colours and normals.
+/// The primary rays of a tile at an ESVO: shapes cut by contours, with colours and normals.
 #include "voxdag/layout/stored_values.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// The deepest contour of the voxel that was met and its ancestors; none if there is none.
+/// Returns the deepest contour among those of the voxel that was hit and its ancestors, if any.
 VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRay& ray,
                                               const EsvoHit& hit) {
   ContourPlane deepest;
@@ -25,13 +25,13 @@ VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRa
   }
 }
 
-/// The surface where a primary ray met a shape. `direction` is the ray's, in world units.
+/// Returns the surface where a primary ray hit a shape. `direction` is the ray's, in world units.
 template <EsvoLayout Nodes>
 VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSetup& setup,
                                              Vec3d direction, const GridRay& ray,
                                              const EsvoHit& hit) {
-  // How far the shapes of neighbours may stand out above the plane that is seen, in units of how
-  // thick its slab is and of the cells that stand for a surface at this depth.
+  // How far the shapes of neighbours may rise above the visible plane, in units of the thickness of
+  // the plane's slab and of the cells that represent a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;
   constexpr float kLeaning = 0.2f, kOpposite = 0.8f, kTrusted = 0.5f;  // cosines
   const EsvoView& esvo = nodes.view();
@@ -51,23 +51,23 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   stored_color(esvo, hit.voxel, sample.albedo);
   sample.normal = plane;
   if (stored_normal(esvo, hit.voxel, sample.normal)) {
-    // Surfaces are seen from both sides. A side of a cube hardly tells which one this is, and at an
-    // outline, where most sides are seen, the normal may lean away from the viewer a little, but
-    // not point straight into the cube from the side that is entered.
+    // Surfaces are visible from both sides. The entered side of a cube hardly tells which one is
+    // seen. At outlines, where most cube sides are visible, the normal may lean away from the
+    // viewer a little, but may not point straight into the cube from the entered side.
     const float facing = dot(sample.normal, view), through = dot(sample.normal, plane);
     const bool is_back = hit.is_through_contour()
                              ? through < 0
                              : facing < -kLeaning || (facing < 0 && through < -kOpposite);
     if (is_back) sample.normal = -sample.normal;
-    // The mean of both sides of a cloth is no side's: the less it agrees with the plane that is
-    // seen, the less it counts.
+    // The mean normal of both sides of a cloth fits neither side: the less it agrees with the
+    // visible plane, the less it counts.
     if (hit.is_through_contour()) {
       const float trust = smooth_step(0, kTrusted, dot(sample.normal, plane));
       sample.normal = normalized(mix(plane, sample.normal, trust));
     }
   }
   sample.depth = static_cast<float>(depth);
-  // A leaf may be much coarser than what casts shadows on it.
+  // A leaf may be much coarser than the voxels that cast shadows on it.
   sample.cell_size = voxel_size;
   sample.detail_size = visible_size < voxel_size ? visible_size : voxel_size;
   sample.point = setup.camera.eye + direction * depth;
@@ -80,11 +80,11 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     const bool is_cube = deepest.contour.bits == 0;
     sample.face = is_cube ? normalized(mix(sample.normal, plane, cube)) : sample.normal;
   }
-  // As for the cubes of a DAG: this side of the cube may lie below the surface's plane.
+  // As with the cubes of a DAG, this side of the cube may lie below the surface's plane.
   const float below = cube_height(sample.face) - dot(sample.face, plane);
   sample.lift = (cube_height(sample.face) + (below > 0 ? below : 0.0f) + kCells) * voxel_size;
-  // The contours' slabs may be thinner. That whose plane is seen may be an ancestor's, and thick,
-  // but above it nothing in the ancestor's cube stands out.
+  // The contours' slabs may be thinner. The visible plane may be that of an ancestor with a thick
+  // slab, but nothing in the ancestor's cube rises above it.
   for (const ContourPlane& slab : {hit.plane, deepest}) {
     if (slab.contour.bits == 0) continue;
     const float above = kSlabs * thickness(slab) * side + kCells * sample.detail_size;

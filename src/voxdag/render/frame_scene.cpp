@@ -1,80 +1,38 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/coarse_cells.hpp"
+#include "voxdag/render/inside_view.hpp"
+#include "voxdag/render/scene_explorer.hpp"
 #include "voxdag/render/view.hpp"
-#include "voxdag/trace/stop_below_size.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
-/// Rooms and courtyards are less open and fill more of their box; statues in folded drapery and
-/// things with much inside them do not do both.
+/// Rooms and courtyards are less open than this, and fill more of their bounds. Statues in folded
+/// drapery, and objects with a complex inside, do not do both.
 constexpr double kInsideOpenness = 0.29, kInsideFill = 0.75;
-constexpr double kPi = 3.14159265358979323846;
 
-double length(Vec3d v) { return std::sqrt(dot(v, v)); }
-
-/// Two unit vectors that with `up` make a right-handed frame: east, north, up.
-struct Compass {
-  Vec3d east, north, up;
-
-  explicit Compass(Vec3d upwards) : up(normalized(upwards)) {
-    const Vec3d reference = std::fabs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
-    north = normalized(cross(up, reference));
-    east = cross(north, up);
-  }
-  Vec3d direction(double yaw, double pitch) const {
-    return (east * std::cos(yaw) + north * std::sin(yaw)) * std::cos(pitch) + up * std::sin(pitch);
-  }
-};
-
-/// Casts rays into a scene at the detail that matters for choosing a view.
-class Explorer {
- public:
-  Explorer(const VoxelScene& voxels, const Grid& grid)
-      : voxels_(voxels), grid_(grid), stop_{std::ldexp(1.0f, -9), 0, 2} {}
-
-  /// Distance in world units to what a unit direction meets; +infinity if nothing.
-  double distance(Vec3d from, Vec3d direction) const {
-    const GridRay ray = make_grid_ray(grid_, from, direction, 0, HUGE_VAL);
-    CellHit cell;
-    if (!voxels_.visit_nodes([&](const auto& nodes) { return cast(nodes, ray, stop_, cell); }))
-      return HUGE_VAL;
-    return ray.to_world_t(static_cast<double>(cell.t));
-  }
-
- private:
-  VoxelScene voxels_;
-  Grid grid_;
-  StopBelowSize stop_;
-};
-
-/// Whether the scene's outline, seen along each axis, fills its bounds as that of a building does.
+/// Returns whether the scene's outline, seen along each axis, fills its bounds, as that of a
+/// building does.
 bool fills_its_box(const CoarseCells& scene) {
   for (int axis = 0; axis < 3; ++axis)
     if (scene.side_cover(axis, true, scene.side()) < kInsideFill) return false;
   return true;
 }
 
-/// Directions spread evenly over the sphere: a Fibonacci spiral.
-Vec3d sphere_direction(const Compass& compass, int i, int count) {
-  constexpr double kGoldenAngle = 2.399963229728653;
-  return compass.direction(i * kGoldenAngle, std::asin(1 - 2 * (i + 0.5) / count));
-}
-
-/// The share of directions in which a line from the scene's cells leaves the scene, on average:
-/// about a half for the surface of an object, little for the insides of a building.
-double openness(const CoarseCells& scene, const Explorer& explorer, const Grid& grid,
+/// Returns the mean share of directions in which a line from the scene's cells leaves the scene:
+/// about a half for the surface of an object, little for the inside of a building.
+double openness(const CoarseCells& scene, const SceneExplorer& explorer, const Grid& grid,
                 const Compass& compass) {
   constexpr std::size_t kCells = 500;
   constexpr int kDirections = 40;
-  const double cell_size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const double cell_size = grid.cell_size(scene.level());
   const std::size_t stride = std::max<std::size_t>(1, scene.cells().size() / kCells);
   int lines = 0, open = 0;
   for (std::size_t at = 0; at < scene.cells().size(); at += stride) {
@@ -82,7 +40,7 @@ double openness(const CoarseCells& scene, const Explorer& explorer, const Grid& 
         grid.origin + (static_cast<Vec3d>(scene.cells()[at]) + Vec3d{0.5, 0.5, 0.5}) * cell_size;
     for (int i = 0; i < kDirections; ++i) {
       const Vec3d direction = sphere_direction(compass, i, kDirections);
-      // Two cells away the line is clear of the surface that it starts on, or will meet it.
+      // Two cells away, the line has left the surface that it starts on, or will meet it.
       const double distance = explorer.distance(middle + direction * (2 * cell_size), direction);
       open += distance < HUGE_VAL ? 0 : 1;
       ++lines;
@@ -91,7 +49,7 @@ double openness(const CoarseCells& scene, const Explorer& explorer, const Grid& 
   return lines == 0 ? 1 : static_cast<double>(open) / lines;
 }
 
-/// The camera outside, looking along `forward`, whose picture the scene just fills.
+/// Returns the view from outside along `forward` whose picture the scene just fills.
 View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward, Vec3d up,
                        double fov, double aspect) {
   View view;
@@ -102,11 +60,11 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
   const Camera camera = make_camera(view, 1, 1);
   const Vec3d right = normalized(camera.right), camera_up = normalized(camera.up);
   constexpr double kMargin = 1.06;
-  const double tan_y = std::tan(fov * kPi / 360) / kMargin, tan_x = tan_y * aspect;
+  const double tan_y = std::tan(fov * std::numbers::pi / 360) / kMargin, tan_x = tan_y * aspect;
 
-  // A point (x,y,z) along right, up, forward is in the picture if |x - ex| <= tan_x * (z - ez), and
-  // likewise for y: four half-spaces. How far the scene reaches along their normals gives the eye
-  // that is farthest forward.
+  // A point (x,y,z), along right, up and forward, is in the picture if |x - ex| <= tan_x * (z - ez)
+  // and |y - ey| <= tan_y * (z - ez): four half-spaces. The scene's extent along their normals
+  // gives the eye that is farthest forward.
   const Vec3d& ahead = camera.forward;
   const Vec3d normals[] = {right - ahead * tan_x,
                            -right - ahead * tan_x,
@@ -116,8 +74,7 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
                            -ahead};
   double reach[6];
   std::fill(std::begin(reach), std::end(reach), -HUGE_VAL);
-  const double cell_size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
+  const double cell_size = grid.cell_size(scene.level());
   const auto extend = [&](Vec3d middle, double side) {
     for (int i = 0; i < 6; ++i) {
       const Vec3d n = normals[i];
@@ -137,85 +94,6 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
   view.target = view.eye + camera.forward * ((near + far) / 2 - z);
   return view;
 }
-
-/// A roomy place inside the scene and the best direction there; score 0 if there is none.
-struct InsideView {
-  double score = 0;
-  View view;
-};
-
-/// What makes a good view from inside: far to see, little right before the camera, little sky.
-double view_score(const Explorer& explorer, const Camera& camera, double size) {
-  constexpr int kColumns = 10, kRows = 6;
-  double sum = 0;
-  for (int row = 0; row < kRows; ++row)
-    for (int column = 0; column < kColumns; ++column) {
-      const Vec3d ray = normalized(camera.direction((column + 0.5) * camera.width / kColumns,
-                                                    (row + 0.5) * camera.height / kRows));
-      const double distance = explorer.distance(camera.eye, ray) / size;
-      if (distance < 0.04)
-        sum -= 1;
-      else if (distance < HUGE_VAL)
-        sum += 1 + std::log2(std::min(distance, 0.6) / 0.04);
-    }
-  return sum / (kColumns * kRows);
-}
-
-/// The best view of each roomy place, best first.
-std::vector<InsideView> inside_views(const CoarseCells& scene, const Explorer& explorer,
-                                     const Grid& grid, const Compass& compass, double fov,
-                                     double aspect) {
-  constexpr int kPlaces = 160, kDirections = 48, kYaws = 24;
-  if (scene.cells().empty()) return {};
-  const double cell_size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - scene.level()));
-  const Vec3d lo = grid.origin + static_cast<Vec3d>(scene.bounds().lo) * cell_size;
-  const Vec3d extent = static_cast<Vec3d>(scene.bounds().hi - scene.bounds().lo) * cell_size;
-  const double size = length(extent);
-  std::vector<InsideView> views;
-  for (int place = 0; place < kPlaces; ++place) {
-    // The R3 sequence; low places, where people stand, rather than high ones.
-    double u[3] = {0.8191725134, 0.6710436067, 0.5497004779};
-    for (double& c : u) c = c * (place + 1) - std::floor(c * (place + 1));
-    const double height = 0.12 + 0.38 * u[2];
-    Vec3d eye = lo + extent * 0.5;
-    eye = eye + compass.east * (dot(extent, {std::fabs(compass.east.x), std::fabs(compass.east.y),
-                                             std::fabs(compass.east.z)}) *
-                                (0.8 * u[0] - 0.4));
-    eye =
-        eye + compass.north * (dot(extent, {std::fabs(compass.north.x), std::fabs(compass.north.y),
-                                            std::fabs(compass.north.z)}) *
-                               (0.8 * u[1] - 0.4));
-    eye = eye + compass.up * (dot(extent, {std::fabs(compass.up.x), std::fabs(compass.up.y),
-                                           std::fabs(compass.up.z)}) *
-                              (height - 0.5));
-
-    int met = 0, close = 0;
-    for (int i = 0; i < kDirections; ++i) {
-      const double distance = explorer.distance(eye, sphere_direction(compass, i, kDirections));
-      met += distance < HUGE_VAL ? 1 : 0;
-      close += distance < 0.02 * size ? 1 : 0;
-    }
-    if (met < kDirections * 3 / 4 || close > 0) continue;
-    InsideView best;
-    for (int i = 0; i < kYaws; ++i) {
-      View view;
-      view.eye = eye;
-      view.target = eye + compass.direction(2 * kPi * i / kYaws, -0.02) * (size / 4);
-      view.up = compass.up;
-      view.vertical_fov_degrees = fov;
-      const Camera camera = make_camera(view, 1000, static_cast<int>(1000 / aspect) + 1);
-      const double score = view_score(explorer, camera, size);
-      if (score > best.score) best = {score, view};
-    }
-    if (best.score > 0) views.push_back(best);
-  }
-  std::stable_sort(views.begin(), views.end(),
-                   [](const InsideView& a, const InsideView& b) { return a.score > b.score; });
-  return views;
-}
-
-bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void check(const View& view) {
   if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
@@ -237,7 +115,7 @@ Vec3d up_across(Vec3d up, Vec3d forward) {
   return std::fabs(up.z) > std::fabs(up.y) ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1};
 }
 
-View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
+View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request) {
   View view;
   view.up = request.up.value_or(view.up);
@@ -268,7 +146,7 @@ View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
     return view;
   }
 
-  const Explorer explorer(voxels, grid);
+  const SceneExplorer explorer(voxels, grid);
 
   if (!request.target && fills_its_box(scene) &&
       openness(scene, explorer, grid, compass) < kInsideOpenness) {
@@ -287,16 +165,15 @@ View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
   return outside;
 }
 
-std::vector<View> scene_views(const VoxelScene& voxels, const Grid& grid, double aspect,
-                              int count) {
+std::vector<View> scene_views(const VoxelSet& voxels, const Grid& grid, double aspect, int count) {
   constexpr int kCoarseLevel = 7;
   constexpr double kApart = 0.12;    // of the scene's size, for views that look much the same way
   constexpr double kOtherWay = 0.3;  // cosine
   const CoarseCells scene(voxels, kCoarseLevel);
-  const Explorer explorer(voxels, grid);
+  const SceneExplorer explorer(voxels, grid);
   const Vec3d up = guess_up(scene);
   const Compass compass(up);
-  const double side = grid.voxel_size * static_cast<double>(grid.resolution());
+  const double side = grid.side();
   std::vector<View> views;
   const auto is_new = [&](const View& view) {
     const Vec3d forward = normalized(view.target - view.eye);

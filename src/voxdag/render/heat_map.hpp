@@ -1,16 +1,18 @@
 #pragma once
-/// A colour scale for values: brightness grows evenly, so that it reads in grey too.
+/// A colour scale for values. Its brightness grows evenly, so that it can be read in grey, too.
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
-/// What a display is to show, as codes from 0 to 1, for a value from 0 to 1. Source: D. A. Green,
+/// Returns the display colour, as codes from 0 to 1, for a value from 0 to 1. Source: D. A. Green,
 /// "A colour scheme for the display of astronomical intensity images", 2011 ("cubehelix"), here
 /// from black over blue, red and yellow to white.
 inline Vec3f heat_color(float value) {
-  constexpr float kStart = 0.5f, kRotations = -1.2f, kHue = 1.3f, kTwoPi = 6.2831853f;
+  constexpr float kStart = 0.5f, kRotations = -1.2f, kHue = 1.3f,
+                  kTwoPi = 2 * std::numbers::pi_v<float>;
   const float v = value > 0 ? (value < 1 ? value : 1.0f) : 0.0f;
   const float angle = kTwoPi * (kStart / 3 + 1 + kRotations * v);
   const float spread = kHue * v * (1 - v) / 2;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/render/basis.hpp"
@@ -9,10 +10,6 @@
 
 namespace voxdag {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void check(const LightSpec& spec) {
   for (const Vec3d v : {spec.position, spec.normal, spec.edge_u, spec.edge_v})
@@ -69,7 +66,7 @@ Vec3f color_for(const Light& light, Vec3f irradiance, float distance) {
     case LightKind::kPoint:
       return irradiance * distance2;
     case LightKind::kSphere:
-      return irradiance * (distance2 / (static_cast<float>(kPi) * light.radius * light.radius));
+      return irradiance * (distance2 / (std::numbers::pi_v<float> * light.radius * light.radius));
     default:
       return irradiance * (distance2 / light.area);
   }
@@ -79,8 +76,8 @@ Vec3f color_for(const Light& light, Vec3f irradiance, float distance) {
 
 Light make_light(const LightSpec& spec, const Grid& grid) {
   check(spec);
-  const double to_unit = 1.0 / (grid.voxel_size * static_cast<double>(grid.resolution()));
-  const auto length = [to_unit](Vec3d v) { return static_cast<Vec3f>(v * to_unit); };
+  const double to_unit = 1.0 / grid.side();
+  const auto in_grid = [to_unit](Vec3d v) { return static_cast<Vec3f>(v * to_unit); };
   Light light;
   light.kind = spec.kind;
   light.position = static_cast<Vec3f>((spec.position - grid.origin) * to_unit + Vec3d{1, 1, 1});
@@ -96,20 +93,20 @@ Light make_light(const LightSpec& spec, const Grid& grid) {
     const Vec3d normal = normalized(spec.normal);
     const Basis<double> basis = make_basis(normal);
     light.normal = static_cast<Vec3f>(normal);
-    light.u = length(basis.u * spec.radius);
-    light.v = length(basis.v * spec.radius);
-    light.area = static_cast<float>(kPi) * light.radius * light.radius;
+    light.u = in_grid(basis.u * spec.radius);
+    light.v = in_grid(basis.v * spec.radius);
+    light.area = std::numbers::pi_v<float> * light.radius * light.radius;
   } else if (spec.kind == LightKind::kRectangle) {
     const Vec3d span = cross(spec.edge_u, spec.edge_v);
     light.normal = static_cast<Vec3f>(normalized(span));
-    light.u = length(spec.edge_u);
-    light.v = length(spec.edge_v);
+    light.u = in_grid(spec.edge_u);
+    light.v = in_grid(spec.edge_v);
     light.area = static_cast<float>(std::sqrt(dot(span, span)) * to_unit * to_unit);
     light.radius = static_cast<float>(std::sqrt(static_cast<double>(light.area)));
   }
   set_bounds(light);
   if (!spec.color)
-    light.color = color_for(light, Sky{}.sun_light * static_cast<float>(kPi), 0.25f);
+    light.color = color_for(light, Sky{}.sun_light * std::numbers::pi_v<float>, 0.25f);
   else if (spec.kind == LightKind::kPoint)
     light.color = *spec.color * static_cast<float>(to_unit * to_unit);
   else

@@ -1,5 +1,5 @@
 #pragma once
-/// The part of the way to a light in which a shadow ray can meet anything.
+/// The part of the way to a light in which shadow rays can meet anything.
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/trace/beam.hpp"
@@ -8,14 +8,14 @@ namespace voxdag {
 
 struct LightInterval {
   float first = 0,
-        last = 0;         ///< In t of a shadow ray, whose light is at t = 1, the sun at kSunEnd.
-  bool is_clear = false;  ///< Nothing is met at all.
+        last = 0;         ///< In t of a shadow ray. The light is at t = 1, the sun at kSunEnd.
+  bool is_clear = false;  ///< No ray meets anything.
 };
 
-/// A ray along a sun's direction has left the grid by this t.
+/// By this t, a ray along the sun's direction has left the grid.
 inline constexpr float kSunEnd = 4;
 
-/// The directions from a point to the points of a light, per axis.
+/// Bounds per axis of the directions from a point to the points of a light.
 struct DirectionBounds {
   Vec3f lowest, highest;
 };
@@ -25,7 +25,7 @@ VOXDAG_HD inline DirectionBounds directions_to(const Light& light, Vec3f from) {
   return {light.lowest - from, light.highest - from};
 }
 
-/// Whether any of these directions lies above the plane with this normal.
+/// Returns whether any of these directions lies above the plane with this normal.
 VOXDAG_HD inline bool reach_above(const DirectionBounds& bounds, Vec3f normal) {
   const Vec3f a = bounds.lowest * normal, b = bounds.highest * normal;
   const Vec3f most = max(a, b);
@@ -36,7 +36,7 @@ VOXDAG_HD inline LightInterval light_interval(const Light& light) {
   return {0, light.kind == LightKind::kSun ? kSunEnd : 1.0f, false};
 }
 
-/// By a beam from the point to the light and one back.
+/// Finds the interval by a beam from the point to the light, and one back.
 template <class Nodes>
 VOXDAG_HD inline LightInterval cast_light_beam(const Nodes& nodes, const Light& light,
                                                const SurfacePoint& point) {

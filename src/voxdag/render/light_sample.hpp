@@ -1,10 +1,11 @@
 #pragma once
-/// Points on lights: which way a shadow ray goes, and what light comes back along it.
+/// Points on lights: the direction of a shadow ray, and the light that comes back along it.
 ///
-/// Discs and rectangles are sampled by area, spheres by the solid angle under which they are seen
+/// Discs and rectangles are sampled by area, spheres by the solid angle that they subtend
 /// (P. Shirley, C. Wang and K. Zimmerman, "Monte Carlo Techniques for Direct Lighting
 /// Calculations", 1996), the sun's disc by its projection.
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/render/basis.hpp"
 #include "voxdag/render/render_setup.hpp"
@@ -13,22 +14,21 @@
 namespace voxdag {
 
 struct LightSample {
-  /// From where rays start: the light is at start + direction, the sun at any multiple of it.
+  /// From the start of the rays: the light is at start + direction, the sun at any multiple of it.
   Vec3f direction;
-  /// Irradiance of the surface per unit of the light's colour; 0 where none can arrive.
+  /// Irradiance of the surface per unit of the light's colour; 0 if none can arrive.
   float weight = 0;
 };
 
-/// Sample `i` of a pixel as seen from the point's surface. The mean of the weights over all samples
-/// is what arrives with nothing in the way.
+/// Returns sample `i` of a pixel, seen from the point's surface. The mean of the weights over all
+/// samples is the unoccluded irradiance.
 VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Light& light,
                                           const SurfacePoint& point, const PixelSamples& pixel,
                                           int i) {
-  constexpr float kPi = 3.14159265f;
   const Vec3f to_light = light.position - point.surface.position;
   const int at = pixel.set * tables.light_count + i;
   LightSample sample;
-  float emitted = 1;  // times the cosine at the surface and over the square of the distance below
+  float emitted = 1;  // multiplied below by the cosine at the surface over the squared distance
   switch (light.kind) {
     case LightKind::kSun: {
       const Point2f p = pixel.rotated(tables.disc[at]);
@@ -54,7 +54,7 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
       if (!(distance2 > radius2)) return sample;
       const float distance = std::sqrt(distance2);
       const float sin2 = radius2 / distance2;
-      // 1 - cos of the cone's angle, without cancellation where it is small.
+      // 1 - cos of the cone's angle, without cancellation for small angles.
       const float cap = sin2 / (1 + std::sqrt(1 - sin2));
       const Point2f p = pixel.rotated(tables.disc[at]);
       const float p2 = p.x * p.x + p.y * p.y;
@@ -67,7 +67,7 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
       const float depth2 = radius2 - distance2 * spread2;
       const float front = distance * (1 - rise) - std::sqrt(depth2 > 0 ? depth2 : 0.0f);
       sample.direction = unit * front;
-      emitted = 2 * kPi * cap * front * front;
+      emitted = 2 * std::numbers::pi_v<float> * cap * front * front;
       break;
     }
   }
@@ -83,7 +83,7 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
   if (!is_above()) return sample;
   const float above = dot(point.normal, sample.direction);
   if (light.kind != LightKind::kSun) {
-    // Rays start a little above the surface, which a light may be that is very near.
+    // Rays start a little above the surface; a very near light may lie below their start.
     sample.direction = sample.direction + (point.surface.position - point.start.position);
     if (!is_above()) return sample;
   }

@@ -1,14 +1,14 @@
 #pragma once
-/// Smooths what voxels larger than pixels leave of a picture: blocks of one colour.
+/// A filter that smooths voxels larger than pixels, which would be blocks of one colour.
 ///
-/// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 4.3 and Figure 11.
-/// Each pixel is averaged over a disc of its voxel's size, which shrinks to the sizes of the
-/// voxels that it meets on its way from the centre: so regions of different sizes agree where they
-/// touch, and what shows no voxel, whose size is one pixel, neither blurs nor bleeds.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.3 and Figure 11.
+/// Each pixel becomes the average of a disc of its voxel's size. The disc shrinks to the sizes of
+/// the voxels that it covers, from the centre outwards: regions of different sizes agree where they
+/// touch, and pixels without a voxel, whose size is one pixel, neither blur nor bleed.
 ///
-/// Beyond the paper, whose pictures had no shadows and whose voxels are small at outlines: a flat
-/// wall is one voxel here, right up to its edge. So pixels of another surface, or in another light,
-/// are left out of the mean.
+/// Beyond the paper: its pictures had no shadows, and its voxels are small at outlines. Here a flat
+/// wall may be one voxel up to its edge, so that the average leaves out pixels of other surfaces
+/// and in other light.
 #include <array>
 #include <cstddef>
 
@@ -22,20 +22,21 @@ namespace voxdag {
 inline constexpr int kFilterSamples = 96;
 inline constexpr float kFilterRadius = 24.0f;  ///< Pixels.
 
-/// A pixel to look at, relative to the one that is filtered.
+/// A pixel of the disc, relative to its centre.
 struct FilterSample {
   int x, y;
-  float distance;  ///< Of (x, y) from zero.
-  float weight;    ///< Pixels of the disc that lie nearer to it than to other samples.
+  float distance;  ///< From (0, 0).
+  float weight;    ///< Number of the disc's pixels that are closest to this sample.
 };
 
-/// By distance, the first at zero. All others but one have their opposites: a filter moves nothing.
+/// Sorted by distance, from zero. All others but one come with their opposites, so that the filter
+/// does not shift the picture.
 using FilterTable = std::array<FilterSample, kFilterSamples>;
 
-/// The one table there is: the density of its samples falls as the square root of the distance.
+/// Returns the table. The density of its samples falls with the square root of the distance.
 const FilterTable& filter_table();
 
-/// What tells surfaces and light apart, as of ImageBuffers.
+/// The buffers that tell surfaces and light apart; see ImageBuffers.
 struct FilterGuides {
   const float* depth = nullptr;  ///< Null: there are no guides.
   const Vec3f* normal = nullptr;
@@ -44,7 +45,7 @@ struct FilterGuides {
   Camera camera;
 };
 
-/// What is filtered: width * height values each, rows from top to bottom.
+/// The picture to filter: width * height values each, rows from top to bottom.
 struct FilterInput {
   const Vec3f* color = nullptr;
   const std::uint8_t* cell_pixels = nullptr;  ///< See pack_cell_pixels().
@@ -52,7 +53,7 @@ struct FilterInput {
   FilterGuides guides{};
 };
 
-/// With guides. All but the steps must be there.
+/// Returns a picture's buffers with guides. `image` must have all buffers but the steps.
 VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camera& camera) {
   return {image.radiance,
           image.cell_pixels,
@@ -64,11 +65,11 @@ VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camer
 /// Tells which pixels show the same surface as one pixel does, in the same light.
 class SameSurface {
  public:
-  /// Of the pixel (x, y), at `at`, whose voxel has a side of `pixels`.
+  /// Compares with the pixel (x, y), of index `at`, whose voxel has a side of `pixels`.
   VOXDAG_HD SameSurface(const FilterGuides& guides, int x, int y, std::size_t at, float pixels)
       : guides_(guides), center_(at) {
     if (guides.depth == nullptr) return;
-    // Steps of contours, and where in the pixel its first sample is.
+    // For the steps of contours, and for the sample's position in its pixel.
     constexpr double kPixels = 1.0, kCells = 0.25;
     const auto depth = static_cast<double>(guides.depth[at]);
     normal_ = static_cast<Vec3d>(guides.normal[at]);
@@ -77,7 +78,7 @@ class SameSurface {
         (kPixels + kCells * static_cast<double>(pixels)) * guides.camera.pixel_size() * depth;
   }
 
-  /// The pixel (x, y), at `at`.
+  /// Returns whether the pixel (x, y), of index `at`, shows the same surface in the same light.
   VOXDAG_HD bool has(int x, int y, std::size_t at) const {
     constexpr float kNormal = 0.9f, kLight = 0.2f;  // cosine; part of the light
     if (guides_.depth == nullptr || at == center_) return true;
@@ -98,8 +99,8 @@ class SameSurface {
   double plane_ = 0, tolerance_ = 0;  ///< Distance of the surface's plane from the eye.
 };
 
-/// The filtered colour of a pixel. `samples` are those of a FilterTable. What lies outside the
-/// picture is left out.
+/// Returns the filtered colour of a pixel. `samples` are those of a FilterTable. Ignores samples
+/// outside of the picture.
 VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSample* samples,
                                       int pixel_x, int pixel_y) {
   const auto index = [&input](int x, int y) {
@@ -110,7 +111,7 @@ VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSamp
   float radius = unpack_cell_pixels(input.cell_pixels[center]);
   if (radius <= 1.0f) return input.color[center];
   const SameSurface same(input.guides, pixel_x, pixel_y, center, radius);
-  // A pixel none or one of whose neighbours is like it is noise: it is mixed with all.
+  // A pixel with at most one similar neighbour is noise: it is mixed with all.
   constexpr int kFewest = 2;
   int alike = 0;
   for (int i = 0; i < 9 && alike < kFewest; ++i) {

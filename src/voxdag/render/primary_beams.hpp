@@ -1,15 +1,15 @@
 #pragma once
-/// The coarse pass before the primary rays: where the rays of 4×4 pixels may start.
+/// The coarse pass before the primary rays: finds where the rays of 4×4 pixels may start.
 ///
-/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.2; here with
-/// beams of 8×8 pixels that start off those of 4×4.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.2. Here beams of
+/// 8×8 pixels find the starts of beams of 4×4 pixels.
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/trace/beam.hpp"
 
 namespace voxdag {
 
-/// The beam of the pixels [x, x + size) × [y, y + size).
+/// Returns the beam of the pixels [x, x + size) × [y, y + size).
 VOXDAG_HD inline Beam pixel_beam(const RenderSetup& setup, int x, int y, int size) {
   const double to_unit = 1.0 / setup.side();
   Beam beam;
@@ -24,9 +24,10 @@ VOXDAG_HD inline Beam pixel_beam(const RenderSetup& setup, int x, int y, int siz
   return beam;
 }
 
-/// Ends at cells that the beam is wider than, or at which a ray of the picture may end.
+/// Returns the hook that ends at cells narrower than the beam, and where a ray of the picture may
+/// end.
 VOXDAG_HD inline BeamStop pixel_beam_stop(const RenderSetup& setup, int size) {
-  constexpr double kRounding = 1 + 1e-6;  // of the rays' own test, in float
+  constexpr double kRounding = 1 + 1e-6;  // in the float test of the rays themselves
   const double pixel = setup.camera.pixel_size() / setup.side();
   BeamStop stop;
   stop.per_enter = size * pixel;
@@ -34,8 +35,8 @@ VOXDAG_HD inline BeamStop pixel_beam_stop(const RenderSetup& setup, int size) {
   return stop;
 }
 
-/// Whether any ray through the 8×8 pixels at (x,y) meets anything; if so `start` becomes a t before
-/// which none does.
+/// Returns whether any ray through the 8×8 pixels at (x,y) meets anything. If so, sets `start` to a
+/// t before which none does.
 template <class Nodes>
 VOXDAG_HD inline bool cast_coarse_beam(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                        double& start) {
@@ -43,12 +44,12 @@ VOXDAG_HD inline bool cast_coarse_beam(const Nodes& nodes, const RenderSetup& se
                    pixel_beam_stop(setup, kCoarseBeamPixels), start);
 }
 
-/// For the 4×4 pixels at (x,y), from the start of the 8×8 that they are in: t that is no later than
-/// where any ray through them meets anything, +infinity where none does.
+/// Returns a t before which no ray through the 4×4 pixels at (x,y) meets anything; +infinity if
+/// none meets anything at all. `coarse` is the start of the 8×8 pixels around them.
 template <class Nodes>
 VOXDAG_HD inline float cast_fine_beam(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                       double coarse) {
-  constexpr double kDown = 1 - 1e-6;  // to float, downwards
+  constexpr double kDown = 1 - 1e-6;  // rounds to float downwards
   Beam beam = pixel_beam(setup, x, y, kBeamPixels);
   beam.t_min = coarse;
   double start = 0;
@@ -56,8 +57,8 @@ VOXDAG_HD inline float cast_fine_beam(const Nodes& nodes, const RenderSetup& set
   return static_cast<float>(start * kDown);
 }
 
-/// Sets starts[0..4) for the 2×2 beams of the 8×8 pixels at (x,y), row by row, to what
-/// cast_fine_beam() finds, or +infinity.
+/// Sets starts[0..4) to the results of cast_fine_beam() for the 2×2 beams of the 8×8 pixels at
+/// (x,y), row by row.
 template <class Nodes>
 VOXDAG_HD inline void cast_primary_beams(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                          float* starts) {
@@ -69,8 +70,8 @@ VOXDAG_HD inline void cast_primary_beams(const Nodes& nodes, const RenderSetup& 
   }
 }
 
-/// The same into the starts of a whole picture: beams_across(width) * beams_across(height) of them,
-/// see beam_index.
+/// Sets these starts in the array of a whole picture: beams_across(width) * beams_across(height)
+/// values, see beam_index.
 template <class Nodes>
 VOXDAG_HD inline void set_beam_starts(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                       float* picture) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What a caller asks of a picture, and what it gets.
+/// The options of a picture, and the picture that is rendered.
 #include <optional>
 #include <vector>
 
@@ -11,12 +11,12 @@ namespace voxdag {
 
 struct RenderOptions {
   int width = 1920, height = 1080;  ///< Pixels; at least 1 each.
-  ViewRequest view;                 ///< What is not set, frame_scene finds.
+  ViewRequest view;                 ///< frame_scene finds the parts that are not set.
   int samples_per_pixel = 1;        ///< At least 1.
 
   bool with_sun = true;
-  std::optional<Vec3d> sun;       ///< Towards the sun; without it, over the viewer's left shoulder.
-  double sun_degrees = 0.53;      ///< The sun's angle across; 0: hard shadows.
+  std::optional<Vec3d> sun;       ///< Towards the sun; if not set, over the viewer's left shoulder.
+  double sun_degrees = 0.53;      ///< The sun's angular diameter; 0: hard shadows.
   std::vector<LightSpec> lights;  ///< Besides the sun; at most RenderSetup::kMaxLights - 1.
   bool shadows = true;
   int shadow_samples = 16;  ///< Shadow rays per pixel and light with soft edges.
@@ -26,16 +26,16 @@ struct RenderOptions {
   /// Longest ray of occlusion, world units; 0: 0.15 of the grid's side.
   double occlusion_distance = 0;
   /// Rays of occlusion end at cells that subtend this solid angle, in steradians; 0: at cells of
-  /// the surface's own size. The paper has 0.07.
+  /// the surface's own size. The paper uses 0.07.
   double occlusion_cone = 0;
 
-  float lod_pixels = 1;  ///< As in RenderSettings; likewise what follows.
+  float lod_pixels = 1;  ///< See RenderSettings for this and the next two.
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
-  bool filter = false;  ///< Smooth voxels larger than pixels, but not a source's points: see
-                        ///< post_filter.hpp.
-  float exposure = 0;   ///< Factor before tone mapping; 0: what suits the picture.
+  bool filter = false;  ///< Smooth voxels larger than pixels (post_filter.hpp), but not a
+                        ///< source's points.
+  float exposure = 0;   ///< Factor before tone mapping; 0: chosen to suit the picture.
 
   bool with_steps = false;  ///< Fill RenderedImage::steps.
   int tile_size = 32;       ///< Pixels, 1 to 32. Pictures do not depend on it.
@@ -44,7 +44,7 @@ struct RenderOptions {
 /// Rows from top to bottom, pixels from left to right, width * height values each.
 struct RenderedImage {
   int width = 0, height = 0;
-  View view;                     ///< The view it shows.
+  View view;                     ///< The view that it shows.
   float exposure = 0;            ///< The factor that was applied.
   std::vector<Vec3f> rgb;        ///< Tone mapped, linear light in [0,1]: encode as sRGB to display.
   std::vector<Vec3f> radiance;   ///< Linear, before exposure and tone mapping; filtered.
@@ -57,7 +57,7 @@ struct RenderedImage {
   std::uint64_t rays = 0;                 ///< Rays cast: primary, shadow, occlusion.
 };
 
-/// Where its values are, null where it has none.
+/// Returns the addresses of its values, null for those that it does not have.
 inline ImageBuffers buffers_of(RenderedImage& image) {
   const auto values = [](auto& pixels) { return pixels.empty() ? nullptr : pixels.data(); };
   return {values(image.radiance),   values(image.depth),  values(image.normal),

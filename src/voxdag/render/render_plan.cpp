@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/render/exposure.hpp"
@@ -11,7 +12,6 @@
 namespace voxdag {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kOcclusionDistance = 0.15;  // of the grid's side
 
 void check(const RenderOptions& options) {
@@ -27,7 +27,7 @@ void check(const RenderOptions& options) {
     throw Error("ambient occlusion takes 0 to 65536 rays per pixel");
   if (!(options.occlusion_distance >= 0 && options.occlusion_distance < HUGE_VAL))
     throw Error("the distance of ambient occlusion must be finite and not negative");
-  if (!(options.occlusion_cone >= 0 && options.occlusion_cone < 2 * kPi))
+  if (!(options.occlusion_cone >= 0 && options.occlusion_cone < 2 * std::numbers::pi))
     throw Error("a solid angle of occlusion must lie between 0 and 2 pi steradians");
   if (!(options.sun_degrees >= 0 && options.sun_degrees < 90))
     throw Error("the sun's angle must lie between 0 and 90 degrees");
@@ -72,7 +72,7 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
 
 }  // namespace
 
-RenderPlan::RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderOptions& options)
+RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOptions& options)
     : samples_(make_samples(options)), exposure_(options.exposure) {
   assert(grid.levels == voxels.levels());
   const std::size_t pixels =
@@ -115,7 +115,7 @@ RenderPlan::RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderO
     LightSpec sun;
     sun.kind = LightKind::kSun;
     sun.position = static_cast<Vec3d>(setup_.sky.sun);
-    sun.radius = std::tan(options.sun_degrees * kPi / 360);
+    sun.radius = std::tan(options.sun_degrees * std::numbers::pi / 360);
     setup_.lights[setup_.light_count++] = make_light(sun, grid);
   }
   for (const LightSpec& light : options.lights)

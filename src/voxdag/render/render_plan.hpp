@@ -1,5 +1,5 @@
 #pragma once
-/// From what is asked of a picture to what kernels take, and from what they make to the picture.
+/// Converts a picture's options to the setup that kernels take, and their output to the picture.
 #include <utility>
 
 #include "voxdag/render/render_options.hpp"
@@ -7,24 +7,24 @@
 
 namespace voxdag {
 
-/// Owns what a RenderSetup points to, all in the memory of the host.
+/// Owns the tables and buffers that a RenderSetup points to, in the host's memory.
 class RenderPlan {
  public:
-  /// Finds the view, the sun and the sample tables, and makes an empty image. The voxels
-  /// are the grid's. Throws Error for options out of range.
-  RenderPlan(const VoxelScene& voxels, const Grid& grid, const RenderOptions& options);
+  /// Finds the view and the sun, and makes the sample tables and an empty image. `voxels` must be
+  /// in `grid`. Throws Error for options out of range.
+  RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOptions& options);
   RenderPlan(const RenderPlan&) = delete;
   RenderPlan& operator=(const RenderPlan&) = delete;
 
-  /// With pointers to the plan's tables and image; beam_starts is null.
+  /// Points to the plan's tables and image; beam_starts is null.
   const RenderSetup& setup() const { return setup_; }
   const SampleSets& samples() const { return samples_; }
-  /// Filled by whoever renders, through setup().image; `rays` too.
+  /// Renderers fill it through setup().image, and set `rays`.
   RenderedImage& image() { return image_; }
 
   /// Exposes and tone maps an image's radiance.
   RenderedImage finish(RenderedImage image) const;
-  /// Does so with the plan's own, and gives it away.
+  /// Exposes and tone maps the plan's image, and moves it out.
   RenderedImage finish() { return finish(std::move(image_)); }
 
  private:

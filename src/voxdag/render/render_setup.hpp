@@ -1,5 +1,5 @@
 #pragma once
-/// A picture to be made, as kernels take it: plain values and pointers.
+/// The description of a picture that kernels take: plain values and pointers.
 #include <type_traits>
 
 #include "voxdag/core/grid.hpp"
@@ -26,19 +26,21 @@ struct RenderSettings {
   /// Cells look like cubes from this many pixels on, and like a smooth surface up to half as many;
   /// 0: always cubes.
   float cube_pixels = 24;
-  bool beams = true;  ///< Shorten rays by beams. The picture is the same without.
+  bool beams = true;  ///< Shorten rays by beams. The picture does not depend on it.
   Vec3f albedo{0.62f, 0.60f, 0.57f};
 };
 
-/// width * height values each, rows from top to bottom. Null where not wanted.
+/// The buffers of a picture: width * height values each, rows from top to bottom. Null if not
+/// wanted.
 struct ImageBuffers {
-  Vec3f* radiance = nullptr;   ///< Mean over the samples, linear, before exposure.
-  float* depth = nullptr;      ///< Of the first sample, world units; +infinity where nothing is.
-  Vec3f* normal = nullptr;     ///< Likewise; zero where nothing is.
-  float* occlusion = nullptr;  ///< Mean part of the sky's light that arrives; 1 where nothing is.
+  Vec3f* radiance = nullptr;  ///< Mean over the samples, linear, before exposure.
+  float* depth = nullptr;     ///< Of the first sample, world units; +infinity where it hit nothing.
+  Vec3f* normal = nullptr;    ///< Of the first sample; zero where it hit nothing.
+  float* occlusion =
+      nullptr;              ///< Mean part of the sky's light that arrives; 1 where nothing was hit.
   float* shadow = nullptr;  ///< Mean part of the lights' light that arrives; 1 where there is none.
-  float* steps = nullptr;   ///< Steps of the first sample's primary ray and its part of its beams.
-  /// Size of the first sample's cell: see pack_cell_pixels(); 0 where nothing is.
+  float* steps = nullptr;  ///< Steps of the first sample's primary ray and its share of its beams'.
+  /// Size of the first sample's cell, see pack_cell_pixels(); 0 where it hit nothing.
   std::uint8_t* cell_pixels = nullptr;
 };
 
@@ -56,10 +58,10 @@ struct RenderSetup {
   /// Where the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without beams.
   const float* beam_starts = nullptr;
 
-  VOXDAG_HD double side() const { return grid.voxel_size * static_cast<double>(grid.resolution()); }
+  VOXDAG_HD double side() const { return grid.side(); }
 };
 
-// It is passed to kernels by value, whose parameters have room for 4 KB.
+// Kernels take it by value; their parameters have room for 4 KB.
 static_assert(std::is_trivially_copyable_v<RenderSetup> && sizeof(RenderSetup) <= 3584);
 
 }  // namespace voxdag

@@ -1,9 +1,9 @@
 #pragma once
-/// A tile of a picture, in stages that each cast one long stream of rays: view samples, the light
-/// of each lamp, occlusion, then the shading of what they found.
+/// Renders a tile of a picture in stages: view samples, the light of each lamp, occlusion, shading.
+/// Each of the first three casts one long stream of rays.
 ///
-/// Every value depends on its pixel alone and what is added up is added in a fixed order, so that
-/// pictures depend neither on the size of the tiles nor on who renders them.
+/// Every value depends on its pixel alone, and sums have a fixed order, so that pictures depend
+/// neither on the size of the tiles nor on the number of threads.
 #include "voxdag/render/ambient_occlusion.hpp"
 #include "voxdag/render/cell_pixels.hpp"
 #include "voxdag/render/direct_light.hpp"
@@ -11,21 +11,21 @@
 
 namespace voxdag {
 
-/// What the sky sends to a surface. `open` is the part that occlusion lets through.
+/// Returns the sky's light on a surface. `open` is the part that occlusion lets through.
 VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
                                  float open) {
   const Vec3f light = sky_ambient(setup.sky, sample.normal);
-  // Not all that is open nearby is open sky.
+  // A part of the directions without near surfaces is hidden by far ones.
   constexpr float kSky = 0.7f;
   if (setup.settings.occlusion_samples > 0) return light * (kSky * open);
-  // Without occlusion the sky's light alone would leave shadows flat: light from the viewer and,
-  // softly, from the viewer's right keeps apart what sun and sky do not.
+  // Without occlusion, the sky's light alone would leave shadows flat: soft light from the viewer
+  // and from the viewer's right adds shape.
   const float facing = dot(sample.normal, view), aside = dot(sample.normal, setup.sky.fill);
   const float fill = 0.40f + 0.35f * facing + 0.25f * aside;
   return light * (fill > 0 ? fill : 0.0f);
 }
 
-/// Makes the tile's view samples into light, and adds them to the picture.
+/// Shades the tile's view samples and adds them to the picture.
 template <class Scratch>
 VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
                                  const Scratch& scratch) {
@@ -72,9 +72,9 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
   }
 }
 
-/// Sample tile.sample_index of the tile's pixels (see set_sample). `find_samples(tile, scratch)`
-/// sets scratch.samples and returns the number of rays that it cast: trace_view_samples() where the
-/// picture is of voxels. A pixel's samples come in order. Returns the number of all rays.
+/// Renders sample tile.sample_index of the tile's pixels (see set_sample) and returns the number of
+/// rays. `find_samples(tile, scratch)` sets scratch.samples and returns the number of rays that it
+/// cast; for pictures of voxels it is trace_view_samples(). A pixel's samples must come in order.
 template <class Nodes, class Caster, class Scratch, class FindSamples>
 VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
                                    const RenderSetup& setup, const ViewTile& tile, Scratch& scratch,
@@ -96,7 +96,7 @@ VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
   return rays;
 }
 
-/// All samples of the pixels of a tile.
+/// Renders all samples of a tile's pixels and returns the number of rays.
 template <class Nodes, class Caster, class Scratch, class FindSamples>
 VOXDAG_HD inline int render_tile(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  ViewTile tile, Scratch& scratch, const FindSamples& find_samples) {

@@ -1,11 +1,10 @@
 #include "voxdag/render/sample_tables.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace voxdag {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::uint32_t reverse_bits(std::uint32_t v) {
   v = v << 16 | v >> 16;
@@ -69,12 +68,12 @@ void for_each_point(int count, std::uint32_t seed, const Body& body) {
 SampleSets::SampleSets(int light_count, int hemisphere_count) {
   for_each_point(light_count, 1, [&](int, int, const double* u) {
     square_.push_back({static_cast<float>(u[0]), static_cast<float>(u[1])});
-    const double r = std::sqrt(u[0]), angle = 2 * kPi * u[1];
+    const double r = std::sqrt(u[0]), angle = 2 * std::numbers::pi * u[1];
     disc_.push_back(
         {static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle))});
   });
   for_each_point(hemisphere_count, 2, [&](int, int, const double* u) {
-    const double r = std::sqrt(u[0]), angle = 2 * kPi * u[1];
+    const double r = std::sqrt(u[0]), angle = 2 * std::numbers::pi * u[1];
     // A hit at distance d, as a part of the greatest, is to count (1 - d)². A ray of random length
     // with P(length > d) = (1 - d)² meets it just as often.
     const double reach = 1 - std::sqrt(u[2]);
@@ -84,7 +83,7 @@ SampleSets::SampleSets(int light_count, int hemisphere_count) {
          static_cast<float>(reach)});
   });
   for (int i = 0; i < SampleTables::kRotations; ++i) {
-    const double angle = 2 * kPi * i / SampleTables::kRotations;
+    const double angle = 2 * std::numbers::pi * i / SampleTables::kRotations;
     rotations_.push_back(
         {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
   }

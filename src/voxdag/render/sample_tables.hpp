@@ -1,10 +1,10 @@
 #pragma once
-/// The points at which areas and hemispheres are sampled, made once on the host: kernels neither
-/// call sine nor cosine, so that every machine casts the same rays.
+/// Sample points of areas and hemispheres. The host makes them once: kernels call neither sine nor
+/// cosine, so that every machine casts the same rays.
 ///
-/// Each set is a prefix of the Sobol sequence under an Owen scrambling of its own, so that any
-/// first 2^k points of it are well spread. A pixel takes a set and a rotation or shift by a hash of
-/// its coordinates: neighbours are not alike, and what is left of the error looks like grain.
+/// Each set is a prefix of the Sobol sequence with an Owen scrambling of its own, so that its first
+/// 2^k points are well distributed for every k. A hash of the pixel's coordinates selects a set and
+/// a rotation or shift: neighbouring pixels differ, and the remaining error looks like grain.
 /// Sources: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; T. Kollig and A.
 /// Keller, "Efficient Multidimensional Sampling", 2002.
 #include <cstdint>
@@ -20,8 +20,8 @@ struct Point2f {
 
 /// A ray of ambient occlusion around the normal (0,0,1).
 struct HemisphereSample {
-  Vec3f direction;  ///< Unit length, spread as the cosine to the normal.
-  float reach = 0;  ///< Length of the ray as a part of the longest.
+  Vec3f direction;  ///< Unit length; cosine-weighted.
+  float reach = 0;  ///< Length of the ray as a fraction of the longest.
 };
 
 /// `sets` * `count` points each; point i of set s is at s * count + i.
@@ -29,14 +29,14 @@ struct SampleTables {
   static constexpr int kSets = 64, kRotations = 256;  // powers of two
 
   const Point2f* square = nullptr;  ///< In [0,1)².
-  const Point2f* disc = nullptr;    ///< In the unit disc, uniform, never its centre.
+  const Point2f* disc = nullptr;    ///< In the unit disc, uniform, never the centre.
   int light_count = 0;
   const HemisphereSample* hemisphere = nullptr;
   int hemisphere_count = 0;
   const Point2f* rotations = nullptr;  ///< kRotations unit vectors around the circle.
 };
 
-/// What one pixel takes of the tables.
+/// One pixel's choice from the tables.
 struct PixelSamples {
   int set = 0;
   Point2f rotation{1, 0};
@@ -51,7 +51,7 @@ struct PixelSamples {
   }
 };
 
-/// A good hash of 32 bits: C. Wellons' "lowbias32".
+/// Returns a hash of 32 bits. Source: C. Wellons, "lowbias32".
 VOXDAG_HD inline std::uint32_t hash_bits(std::uint32_t v) {
   v ^= v >> 16;
   v *= 0x7FEB352Du;
@@ -60,7 +60,7 @@ VOXDAG_HD inline std::uint32_t hash_bits(std::uint32_t v) {
   return v ^ v >> 16;
 }
 
-/// `purpose` keeps apart what a pixel samples: 0 is occlusion, 1 + i is light i.
+/// Returns a pixel's choice for a `purpose`: 0 is occlusion, 1 + i is light i.
 VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, int y, int purpose) {
   const std::uint32_t column = hash_bits(static_cast<std::uint32_t>(x));
   const std::uint32_t row = hash_bits(column + static_cast<std::uint32_t>(y));
@@ -75,7 +75,8 @@ VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, i
 /// Owns the tables.
 class SampleSets {
  public:
-  /// For `light_count` points on a light and `hemisphere_count` rays of occlusion, at least 1 each.
+  /// Makes sets of `light_count` points on a light and `hemisphere_count` rays of occlusion, at
+  /// least 1 each.
   SampleSets(int light_count, int hemisphere_count);
 
   SampleTables view() const;

@@ -1,5 +1,5 @@
 #pragma once
-/// The view samples of a tile from a source other than the voxels.
+/// View samples of a tile from a ViewSource instead of the voxels.
 #include <algorithm>
 
 #include "voxdag/render/render_setup.hpp"
@@ -12,8 +12,8 @@ inline void find_source_samples(const ViewSource& source, const RenderSetup& set
                                 const ViewTile& tile, std::span<ViewSample> samples) {
   std::fill(samples.begin(), samples.end(), ViewSample{});
   source.sample(setup.camera, tile, samples);
-  // Points are exact, so nothing needs to be coarser than the voxels: edges and contacts would
-  // show it.
+  // Points are exact, so that cells need not be coarser than voxels, which would show at edges and
+  // contacts.
   for (ViewSample& sample : samples)
     if (sample.is_hit()) sample.cell_size = static_cast<float>(setup.grid.voxel_size);
 }

@@ -1,22 +1,22 @@
 #pragma once
-/// A smooth normal for a cell, from the cells around it.
+/// A smooth normal for a cell, estimated from the cells around it.
 ///
-/// Voxels of a surface lie in a layer. Let C be the covariance of the occupied cells within 4.5
-/// cells of the one in question, with weights that fall to zero at that distance. Its eigenvalues
-/// are small across the layer and large along it, so that a power of its inverse turns any vector
-/// into the layer's normal: C^-4 v, with v half way between the direction to the viewer and the
-/// face that the ray entered. That needs no eigenvectors, always leans to v, rounds edges over a
-/// few cells, gives hair a normal across its axis, and falls back to v where there is no layer at
-/// all.
+/// The voxels of a surface form a layer. Let C be the covariance of the occupied cells within 4.5
+/// cells, with weights that fall to zero at that distance. Its eigenvalues are small across the
+/// layer and large along it, so that a power of its inverse turns any vector into the layer's
+/// normal: C^-4 v, with v half way between the direction to the viewer and the face that the ray
+/// entered. This needs no eigenvectors, stays on v's side, rounds edges over a few cells, gives
+/// hair a normal across its axis, and falls back to v where there is no layer.
 #include "voxdag/core/bits.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/sky.hpp"
 #include "voxdag/trace/cell_blocks.hpp"
 
 namespace voxdag {
 
-/// A symmetric 3×3 matrix.
-struct SymmetricMatrix {
+/// A symmetric 3×3 matrix of second moments.
+struct CovarianceMatrix {
   float xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
   VOXDAG_HD Vec3f operator*(Vec3f v) const {
@@ -31,35 +31,35 @@ struct SymmetricMatrix {
     xz += weight * v.x * v.z;
     yz += weight * v.y * v.z;
   }
-  /// The inverse times the determinant.
-  VOXDAG_HD SymmetricMatrix adjugate() const {
+  /// Returns the inverse times the determinant.
+  VOXDAG_HD CovarianceMatrix adjugate() const {
     return {yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy,
             xz * yz - xy * zz, xy * yz - xz * yy, xy * xz - xx * yz};
   }
 };
 
+/// The layer of cells around a point.
 struct LayerFit {
   Vec3f normal;         ///< Unit length.
-  float thickness = 0;  ///< The variance of the cells along it, in cells².
-  float outwards = 0;   ///< How far along the normal the cell lies from the layer's mean, in cells.
+  float thickness = 0;  ///< Variance of the cells along the normal, in cells².
+  float outwards = 0;   ///< Distance of the cell from the layer's mean along the normal, in cells.
 };
 
-/// The layer of cells around a point of `cell` of `level` (2..L), which lies at `offset` cells from
-/// its centre; `front` is a vector on the side where the layer is seen from.
+/// Fits the layer around a point of `cell` of `level` (2..L); `offset`, in cells, leads from the
+/// centre of the cell to the point. `front` points to the side from which the layer is seen.
 template <class Nodes>
 VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, Vec3f offset,
                                     Vec3f front) {
   constexpr float kRadius2 = 4.5f * 4.5f;
-  // Of the 4³ blocks around the cell the two on each axis that reach at least 4 cells to either
-  // side.
+  // On each axis two blocks of 4³ cells cover at least 4 cells to either side of the cell.
   const auto first = [](std::int32_t i) { return (i >> 2) - ((i & 3) < 2 ? 1 : 0); };
   const Vec3i block{first(cell.x), first(cell.y), first(cell.z)};
   const CellBlocks blocks = cell_blocks(nodes, level, block);
   float weight = 0;
   Vec3f mean{};
-  SymmetricMatrix moments;
+  CovarianceMatrix moments;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3i at = block + Vec3i{corner & 1, corner >> 1 & 1, corner >> 2};
+    const Vec3i at = block + child_offset(corner);
     std::uint64_t cells = blocks.masks[corner];
     const Vec3f base = static_cast<Vec3f>(at * 4 - cell) - offset;
     for (; cells != 0; cells &= cells - 1) {
@@ -77,8 +77,8 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   }
   if (!(weight > 0)) return {front, 0, 0};
   mean = mean * (1 / weight);
-  // A cell's own extent, 1/12, keeps the matrix regular.
-  SymmetricMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
+  // The variance of a cell's own extent, 1/12, keeps the matrix regular.
+  CovarianceMatrix covariance{1.0f / 12, 1.0f / 12, 1.0f / 12};
   const float scale = 1 / weight;
   covariance.xx += moments.xx * scale;
   covariance.yy += moments.yy * scale;
@@ -87,21 +87,22 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   covariance.xz += moments.xz * scale;
   covariance.yz += moments.yz * scale;
   covariance.add_outer_product(mean, -1);
-  const SymmetricMatrix inverse = covariance.adjugate();
+  const CovarianceMatrix inverse = covariance.adjugate();
   Vec3f normal = front;
   for (int i = 0; i < 4; ++i) normal = normalized(inverse * normal);
   return {normal, dot(normal, covariance * normal), -dot(normal, mean)};
 }
 
-/// The normal, of unit length, of the surface at `cell` of `level` (2..L). `view` is the unit
-/// vector to the viewer, `face` the normal of the face that the ray entered (or view again). Where
-/// these two name different sides of the layer, at outlines, its outer side is the one on which the
-/// cell lies: an outline is convex. Where an edge turns away, what is seen there is the face.
+/// Returns the unit normal of the surface at `cell` of `level` (2..L). `view` is the unit vector to
+/// the viewer, `face` the normal of the face that the ray entered (or `view`). At outlines these
+/// two can lie on different sides of the layer. Then the side on which the cell lies is taken for
+/// the outer one, as outlines are convex. Where an edge turns away from the viewer, the result is
+/// the face.
 template <class Nodes>
 VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
                                       Vec3f face) {
-  // The variance of planes is 0.1 to 0.2 near an axis and 0.34 at most; that of right-angled edges
-  // 0.5.
+  // The variance of planes is 0.1 to 0.2 near an axis and at most 0.34, that of right-angled edges
+  // is 0.5.
   constexpr float kThin = 0.20f, kThick = 0.30f, kPlane = 0.36f, kEdge = 0.50f;
   constexpr float kOutlineCosine = 0.25f;
   constexpr int kCoarser = 2;

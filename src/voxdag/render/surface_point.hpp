@@ -1,10 +1,10 @@
 #pragma once
-/// Where the rays of shadow and occlusion start.
+/// The points at which the rays of shadow and occlusion start.
 ///
-/// The cover is conservative: a set voxel contains a point of the surface. So for a plane with the
-/// normal n all of its voxels lie within s = |nx| + |ny| + |nz| <= sqrt(3) voxels of it, and a ray
-/// that starts higher and runs upwards meets none of them. The same holds for cells of any size.
-/// Starting any higher would cost contact shadows, and could come out behind another surface.
+/// Every set voxel contains a point of the surface. So all voxels of a plane with the normal n lie
+/// within s = |nx| + |ny| + |nz| <= sqrt(3) voxels of it, and a ray that starts higher and runs
+/// upwards meets none of them. The same holds for cells of any size. Starting even higher would
+/// lose contact shadows, and could start behind another surface.
 #include <cmath>
 
 #include "voxdag/render/render_setup.hpp"
@@ -15,22 +15,23 @@
 namespace voxdag {
 
 struct SurfacePoint {
-  GridPoint start;    ///< Clear of the surface's own cells.
-  GridPoint surface;  ///< As of the view sample: what light arrives at.
-  Vec3f normal{};     ///< Likewise.
+  GridPoint start;    ///< Outside of the surface's own cells: rays start here.
+  GridPoint surface;  ///< The view sample's point, at which light arrives.
+  Vec3f normal{};     ///< The view sample's.
   Vec3f face{};
-  float cell_side = 0;  ///< Of the cell met, in units of the grid's side; 0 where nothing is.
+  float cell_side = 0;  ///< Side of the cell hit, in units of the grid's; 0 where nothing was hit.
 
   VOXDAG_HD bool is_hit() const { return cell_side > 0; }
 };
 
-/// How far the corner of a unit cube lies at most above a plane with this normal that meets it.
+/// Returns how far at most the corner of a unit cube lies above a plane with this normal that meets
+/// the cube.
 VOXDAG_HD inline float cube_height(Vec3f normal) {
   return std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
 }
 
-/// Whether a cell of the surface's own size lies at the point or right before it, as the viewer
-/// sees it. `to_viewer` has unit length.
+/// Returns whether a cell of the surface's own size lies at the point or right before it, as the
+/// viewer sees it. `to_viewer` has unit length.
 template <class Nodes>
 VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const SurfacePoint& point, Vec3f to_viewer) {
   constexpr float kCells = 4;
@@ -39,8 +40,8 @@ VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const SurfacePoint& point, V
   return cast(nodes, ray, StopBelowSize{point.cell_side, 0, 2}, cell);
 }
 
-/// The side of the cells, in world units, that stand for a surface at this depth: those at which a
-/// primary ray would end there.
+/// Returns the side, in world units, of the cells that represent a surface at this depth: those at
+/// which a primary ray would end.
 VOXDAG_HD inline float cell_size_at(const RenderSetup& setup, double depth) {
   const double limit =
       static_cast<double>(setup.settings.lod_pixels) * setup.camera.pixel_size() * depth;
@@ -49,8 +50,8 @@ VOXDAG_HD inline float cell_size_at(const RenderSetup& setup, double depth) {
   return static_cast<float>(size);
 }
 
-/// `sample` is hit, and its point lies on its surface or above. `direction` is that of the camera's
-/// ray to it.
+/// Returns the point for a view sample that is hit and lies on its surface or above. `direction` is
+/// that of the camera's ray to the sample.
 template <class Nodes>
 VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const RenderSetup& setup,
                                                  const ViewSample& sample, Vec3d direction) {
@@ -72,9 +73,9 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
     return !is_hidden(nodes, point, to_viewer);
   };
   if (can_start_at(lifted)) return point;
-  // In a corner, in a gap, at the edge of something thin that may be inside or behind a cell of
-  // another surface: the viewer sees the sample, but not that point. What the viewer looks along is
-  // free, for voxels at once and for a mesh when its cells are left.
+  // In corners, in gaps and at the edges of thin things, that point may lie inside of or behind a
+  // cell of another surface: the viewer sees the sample, but not the point. The line of sight is
+  // free: of voxels everywhere, of a mesh's cells from a few cells on.
   constexpr int kTries = 3, kFarthest = 9;  // cells
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
@@ -83,8 +84,8 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   };
   for (int i = 1; i <= kTries; ++i)
     if (can_start_at(cells_before(i))) return point;
-  // That way may all but graze the other surface of a corner. The steps along the axes that it is
-  // made of, the longest first, do not.
+  // The line of sight may graze the other surface of a corner. Steps along the axes, by the longest
+  // component of the direction first, do not.
   Vec3f left = to_viewer;
   for (int i = 0; i < 3; ++i) {
     const Vec3f size{std::fabs(left.x), std::fabs(left.y), std::fabs(left.z)};
@@ -96,7 +97,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
     }
     left[axis] = 0;
   }
-  // Deep in what is finer than cells: light from a little before it is nearer to its own than none.
+  // In geometry finer than cells, light at a point a little before it is better than none.
   for (int i = kTries + 1; i <= kFarthest; i += i / 2)
     if (can_start_at(cells_before(i))) return point;
   return point;

@@ -1,18 +1,18 @@
 #pragma once
-/// The pieces that pictures are made in.
+/// Tiles: the rectangles in which pictures are rendered.
 #include "voxdag/core/host_device.hpp"
 
 namespace voxdag {
 
-/// A rectangle of pixels and where in each of them the sample lies.
+/// A rectangle of pixels, and the position of the sample in each of them.
 struct ViewTile {
   int x = 0, y = 0;           ///< The top left pixel.
   int width = 0, height = 0;  ///< Pixels; the tile lies within the picture.
   int sample_index = 0;       ///< Which of a pixel's samples.
   double dx = 0.5, dy = 0.5;  ///< In [0,1): the sample of pixel (i,j) is at (i + dx, j + dy).
 
-  /// Pixels are numbered down the columns of strips of 8 rows, so that any 8, 64 or so that follow
-  /// one another lie close together: their rays are cast together.
+  /// Pixels are numbered down the columns of strips of 8 rows, so that 8 or 64 consecutive ones lie
+  /// close together: their rays are cast together.
   VOXDAG_HD constexpr int pixels() const { return width * height; }
   VOXDAG_HD constexpr int column(int pixel) const {
     return pixel % (kStripRows * width) / strip_height(pixel);
@@ -30,21 +30,21 @@ struct ViewTile {
   }
 };
 
-/// Pixels along the side of a beam, and of the beam that starts it off.
+/// The sides in pixels of a beam, and of the coarse beam that finds its start.
 inline constexpr int kBeamPixels = 4, kCoarseBeamPixels = 8;
 
-/// Beams in a row of a picture: a whole number of coarse ones.
+/// Returns the number of beams in a row of a picture, a whole number of coarse ones.
 VOXDAG_HD constexpr int beams_across(int pixels) {
   return (pixels + kCoarseBeamPixels - 1) / kCoarseBeamPixels * (kCoarseBeamPixels / kBeamPixels);
 }
 
-/// Which beam pixel (x,y) of a picture of this width is in.
+/// Returns the index of the beam of pixel (x,y) in a picture of this width.
 VOXDAG_HD constexpr int beam_index(int width, int x, int y) {
   return y / kBeamPixels * beams_across(width) + x / kBeamPixels;
 }
 
-/// Where sample i of a pixel lies in it: the centre, then the R2 sequence around it (M. Roberts,
-/// "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+/// Sets the position of sample i in its pixel: the centre, then the R2 sequence around it (M.
+/// Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 VOXDAG_HD inline void set_sample(ViewTile& tile, int i) {
   const double x = 0.5 + i * 0.7548776662466927, y = 0.5 + i * 0.5698402909980532;
   tile.sample_index = i;

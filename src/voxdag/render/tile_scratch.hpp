@@ -1,31 +1,30 @@
 #pragma once
-/// What the stages of a tile hand to each other.
+/// The arrays that the stages of a tile share.
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/view_sample.hpp"
 
 namespace voxdag {
 
-/// For tiles of up to kPixels pixels: many for the wide casters of a CPU, one for a thread of a
-/// GPU. Every array but `active` is indexed by the pixel in the tile, row by row.
+/// For tiles of up to kPixels pixels: many for the packets of a CPU, one for a thread of a GPU.
+/// Every array but `active` is indexed by the tile's pixel, in the order of ViewTile.
 template <int kPixels>
 struct TileScratch {
-  static constexpr int kMaxPixels = kPixels;
-
   ViewSample samples[kPixels];
   SurfacePoint points[kPixels];
   std::int32_t active[kPixels];  ///< Pixels that cast rays, in order.
-  PixelSamples pixels[kPixels];  ///< For the light, or the occlusion, at hand.
+  PixelSamples pixels[kPixels];  ///< For the current light, or for occlusion.
 
   std::int32_t open[kPixels];  ///< Rays of occlusion that met nothing.
 
-  LightInterval intervals[kPixels];  ///< Of the active pixels, for the light at hand.
-  std::uint64_t visible[kPixels];    ///< Bit i: ray i of the batch at hand met nothing.
-  float lit[kPixels];                ///< Sum of the weights of samples that arrive,
-  float unhindered[kPixels];         ///< and of all.
+  LightInterval intervals[kPixels];  ///< Of the active pixels, for the current light.
+  std::uint64_t visible[kPixels];    ///< Bit i: ray i of the current batch met nothing.
+  float lit[kPixels];                ///< Sum of the weights of the light's samples that arrive,
+  float unhindered[kPixels];         ///< and of all its samples.
 
-  Vec3f irradiance[kPixels];                        ///< From all lights.
-  float lit_sum[kPixels], unhindered_sum[kPixels];  ///< Luminance of it, and with nothing hidden.
+  Vec3f irradiance[kPixels];  ///< From all lights.
+  float lit_sum[kPixels],
+      unhindered_sum[kPixels];  ///< Luminance from all lights, and without occluders.
 };
 
 }  // namespace voxdag

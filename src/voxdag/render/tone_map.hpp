@@ -1,11 +1,11 @@
 #pragma once
-/// From scene light to what a display can show.
+/// Tone mapping: from the light of a scene to the range of a display.
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
-/// Linear light of any size to linear light in [0,1], by a filmic curve. Source: K. Narkowicz,
-/// "ACES Filmic Tone Mapping Curve", 2016.
+/// Maps linear light to linear light in [0,1] by a filmic curve. Source: K. Narkowicz, "ACES Filmic
+/// Tone Mapping Curve", 2016.
 VOXDAG_HD inline float tone_map(float x) {
   const float y = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
   return y < 0 ? 0.0f : y > 1 ? 1.0f : y;

@@ -1,10 +1,10 @@
 #pragma once
-/// Where a picture is taken from, and the views that show a scene when nobody says.
+/// Views: from where a picture is taken, and automatic choices of good views of a scene.
 #include <optional>
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/trace/voxel_scene.hpp"
+#include "voxdag/layout/voxel_set.hpp"
 
 namespace voxdag {
 
@@ -22,26 +22,26 @@ struct ViewRequest {
   std::optional<double> vertical_fov_degrees;
 };
 
-/// Where eye and target are given, frame_scene asks the cells of this level what is up, and no
-/// others.
+/// If the caller gives eye and target, frame_scene reads the voxels no deeper than this level, to
+/// guess what is up.
 inline constexpr int kUpLevel = 6;
 
-/// `up`, or for a view that runs straight up or down what is ahead on a map: -z where y is up, y
-/// where z is.
+/// Returns `up`, or, for a view straight up or down, the direction that is up on a map: -z if y is
+/// up, y if z is up.
 Vec3d up_across(Vec3d up, Vec3d forward);
 
-/// The view that was asked for, completed so that it shows the scene well in a picture of
-/// `aspect` = width / height. Without an up vector: y, or z where the scene lies or stands on that
-/// axis, or across these if the view runs along them. Without an eye: from above one corner with
-/// all voxels in the picture, or from inside where it is a closed box, as buildings are, with room
-/// to look around. A valid view even for an empty scene. Deterministic; some ten milliseconds.
-/// Throws Error for a request that names no view: numbers that are not finite, eye = target, an
-/// angle not in (0,180), up along the view.
-View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
+/// Returns the requested view, completed so that it shows the scene well in a picture of `aspect` =
+/// width / height. The default up vector is y, or z if the scene lies or stands on that axis, or
+/// up_across() of these for a view along them. The default eye is above a corner of the scene, so
+/// that all voxels are in the picture, or inside of a scene that is closed and roomy like a
+/// building. An empty scene gets a valid view, too. Deterministic; takes some ten milliseconds.
+/// Throws Error for requests that define no view: numbers that are not finite, eye = target, an
+/// angle outside of (0,180), an up vector along the view.
+View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request);
 
-/// `count` views that differ from each other: from inside, from roomy places with far to see, where
-/// the scene has such, then from outside around it. Deterministic; some ten milliseconds.
-std::vector<View> scene_views(const VoxelScene& voxels, const Grid& grid, double aspect, int count);
+/// Returns `count` different views: first from roomy places inside of the scene with a far sight,
+/// if there are any, then from outside around it. Deterministic; takes some ten milliseconds.
+std::vector<View> scene_views(const VoxelSet& voxels, const Grid& grid, double aspect, int count);
 
 }  // namespace voxdag

@@ -1,7 +1,7 @@
 #pragma once
-/// Where a picture's surface points come from when it is not the voxels: the deferred renderer of
-/// Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4,
-/// which shades triangles and asks the voxels only what light reaches them.
+/// A source of a picture's surface points other than the voxels, for the deferred renderer of
+/// Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4: it
+/// shades triangles, and uses the voxels only to compute their light.
 #include <span>
 
 #include "voxdag/render/camera.hpp"
@@ -10,16 +10,16 @@
 
 namespace voxdag {
 
-/// Host only. Implementations are called from many threads at once.
+/// Host only. Many threads call it at once.
 class ViewSource {
  public:
   virtual ~ViewSource() = default;
 
-  /// samples[row * tile.width + column] becomes what `camera` sees at that pixel's sample; there
-  /// are tile.width * tile.height of them. What sees nothing stays ViewSample{}. Normal and face
-  /// have unit length and lie on the viewer's side of the surface, `point` is on it exactly (in
-  /// double: at 131,072³ a float is off by voxels), depth is the t of camera.direction(x + dx,
-  /// y + dy). cell_size is left alone: the renderer, which knows the voxels, sets it.
+  /// Sets samples[row * tile.width + column] to what `camera` sees at that pixel's sample. The span
+  /// has tile.width * tile.height values; those that see nothing stay ViewSample{}. Normal and face
+  /// have unit length and point to the viewer's side of the surface. `point` lies exactly on it (in
+  /// double: at 131,072³ a float is off by voxels). depth is the t of camera.direction(x + dx,
+  /// y + dy). cell_size stays unset: the renderer, which knows the voxels, sets it.
   virtual void sample(const Camera& camera, const ViewTile& tile,
                       std::span<ViewSample> samples) const = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// The primary rays of a tile: what of the voxels its pixels see.
+/// The primary rays of a tile at the voxels of a DAG.
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/surface_normal.hpp"
 #include "voxdag/render/tile.hpp"
@@ -9,13 +9,13 @@
 
 namespace voxdag {
 
-/// The direction in which the camera sees a pixel of the tile; its t is depth.
+/// Returns the direction of the camera's ray through a pixel of the tile. The ray's t is its depth.
 VOXDAG_HD inline Vec3d pixel_direction(const RenderSetup& setup, const ViewTile& tile, int pixel) {
   return setup.camera.direction(tile.x + tile.column(pixel) + tile.dx,
                                 tile.y + tile.row(pixel) + tile.dy);
 }
 
-/// The primary ray of a tile's pixel.
+/// Returns the primary ray of a pixel of the tile.
 VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& tile, int pixel) {
   const int x = tile.x + tile.column(pixel), y = tile.y + tile.row(pixel);
   double t_min = 0;
@@ -32,14 +32,14 @@ VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& t
   return ray;
 }
 
-/// The surface where a primary ray met a cell. `direction` is the ray's, `hit` and `depth` where it
-/// ended.
+/// Returns the surface where a primary ray hit a cell. `direction` is the ray's; `hit` and `depth`
+/// are where it ended.
 template <class Nodes>
 VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSetup& setup,
                                               Vec3d direction, const Hit& hit, double depth) {
   const RenderSettings& settings = setup.settings;
   const int shift = setup.grid.levels - hit.level;
-  const double cell_size = setup.grid.voxel_size * static_cast<double>(std::int64_t{1} << shift);
+  const double cell_size = setup.grid.cell_size(hit.level);
   const Vec3f view = -static_cast<Vec3f>(normalized(direction));
   const Vec3f face = hit.face == Face::kNone ? view : static_cast<Vec3f>(face_normal(hit.face));
   const float cell_pixels = static_cast<float>(cell_size / (setup.camera.pixel_size() * depth));
@@ -55,15 +55,14 @@ VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSe
   sample.albedo = settings.albedo;
   sample.depth = static_cast<float>(depth);
   sample.cell_size = static_cast<float>(cell_size);
-  // The cell meets the surface's plane somewhere, so that this face of it lies at most this far
-  // below.
+  // The surface's plane meets the cell, so that the entered face lies at most this far below it.
   const float below = cube_height(sample.face) - dot(sample.face, face);
   const double lift = below > 0 ? static_cast<double>(below) * cell_size : 0.0;
   sample.point = setup.camera.eye + direction * depth + static_cast<Vec3d>(sample.face) * lift;
   return sample;
 }
 
-/// Sets scratch.samples. Returns the number of rays.
+/// Sets scratch.samples for all pixels of the tile. Returns the number of rays.
 template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
                                         const RenderSetup& setup, const ViewTile& tile,

@@ -104,9 +104,9 @@ void Builder::tube(const std::vector<Vec3d>& path, const std::vector<double>& ra
   std::vector<Vec3d> normals(n), sideways(n);
   Vec3d normal{};
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3d tangent = normalize(path[std::min(i + 1, n - 1)] - path[i == 0 ? 0 : i - 1]);
+    const Vec3d tangent = normalized(path[std::min(i + 1, n - 1)] - path[i == 0 ? 0 : i - 1]);
     const Vec3d kept = normal - tangent * dot(normal, tangent);
-    normal = i == 0 || dot(kept, kept) < 1e-12 ? perpendicular(tangent) : normalize(kept);
+    normal = i == 0 || dot(kept, kept) < 1e-12 ? perpendicular(tangent) : normalized(kept);
     normals[i] = normal;
     sideways[i] = cross(tangent, normal);
   }

@@ -118,7 +118,7 @@ void Builder::ball(int cells, const F& radius) {
       const Vec3d v = side % 3 == 0   ? Vec3d{s, a, b * s}
                       : side % 3 == 1 ? Vec3d{b * s, s, a}
                                       : Vec3d{a, b * s, s};
-      const Vec3d d = normalize(v);
+      const Vec3d d = normalized(v);
       return d * radius(d);
     });
   }

@@ -131,7 +131,7 @@ ScenePreset city_preset(double size) {
   preset.eye = {0.3 * blocks * kPitchX, 40 + 11 * blocks, 0.56 * blocks * kPitchZ};
   preset.target = {0, 8 + 3 * blocks, 0};
   preset.fov_degrees = 50;
-  preset.sun_direction = normalize({-0.72, 0.55, 0.42});
+  preset.sun_direction = normalized(Vec3d{-0.72, 0.55, 0.42});
   // Down from the air into the street nearest to the middle, round a corner, and up again.
   const bool is_even = std::fmod(blocks, 2) == 0;
   const double x = is_even ? 0 : kPitchX / 2, z = is_even ? 0 : kPitchZ / 2;

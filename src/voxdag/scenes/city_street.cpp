@@ -18,8 +18,8 @@ void tree(Builder& b, Random& random, double height) {
     for (int k = 0; k < 110; ++k) {
       const Vec3d out = random.direction();
       const Vec3d c = centre + out * (r * std::sqrt(random.uniform(0.4, 1)));
-      const Vec3d along = normalize(random.direction() + out * 0.4);
-      const Vec3d across = normalize(cross(along, random.direction()));
+      const Vec3d along = normalized(random.direction() + out * 0.4);
+      const Vec3d across = normalized(cross(along, random.direction()));
       const double l = random.uniform(0.2, 0.38), w = l * 0.6;
       b.quad(c - along * l, c + across * w, c + along * l, c - across * w);
     }

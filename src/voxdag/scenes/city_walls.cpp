@@ -155,8 +155,8 @@ void band(Builder& b, const Footprint& f, double y, const Profile& moulding) {
   const std::size_t n = f.size();
   for (std::size_t k = n; k-- > 0;) {
     const Point2 before = f[(k + n - 1) % n], here = f[k], after = f[(k + 1) % n];
-    const Vec3d d0 = normalize({here.x - before.x, 0, here.y - before.y}),
-                d1 = normalize({after.x - here.x, 0, after.y - here.y});
+    const Vec3d d0 = normalized(Vec3d{here.x - before.x, 0, here.y - before.y}),
+                d1 = normalized(Vec3d{after.x - here.x, 0, after.y - here.y});
     const Vec3d n0{-d0.z, 0, d0.x}, n1{-d1.z, 0, d1.x};
     path.push_back({{here.x, y, here.y}, (n0 + n1) * (1 / (1 + dot(n0, n1))), {0, 1, 0}, {}});
   }

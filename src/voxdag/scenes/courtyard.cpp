@@ -365,7 +365,7 @@ ScenePreset courtyard_preset(double) {
   preset.eye = {-0.9, 2.5, 11.4};
   preset.target = {2.0, 2.9, -3};
   preset.fov_degrees = 58;
-  preset.sun_direction = normalize({-0.55, 0.9, 0.35});
+  preset.sun_direction = normalized(Vec3d{-0.55, 0.9, 0.35});
   // Past the fountain, through the arcade and along the gallery behind it, and up over the roofs.
   preset.flight = {
       {0, preset.eye, preset.target},           {4, {-1.5, 2.2, 6.0}, {0.6, 1.6, -1}},

@@ -64,8 +64,8 @@ void potted_tree(Builder& b, const Detail& d, Random& random, double height) {
     const double lumps = 1 + 0.12 * noise(n * 2.5, 77);
     const double r = crown * lumps * std::sqrt(random.uniform(0.45, 1.0));
     const Vec3d c = Vec3d{0, middle, 0} + n * r;
-    const Vec3d along = normalize(random.direction() + n * 0.7),
-                across = normalize(cross(along, random.direction()));
+    const Vec3d along = normalized(random.direction() + n * 0.7),
+                across = normalized(cross(along, random.direction()));
     const double l = random.uniform(0.032, 0.055), w = l * 0.45;
     const Vec3d fold = cross(along, across) * (w * 0.35);
     const std::uint32_t tip = b.vertex(c + along * l), stem = b.vertex(c - along * l);

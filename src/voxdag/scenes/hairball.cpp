@@ -32,9 +32,9 @@ std::vector<Vec3d> hair_path(Random& random) {
   for (int i = 0; i < kRings + 2; ++i) {
     const double t = static_cast<double>(i) / (kRings + 1);
     for (int k = 0; k < 2; ++k)
-      direction = normalize(direction + cross(axes[k], direction) *
-                                            (0.028 * sin_turns(rates[k] * t + phases[k])));
-    const Vec3d a = normalize(cross(direction, curl_axis)), b = cross(direction, a);
+      direction = normalized(direction + cross(axes[k], direction) *
+                                             (0.028 * sin_turns(rates[k] * t + phases[k])));
+    const Vec3d a = normalized(cross(direction, curl_axis)), b = cross(direction, a);
     const Vec3d loop = a * cos_turns(curl_rate * t) + b * sin_turns(curl_rate * t);
     path[static_cast<std::size_t>(i)] = direction * lerp(inner, outer, std::sqrt(t)) + loop * curl;
   }
@@ -60,7 +60,7 @@ ScenePreset hairball_preset(double) {
   ScenePreset preset;
   preset.eye = {1.1, 0.5, 2.2};
   preset.fov_degrees = 46;
-  preset.sun_direction = normalize({-0.5, 0.9, 0.6});
+  preset.sun_direction = normalized(Vec3d{-0.5, 0.9, 0.6});
   // Once around it, coming near.
   constexpr int kKeys = 9;
   for (int i = 0; i < kKeys; ++i) {

@@ -3,6 +3,7 @@
 /// are the same on every machine. Angles are in turns: 1 is the full circle.
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 
 #include "voxdag/core/vec.hpp"
 
@@ -13,7 +14,7 @@ inline double sin_turns(double t) {
   t -= std::floor(t + 0.5);
   if (t > 0.25) t = 0.5 - t;
   if (t < -0.25) t = -0.5 - t;
-  const double x = 6.283185307179586 * t, s = x * x;
+  const double x = 2 * std::numbers::pi * t, s = x * x;
   double sum = -1.0 / 121645100408832000.0;  // -1/19!
   for (const double c :
        {1.0 / 355687428096000.0, -1.0 / 1307674368000.0, 1.0 / 6227020800.0, -1.0 / 39916800.0,
@@ -32,13 +33,10 @@ inline double smoothstep(double a, double b, double v) {
   return t * t * (3 - 2 * t);
 }
 
-inline double length(Vec3d v) { return std::sqrt(dot(v, v)); }
-inline Vec3d normalize(Vec3d v) { return v * (1 / length(v)); }
-
 /// Some unit vector perpendicular to the unit vector v.
 inline Vec3d perpendicular(Vec3d v) {
   const Vec3d axis = v.x * v.x < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  return normalize(cross(v, axis));
+  return normalized(cross(v, axis));
 }
 
 /// Where local coordinates lie in the world: axes are orthogonal, right-handed and of equal length.

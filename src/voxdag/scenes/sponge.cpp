@@ -79,7 +79,7 @@ ScenePreset sponge_preset(double size) {
   preset.eye = Vec3d{1.7, 1.35, 2.2} * side;
   preset.target = Vec3d{0.5, 0.36, 0.5} * side;
   preset.fov_degrees = 42;
-  preset.sun_direction = normalize({-0.35, 0.9, 0.62});
+  preset.sun_direction = normalized(Vec3d{-0.35, 0.9, 0.62});
   // In through the hole in front, and backwards out at the side.
   preset.flight = {{0, preset.eye, preset.target},
                    {3, Vec3d{0.85, 0.85, 1.9} * side, Vec3d{0.5, 0.5, 0.5} * side},

@@ -82,12 +82,12 @@ void rocks(Builder& b, const HeightField& field, std::uint32_t seed) {
         double r = 1 + 0.25 * noise(d * 1.3, shape);
         for (int k = 0; k < 5; ++k) {
           const Vec3d n =
-              normalize({noise({k + 0.5, 0.3, 0.7}, shape), noise({k + 0.5, 5.3, 0.7}, shape),
-                         noise({k + 0.5, 9.3, 0.7}, shape)});
+              normalized(Vec3d{noise({k + 0.5, 0.3, 0.7}, shape), noise({k + 0.5, 5.3, 0.7}, shape),
+                               noise({k + 0.5, 9.3, 0.7}, shape)});
           const double facing = dot(d, n);
           if (facing > 0.2) r = std::min(r, 0.72 / facing);
         }
-        const double stretch = 1 / length({d.x / squash.x, d.y / squash.y, d.z / squash.z});
+        const double stretch = 1 / length(Vec3d{d.x / squash.x, d.y / squash.y, d.z / squash.z});
         return size * r * stretch * (1 + 0.06 * noise(d * 6.0, shape + 1));
       });
     });
@@ -144,7 +144,7 @@ ScenePreset terrain_preset(double) {
   preset.eye = {-120, 150, 1010};
   preset.target = {20, 105, 0};
   preset.fov_degrees = 48;
-  preset.sun_direction = normalize({-0.8, 0.42, 0.3});
+  preset.sun_direction = normalized(Vec3d{-0.8, 0.42, 0.3});
   preset.flight = {{0, preset.eye, preset.target},           {4, {-160, 120, 640}, {20, 100, 0}},
                    {8, {-100, 190, 300}, {60, 120, -200}},   {12, {40, 330, -20}, {200, 170, -400}},
                    {16, {260, 450, -250}, {200, 220, -700}}, {20, {520, 500, -420}, {0, 150, -600}},

@@ -16,14 +16,15 @@
 
 namespace voxdag {
 
-void EsvoStream::fail(const std::string& place, const std::string& reason) const {
-  throw Error(path_.string(), place, reason);
+void EsvoStream::fail(ErrorPlace place, const std::string& reason) const {
+  throw Error(path_.string(), std::move(place), reason);
 }
 
 EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) : path_(path) {
   {
-    // Mapped, but of the blocks nothing is touched.
-    const MappedFile mapping(path);
+    // The mapping ends with this scope, before anything is walked, and its blocks are never
+    // touched.
+    const MappedFile mapping(path, MappedFile::Access::kRandom);
     try {
       const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
       check_vdag_checksums(chunks_but_blocks(chunks));
@@ -32,7 +33,7 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
       directory_.assign(directory.begin(), directory.end());
       slots_offset_ = esvo_chunk_offset(chunks);
     } catch (const Error& error) {
-      fail(error.place(), error.reason());
+      throw error.in_file(path_.string());
     }
   }
   file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -41,7 +42,7 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
   for (std::size_t i = 0; i < directory_.size(); ++i) {
     if (directory_[i].begin != end || directory_[i].slots == 0 ||
         directory_[i].slots % kEsvoPageSlots != 0)
-      fail("block " + std::to_string(i), "not where the directory says");
+      fail(ErrorPlace::block(i), "is not where the directory says");
     end += directory_[i].slots;
   }
   if (directory_.empty()) return;  // no voxels
@@ -54,16 +55,16 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
   const auto root = static_cast<std::size_t>(
       std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.parent < 0; }) -
       blocks_.begin());
-  if (root == blocks_.size()) fail("directory", "no block is the root's");
+  if (root == blocks_.size()) fail("directory", "has no root block");
   if (const std::uint64_t least = most_slots_of_a_path(); pool_.size() < least)
-    fail("", "the memory given is less than the " + std::to_string(least * 8) +
-                 " bytes of a block and those above it");
+    fail("", "the memory limit is less than the " + std::to_string(least * 8) +
+                 " bytes of a block and its ancestors");
   blocks_[root].siblings = {Vec3i{}};
   load(root);
   const std::uint64_t at = blocks_[root].position;
   root_ = at + view().info(at).first_descriptor;
   if (metadata_.root != directory_[root].begin + view().info(at).first_descriptor)
-    fail("root", "not the first descriptor of its block");
+    fail("root", "is not the first descriptor of its block");
 }
 
 EsvoStream::~EsvoStream() {
@@ -75,8 +76,8 @@ void EsvoStream::read(std::uint64_t offset, void* data, std::size_t bytes) const
     const ssize_t got = pread(file_, static_cast<char*>(data) + done, bytes - done,
                               static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail("byte " + std::to_string(offset + done), std::strerror(errno));
-    if (got == 0) fail("byte " + std::to_string(offset + done), "the file has become shorter");
+    if (got < 0) fail(ErrorPlace::byte(offset + done), std::strerror(errno));
+    if (got == 0) fail(ErrorPlace::byte(offset + done), "the file was truncated while it was read");
     done += static_cast<std::size_t>(got);
   }
 }
@@ -91,14 +92,15 @@ void EsvoStream::find_children() {
         [](std::uint64_t slot, const EsvoBlockEntry& b) { return slot < b.begin; });
     const auto above = static_cast<std::size_t>(after - directory_.begin()) - 1;
     if (above == i || parent >= directory_[above].begin + directory_[above].slots)
-      fail("block " + std::to_string(i), "its parent is no other block");
+      fail(ErrorPlace::block(i), "its parent is not another block");
     blocks_[i].parent = static_cast<std::int64_t>(above);
     blocks_[i].parent_slot = static_cast<std::uint32_t>(parent - directory_[above].begin);
     blocks_[above].children.push_back(static_cast<std::uint32_t>(i));
   }
 }
 
-/// Of a block and those above it. Throws if they go round in a circle.
+/// Returns the greatest number of slots of a block and its ancestors. Throws if blocks form a
+/// cycle.
 std::uint64_t EsvoStream::most_slots_of_a_path() const {
   std::uint64_t most = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -107,7 +109,7 @@ std::uint64_t EsvoStream::most_slots_of_a_path() const {
     for (auto at = static_cast<std::int64_t>(i); at >= 0;
          at = blocks_[static_cast<std::size_t>(at)].parent) {
       slots += directory_[static_cast<std::size_t>(at)].slots;
-      if (++blocks > kMaxLevels) fail("block " + std::to_string(i), "too many blocks above it");
+      if (++blocks > kMaxLevels) fail(ErrorPlace::block(i), "has too many ancestor blocks");
     }
     most = std::max(most, slots);
   }
@@ -161,7 +163,7 @@ void EsvoStream::cut(std::size_t block) {
   cut_[slot] = static_cast<std::int64_t>(block);
 }
 
-void EsvoStream::hang(std::size_t block, std::uint32_t first_descriptor) {
+void EsvoStream::attach(std::size_t block, std::uint32_t first_descriptor) {
   const Block& b = blocks_[block];
   const std::uint64_t slot = blocks_[static_cast<std::size_t>(b.parent)].position + b.parent_slot;
   ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
@@ -179,7 +181,7 @@ void EsvoStream::load(std::size_t block) {
   assert(!is_loaded(block) && can_load(block));
   const EsvoBlockEntry& entry = directory_[block];
   Block& b = blocks_[block];
-  const std::string place = "block " + std::to_string(block);
+  const ErrorPlace place = ErrorPlace::block(block);
   const std::uint64_t position = allocate(entry.slots);
   const std::span<std::uint64_t> slots(pool_.data() + position, entry.slots);
   EsvoBlockCheck check;
@@ -188,26 +190,26 @@ void EsvoStream::load(std::size_t block) {
     if (xxh3_64(std::as_bytes(slots)) != entry.checksum) fail(place, "checksum is wrong");
     check = check_esvo_block(slots, entry, b.siblings, metadata_.grid.levels);
     if (check.links.size() != b.children.size())
-      fail(place, "the directory tells otherwise of the blocks below");
+      fail(place, "the directory disagrees with the child blocks");
     for (EsvoFarLink& link : check.links) {
       const auto child = std::find_if(b.children.begin(), b.children.end(), [&](std::uint32_t c) {
         return blocks_[c].parent_slot == link.slot;
       });
       if (child == b.children.end() || directory_[*child].level != link.level ||
           directory_[*child].cell != link.cell)
-        fail(place + ", slot " + std::to_string(link.slot),
-             "the directory tells otherwise of the block of its children");
+        fail(place / ErrorPlace::slot(link.slot),
+             "the directory disagrees with this slot about its child block");
       blocks_[*child].siblings = std::move(link.siblings);
     }
   } catch (const Error& error) {
     release(position, entry.slots);
     if (!error.file().empty()) throw;
-    fail(place + (error.place().empty() ? "" : ", " + error.place()), error.reason());
+    throw error.within(place).in_file(path_.string());
   }
   b.position = position;
   for (const std::uint32_t child : b.children) cut(child);
   if (b.parent >= 0) {
-    hang(block, view().info(position).first_descriptor);
+    attach(block, view().info(position).first_descriptor);
     ++blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
   }
   ++counts_.blocks_loaded;
@@ -230,7 +232,8 @@ void EsvoStream::evict(std::size_t block) {
     is_cut_[slot] = false;
     cut_.erase(slot);
   }
-  // cut() remembers the descriptor with its far pointer's place, which is all that hang() needs.
+  // cut() stores the descriptor with the position of its far pointer, which is all that attach()
+  // needs.
   cut(block);
   --blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
   release(b.position, directory_[block].slots);

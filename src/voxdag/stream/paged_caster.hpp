@@ -1,8 +1,8 @@
 #pragma once
-/// Rays at an ESVO of which hardly anything is in memory at a time.
+/// Casts rays at an ESVO of which only a few blocks fit into memory.
 ///
 /// Source: M. Pharr et al., "Rendering Complex Scenes with Memory-Coherent Ray Tracing", SIGGRAPH
-/// 1997: rays that reach what is not loaded wait there, and a part that is loaded serves all rays
+/// 1997: rays that reach a missing block wait there, and a block that is loaded serves all rays
 /// that wait for it.
 #include <algorithm>
 #include <map>
@@ -14,12 +14,12 @@
 
 namespace voxdag {
 
-/// ContourNodes that load what a ray misses, for one thread.
+/// ContourNodes that load the blocks that a ray misses, for one thread.
 class PagedNodes : public ContourNodes {
  public:
   explicit PagedNodes(BlockSource& source) : ContourNodes(source.view()), source_(&source) {}
 
-  /// The block that the ray would have gone on into, or -1.
+  /// Returns the missing block into which the ray would have continued, or -1.
   template <class Stop>
   std::int64_t missing_block(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
     return would_go_on(view(), ray, stop, hit) ? source_->missing_block(hit.voxel.slot) : -1;
@@ -30,14 +30,15 @@ class PagedNodes : public ContourNodes {
   BlockSource* source_;
 };
 
-/// Lets a ray begin where it met a voxel: what it meets from there on is the same to the bit.
+/// Moves the start of a ray to where it met a voxel. From there on it meets the same voxels, to the
+/// bit.
 inline void begin_at(const EsvoHit& hit, GridRay& ray) {
-  // A ray that begins on a contour would not come through it.
+  // A ray that starts on a contour's plane would not enter through it.
   const float before = float_from_bits(bits_of_float(hit.t) - 1);
   ray.t_min = hit.is_through_contour() && hit.t > ray.t_min ? std::max(before, ray.t_min) : hit.t;
 }
 
-/// As cast() with all blocks loaded.
+/// Returns what cast() returns with all blocks loaded.
 template <class Stop>
 bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit& hit) {
   GridRay rest = ray;
@@ -50,11 +51,11 @@ bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit
   return false;
 }
 
-/// A caster (see trace/scalar_caster.hpp). All rays of a call are held: what they hit is told in
-/// the order in which blocks come.
+/// A caster (see trace/scalar_caster.hpp). It keeps all rays of a call in memory and reports hits
+/// in the order in which blocks are loaded.
 class PagedCaster {
  public:
-  /// `progress` may be null; it is asked whether to go on.
+  /// `progress` may be null; it can cancel the work.
   PagedCaster(const PagedNodes& nodes, const Progress* progress)
       : nodes_(nodes), progress_(progress) {}
 
@@ -76,7 +77,7 @@ class PagedCaster {
   void run(int count, const MakeRay& make_ray, const OnResult& on_result) const {
     struct Rest {
       CastRay cast;
-      float t_min;  ///< As it was made.
+      float t_min;  ///< The ray's original t_min.
     };
     std::vector<Rest> rays;
     rays.reserve(static_cast<std::size_t>(count));

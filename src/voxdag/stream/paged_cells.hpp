@@ -1,5 +1,6 @@
 #pragma once
-/// How a walk reads the upper levels of an ESVO of which hardly anything is in memory at a time.
+/// The node layout for walks of the upper levels of an ESVO of which only a few blocks fit into
+/// memory.
 #include <cstdint>
 
 #include "voxdag/core/morton.hpp"
@@ -7,13 +8,13 @@
 
 namespace voxdag {
 
-/// A layout of nodes (trace/svdag_nodes.hpp) that loads the blocks that a walk comes to. As blocks
-/// move, its nodes are cells, and each is looked up from the root. For one thread.
+/// A node layout (trace/svdag_nodes.hpp) that loads the blocks that a walk reaches. Its nodes are
+/// cells, looked up from the root each time, because blocks move. For one thread.
 class PagedCells {
  public:
   struct Node {
     Vec3i cell;
-    bool is_full = false;  ///< Within a leaf.
+    bool is_full = false;  ///< Inside of a leaf.
   };
 
   explicit PagedCells(BlockSource& source) : source_(&source) {}
@@ -26,13 +27,13 @@ class PagedCells {
     return node.is_full ? 0xFFu : descriptor(node, level, false).valid_mask();
   }
   Node child(const Node& node, int level, int index) const {
-    return {node.cell * 2 + Vec3i{index & 1, index >> 1 & 1, index >> 2},
+    return {node.cell * 2 + child_offset(index),
             node.is_full || (descriptor(node, level, true).leaf_mask() >> index & 1u) != 0};
   }
 
  private:
-  /// Of a node that is not full. While its block of children is missing, it says that all children
-  /// are leaves.
+  /// Returns the descriptor of a node that is not full. If the block of its children is missing,
+  /// the descriptor marks all children as leaves, unless `with_children` loads the block.
   ChildDescriptor descriptor(const Node& node, int level, bool with_children) const {
     std::uint64_t slot = source_->view().root;
     for (int l = 0;;) {

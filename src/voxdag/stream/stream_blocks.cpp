@@ -20,8 +20,7 @@ std::vector<std::size_t> StreamBlocks::take_wanted() {
 double StreamBlocks::apparent_size(std::size_t block, Vec3d eye) const {
   const EsvoBlockEntry& entry = stream_.directory()[block];
   const Grid& grid = stream_.grid();
-  const double size =
-      grid.voxel_size * static_cast<double>(std::int64_t{1} << (grid.levels - entry.level));
+  const double size = grid.cell_size(entry.level);
   const Vec3d lo = grid.origin + static_cast<Vec3d>(entry.cell) * size;
   const Vec3d nearest = max(lo, min(eye, lo + Vec3d{size, size, size})) - eye;
   return size / (std::sqrt(dot(nearest, nearest)) + 1e-9 * size);

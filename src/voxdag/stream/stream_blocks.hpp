@@ -1,5 +1,5 @@
 #pragma once
-/// The blocks of an ESVO file as a source for pictures: loaded where rays miss them.
+/// The blocks of an ESVO file as a source for pictures, loaded when rays miss them.
 #include <atomic>
 #include <filesystem>
 #include <memory>
@@ -12,7 +12,7 @@ namespace voxdag {
 
 class StreamBlocks : public BlockSource {
  public:
-  /// `memory` is what blocks may take, in bytes. Throws Error as EsvoStream does.
+  /// `memory` limits the bytes of the loaded blocks. Throws Error like EsvoStream.
   StreamBlocks(const std::filesystem::path& path, std::uint64_t memory);
 
   const EsvoStream& stream() const { return stream_; }
@@ -29,15 +29,15 @@ class StreamBlocks : public BlockSource {
   void load(std::size_t block) override;
 
  private:
-  /// The blocks wanted since the last call, in order.
+  /// Returns the blocks wanted since the last call, in order.
   std::vector<std::size_t> take_wanted();
-  /// How large the voxels of the block look from `eye`, more or less.
+  /// Returns about how large the voxels of the block look from `eye`.
   double apparent_size(std::size_t block, Vec3d eye) const;
-  /// What is above a block of this part is of this part, too.
+  /// Marks the ancestors of a block of this part as used by this part.
   void mark_above(std::size_t block);
   /// Evicts all blocks but the root's.
   void evict_all();
-  /// Evicts blocks of earlier parts until `block` has room; false if that is not enough.
+  /// Evicts blocks of earlier parts until `block` has room. Returns false if that is not enough.
   bool make_room(std::size_t block);
 
   EsvoStream stream_;

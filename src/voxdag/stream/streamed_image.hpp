@@ -1,5 +1,5 @@
 #pragma once
-/// A picture of an ESVO whose blocks are loaded while it is made.
+/// Renders a picture of an ESVO while its blocks are loaded.
 #include <functional>
 
 #include "voxdag/cpu/render_image.hpp"
@@ -7,35 +7,36 @@
 
 namespace voxdag {
 
-/// Where blocks come from. Nothing is loaded while rays are cast.
+/// A source of blocks. Nothing is loaded while rays are cast.
 class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
-  /// The block that is missing below a leaf of the descriptor in `slot`, or -1. Thread-safe.
+  /// Returns the block that is missing below a leaf of the descriptor in `slot`, or -1.
+  /// Thread-safe.
   virtual std::int64_t missing_block(std::uint64_t slot) const = 0;
   /// Notes that rays want a missing block. Thread-safe.
   virtual void want(std::size_t block) const = 0;
-  /// What is loaded; stays valid while blocks come and go.
+  /// Returns the loaded octree. The view's pointers stay valid while blocks come and go.
   virtual EsvoView view() const = 0;
 
-  /// Loads the blocks that were wanted since the last call, those that look largest from `eye`
-  /// first, as long as there is room; blocks that were loaded before the last begin_part() make
-  /// some. Returns how many it loaded.
+  /// Loads the blocks that were wanted since the last call, in the order of their apparent size
+  /// from `eye`, while there is room; evicts blocks that were loaded before the last begin_part()
+  /// to make room. Returns how many it loaded.
   virtual std::size_t load_missing(Vec3d eye) = 0;
-  /// From here on, what is loaded is for a picture, or a part of it.
+  /// Begins a picture, or a part of one, for which blocks are loaded from here on.
   virtual void begin_part() = 0;
-  /// Loads a block and those above it; those that were wanted longest ago make room.
+  /// Loads a block and its ancestors; evicts the least recently wanted blocks to make room.
   virtual void load(std::size_t block) = 0;
 };
 
-/// The picture that render_image makes of the whole octree. The first one, of what is loaded at the
-/// start, is there at once; then the tiles whose rays missed blocks are rendered again and again,
-/// each time with what they missed before. When no more fits, a tile for each thread at a time
-/// loads what it needs, and where even that does not fit its rays wait for one block after the
-/// other (paged_caster.hpp). What the source has loaded before, for other pictures, is used as long
-/// as there is room. `on_pass` gets each whole picture but the last. Throws as render_image does,
-/// and what the source throws.
+/// Returns the picture that render_image makes of the whole octree. Works in passes. The first
+/// renders what is loaded at the start. Each further pass loads the blocks that rays missed, and
+/// renders the tiles of these rays again. When no more blocks fit, the remaining tiles load their
+/// blocks by themselves, one tile per thread at a time; if even a tile's blocks do not fit, its
+/// rays wait for one block after the other (paged_caster.hpp). Blocks that the source loaded for
+/// other pictures are used while there is room. Calls `on_pass` with each complete picture but the
+/// last. Throws like render_image and like the source.
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
                               Progress* progress = nullptr);

@@ -1,12 +1,13 @@
 #pragma once
-/// How walks read an ESVO of which only some blocks are loaded, and say what they miss.
+/// The node layout for rays at an ESVO with only some blocks loaded; it reports the blocks they
+/// miss.
 #include <algorithm>
 
 #include "voxdag/trace/esvo_cast.hpp"
 
 namespace voxdag {
 
-/// Told of what casts end at. Called from many threads at once.
+/// Receives the leaves at which casts end. Many threads call it at once.
 class LeafListener {
  public:
   virtual ~LeafListener() = default;
@@ -14,7 +15,8 @@ class LeafListener {
   virtual void on_leaf(std::uint64_t slot) const = 0;
 };
 
-/// Whether the ray ended at a leaf and would have gone on into smaller voxels, if there were any.
+/// Returns whether the ray ended at a leaf and would have continued into smaller voxels, if there
+/// were any.
 template <class Stop>
 bool would_go_on(const EsvoView& esvo, const GridRay& ray, const Stop& stop, const EsvoHit& hit) {
   const ChildDescriptor descriptor = esvo.descriptor(hit.voxel.slot);
@@ -25,13 +27,13 @@ bool would_go_on(const EsvoView& esvo, const GridRay& ray, const Stop& stop, con
   return !stop(hit.level, hit.t, std::min({x, y, z}));
 }
 
-/// ContourNodes that tell a listener of the leaves that rays end at. Host only.
+/// ContourNodes that report the leaves at which rays end to a listener. Host only.
 class StreamedNodes : public ContourNodes {
  public:
   StreamedNodes(const EsvoView& esvo, const LeafListener& listener)
       : ContourNodes(esvo), listener_(&listener) {}
 
-  /// What casters call for each hit, the stop being that of the cast.
+  /// Casters call it for each hit, with the stop of the cast.
   template <class Stop>
   void on_hit(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
     if (would_go_on(view(), ray, stop, hit)) listener_->on_leaf(hit.voxel.slot);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/image/srgb_curve.hpp"
 #include "voxdag/surface/material_textures.hpp"
@@ -11,11 +12,6 @@
 
 namespace voxdag {
 namespace {
-
-Vec3f unit_or_zero(Vec3f v) {
-  const float length2 = dot(v, v);
-  return length2 > 0 ? v * (1 / std::sqrt(length2)) : Vec3f{};
-}
 
 /// A value that is linear over a triangle: v + b1 * d1 + b2 * d2.
 template <class T>
@@ -69,7 +65,7 @@ Frame make_frame(Vec3f normal, Vec3f tangent, float handedness) {
     const Vec3f other = std::abs(normal.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
     tangent = cross(other, normal);
   }
-  tangent = unit_or_zero(tangent);
+  tangent = normalized_or(tangent, {});
   return {tangent, cross(normal, tangent) * handedness, normal};
 }
 
@@ -153,8 +149,8 @@ Vec3f SurfaceShading::Tables::mean_normal(std::uint32_t t, std::span<const Vec2f
   // Exact for polynomials of degree two over a triangle.
   const Linear<Vec3f> normal(n[0], n[1], n[2]);
   Vec3f corners{};
-  for (const Vec2f b : polygon) corners = corners + unit_or_zero(normal(b));
-  return unit_or_zero(normal(moments.center)) * 0.75f +
+  for (const Vec2f b : polygon) corners = corners + normalized_or(normal(b), {});
+  return normalized_or(normal(moments.center), {}) * 0.75f +
          corners * (0.25f / static_cast<float>(polygon.size()));
 }
 
@@ -162,7 +158,7 @@ Frame SurfaceShading::Tables::frame_at(std::uint32_t t, const TangentFrames& fra
                                        Vec2f b) const {
   const Vec3f* const n = normals(t);
   const Vec3f normal =
-      n == nullptr ? face_normal(mesh, t) : unit_or_zero(Linear<Vec3f>(n[0], n[1], n[2])(b));
+      n == nullptr ? face_normal(mesh, t) : normalized_or(Linear<Vec3f>(n[0], n[1], n[2])(b), {});
   const Vec3f* const p = frames.tangents;
   return make_frame(normal, Linear<Vec3f>(p[0], p[1], p[2])(b), frames.handedness);
 }
@@ -192,8 +188,8 @@ ColorBounds SurfaceShading::Tables::color_bounds(std::uint32_t t, const Material
 bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLook& look,
                                                std::span<const Vec2f> polygon, Vec3f direction,
                                                float error) const {
-  if (error >= 3.14159265f) return true;
-  direction = unit_or_zero(direction);
+  if (error >= std::numbers::pi_v<float>) return true;
+  direction = normalized_or(direction, {});
   const TangentFrames frames = look.normal_texture ? tangents[t] : TangentFrames{};
   if (frames.tangents == nullptr) {
     const float least = std::cos(error);
@@ -206,7 +202,7 @@ bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLo
     if (least <= 0) return false;
     const Linear<Vec3f> normal(n[0], n[1], n[2]);
     return std::all_of(polygon.begin(), polygon.end(), [&](Vec2f b) {
-      return dot(unit_or_zero(normal(b)), direction) >= least - 1e-6f;
+      return dot(normalized_or(normal(b), {}), direction) >= least - 1e-6f;
     });
   }
   const Frame center = frame_at(t, frames, polygon_moments(polygon).center);
@@ -224,7 +220,7 @@ bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLo
     for (unsigned axis = 0; axis < 3; ++axis)
       n[static_cast<int>(axis)] = unpack_component(
           static_cast<float>((corner >> axis & 1) != 0 ? texels.hi[axis] : texels.lo[axis]));
-    if (!(dot(unit_or_zero(n), local) >= least - 1e-6f)) return false;
+    if (!(dot(normalized_or(n, {}), local) >= least - 1e-6f)) return false;
   }
   return true;
 }
@@ -338,7 +334,7 @@ bool SurfaceShading::may_be_uniform(std::uint32_t t, std::span<const Vec2f> poly
     lo[static_cast<int>(axis)] = unpack_component(static_cast<float>(texels.lo[axis]));
     hi[static_cast<int>(axis)] = unpack_component(static_cast<float>(texels.hi[axis]));
   }
-  return dot(unit_or_zero(lo), unit_or_zero(hi)) >= std::cos(2 * normal_error) - 1e-5f;
+  return dot(normalized_or(lo, {}), normalized_or(hi, {})) >= std::cos(2 * normal_error) - 1e-5f;
 }
 
 bool SurfaceShading::is_alpha_masked(std::uint32_t t, std::span<const Vec2f> polygon) const {

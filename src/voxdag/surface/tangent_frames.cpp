@@ -9,11 +9,6 @@
 namespace voxdag {
 namespace {
 
-Vec3f unit_or_zero(Vec3f v) {
-  const float length2 = dot(v, v);
-  return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : Vec3f{};
-}
-
 /// What corners must agree in to share a tangent.
 struct Corner {
   Vec3f position, normal;
@@ -37,13 +32,12 @@ struct CornerHash {
 Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
   const Vec3f a = mesh.vertices[t[0]];
-  const Vec3f normal = unit_or_zero(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a));
+  const Vec3f normal = normalized_or(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a), {});
   if (normal != Vec3f{}) return normal;
   // Tiny triangles: their areas are no float32.
   const Vec3d d(a);
-  const Vec3d n = cross(Vec3d(mesh.vertices[t[1]]) - d, Vec3d(mesh.vertices[t[2]]) - d);
-  const double length = std::sqrt(dot(n, n));
-  return length > 0 && std::isfinite(length) ? static_cast<Vec3f>(n * (1 / length)) : Vec3f{};
+  return static_cast<Vec3f>(
+      normalized_or(cross(Vec3d(mesh.vertices[t[1]]) - d, Vec3d(mesh.vertices[t[2]]) - d), {}));
 }
 
 TangentTable::TangentTable(
@@ -70,15 +64,16 @@ TangentTable::TangentTable(
     const Vec3f e1 = p[1] - p[0], e2 = p[2] - p[0];
     const Vec2f d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
     const float area = cross(d1, d2);
-    const Vec3f along_u = unit_or_zero((e1 * d2.y - e2 * d1.y) * (area < 0 ? -1.0f : 1.0f));
-    const Vec3f up = unit_or_zero((e1 * d2.x - e2 * d1.x) * (area < 0 ? -1.0f : 1.0f));
+    const Vec3f along_u = normalized_or((e1 * d2.y - e2 * d1.y) * (area < 0 ? -1.0f : 1.0f), {});
+    const Vec3f up = normalized_or((e1 * d2.x - e2 * d1.x) * (area < 0 ? -1.0f : 1.0f), {});
     if (area == 0 || along_u == Vec3f{} || up == Vec3f{}) continue;
     Vec3f normal{};
     for (std::size_t c = 0; c < 3; ++c) normal = normal + corner_of(t, c, false).normal;
     const bool mirrored = dot(cross(normal, along_u), up) < 0;
     places_[t] = count++ | (mirrored ? kMirrored : 0);
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3f a = unit_or_zero(p[(c + 1) % 3] - p[c]), b = unit_or_zero(p[(c + 2) % 3] - p[c]);
+      const Vec3f a = normalized_or(p[(c + 1) % 3] - p[c], {}),
+                  b = normalized_or(p[(c + 2) % 3] - p[c], {});
       const float angle = std::acos(std::clamp(dot(a, b), -1.0f, 1.0f));
       Vec3f& sum = sums[corner_of(t, c, mirrored)];
       sum = sum + along_u * angle;
@@ -90,7 +85,7 @@ TangentTable::TangentTable(
     const bool mirrored = (places_[t] & kMirrored) != 0;
     for (std::size_t c = 0; c < 3; ++c)
       tangents_[3 * std::size_t{places_[t] & ~kMirrored} + c] =
-          unit_or_zero(sums[corner_of(t, c, mirrored)]);
+          normalized_or(sums[corner_of(t, c, mirrored)], {});
   }
 }
 

@@ -11,37 +11,39 @@
 /// that are linear in t. A depth-first walk, nearest octants first, finds the least t (or from the
 /// far end the greatest) at which the beam meets a non-empty cell.
 ///
-/// Why the bound holds for the rays of grid_ray.hpp. At its T such a ray is off the line that it
-/// stands for by at most, on each axis and in units of the grid's side: 2^-24 (origin) + 2 * 2^-24
-/// (plane_t, which rounds twice) + 2^-24 (t_min or t_max as a T) + 2^-32 (parallel axes), so less
-/// than 2^-21. Cells are widened by that. What the walk itself rounds, in double, is far below. The
-/// walk ends at cells no finer than those at which a ray may end, and the beam is in a cell for all
-/// t for which one of its rays is.
+/// Why the bound holds for the rays of grid_ray.hpp. At any T such a ray differs from its exact
+/// line, on each axis and in units of the grid's side, by at most 2^-24 (origin) + 2 * 2^-24
+/// (plane_t rounds twice) + 2^-24 (t_min or t_max as a T) + 2^-32 (parallel axes): less than 2^-21.
+/// Cells are widened by that much; the rounding errors of the walk itself, in double, are far
+/// smaller. The walk ends at cells no finer than those at which a ray may end, and the beam is in a
+/// cell at every t at which one of its rays is.
 #include <cmath>
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/trace/esvo_nodes.hpp"
 
 namespace voxdag {
 
-/// In units of the grid's side, the grid being [0,1]³. The apex may lie anywhere.
+/// A beam in units of the grid's side; the grid is [0,1]³. The apex may lie anywhere.
 struct Beam {
   Vec3d apex{};
   Vec3d lowest{}, highest{};  ///< Bounds on the rays' directions, per axis.
   double t_min = 0, t_max = HUGE_VAL;
 };
 
-/// Which non-empty cells a beam is not to look into, by their side in units of the grid's: those
-/// that are small where the beam enters them, so that looking closer gains little, and all those at
-/// which a ray may end for its level of detail, which StopBelowSize judges where it leaves them.
+/// At which non-empty cells a beam's walk ends: small ones, where looking closer gains little, and
+/// all those at which a ray may end for its level of detail (StopBelowSize compares their side with
+/// t where the ray leaves them). The walk ends at a cell whose side, in units of the grid's, is at
+/// most the greatest of the three:
 struct BeamStop {
-  double at_start = 0;   ///< Of any side up to this,
-  double per_enter = 0;  ///< or up to this times t where the beam enters them,
-  double per_exit = 0;   ///< or up to this times t where it leaves them.
+  double at_start = 0;
+  double per_enter = 0;  ///< times t where the beam enters the cell
+  double per_exit = 0;   ///< times t where the beam leaves the cell
 };
 
-/// How far cells are widened.
+/// How far cells are widened, in units of the grid's side.
 inline constexpr double kBeamSlack = 0x1p-21;
 
 /// The two inequalities of an axis: t * lowest <= hi - apex and t * highest >= lo - apex.
@@ -49,7 +51,7 @@ struct BeamAxis {
   double apex = 0, inverse_lowest = 0, inverse_highest = 0;
 
   VOXDAG_HD static double inverse(double d, double instead) {
-    // A bound of zero is moved outwards, to where the quotient is still finite.
+    // Moves a bound of zero outwards, so that the quotient is finite.
     return 1 / (std::fabs(d) < 1e-100 ? instead : d);
   }
   VOXDAG_HD static BeamAxis make(double apex, double lowest, double highest) {
@@ -70,7 +72,7 @@ struct BeamAxis {
   }
 };
 
-/// The common walk of first_met and last_met.
+/// The walk behind first_met and last_met.
 template <bool kFromEnd, class Nodes>
 VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
                                 double& bound) {
@@ -108,9 +110,7 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
     }
     const auto index = static_cast<std::uint32_t>(lowest_bit64(top.pending)) ^ order;
     top.pending &= top.pending - 1;
-    const Vec3i cell = top.cell * 2 + Vec3i{static_cast<std::int32_t>(index & 1u),
-                                            static_cast<std::int32_t>(index >> 1 & 1u),
-                                            static_cast<std::int32_t>(index >> 2)};
+    const Vec3i cell = top.cell * 2 + child_offset(static_cast<int>(index));
     const double side =
         static_cast<double>(float_from_bits(static_cast<std::uint32_t>(127 - (level + 1)) << 23));
     double enter = first, exit = last;
@@ -119,7 +119,7 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
       axes[axis].clip(lo - kBeamSlack, lo + side + kBeamSlack, enter, exit);
     }
     if (!(enter <= exit)) continue;
-    // `first` or `last` has moved to the best so far: its equal is no better.
+    // `first` or `last` is the best bound so far: an equal one is no better.
     if (is_met && (kFromEnd ? exit <= first : enter >= last)) continue;
     double leave = exit;
     if (!kFromEnd && stop.per_exit > 0) {
@@ -147,15 +147,15 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
   return is_met;
 }
 
-/// Whether any ray of the beam can meet a non-empty cell within [t_min, t_max]; if so `bound`
-/// becomes a t before which none does.
+/// Returns whether any ray of the beam can meet a non-empty cell within [t_min, t_max]. If so, sets
+/// `bound` to a t before which no ray does.
 template <class Nodes>
 VOXDAG_HD inline bool first_met(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
                                 double& bound) {
   return cast_beam<false>(nodes, beam, stop, bound);
 }
 
-/// The same from the far end: `bound` becomes a t beyond which none does.
+/// Returns the same, but sets `bound` to a t beyond which no ray meets a cell.
 template <class Nodes>
 VOXDAG_HD inline bool last_met(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
                                double& bound) {

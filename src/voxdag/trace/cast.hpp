@@ -2,15 +2,15 @@
 /// The ray cast: one traversal for closest hit, any hit and level of detail, on every node layout.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4 and Figure 8,
-/// with what Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
-/// section 4, leave out: voxels are visited in ray order and have no contours, so no interval is
-/// kept.
+/// simplified as by Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH
+/// 2013, section 4: voxels have no contours and are visited in ray order, so that no interval of t
+/// is kept.
 ///
 /// The walk visits, in order of T, the cells that the ray is in as grid_ray.hpp defines it: from a
 /// present cell it descends to the child that the ray is in (PUSH), from an absent one it steps
-/// over all planes that the cell's exit T reaches, within the parent (ADVANCE) or, where a step
-/// leaves the parent, from the highest level at which the positions differ (POP). Invariant: the
-/// current cell is the cell of its level that the ray is in at `t`.
+/// over all planes that the ray reaches at the cell's exit T (ADVANCE). If that leaves the parent,
+/// it continues at the highest level at which the positions differ (POP). Invariant: the current
+/// cell is the cell of its level that the ray is in at `t`.
 #include "voxdag/trace/cell_walk.hpp"
 #include "voxdag/trace/hit.hpp"
 
@@ -23,7 +23,7 @@ struct CellHit {
   int level = 0;
 };
 
-/// What a cast at a layout finds: a CellHit, or the layout's own type made from that.
+/// The type of a cast's result: CellHit, or the layout's own type derived from it.
 template <class Nodes>
 struct FoundBy {
   using Type = CellHit;
@@ -34,7 +34,7 @@ struct FoundBy<Nodes> {
   using Type = typename Nodes::Found;
 };
 
-/// The termination hook that never ends a cast above the voxels.
+/// A termination hook that never ends a cast above the voxels.
 struct StopAtVoxels {
   VOXDAG_HD constexpr bool operator()(int /*level*/, float /*t_enter*/, float /*t_exit*/) const {
     return false;
@@ -42,9 +42,10 @@ struct StopAtVoxels {
   VOXDAG_HD constexpr int first_level() const { return kMaxLevels; }
 };
 
-/// Finds the first present cell along the ray that is a voxel or for which `stop(level, t_enter,
-/// t_exit)` is true, asked of non-empty cells of levels 1 to L-1 with the range of T in them. True
-/// if there is one within the ray's range. O(cells on the way) time, one stack entry per level.
+/// Finds the first non-empty cell along the ray that is a voxel or for which `stop(level, t_enter,
+/// t_exit)` is true, and returns whether there is one within the ray's range. Calls `stop` for
+/// non-empty cells of levels 1 to L-1, with the range of T in them. O(cells on the way) time, one
+/// stack entry per level.
 template <class Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   static_assert(
@@ -85,8 +86,8 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   }
 }
 
-/// The side of its cube through which the ray entered the cell: that of the first axis whose plane
-/// it meets at just the hit's T; none where no plane does.
+/// Returns the side of its cube through which the ray entered the cell: that of the first axis
+/// whose plane the ray meets at exactly the hit's T. Returns kNone if there is no such axis.
 VOXDAG_HD inline Face entered_face(const GridRay& ray, const CellHit& cell) {
   const std::uint32_t corner[3] = {cell.x, cell.y, cell.z};
   for (int axis = 0; axis < 3; ++axis) {
@@ -97,8 +98,8 @@ VOXDAG_HD inline Face entered_face(const GridRay& ray, const CellHit& cell) {
   return Face::kNone;
 }
 
-/// The cell of a cast as the caller of the library sees it. t is within [t_min, t_max] as the
-/// caller gave them, and finite.
+/// Converts the result of a cast for the library's caller. t is finite and within [t_min, t_max] as
+/// the caller gave them.
 VOXDAG_HD inline Hit to_hit(const GridRay& ray, const CellHit& cell, int levels, float t_min,
                             float t_max) {
   Hit hit;
@@ -120,7 +121,7 @@ VOXDAG_HD inline Hit to_hit(const GridRay& ray, const CellHit& cell, int levels,
   return hit;
 }
 
-/// The first voxel, or cell at which `stop` ends the cast, within the ray's range.
+/// Returns the first voxel, or cell at which `stop` ends the cast, within the ray's range.
 template <class Nodes, class Stop = StopAtVoxels>
 VOXDAG_HD inline Hit closest_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
                                  const Stop& stop = {}) {
@@ -130,7 +131,7 @@ VOXDAG_HD inline Hit closest_hit(const Nodes& nodes, const Grid& grid, const Ray
   return to_hit(grid_ray, cell, nodes.levels(), ray.t_min, ray.t_max);
 }
 
-/// Whether there is such a voxel or cell.
+/// Returns whether there is such a voxel or cell.
 template <class Nodes, class Stop = StopAtVoxels>
 VOXDAG_HD inline bool any_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
                               const Stop& stop = {}) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Occupancy near a cell, read from any node layout.
+/// The occupancy of the cells around a place, read from any node layout.
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/vec.hpp"
@@ -12,7 +12,7 @@ struct CellBlocks {
   std::uint64_t masks[8] = {};
 };
 
-/// The mask of the 4³ cells two levels below `node`, which is of `level` <= L-2.
+/// Returns the mask of the 4³ cells two levels below `node`, whose level is `level` <= L-2.
 template <class Nodes>
 VOXDAG_HD inline std::uint64_t cell_mask(const Nodes& nodes, typename Nodes::Node node, int level) {
   std::uint64_t cells = 0;
@@ -25,8 +25,8 @@ VOXDAG_HD inline std::uint64_t cell_mask(const Nodes& nodes, typename Nodes::Nod
   return cells;
 }
 
-/// The node of `to_level` at `cell` (coordinates of that level), from its ancestor `node` of
-/// `from_level`. False if there is none.
+/// Moves `node` from its level `from_level` down to the node of `to_level` at `cell`, in
+/// coordinates of that level. Returns false if there is none.
 template <class Nodes>
 VOXDAG_HD inline bool descend(const Nodes& nodes, typename Nodes::Node& node, int from_level,
                               int to_level, Vec3i cell) {
@@ -39,9 +39,9 @@ VOXDAG_HD inline bool descend(const Nodes& nodes, typename Nodes::Node& node, in
   return true;
 }
 
-/// The cells of `level` (2..L) in the blocks from `block` to block + 1 on every axis; block b holds
-/// the cells from 4b on. Nothing is set outside of the grid. One walk down to the lowest node that
-/// holds all blocks, then one to each.
+/// Returns the cells of `level` (2..L) in the blocks `block` to `block` + 1 on every axis; block b
+/// begins at cell 4b. Cells outside of the grid are empty. Walks down once to the lowest node that
+/// holds all blocks, then once to each block.
 template <class Nodes>
 VOXDAG_HD inline CellBlocks cell_blocks(const Nodes& nodes, int level, Vec3i block) {
   CellBlocks blocks;

@@ -1,21 +1,22 @@
 #pragma once
-/// The cells that a ray is in, one after the other: what the casts at all octrees share.
+/// Steps from cell to cell along a ray: the part that the casts of all octrees share.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4 and Figure 8.
 #include "voxdag/trace/grid_ray.hpp"
 
 namespace voxdag {
 
-/// The cell of some level that a ray is in at some T as grid_ray.hpp defines it. Rays run down
-/// along every axis, so a cell is left through its lower corner, and a position bit may only fall.
+/// The cell of some level that a ray is in at some T, as grid_ray.hpp defines it. Rays run down
+/// along every axis, so they leave a cell through the planes of its lower corner, and position bits
+/// only ever fall.
 class CellWalk {
  public:
-  /// T at the planes of the cell's lower corner, and the least of them: where the ray leaves it.
+  /// T at the planes of the cell's lower corner; t is the least of them, where the ray leaves.
   struct Exit {
     float x, y, z, t;
   };
 
-  /// Begins at the root, which the ray must be in at `t`, with the child where it is then.
+  /// Starts at the child of the root that the ray is in at `t`. The ray must be in the root then.
   VOXDAG_HD CellWalk(const GridRay& ray, float t)
       : ox_(ray.origin.x),
         oy_(ray.origin.y),
@@ -31,7 +32,7 @@ class CellWalk {
   VOXDAG_HD std::uint32_t y() const { return y_; }
   VOXDAG_HD std::uint32_t z() const { return z_; }
   VOXDAG_HD int level() const { return kTopBit + 1 - bit_; }
-  /// Which of its parent's children it is, mirrored.
+  /// The cell's child index in its parent, mirrored.
   VOXDAG_HD std::uint32_t child() const { return child_; }
   /// The position bit that siblings of this level differ in.
   VOXDAG_HD int bit() const { return bit_; }
@@ -46,20 +47,20 @@ class CellWalk {
     return exit;
   }
 
-  /// PUSH: goes to the child that the ray is in at `t`.
+  /// PUSH: moves to the child that the ray is in at `t`.
   VOXDAG_HD void push(float t) {
     --bit_;
     select_child(t);
   }
 
-  /// Goes to the parent.
+  /// Moves to the parent.
   VOXDAG_HD void ascend() {
     ++bit_;
     keep_bits_above();
   }
 
-  /// ADVANCE: steps over all planes that the ray reaches where it leaves the cell. True if it stays
-  /// in the parent; else pop() must follow.
+  /// ADVANCE: steps over all planes that the ray reaches where it leaves the cell. Returns whether
+  /// the new cell has the same parent; if not, pop() must follow.
   VOXDAG_HD bool advance(const Exit& exit) {
     const std::uint32_t step_x = exit.x == exit.t ? 1u : 0u;
     const std::uint32_t step_y = exit.y == exit.t ? 1u : 0u;
@@ -75,8 +76,8 @@ class CellWalk {
     return changed_ >> bit_ == 1;
   }
 
-  /// POP: goes to the cell of the highest level at which advance() changed the position. False if
-  /// the ray has left the root.
+  /// POP: moves to the cell of the highest level at which advance() changed the position. Returns
+  /// false if the ray has left the root.
   VOXDAG_HD bool pop() {
     bit_ = highest_bit(changed_);
     if (bit_ > kTopBit) return false;

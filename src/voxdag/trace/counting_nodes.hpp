@@ -1,12 +1,12 @@
 #pragma once
-/// Counts what a walk through the nodes takes.
+/// Counts the steps of walks through nodes.
 #include <cstdint>
 
 #include "voxdag/core/host_device.hpp"
 
 namespace voxdag {
 
-/// A node layout that is another one with a count of the walks' steps.
+/// A node layout that behaves like `Nodes` and counts the steps of walks.
 template <class Nodes>
 class CountingNodes : public Nodes {
  public:

@@ -1,43 +1,42 @@
 #pragma once
-/// The ray cast through an ESVO, with contours or, as cubes, without.
+/// The ray cast at an ESVO, with contours or as cubes.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1 and Figure 8,
-/// whose variables these are: the active span of the ray is t <= T < t_max, and h is where it
-/// leaves the parent, or 0 where the parent is on the stack already.
+/// whose variables have the same names here: the active span of the ray is t <= T < t_max, and h is
+/// where the ray leaves the parent, or 0 if the parent is on the stack already.
 ///
-/// The walk is that of cast.hpp, plane rule, voxel rule and all: without contours it meets just the
-/// cells that cast() meets in a DAG of the same voxels, at the same T, to the bit. Where a voxel
-/// has a contour the span of T in it is cut (contour_span.hpp); what is cut off of an ancestor
-/// stays cut off of its descendants. Two things are other than in Figure 8. A cell that `stop` ends
-/// the ray at, like a leaf, has its shape: the contour is looked at before. And once the ray has
-/// left the span of the parent it leaves the parent, without stepping through the rest of its
-/// cells.
+/// The walk is that of cast.hpp, with its plane rule and voxel rule: without contours it meets
+/// exactly the cells that cast() meets in a DAG of the same voxels, at the same T, to the bit. A
+/// contour cuts the span of T in its voxel (contour_span.hpp) and in all descendants. Two things
+/// differ from Figure 8. A cell at which `stop` ends the ray is cut by its contour first, like a
+/// leaf. And once the ray has left the span of the parent, it leaves the parent without stepping
+/// through the rest of the parent's cells.
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/contour_span.hpp"
 #include "voxdag/trace/esvo_nodes.hpp"
 
 namespace voxdag {
 
-/// A contour among those of a ray's voxels.
+/// A contour of one of the voxels that a ray passes.
 struct ContourPlane {
-  Contour contour;  ///< No bits: none.
-  int level = 0;    ///< Of the voxel that it is of.
+  Contour contour;  ///< No bits set: none.
+  int level = 0;    ///< Level of its voxel.
 };
 
-/// Where a cast ended: t is where the ray enters the shape, later than the cube where a contour
-/// cuts that.
+/// Where a cast ended: t is where the ray enters the shape, which may be later than it enters the
+/// cube.
 struct EsvoHit : CellHit {
   EsvoVoxel voxel;  ///< The leaf, or the coarser voxel at which `stop` ended the cast.
-  /// The contour, of the voxel or an ancestor, through one of whose planes the ray enters the
-  /// shape; none where it enters through a side of its cube, or starts inside.
+  /// The contour, of the voxel or an ancestor, through whose plane the ray enters the shape; none
+  /// if it enters through a side of the cube or starts inside.
   ContourPlane plane;
 
   VOXDAG_HD bool is_through_contour() const { return plane.contour.bits != 0; }
 };
 
-/// Finds the first leaf along the ray, or voxel for which `stop(level, t_enter, t_exit)` is true,
-/// asked of the voxels of levels 1 to L-1 that are no leaves with the range of T in their cubes.
-/// True if there is one within the ray's range.
+/// Finds the first voxel along the ray that is a leaf or for which `stop(level, t_enter, t_exit)`
+/// is true, and returns whether there is one within the ray's range. Calls `stop` for voxels of
+/// levels 1 to L-1 that are not leaves, with the range of T in their cubes.
 template <EsvoLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit& hit) {
   constexpr bool kWithContours = Nodes::kWithContours;
@@ -61,7 +60,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   float t_maxes[kMaxLevels];
   std::uint64_t slot = esvo.root;
   ChildDescriptor parent = descriptor_at(slot);
-  ContourPlane plane;  // by which the ray came to t, if by one
+  ContourPlane plane;  // through which the ray came to t, if through one
   CellWalk cell(ray, t);
   for (;;) {
     if constexpr (requires { nodes.on_step(); }) nodes.on_step();
@@ -133,7 +132,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   }
 }
 
-/// The same for who needs the cell only.
+/// Finds the same voxel for callers that need only its cell.
 template <EsvoLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   EsvoHit found;
@@ -142,25 +141,24 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   return true;
 }
 
-/// The outward normal, of unit length, of the plane through which the ray entered the shape: of a
-/// contour or of a side of the cube. Zero where the ray starts inside.
+/// Returns the outward unit normal of the plane through which the ray entered the shape, of a
+/// contour or of a side of the cube. Returns zero if the ray starts inside.
 VOXDAG_HD inline Vec3f entered_normal(const GridRay& ray, const EsvoHit& hit) {
   if (!hit.is_through_contour()) return static_cast<Vec3f>(face_normal(entered_face(ray, hit)));
-  const auto n = static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane.contour));
-  return n * (1.0f / std::sqrt(dot(n, n)));
+  return normalized(static_cast<Vec3f>(ContourRay(ray).entered_normal(hit.plane.contour)));
 }
 
-/// How far apart the planes of a contour are, in units of the grid's side.
+/// Returns the distance between the planes of a contour, in units of the grid's side.
 VOXDAG_HD inline float thickness(const ContourPlane& plane) {
   const auto n = static_cast<Vec3f>(plane.contour.normal());
   const auto steps = static_cast<float>(length1(plane.contour.normal()) *
                                         (plane.contour.high() - plane.contour.low()));
   const float side = float_from_bits(static_cast<std::uint32_t>(127 - plane.level) << 23);
-  return side * steps / (std::sqrt(dot(n, n)) * Contour::kMaxPosition);
+  return side * steps / (length(n) * Contour::kMaxPosition);
 }
 
-/// As of any layout. The face of a ray that enters through a contour is the side that looks most
-/// the same way.
+/// Converts the result of a cast for the library's caller. If the ray enters through a contour, the
+/// face is the side of the cube whose normal is closest to the contour's.
 VOXDAG_HD inline Hit to_hit(const GridRay& ray, const EsvoHit& found, int levels, float t_min,
                             float t_max) {
   Hit hit = to_hit(ray, static_cast<const CellHit&>(found), levels, t_min, t_max);
@@ -173,7 +171,7 @@ VOXDAG_HD inline Hit to_hit(const GridRay& ray, const EsvoHit& found, int levels
   return hit;
 }
 
-/// The first leaf, or voxel at which `stop` ends the cast, within the ray's range.
+/// Returns the first leaf, or voxel at which `stop` ends the cast, within the ray's range.
 template <EsvoLayout Nodes, class Stop = StopAtVoxels>
 VOXDAG_HD inline Hit closest_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
                                  const Stop& stop = {}) {

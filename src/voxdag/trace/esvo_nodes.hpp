@@ -1,8 +1,9 @@
 #pragma once
-/// How walks read an ESVO (layout/esvo.hpp): as cubes, whose leaves may be of any level.
+/// The node layouts for rays at an ESVO (layout/esvo.hpp), whose leaves may be of any level.
 ///
-/// A node layout as svdag_nodes.hpp describes it: to a walk that knows nothing of coarse leaves,
-/// such a leaf is full, with all its cells down to the voxels. A walk that does asks is_leaf().
+/// They are node layouts as svdag_nodes.hpp describes them. A walk that does not know of coarse
+/// leaves sees such a leaf as full: all its cells are present, down to the voxels. A walk that does
+/// asks is_leaf().
 #include <concepts>
 
 #include "voxdag/layout/esvo.hpp"
@@ -11,12 +12,12 @@ namespace voxdag {
 
 struct EsvoHit;  // trace/esvo_cast.hpp
 
-/// The voxels as cubes. Nodes are slots of descriptors.
+/// Voxels as cubes. Nodes are slots of descriptors.
 class EsvoNodes {
  public:
   using Node = std::uint64_t;
   using Found = EsvoHit;
-  /// Whether cast() cuts cubes by their contours; other walks never do.
+  /// Whether cast() cuts the cubes by their contours; other walks never do.
   static constexpr bool kWithContours = false;
 
   VOXDAG_HD explicit EsvoNodes(const EsvoView& esvo) : esvo_(esvo) {}
@@ -33,18 +34,18 @@ class EsvoNodes {
     if (is_leaf(node, level, index)) return kFull;
     return esvo_.child(node, esvo_.descriptor(node), index);
   }
-  /// Whether child `index`, which is present, has no children of its own but is full.
+  /// Returns whether child `index`, which must be present, is a leaf.
   VOXDAG_HD bool is_leaf(Node node, int /*level*/, int index) const {
     return node == kFull || (esvo_.descriptor(node).leaf_mask() >> index & 1u) != 0;
   }
 
  private:
-  static constexpr Node kFull = ~std::uint64_t{0};  ///< Any node within a leaf.
+  static constexpr Node kFull = ~std::uint64_t{0};  ///< Stands for any node inside of a leaf.
 
   EsvoView esvo_;
 };
 
-/// The voxels in their shapes: cubes cut by their own contours and all their ancestors'.
+/// Voxels in their shapes: cubes cut by their own contours and those of all ancestors.
 class ContourNodes : public EsvoNodes {
  public:
   static constexpr bool kWithContours = true;
@@ -57,7 +58,7 @@ concept EsvoLayout = requires {
   { Nodes::kWithContours } -> std::convertible_to<bool>;
 };
 
-/// Whether child `index`, present in `node` of `level`, is a voxel or a coarser leaf.
+/// Returns whether child `index`, present in `node` of `level`, is a voxel or a coarser leaf.
 template <class Nodes>
 VOXDAG_HD inline bool is_leaf_child(const Nodes& nodes, typename Nodes::Node node, int level,
                                     int index) {

@@ -1,36 +1,39 @@
 #pragma once
-/// A ray in the coordinates of the traversal, and with it the exact definition of what a ray meets.
+/// A ray in the coordinates of the traversal, and the exact definition of the voxels that it meets.
 ///
 /// Coordinates: the grid is the cube [1,2]³, so that the bits of a float's mantissa are the child
 /// indices of the cells that contain it (Laine and Karras, "Efficient Sparse Voxel Octrees",
-/// I3D 2010, section 4.1). Axes along which the ray runs up are mirrored (p -> 3 - p): here a ray
-/// runs down along every axis. Its origin is a multiple of 2^-23 in [1,2]; its parameter T is 0
-/// there and grows by 1 while the dominant axis crosses the grid once.
+/// I3D 2010, section 4.1). Axes along which the ray runs up are mirrored (p -> 3 - p), so that the
+/// ray runs down along every axis. Its origin is a multiple of 2^-23 in [1,2]. Its parameter T is 0
+/// at the origin, and grows by 1 while the ray crosses the grid along its dominant axis.
 ///
 /// The plane rule. The ray meets the plane p of an axis at
 ///     T(p) = (origin - p) * inverse                                     (plane_t below)
-/// in float arithmetic. Origin and p are multiples of 2^-23 in [1,2], so the difference is exact;
-/// the product is one correctly rounded operation by a positive constant. Rounding is monotone, so
-/// T(p) never decreases as p falls. It even increases strictly from one voxel plane to the next:
-/// neighbouring differences are at least 2^-20 apart and at most 1, a ratio of more than
-/// 1 + 2^-21, while rounding moves a product by at most a factor 1 +- 2^-24. There is no sum after
-/// the product, so no compiler can contract it: every machine finds the same T.
+/// in float arithmetic. Origin and p are multiples of 2^-23 in [1,2], so that the difference is
+/// exact; the product with a positive constant is rounded correctly, once. Rounding is monotone, so
+/// that T(p) never decreases as p falls. From one voxel plane to the next it even increases
+/// strictly: neighbouring differences are at least 2^-20 apart and at most 1, a ratio of more than
+/// 1 + 2^-21, while rounding changes a product by at most a factor 1 +- 2^-24. No sum follows the
+/// product, so that no compiler can contract it: every machine finds the same T.
 ///
 /// The voxel rule. At T the ray is, along each axis, beyond exactly the planes with T(p) <= T. That
-/// names one voxel for every T, and one cell of every coarser level, whose planes are a subset of
-/// the same planes: a walk of the octree visits just what a walk of the voxels visits. The ray
-/// meets the voxels that it is in at some T in [t_min, t_max], both ends included. So where it
-/// crosses several planes at one T (an edge or a corner, to float precision) it passes to the
-/// diagonal neighbour and meets none of the voxels between. A ray that starts on a plane is in the
-/// voxel ahead.
+/// defines one voxel for every T, and one cell of every coarser level: the planes of coarser cells
+/// are a subset of the voxels' planes, so that a walk of the octree visits the same voxels as a
+/// walk of the grid. The ray meets the voxels that it is in at some T in [t_min, t_max], both ends
+/// included. If it crosses several planes at one T (an edge or a corner, to float precision), it
+/// passes to the diagonal neighbour and meets none of the voxels between. A ray that starts on a
+/// plane is in the voxel ahead.
 ///
-/// Parallel axes. A component below 2^-32 of the largest is taken for zero: it moves the ray by
-/// less than 2^-32 of the grid. Such a ray is in the voxel with floor(origin), the half-open cube
-/// rule of the voxels themselves, for all T, and no face of that axis is ever the entered one.
+/// Parallel axes. Inside the grid a direction component below 2^-32 of the largest is taken for
+/// zero: it would move the ray by less than 2^-32 of the grid. Such a ray stays, for all T, in the
+/// voxels with floor(p), p being where it enters the grid: the half-open cube rule of the voxels
+/// themselves. No face of that axis is ever the entered one. Outside of the grid even the smallest
+/// component counts, so that a ray that starts far away enters the grid where its line does.
 ///
 /// Precision. The origin is rounded by up to 2^-24 of the grid (1/128 voxel at 131,072³) once, the
 /// same for all rays of a camera inside the grid; from it on, T is good to two roundings, 2^-23
-/// of the distance. Rays that start outside are restarted where they enter the grid, in double.
+/// of the distance. Rays that start outside are restarted where they enter the grid, in double: a
+/// ray that starts D grids away is off by up to D * 2^-51 of the grid there.
 #include <cmath>
 #include <cstdint>
 
@@ -40,7 +43,7 @@
 
 namespace voxdag {
 
-/// Made by make_grid_ray. With t_min > t_max it meets nothing.
+/// Made by make_grid_ray. A ray with t_min > t_max meets nothing.
 struct GridRay {
   Vec3f origin{1, 1, 1};       ///< In [1,2], mirrored.
   Vec3f inverse{1, 1, 1};      ///< 1 / |component| of the direction; 2^32 on parallel axes.
@@ -52,39 +55,39 @@ struct GridRay {
 
   VOXDAG_HD bool misses() const { return !(t_min <= t_max); }
 
-  /// T at the plane `position` (mirrored, a multiple of 2^-23 in [1,2]) of `axis`.
+  /// Returns T at the plane `position` (mirrored, a multiple of 2^-23 in [1,2]) of `axis`.
   VOXDAG_HD float plane_t(int axis, float position) const {
     return (origin[axis] - position) * inverse[axis];
   }
 
-  /// T at which it leaves the grid.
+  /// Returns T at which the ray leaves the grid.
   VOXDAG_HD float exit_t() const {
     const float x = plane_t(0, 1), y = plane_t(1, 1), z = plane_t(2, 1);
     const float xy = x < y ? x : y;
     return xy < z ? xy : z;
   }
 
-  /// T of the world ray's parameter t, and back.
-  VOXDAG_HD double to_grid_t(double t) const { return (t - t_start) / t_scale; }
+  /// Returns the world ray's parameter t at T = grid_t.
   VOXDAG_HD double to_world_t(double grid_t) const { return std::fma(grid_t, t_scale, t_start); }
 };
 
-/// The least float above t_max >= 0: T < that just where T <= t_max.
+/// Returns the least float above t_max >= 0: T is less than it if and only if T <= t_max.
 VOXDAG_HD inline float end_of_range(float t_max) {
   return t_max < HUGE_VALF ? float_from_bits(bits_of_float(t_max) + 1) : t_max;
 }
 
-/// The ray origin + t * direction, t_min <= t <= t_max, in world units, as the traversal takes it.
-/// Works for origins anywhere; t_min and t_max are rounded to nearest in T.
+/// Returns the ray origin + t * direction, t_min <= t <= t_max, given in world units, as the
+/// traversal takes it. The origin may lie anywhere; t_min and t_max are rounded to nearest in T.
 VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec3d world_direction,
                                        double t_min, double t_max) {
   constexpr double kInfinity = HUGE_VAL;
   constexpr double kParallel = 0x1p-32;
+  constexpr double kZero = 0x1p-960;  // what is less has no finite inverse, or nearly none
   GridRay ray;
   if (!(t_min <= t_max)) return ray;
 
   // The grid as [0,1]³, the direction with its largest component 1.
-  const double to_unit = 1.0 / (grid.voxel_size * static_cast<double>(grid.resolution()));
+  const double to_unit = 1.0 / grid.side();
   const Vec3d start = (world_origin - grid.origin) * to_unit;
   Vec3d direction = world_direction * to_unit;
   double length = 0;
@@ -103,11 +106,14 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec
   ray.mirrored = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double d = direction[axis], p = start[axis];
-    if (std::fabs(d) < kParallel) {
-      if (!(p >= 0 && p < 1)) return ray;
+    const bool is_parallel = std::fabs(d) < kParallel;
+    if (is_parallel) {
       ray.parallel |= 1u << axis;
       ray.mirrored |= 1u << axis;
       ray.inverse[axis] = 0x1p32f;
+    }
+    if (std::fabs(d) < kZero) {
+      if (!(p >= 0 && p < 1)) return ray;
       continue;
     }
     const double inverse = 1.0 / d;
@@ -118,19 +124,21 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec
       enter_axis = axis;
     }
     leave = far < leave ? far : leave;
+    if (is_parallel) continue;
     ray.mirrored |= d > 0 ? 1u << axis : 0u;
     ray.inverse[axis] = static_cast<float>(std::fabs(inverse));
   }
-  if (!(enter <= leave)) return ray;
+  if (!(enter <= leave && enter < kInfinity)) return ray;
 
   for (int axis = 0; axis < 3; ++axis) {
     const bool up = (ray.mirrored >> axis & 1u) != 0;
     const bool still = (ray.parallel >> axis & 1u) != 0;
     double p = start[axis];
     if (axis == enter_axis)
-      p = up ? 0.0 : 1.0;
-    else if (enter != 0 && !still)
+      p = direction[axis] > 0 ? 0.0 : 1.0;
+    else if (enter != 0)
       p = std::fma(enter, direction[axis], p);
+    if (still && p >= 1 && direction[axis] > 0) return ray;  // leaves the grid where it enters
     p = p < 0 ? 0.0 : p > 1 ? 1.0 : p;
     float q = static_cast<float>(1.0 + p);
     // Rounding must not carry a ray out of the grid along an axis on which it does not move.
@@ -154,9 +162,10 @@ struct GridPoint {
   Vec3f position{1, 1, 1};  ///< The grid is [1,2]³; multiples of 2^-23.
 };
 
-/// The nearest point of the closed grid, rounded by up to 2^-24 of its side; NaN is taken for 0.
+/// Returns the nearest point of the closed grid, rounded by up to 2^-24 of its side. NaN counts as
+/// 0.
 VOXDAG_HD inline GridPoint make_grid_point(const Grid& grid, Vec3d world) {
-  const double to_unit = 1.0 / (grid.voxel_size * static_cast<double>(grid.resolution()));
+  const double to_unit = 1.0 / grid.side();
   GridPoint point;
   for (int axis = 0; axis < 3; ++axis) {
     const double p = (world[axis] - grid.origin[axis]) * to_unit;
@@ -165,9 +174,9 @@ VOXDAG_HD inline GridPoint make_grid_point(const Grid& grid, Vec3d world) {
   return point;
 }
 
-/// The ray start + t * direction, t_min <= t <= t_max with t_min >= 0. The direction is in units of
-/// the grid's side, need not have unit length, and t is in units of it. All in float: for the many
-/// short rays of one point. A zero direction meets nothing.
+/// Returns the ray start + t * direction, 0 <= t_min <= t <= t_max. The direction is in units of
+/// the grid's side and need not have unit length; t is in units of the direction. Computes in
+/// float: for the many short rays of one point. A ray with a zero direction meets nothing.
 VOXDAG_HD inline GridRay make_grid_ray(const GridPoint& start, Vec3f direction, float t_min,
                                        float t_max) {
   constexpr float kParallel = 0x1p-32f;
@@ -181,7 +190,7 @@ VOXDAG_HD inline GridRay make_grid_ray(const GridPoint& start, Vec3f direction, 
     const float d = direction[axis], p = start.position[axis];
     const bool still = !(std::fabs(d) >= kParallel * length);
     const bool up = still || d > 0;
-    // As above: a ray that does not move along an axis is in the voxels of floor(origin).
+    // As above: a ray that does not move along an axis is in the voxels with floor(origin).
     const float q = still && p > 2 - 0x1p-23f ? 2 - 0x1p-23f : p;
     ray.parallel |= still ? 1u << axis : 0u;
     ray.mirrored |= up ? 1u << axis : 0u;

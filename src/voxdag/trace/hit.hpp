@@ -1,5 +1,5 @@
 #pragma once
-/// What a ray meets.
+/// The result of a ray cast.
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"
@@ -17,22 +17,23 @@ enum class Face : std::int8_t {
   kPositiveZ,
 };
 
-/// 0, 1 or 2 for x, y, z; the face must not be kNone.
+/// Returns 0, 1 or 2 for x, y or z; the face must not be kNone.
 VOXDAG_HD constexpr int face_axis(Face face) { return static_cast<int>(face) >> 1; }
 
-/// The outward normal, or zero for kNone.
+/// Returns the outward normal, or zero for kNone.
 VOXDAG_HD constexpr Vec3i face_normal(Face face) {
   Vec3i normal{};
   if (face != Face::kNone) normal[face_axis(face)] = (static_cast<int>(face) & 1) != 0 ? 1 : -1;
   return normal;
 }
 
-/// The first cell along a ray. All fields but `hit` have their defaults where nothing was met.
+/// The first cell along a ray. If there is none, all fields have their default values.
 struct Hit {
-  float t = 0;              ///< In units of the ray's direction; t_min where the ray starts inside.
+  float t = 0;              ///< In units of the ray's direction; t_min if the ray starts inside.
   Vec3i voxel{};            ///< The voxel, or the lowest voxel of a coarser cell.
   Face face = Face::kNone;  ///< Where the ray enters the cell.
-  std::int8_t level = 0;    ///< L for a voxel, less where LOD ended the cast at a coarser cell.
+  std::int8_t level =
+      0;  ///< L for a voxel, less if the level of detail ended the cast at a coarser cell.
   bool hit = false;
 
   friend bool operator==(const Hit&, const Hit&) = default;

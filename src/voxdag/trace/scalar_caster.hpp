@@ -1,22 +1,21 @@
 #pragma once
-/// Casts streams of rays one after the other: the form for one thread of a GPU, and the reference
-/// for the wide ones.
+/// Casts the rays of a stream one at a time: the caster for a thread of a GPU, and the reference
+/// for the casters of packets.
 ///
-/// A caster is what the effects of render/ cast their rays with: a type with
-///   closest(count, make_ray, on_result)   for the first cell along each ray
-///   any(count, make_ray, on_result)       for whether there is one
-///   levels()                              L
-/// make_ray(i) gives the CastRay i, 0 <= i < count, or a reference to it that outlives the call of
-/// the caster; it may be called in any order, once each.
-/// on_result(i, ray, cell, is_hit) receives what closest() found, on_result(i, is_hit) what any()
-/// did, in any order: what is added up must not depend on it. A cell is a FoundBy<Nodes>::Type. All
-/// casters give the same results to the bit.
+/// The effects of render/ cast their rays through a caster, a type with
+///   closest(count, make_ray, on_result)   finds the first cell along each ray
+///   any(count, make_ray, on_result)       finds whether there is one
+///   levels()                              returns L
+/// make_ray(i) returns CastRay i, 0 <= i < count, or a reference to it that outlives the call of
+/// the caster. It is called once for each i, in any order. closest() calls on_result(i, ray, cell,
+/// is_hit), any() calls on_result(i, is_hit), in any order: sums over results must not depend on
+/// the order. A cell is a FoundBy<Nodes>::Type. All casters give the same results to the bit.
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 
 namespace voxdag {
 
-/// A ray with its level of detail; by default to the voxels.
+/// A ray with its level of detail; by default it ends at voxels.
 struct CastRay {
   GridRay ray;
   StopBelowSize stop;

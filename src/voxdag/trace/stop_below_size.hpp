@@ -1,8 +1,8 @@
 #pragma once
-/// Level of detail: ends a cast at cells that are too small to matter where they are.
+/// Level of detail: ends a cast at cells that are too small to matter at their distance.
 ///
-/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1: the size of
-/// the cell against a linear function of t.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1: compares the
+/// size of the cell with a linear function of t.
 #include <cstdint>
 
 #include "voxdag/core/bits.hpp"
@@ -11,9 +11,9 @@
 namespace voxdag {
 
 /// A termination hook for cast(): true for cells of level `coarsest_level` or finer whose side is
-/// at most at_start + per_t * T, T being where the ray leaves the cell: that, unlike where it
-/// enters, is the same wherever on its way to the cell the ray starts, so that shortened rays end
-/// at the same cells. Sides are in units of the grid's side, so that level l has 2^-l.
+/// at most at_start + per_t * T, where T is the ray's exit from the cell. Unlike the entry, the
+/// exit does not depend on where the ray starts, so that shortened rays end at the same cells.
+/// Sides are in units of the grid's side: cells of level l have 2^-l.
 struct StopBelowSize {
   float at_start = 0;
   float per_t = 0;
@@ -24,7 +24,8 @@ struct StopBelowSize {
     return level >= coarsest_level && side <= at_start + per_t * t_exit;
   }
 
-  /// At levels that are less it is false, as T is at most 1 in the grid.
+  /// Returns a level above which (at lesser levels) the hook is always false: T is at most 1 in the
+  /// grid.
   VOXDAG_HD int first_level() const {
     const float most = (at_start + (per_t > 0 ? per_t : 0)) * (1 + 0x1p-10f);
     const int level = most > 0 ? 127 - static_cast<int>(bits_of_float(most) >> 23) : 127;
@@ -32,11 +33,11 @@ struct StopBelowSize {
   }
 };
 
-/// Ends the cast of `ray` at cells whose side is at most `size_per_t` * t, in world units; the
-/// ray's apex is at t = 0, as it is for a pixel's footprint.
+/// Returns the hook that ends the cast of `ray` at cells whose side is at most `size_per_t` * t, in
+/// world units, as for the footprint of a pixel seen from the ray's origin at t = 0.
 VOXDAG_HD inline StopBelowSize stop_below_size(const Grid& grid, const GridRay& ray,
                                                double size_per_t) {
-  const double scale = size_per_t / (grid.voxel_size * static_cast<double>(grid.resolution()));
+  const double scale = size_per_t / grid.side();
   StopBelowSize stop;
   stop.at_start = static_cast<float>(scale * ray.t_start);
   stop.per_t = static_cast<float>(scale * ray.t_scale);

@@ -1,5 +1,5 @@
 #pragma once
-/// How the traversal reads the paper's SVDAG layout (layout/svdag.hpp).
+/// The node layout for rays at the paper's SVDAG (layout/svdag.hpp).
 ///
 /// A node layout for cast() is a type with
 ///   using Node          what the stack stores for a node; small and trivially copyable
@@ -8,14 +8,14 @@
 ///   root()              the node of level 0; not called on an empty DAG
 ///   child_mask(n, l)    the 8-bit child mask of node n of level l
 ///   child(n, l, i)      child i, which is present, of node n of level l < L-1
-/// Children of level L-1 are voxels: their presence in the mask is all there is. A layout may also
-/// have on_step(), called at each step of a walk: see counting_nodes.hpp.
+/// Children of nodes of level L-1 are voxels, which have nothing but their bit in the mask. A
+/// layout may also have on_step(), called at each step of a walk: see counting_nodes.hpp.
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
 
-/// Nodes of level < L-2 are word indices, those of level L-2 indices of leaf blocks, and those of
-/// level L-1 are their own child mask, one byte of a leaf block.
+/// A node of level < L-2 is a word index, one of level L-2 the index of a leaf block, and one of
+/// level L-1 its own child mask, a byte of a leaf block.
 class SvdagNodes {
  public:
   using Node = std::uint32_t;
@@ -27,7 +27,6 @@ class SvdagNodes {
         is_empty_(dag.is_empty()),
         view_(dag) {}
 
-  /// What it was made from.
   VOXDAG_HD const SvdagView& view() const { return view_; }
 
   VOXDAG_HD bool is_empty() const { return is_empty_; }
@@ -40,13 +39,13 @@ class SvdagNodes {
     return nonzero_bytes(leaf_blocks_[node]);
   }
 
-  /// What child_mask() and block() will read; `level` is at most L-2.
+  /// Returns the address that child_mask() and block() will read; `level` is at most L-2.
   VOXDAG_HD const void* address(Node node, int level) const {
     if (level < levels_ - 2) return nodes_ + node;
     return leaf_blocks_ + node;
   }
 
-  /// The 4³ voxels of node `node` of level L-2.
+  /// Returns the mask of the 4³ voxels of `node`, of level L-2.
   VOXDAG_HD std::uint64_t block(Node node) const { return leaf_blocks_[node]; }
 
   VOXDAG_HD Node child(Node node, int level, int index) const {
@@ -55,7 +54,8 @@ class SvdagNodes {
   }
 
  private:
-  /// Bit i tells if byte i is not zero: leaf_block_child_mask without its loop.
+  /// Returns a mask whose bit i says whether byte i is not zero: leaf_block_child_mask without a
+  /// loop.
   VOXDAG_HD static std::uint32_t nonzero_bytes(std::uint64_t v) {
     v |= v >> 4;
     v |= v >> 2;

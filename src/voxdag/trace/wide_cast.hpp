@@ -1,7 +1,7 @@
 #pragma once
-/// The ray cast of cast.hpp on the wide layout: the same cells for every ray, to the bit, in fewer
-/// steps. A step looks at one cell of a node's 4³; where the octant around the cell is empty it
-/// leaves that at once. Two levels of the tree are pushed and popped at a time.
+/// The ray cast of cast.hpp at the wide layout: the same cells for every ray, to the bit, in fewer
+/// steps. A step looks at one cell of a node's 4³; if the octant around the cell is empty, the step
+/// leaves the whole octant. PUSH and POP move by two levels of the tree.
 ///
 /// Invariant: the cell of size 1 << `bit` at (x,y,z) is the one that the ray is in at `t`.
 #include "voxdag/trace/cast.hpp"
@@ -9,8 +9,8 @@
 
 namespace voxdag {
 
-/// See cast() in cast.hpp. `stop` must not look at t_enter, and has first_level(): at levels that
-/// are less it is false.
+/// See cast() in cast.hpp. `stop` must ignore t_enter, and have first_level(), the least level at
+/// which it can be true.
 template <WideLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
@@ -31,8 +31,8 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   std::uint64_t mask = nodes.mask(node);
   std::uint32_t x = kOne, y = kOne, z = kOne;
 
-  // Of the cell of twice the size, the one that the ray is in at t. Changes nothing where it is
-  // known already.
+  // Moves from a cell of twice the size to its child that the ray is in at t. Does nothing if the
+  // position is at that child already.
   const auto refine = [&](int at) {
     const std::uint32_t half = 1u << at;
     x |= (ox - float_from_bits(x | half)) * ix > t ? half : 0u;

@@ -1,5 +1,5 @@
 #pragma once
-/// How the traversal reads the wide layout (layout/wide_svdag.hpp).
+/// The node layout for rays at the wide DAG (layout/wide_svdag.hpp).
 ///
 /// A wide layout for cast() is a type with
 ///   kIsWide             true
@@ -44,29 +44,29 @@ class WideNodes {
 template <class Nodes>
 concept WideLayout = Nodes::kIsWide;
 
-/// Where a wide walk's nodes lie: with L levels, cells of the leaf blocks are voxels.
+/// The position bits of a wide walk's nodes in a grid of L levels.
 struct WideLevels {
   int leaf_bit;  ///< The position bit in which neighbouring voxels differ.
-  int root_bit;  ///< Likewise for the root's cells.
+  int root_bit;  ///< The position bit in which neighbouring cells of the root differ.
 
   VOXDAG_HD explicit WideLevels(int levels)
       : leaf_bit(23 - levels), root_bit(leaf_bit + 2 * ((levels + 1) / 2 - 1)) {}
 };
 
-/// Most wide nodes on a way from the root to a voxel.
+/// The greatest number of wide nodes on the way from the root to a voxel.
 inline constexpr int kMaxWideDepth = (kMaxLevels + 1) / 2;
 
 /// The four cells of a wide node's octant, as bits of one 32-bit half of its mask; shifted by the
 /// octant's x and y.
 inline constexpr std::uint32_t kOctantCells = 0x00330033u;
 
-/// XORed to the cell of a mirrored position, gives the cell of the mask.
+/// Returns the number that, XORed with the cell of a mirrored position, gives the cell in the mask.
 VOXDAG_HD constexpr std::uint32_t wide_mirror(std::uint32_t mirrored) {
   return (mirrored & 1u) * 3 | (mirrored >> 1 & 1u) * 12 | (mirrored >> 2 & 1u) * 48;
 }
 
-/// The position bits that change where a step leaves the node with cells of size 1 << bit, or the
-/// grid (which may be an octant of the root).
+/// Returns the position bits of which one changes if a step leaves the node with cells of size
+/// 1 << bit, or the grid, which may be an octant of the root.
 VOXDAG_HD constexpr std::uint32_t leaves_node(int bit) { return ~3u << bit | ~0u << 23; }
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// Beams that are cast together.
+/// Packets of beams.
 #include <cstddef>
 
 #include "voxdag/trace/beam.hpp"
@@ -8,7 +8,7 @@
 namespace voxdag {
 
 /// Up to 64 beams from one point (trace/beam.hpp), and where they first meet anything. Arrays are
-/// by axis, then by beam.
+/// indexed by axis, then by beam.
 struct BeamPacket {
   static constexpr std::size_t kMaxBeams = 64;
 
@@ -16,8 +16,8 @@ struct BeamPacket {
   BeamStop stop;
   double lowest[3][kMaxBeams], highest[3][kMaxBeams];
   std::size_t size = 0;
-  /// A t before which no ray of the beam meets anything; +infinity if none does at all. As good as
-  /// that of first_met() but for rounding to float, downwards.
+  /// A t before which no ray of the beam meets anything; +infinity if none does at all. It is the t
+  /// of first_met(), rounded down to float.
   alignas(64) float first[kMaxBeams];
 
   void add(const Vec3d& low, const Vec3d& high) {
@@ -29,7 +29,7 @@ struct BeamPacket {
   }
 };
 
-/// Sets packet.first of its beams, of which there must be one at least.
+/// Sets packet.first for its beams. There must be at least one.
 void cast_beam_packet(const SvdagNodes& nodes, BeamPacket& packet);
 void cast_beam_packet(const EsvoNodes& nodes, BeamPacket& packet);
 

@@ -1,5 +1,5 @@
-// The walk of up to 64 beams from one point. Included once for each instruction set, by
-// cast_beam_packet.cpp, which says how it goes.
+// The walk of a packet of beams from one point. See cast_beam_packet.cpp for the algorithm.
+// Included once for each instruction set.
 #if defined(VOXDAG_BEAM_PACKET_WALK_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_BEAM_PACKET_WALK_INL
 #undef VOXDAG_BEAM_PACKET_WALK_INL
@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/packets/beam_packet.hpp"
 #include "voxdag/cpu/packets/packet_lanes-inl.hpp"
 
@@ -19,7 +20,7 @@ namespace HWY_NAMESPACE {
 template <class Nodes>
 class BeamPacketWalk : PacketLanes {
   using Beams = Set;
-  /// More, relatively, than what is rounded to float and in float.
+  /// A relative error greater than all rounding to float and in float.
   static constexpr float kRounding = 0x1p-20f;
 
  public:
@@ -35,7 +36,7 @@ class BeamPacketWalk : PacketLanes {
   }
 
  private:
-  /// How all beams run along an axis.
+  /// The direction of all beams along an axis.
   enum class Way { kUp, kDown, kEither };
 
   struct Visit {
@@ -43,20 +44,20 @@ class BeamPacketWalk : PacketLanes {
     Vec3i cell;
     int level;
     Beams beams;
-    float enter;  ///< No beam enters it before.
+    float enter;  ///< No beam enters the cell before this t.
   };
-  /// By child, nearest first: the beams that go on into it, and a bound on where.
+  /// The beams that continue into each child, nearest child first, and a bound on where.
   struct ChildBeams {
     Beams beams[8] = {};
     float enter[8];
   };
-  /// How far from the apex the sides of the two slabs of children along an axis are.
+  /// Distances from the apex to the sides of the two slabs of children along an axis.
   struct Slabs {
     float low[2], high[2];
   };
 
-  /// A beam overlaps [low, high] where t * lowest <= high and t * highest >= low, both from the
-  /// apex: by the signs of its bounds, each says where it enters or where it leaves.
+  /// A beam overlaps [low, high], relative to the apex, while t * lowest <= high and t * highest >=
+  /// low. By the sign of its bound, each inequality gives a t at which the beam enters or leaves.
   void prepare(int axis) {
     constexpr double kLeast = 1e-30;
     const double* const lowest = packet_.lowest[axis];
@@ -92,7 +93,7 @@ class BeamPacketWalk : PacketLanes {
     return slabs;
   }
 
-  /// Where the beams from `at` on enter and leave a slab.
+  /// Finds where the vector of beams at `at` enters and leaves a slab.
   HWY_INLINE void overlap(int axis, const Slabs& slabs, int i, std::size_t at, VF& enter,
                           VF& leave) const {
     const DF d;
@@ -114,8 +115,8 @@ class BeamPacketWalk : PacketLanes {
     }
   }
 
-  /// Sets which of the visit's beams go on into which children, and packet_.first of those that end
-  /// at one.
+  /// Finds which of the visit's beams continue into which children, and sets packet_.first of those
+  /// that end at a child.
   void intersect(const Visit& visit, ChildBeams& children) {
     const DF d;
     const auto inverse_side = static_cast<double>(std::uint32_t{1} << (visit.level + 1));
@@ -127,7 +128,7 @@ class BeamPacketWalk : PacketLanes {
     for (int i = 0; i < 8; ++i)
       if ((mask >> i & 1u) != 0 && is_leaf_child(nodes_, visit.node, visit.level, i))
         leaves |= 1u << i;
-    // The side of the children, and by how much of it a beam's t must grow to be wider.
+    // The side of the children, and the factor of the t at which a beam is wider than that.
     const auto child_side = hn::Set(d, static_cast<float>(side) * (1 - kRounding));
     const auto at_start = hn::Set(d, static_cast<float>(packet_.stop.at_start));
     const auto per_enter = hn::Set(d, static_cast<float>(packet_.stop.per_enter));
@@ -170,7 +171,7 @@ class BeamPacketWalk : PacketLanes {
         children.enter[order] = hn::GetLane(hn::MinOfLanes(d, least[order]));
   }
 
-  /// Those of the visit's beams that have met nothing before it.
+  /// Returns the visit's beams that have met nothing before its cell.
   Beams still_searching(const Visit& visit) const {
     const DF d;
     Beams searching = 0;
@@ -195,8 +196,8 @@ class BeamPacketWalk : PacketLanes {
         if (children.beams[order] == 0) continue;
         const auto child = static_cast<int>(order ^ order_);
         stack[top++] = {nodes_.child(visit.node, visit.level, child),
-                        visit.cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2},
-                        visit.level + 1, children.beams[order], children.enter[order]};
+                        visit.cell * 2 + child_offset(child), visit.level + 1,
+                        children.beams[order], children.enter[order]};
       }
     }
   }
@@ -205,7 +206,7 @@ class BeamPacketWalk : PacketLanes {
   BeamPacket& packet_;
   Way ways_[3];
   std::uint32_t order_ = 0;  ///< The octant that the beams enter first.
-  /// What distances along an axis are multiplied by: for Way::kEither both say where beams enter.
+  /// The factors of distances along an axis. For Way::kEither both give a t at which beams enter.
   alignas(64) float enter_[3][BeamPacket::kMaxBeams], leave_[3][BeamPacket::kMaxBeams];
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The DAG as packets walk it: beside each pointer, where in the child's cell there are voxels.
+/// The DAG for packets: beside each pointer, it stores a box around the voxels in the child's cell.
 #include <cstdint>
 #include <memory>
 
@@ -7,11 +7,11 @@
 
 namespace voxdag {
 
-/// A box in a cell, in 32nds of its side: 30 bits, five each for the first 32nd along x, y and z
-/// that has voxels, then for the last one. Rounded outwards where voxels are smaller.
+/// A box in a cell, in 32nds of the cell's side. 30 bits: five each for the first 32nd with voxels
+/// along x, y and z, then five each for the last one. Boxes of smaller voxels are rounded outwards.
 ///
-/// A surface fills little of the cells that it runs through: rays that pass beside it, or start on
-/// it, meet these cells but not their boxes.
+/// A surface fills only a little of the cells that it crosses: rays that pass beside it, or start
+/// on it, meet these cells but not their boxes.
 struct CellBox {
   static constexpr int kBits = 5;
   static constexpr std::uint32_t kParts = 1u << kBits;
@@ -19,12 +19,12 @@ struct CellBox {
   std::uint32_t bits = 0;
 };
 
-/// Made once from a DAG, which it points to: its nodes above the leaf blocks, each at twice its
-/// word index there.
+/// Made once from a DAG, to which it points. It holds the nodes above the leaf blocks, each at
+/// twice its word index in the DAG:
 ///
 ///   child mask | box of the node | pointer, ... | box of the child, ...      32-bit words
 ///
-/// Pointers are those of the DAG. Copies share all this.
+/// The pointers are those of the DAG. Copies share the words.
 class BoundedDag {
  public:
   /// Uses all threads; O(words) time.
@@ -32,9 +32,9 @@ class BoundedDag {
 
   const SvdagNodes& nodes() const { return nodes_; }
   int levels() const { return nodes_.levels(); }
-  /// Eight words may be read from every box on.
+  /// From every box on, eight words may be read.
   const std::uint32_t* words() const { return words_.get(); }
-  /// What it takes beside the DAG.
+  /// Returns the bytes that it takes beside the DAG.
   std::uint64_t bytes() const { return word_count() * sizeof(std::uint32_t); }
 
  private:

@@ -1,9 +1,9 @@
-// Casts up to 64 beams from one point together. Compiled once for each instruction set; the best
-// that the machine has is chosen at run time.
+// Casts packets of up to 64 beams from one point. Compiled once for each instruction set; the best
+// one that the machine has is chosen at run time.
 //
-// The walk of trace/beam.hpp, depth first and nearest octants first, with a beam in each lane: for
-// all beams that meet a node it is found which of its children they meet, and where. In float: T
-// are moved outwards by more than all rounding.
+// It is the walk of trace/beam.hpp, depth first and nearest octants first, with a beam in each
+// lane: for all beams that meet a node, it finds which of the node's children they meet, and where.
+// It works in float, and moves T outwards by more than all rounding errors.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/packets/cast_beam_packet.cpp"
 #include <hwy/foreach_target.h>

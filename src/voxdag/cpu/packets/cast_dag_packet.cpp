@@ -1,15 +1,19 @@
-// Casts up to 64 rays of like direction together. Compiled once for each instruction set; the best
+// Casts packets of up to 64 rays at a DAG. Compiled once for each instruction set; the best one
 // that the machine has is chosen at run time.
 //
-// The rays run down the same way along every axis once mirrored, so that all of them meet the
-// children of a node in an order that the child index alone gives: one depth-first walk serves all,
-// and a node is read once for all rays in it. A ray is in a cell, or in a box of whole voxels, at
-// some T as grid_ray.hpp defines it just when the range of T that the planes leave is not empty, so
+// Source: packets of rays by I. Wald, P. Slusallek, C. Benthin and M. Wagner, "Interactive
+// Rendering with Coherent Ray Tracing", Eurographics 2001; the plane and voxel rules of
+// trace/grid_ray.hpp after S. Laine and T. Karras, "Efficient Sparse Voxel Octrees", I3D 2010.
+//
+// The idea: mirrored, all rays of a packet run down along every axis, so that they meet the
+// children of a node in the order of the mirrored child index. One depth-first walk serves all
+// rays, and reads a node once for all rays in it. By the definition in grid_ray.hpp, a ray is in a
+// cell, or in a box of whole voxels, exactly if the range of T between its planes is not empty. So
 // each ray ends where a cast of its own would end, at the same T, to the bit.
 //
-// A child is visited only by rays that meet the box of its voxels (bounded_dag.hpp). The boxes of
-// eight children are tried first for the ranges that the rays are in, then for the rays. In a leaf
-// block the lanes are rays, or, where there are few, the voxels, and all 64 are tried for one ray.
+// Only rays that meet the box of a child's voxels (bounded_dag.hpp) visit the child. The walk tests
+// the boxes of all eight children first against the bounds on all rays, then against the rays. In a
+// leaf block the lanes are rays, or, if there are few rays, voxels.
 //
 // The walk starts at the lowest node that holds the starts of all rays, and climbs from there only
 // as far as the rays reach.
@@ -32,7 +36,7 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Puts the nodes to visit first on the stack; returns how many.
+/// Pushes the nodes to visit first onto the stack. Returns their number.
 inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) const {
   CommonCell starts, reach;
   common_cells(starts, reach, rays_.has_stop ? finest_without_stop() : nodes_.levels() - 2);
@@ -47,7 +51,7 @@ inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) const {
     const bool descends =
         level < starts.level && (unmirrored >> (index ^ rays_.mirrored) & 1u) != 0;
     if (level >= reach.level || !descends) {
-      // Of the rays' own child's cell nothing is left above the node where they start.
+      // Skips the child in which the rays start: the visit below it covers that.
       Visit& visit = stack[top++];
       visit.rays = all;
       visit.node = node;
@@ -65,8 +69,8 @@ inline void DagPacketWalk::walk() {
   Visit stack[16 * kMaxLevels];
   std::size_t top = begin(searching_, stack);
   while (top > 0) {
-    // Field by field, as it was stored: a wider load would wait for the stores. The corner and the
-    // level were stored as one.
+    // Loads field by field, as it was stored: a wider load would wait for the stores. The corner
+    // and the level were stored as one vector.
     const Visit& popped = stack[--top];
     Visit visit;
     visit.rays = popped.rays & searching_;

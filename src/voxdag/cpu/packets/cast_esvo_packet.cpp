@@ -1,18 +1,22 @@
-// Casts up to 64 rays of like direction at an ESVO together. Compiled once for each instruction
-// set; the best that the machine has is chosen at run time.
+// Casts packets of up to 64 rays at an ESVO. Compiled once for each instruction set; the best one
+// that the machine has is chosen at run time.
 //
-// As in cast_dag_packet.cpp the rays run down the same way along every axis once mirrored, so that
-// one depth-first walk, nearest children first, serves all of them: a descriptor is read, and a
-// contour decoded, once for all rays in the voxel. A ray meets a voxel's shape just when the range
-// of T that the contours of its ancestors, its cube and its own contour leave is not empty; that is
-// what the walk of one ray in trace/esvo_cast.hpp finds, to the bit, whose products these are.
+// Source: packets of rays by I. Wald, P. Slusallek, C. Benthin and M. Wagner, "Interactive
+// Rendering with Coherent Ray Tracing", Eurographics 2001; contours by S. Laine and T. Karras,
+// "Efficient Sparse Voxel Octrees", I3D 2010, section 4.
 //
-// A contour is looked at when its voxel is visited, not when its parent is: by then rays that end
-// nearer by are gone. What it leaves of the rays' ranges is kept for its level, as the voxels below
-// are visited before any other of that level. Many rays close together are tried at the children's
-// cubes and contours as one wide ray before they are visited. Where only a few rays are left it is
-// the other way round: one ray after the other is tried at all children, and their contours, at
-// once.
+// The idea: as in cast_dag_packet.cpp, mirrored rays run down along every axis, so that one
+// depth-first walk, nearest children first, serves all of them: it reads a descriptor, and decodes
+// a contour, once for all rays in the voxel. A ray meets a voxel's shape exactly if the range of T
+// that its ancestors' contours, its cube and its own contour leave is not empty. The walk of one
+// ray in trace/esvo_cast.hpp computes the same ranges with the same products, so that both agree to
+// the bit.
+//
+// The walk tests a contour when it visits the voxel, not its parent: by then, rays that ended
+// nearer by are gone. It keeps the ranges of T that the contour leaves for the voxel's level, until
+// it has visited all descendants. If many rays are close together, it tests them as one wide ray
+// (the hull) against all children's cubes and contours before it visits the children. If only a few
+// rays are left, it tests one ray after the other against all children and their contours at once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/packets/cast_esvo_packet.cpp"
 #include <hwy/foreach_target.h>
@@ -30,8 +34,8 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Sets what is known of the rays themselves: spans 0, and positions and directions as ContourRay
-/// has them.
+/// Prepares the rays: sets spans_[0] to their own ranges, and positions and directions to
+/// ContourRay's.
 template <bool kWithContours, bool kOneOrigin>
 void EsvoPacketWalk<kWithContours, kOneOrigin>::prepare_rays() {
   const DF d;
@@ -48,7 +52,7 @@ void EsvoPacketWalk<kWithContours, kOneOrigin>::prepare_rays() {
             hn::Div(hn::Set(d, ContourRay::kDirectionOne), hn::Load(d, rays_.inverse[axis] + i));
         hn::Store(hn::ConvertTo(di, speed), di, direction_[axis] + i);
       }
-      // Both conversions keep the order.
+      // Both conversions are monotone.
       const auto position = [](float p) {
         return static_cast<std::int32_t>(bits_of_float(p) - kOne);
       };
@@ -80,7 +84,7 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, R
                    : clip<false, false>(visit, rays, stopped);
 }
 
-/// The contour of the visited voxel or an ancestor by which a ray came to t, if by one.
+/// Returns the contour, of the visited voxel or an ancestor, through which a ray came to t, if any.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours, kOneOrigin>::plane_at(const Visit& visit,
                                                                             std::size_t ray,
@@ -141,7 +145,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::push_children(const V
   }
 }
 
-/// Whether any ray may end by its level of detail at a child of the voxel.
+/// Returns whether the level of detail may end any ray at a child of the voxel.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE bool EsvoPacketWalk<kWithContours, kOneOrigin>::may_stop_below(
     const Visit& visit) const {
@@ -150,8 +154,8 @@ HWY_INLINE bool EsvoPacketWalk<kWithContours, kOneOrigin>::may_stop_below(
   return side_of(level) <= stop_start_[1] + stop_per_t_[1] * last_exit(visit);
 }
 
-/// Of the rays, which meet the voxel and do not end there, returns those that end at a child. Puts
-/// the children that others meet on the stack, the nearest on top.
+/// Visits the children of a voxel that the rays meet and do not end at. Returns the rays that end
+/// at a child. Pushes the children that other rays meet onto the stack, the nearest on top.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::visit_children(const Visit& visit, Rays rays) {
@@ -190,8 +194,8 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
   stack_[0] = {{{kOne, kOne, kOne}, 0}, all, esvo_.root, kMeetCube};
   top_ = 1;
   while (top_ > 0 && searching != 0) {
-    // Field by field, as it was stored: a wider load would wait for the stores. The corner and the
-    // level were stored as one.
+    // Loads field by field, as it was stored: a wider load would wait for the stores. The corner
+    // and the level were stored as one vector.
     const Visit& popped = stack_[--top_];
     Rays rays = popped.rays & searching;
     if (rays == 0) continue;

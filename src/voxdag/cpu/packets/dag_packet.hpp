@@ -1,5 +1,5 @@
 #pragma once
-/// Rays of like direction that are cast at a DAG together.
+/// Casts packets of rays at a DAG.
 #include "voxdag/cpu/packets/bounded_dag.hpp"
 #include "voxdag/cpu/packets/ray_packet.hpp"
 
@@ -11,11 +11,11 @@ struct PacketTarget<BoundedDag> {
   static constexpr bool kByDirection = true;
 };
 
-/// Casts the packet's rays. What each meets is what cast() in trace/cast.hpp finds for it, to the
-/// bit, on any instruction set. The rays' levels of detail must agree in the coarsest level.
+/// Casts the packet's rays. Each meets the cell that cast() in trace/cast.hpp finds for it, to the
+/// bit, on any instruction set. The rays' levels of detail must have the same coarsest level.
 void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hits);
 
-/// Which of the rays meet anything, as PacketHits::met.
+/// Returns which of the rays meet anything, in the form of PacketHits::met.
 std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet);
 
 }  // namespace voxdag

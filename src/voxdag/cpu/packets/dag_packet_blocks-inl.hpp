@@ -1,4 +1,6 @@
-// The rays of a packet against the voxels of a leaf block.
+// Tests the rays of a packet against the voxels of a leaf block. With many rays, the lanes are
+// rays, tested against one voxel after the other; with few, the lanes are the voxels of an octant,
+// tested against one ray.
 #if defined(VOXDAG_DAG_PACKET_BLOCKS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_DAG_PACKET_BLOCKS_INL
 #undef VOXDAG_DAG_PACKET_BLOCKS_INL
@@ -15,15 +17,15 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Casts rays at the 4³ voxels of a block: a vector of rays at one voxel after the other where
-/// there are many rays for the voxels, else one ray at all of them. Ends those that meet one, or an
-/// octant that they end at.
+/// Casts rays at the 4³ voxels of a block: if there are many rays per voxel, vectors of rays at one
+/// voxel after the other, else single rays at all voxels. Ends the rays that meet a voxel, or an
+/// octant at which they end.
 inline void DagPacketWalk::cast_in_block(const Visit& visit) {
   const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
   Rays others = visit.rays;
   if ((visit.skipped & kOctantsMayEnd) == 0) {
-    // In units of a voxel at which a vector is tried, as measured: what a vector costs beside its
-    // voxels, and a ray that is tried by itself.
+    // Measured costs, in units of one test of a vector against a voxel: the overhead of a vector,
+    // and that of a single ray.
     constexpr int kVectorCost = 12, kRayCost = 12;
     const int cost = kVectorCost + popcount64(block);
     for (Rays rest = visit.rays; rest != 0;) {
@@ -44,7 +46,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
   const hn::RebindToUnsigned<DF> du;
   const hn::RebindToSigned<DF> di;
   const std::uint32_t size = 1u << (23 - nodes_.levels());
-  // Where rays enter and leave the planes of voxels: by axis, then by place along it, then by ray.
+  // T at which rays enter and leave the slabs of voxels: by axis, then by coordinate, then by ray.
   alignas(64) float enter[12 * kWidth], exit[12 * kWidth];
   const auto t_min = hn::Load(d, rays_.t_min + first), t_end = hn::Load(d, rays_.t_end + first);
   for (int axis = 0; axis < 3; ++axis) {
@@ -58,7 +60,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
       if (i < 4) hn::Store(axis == 0 ? hn::Min(t, t_end) : t, d, exit + at);
     }
   }
-  // Of a voxel, by axis: where the lanes of its place begin.
+  // For each voxel, by axis: the index at which the lanes of its slab begin.
   static constexpr auto kLanes = [] {
     std::array<std::array<std::uint8_t, 3>, 64> lanes{};
     for (std::uint32_t voxel = 0; voxel < 64; ++voxel)
@@ -66,7 +68,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
         lanes[voxel][axis] = static_cast<std::uint8_t>((4 * axis + place_of(voxel, axis)) * kWidth);
     return lanes;
   }();
-  // The farthest first, so that the nearest one stays.
+  // Tests the farthest voxel first, so that the nearest one remains.
   auto nearest = hn::Set(di, -1);
   for (std::uint64_t rest = block; rest != 0; rest &= rest - 1) {
     const auto voxel = static_cast<std::uint32_t>(lowest_bit64(rest));
@@ -96,13 +98,13 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
   hn::Store(hn::IfThenElse(ends, hn::Set(di, nodes_.levels()), hn::Load(di, levels)), di, levels);
 }
 
-/// Casts rays, one by one, at the voxels of a block; lane i of a vector is voxel i of an octant.
+/// Casts rays one at a time at the voxels of a block; lane i of a vector is voxel i of an octant.
 inline void DagPacketWalk::cast_one_by_one_in_block(const Visit& visit, std::uint64_t block,
                                                     Rays rays) {
   const int levels = nodes_.levels();
   const std::uint32_t* corner = visit.corner;
   const bool may_end_at_octants = (visit.skipped & kOctantsMayEnd) != 0;
-  // Whoever meets an octant meets a voxel's place in it.
+  // A ray that meets an octant meets the cube of one of its voxels, set or not.
   const std::uint64_t octants = may_end_at_octants ? filled_octants(block) : block;
   const hn::CappedTag<float, 8> d;
   constexpr std::size_t kBlockLanes = hn::MaxLanes(d);
@@ -184,7 +186,7 @@ inline void DagPacketWalk::end_at_octants(const Visit& visit) {
   end_at_children(visit, met);
 }
 
-/// Sets T of the hits, as entered_face() in trace/cast.hpp finds it.
+/// Sets T of the hits to the plane that entered_face() in trace/cast.hpp finds.
 inline void DagPacketWalk::set_hit_t() {
   const DF d;
   const hn::RebindToUnsigned<DF> du;

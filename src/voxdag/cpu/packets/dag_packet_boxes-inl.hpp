@@ -1,4 +1,5 @@
-// The rays of a packet against the boxes of a node's children.
+// Tests the rays of a packet against the boxes of a node's children (bounded_dag.hpp). A box is a
+// lane: one vector holds the boxes of all eight children.
 #if defined(VOXDAG_DAG_PACKET_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_DAG_PACKET_BOXES_INL
 #undef VOXDAG_DAG_PACKET_BOXES_INL
@@ -14,8 +15,8 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Sets the planes of the boxes of the children of the node of `level` at `corner`, one box a lane,
-/// rounded outwards to the cells that rays may end at.
+/// Sets the planes of the boxes of the children of the node of `level` at `corner`, one box per
+/// lane, rounded outwards to the cells at which rays may end.
 HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int level,
                                           hn::Vec<DU8> boxes) {
   const DU8 d;
@@ -27,7 +28,7 @@ HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int lev
   const auto side = hn::Set(d, 1u << (22 - level));
   const int shift = 22 - CellBox::kBits - level;  // a part's side
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    // Mirrored, the last part is the first.
+    // Mirroring makes the last part the first.
     const bool is_mirrored = (rays_.mirrored >> axis & 1u) != 0;
     const auto flip = hn::Set(d, is_mirrored ? CellBox::kParts - 1 : 0u);
     const auto parts_at = [&](std::uint32_t field) HWY_ATTR {
@@ -44,8 +45,8 @@ HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int lev
   }
 }
 
-/// Says at which of the children rays end that enter and leave them in these ranges of T, with the
-/// least and the most of their levels of detail.
+/// Sets the children at which rays end. The rays enter and leave the children in these ranges of T;
+/// `start` and `per_t` are the least and greatest values of their levels of detail.
 HWY_INLINE void DagPacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
                                         const float start[2], const float per_t[2],
                                         Children& children) const {
@@ -57,7 +58,7 @@ HWY_INLINE void DagPacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn:
     const auto limit = hn::Add(hn::Set(d, start[of]), hn::Mul(hn::Set(d, per_t[of]), t));
     return bits_of_children(hn::Le(hn::Set(d, side_of(level)), limit));
   };
-  // From stop_level_ on the boxes are the cells.
+  // From stop_level_ on, the boxes are whole cells.
   if (child_level >= stop_level_) {
     children.all_end = ends(child_level, 0, enter);
     children.some_end = ends(child_level, 1, exit);
@@ -68,7 +69,7 @@ HWY_INLINE void DagPacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn:
   }
 }
 
-/// What the ranges that the rays are in say of the boxes.
+/// Returns which boxes the rays can meet, by the bounds on all rays.
 HWY_INLINE DagPacketWalk::Children DagPacketWalk::bound_children(int child_level) const {
   const DF8 d;
   auto enter = hn::Set(d, t_range_[0]), exit = hn::Set(d, HUGE_VALF);
@@ -80,7 +81,7 @@ HWY_INLINE DagPacketWalk::Children DagPacketWalk::bound_children(int child_level
   return children;
 }
 
-/// Moves the bounds on where ray i enters and leaves the boxes to between their sides.
+/// Narrows the range of T in which ray i is in each box.
 HWY_INLINE void DagPacketWalk::cut_by_boxes(int i, hn::Vec<DF8>& enter, hn::Vec<DF8>& exit) const {
   const DF8 d;
   for (int axis = 0; axis < 3; ++axis) {
@@ -91,7 +92,7 @@ HWY_INLINE void DagPacketWalk::cut_by_boxes(int i, hn::Vec<DF8>& enter, hn::Vec<
   }
 }
 
-/// Which boxes ray i meets.
+/// Returns which boxes ray i meets.
 HWY_INLINE std::uint32_t DagPacketWalk::boxes_met_by(int i) const {
   const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, rays_.t_end[i]);
@@ -99,7 +100,7 @@ HWY_INLINE std::uint32_t DagPacketWalk::boxes_met_by(int i) const {
   return bits_of_children(hn::Lt(enter, exit));
 }
 
-/// Which boxes ray i meets, and at which cells it ends that it meets.
+/// Returns which boxes ray i meets, and at which of their cells it ends.
 HWY_INLINE DagPacketWalk::Children DagPacketWalk::children_met_by(int i, int child_level) const {
   const DF8 d;
   auto enter = hn::Set(d, rays_.t_min[i]), exit = hn::Set(d, HUGE_VALF);
@@ -112,7 +113,7 @@ HWY_INLINE DagPacketWalk::Children DagPacketWalk::children_met_by(int i, int chi
   return children;
 }
 
-/// Which of `rays` meet the box of child `child`.
+/// Returns which of `rays` meet the box of child `child`.
 HWY_INLINE DagPacketWalk::Rays DagPacketWalk::rays_meeting(std::uint32_t child, Rays rays) const {
   const DF d;
   const auto x0 = hn::Set(d, planes_[0][child]), x1 = hn::Set(d, planes_[3][child]);
@@ -134,8 +135,8 @@ HWY_INLINE DagPacketWalk::Rays DagPacketWalk::rays_meeting(std::uint32_t child, 
   return met & rays;
 }
 
-/// Which of `rays`, that all meet the cell of child `child` of level `child_level`, end there:
-/// those for which ends_at() holds.
+/// Returns which of `rays` end at the cell of child `child` of level `child_level`, by ends_at().
+/// All of them must meet the cell.
 HWY_NOINLINE DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child, int child_level,
                                                             Rays rays) const {
   if (child_level < rays_.coarsest) return 0;
@@ -158,8 +159,8 @@ HWY_NOINLINE DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child,
   return ending & rays;
 }
 
-/// Puts the children that rays meet on the stack, the nearest on top; those at which rays end with
-/// these rays alone.
+/// Pushes the children that rays meet onto the stack, the nearest on top. A child at which rays end
+/// is pushed with these rays alone.
 inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std::size_t& top) {
   const auto level = static_cast<int>(visit.level);
   const std::uint32_t* node = words_ + 2 * std::size_t{visit.node};
@@ -179,7 +180,7 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
   if (met == 0) return;
   const bool are_few = !is_single && (met & (met - 1)) != 0 && popcount64(visit.rays) <= kFew;
   std::uint32_t met_by[kFew] = {};
-  Rays few[kFew] = {};  // each by itself
+  Rays few[kFew] = {};  // one ray each
   if (are_few) {
     std::uint32_t met_by_any = 0;
     int at = 0;
@@ -201,7 +202,7 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     const bool may_end = (children.some_end >> child & 1u) != 0;
     Visit& next = stack[top];
     if (are_few) {
-      // All of them, and without branches: how many there are is hard to foretell.
+      // Without branches on the number of rays, which is hard to predict.
       next.rays = 0;
       for (int at = 0; at < kFew; ++at) next.rays |= few[at] & (0 - Rays{met_by[at] >> child & 1u});
     } else {

@@ -1,5 +1,5 @@
-// The walk of up to 64 rays of like direction: what its parts share. Included once for each
-// instruction set, by cast_dag_packet.cpp, which says how it goes.
+// The walk of a packet of rays at a DAG: its state, and the functions that its parts share. See
+// cast_dag_packet.cpp for the algorithm. Included once for each instruction set.
 #if defined(VOXDAG_DAG_PACKET_WALK_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_DAG_PACKET_WALK_INL
 #undef VOXDAG_DAG_PACKET_WALK_INL
@@ -27,7 +27,7 @@ namespace HWY_NAMESPACE {
 
 class DagPacketWalk : PacketRays {
  public:
-  /// `hits` is null where it is only asked which rays meet anything.
+  /// `hits` is null if the caller only wants to know which rays meet anything.
   DagPacketWalk(const BoundedDag& dag, PacketHits* hits)
       : nodes_(dag.nodes()), words_(dag.words()), hits_(hits) {}
 
@@ -38,27 +38,28 @@ class DagPacketWalk : PacketRays {
   struct alignas(32) Visit : Cell {
     Rays rays;
     std::uint32_t node;
-    std::uint32_t skipped;  ///< Children not to look at, mirrored.
+    std::uint32_t
+        skipped;  ///< Mask of the children to skip, by mirrored index, and the flags below.
   };
-  /// In Visit::skipped: the rays end at this cell; of a leaf block, they end at its octants, or
-  /// some may.
+  /// Flags in Visit::skipped. The rays end at this cell; for a leaf block: the rays end at its
+  /// octants; some rays may end at its octants.
   static constexpr std::uint32_t kEndsHere = 0x100, kOctantsEnd = 0x200, kOctantsMayEnd = 0x400;
-  /// Of the children of a node, by their mirrored index.
+  /// Masks of the children of a node, by their mirrored index.
   struct Children {
-    std::uint32_t met;       ///< Those that any ray can meet.
-    std::uint32_t all_end;   ///< Those at which all rays end that meet them.
-    std::uint32_t some_end;  ///< Those at which any ray can end.
+    std::uint32_t met;       ///< Children that any ray can meet.
+    std::uint32_t all_end;   ///< Children at which all rays end that meet them.
+    std::uint32_t some_end;  ///< Children at which any ray can end.
     std::uint32_t octants_end,
-        octants_may_end;  ///< Leaf blocks of which the same holds for octants.
+        octants_may_end;  ///< Leaf blocks at whose octants all rays end, or any can.
   };
-  /// The cells, named by the bits that positions in them share.
+  /// A cell, given by the bits that all positions in it share.
   struct CommonCell {
     std::uint32_t corner[3];
-    int level;  ///< The finest that holds all positions.
+    int level;  ///< The level of the finest cell that holds all positions.
   };
 
-  /// By `mirrored` and a node's child mask, then by mirrored child index, the number of children
-  /// that are stored before that child.
+  /// The number of children stored before a child, by `mirrored`, the node's child mask and the
+  /// mirrored child index.
   using RankTable = std::array<std::array<std::array<std::uint8_t, 8>, 256>, 8>;
   static constexpr RankTable ranks() {
     RankTable table{};
@@ -73,18 +74,18 @@ class DagPacketWalk : PacketRays {
     alignas(64) static constexpr RankTable kRanks = ranks();
     return kRanks[rays_.mirrored][mask].data();
   }
-  /// Sets all voxels of the octants that have any.
+  /// Returns the block with all voxels set in octants that have any.
   static std::uint64_t filled_octants(std::uint64_t block) {
     block |= block >> 4 & 0x0F0F0F0F0F0F0F0Fu;
     block |= block >> 2 & 0x3333333333333333u;
     block |= block >> 1 & 0x5555555555555555u;
     return (block & 0x0101010101010101u) * 0xFF;
   }
-  /// Of a voxel of a leaf block: its place along an axis, in [0,4).
+  /// Returns the coordinate along an axis, in [0,4), of a voxel in its leaf block.
   static constexpr std::uint32_t place_of(std::uint32_t voxel, std::uint32_t axis) {
     return (voxel >> axis & 1u) | (voxel >> (2 + axis) & 2u);
   }
-  /// What mirrored_mask() does, on both levels of a leaf block.
+  /// Applies mirrored_mask() to both levels of a leaf block.
   static std::uint64_t mirrored_block(std::uint64_t m, std::uint32_t mirrored) {
     const auto swap = [&m](int by, std::uint64_t low) { m = (m & low) << by | (m >> by & low); };
     if ((mirrored & 1u) != 0) {
@@ -122,7 +123,8 @@ class DagPacketWalk : PacketRays {
   void end_at_octants(const Visit& visit);
   HWY_INLINE void set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
                            const float start[2], const float per_t[2], Children& children) const;
-  /// Whether ray i ends at the cell of this level with the lower corner `low`, which it meets.
+  /// Returns whether ray i ends at the cell of this level with the lower corner `low`, which it
+  /// meets.
   bool ends_at(int i, const float low[3], int level) const {
     if (level < rays_.coarsest) return false;
     float exit = HUGE_VALF;
@@ -146,8 +148,9 @@ class DagPacketWalk : PacketRays {
   const SvdagNodes& nodes_;
   const std::uint32_t* words_;
   PacketHits* hits_;
-  Rays searching_ = 0;              ///< Those that have not met anything.
-  alignas(64) float planes_[6][8];  ///< Of the boxes at hand: the lower ones by axis, the upper.
+  Rays searching_ = 0;              ///< Rays that have not met anything yet.
+  alignas(64) float planes_[6][8];  ///< The planes of the current boxes: the lower ones by axis,
+                                    ///< then the upper.
 };
 
 #endif  // VOXDAG_PACKET_LANES

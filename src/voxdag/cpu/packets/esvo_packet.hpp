@@ -1,11 +1,11 @@
 #pragma once
-/// Rays of like direction that are cast at an ESVO together.
+/// Casts packets of rays at an ESVO.
 #include "voxdag/cpu/packets/ray_packet.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 
 namespace voxdag {
 
-/// And what of an EsvoHit is more than a cell.
+/// PacketHits with the further fields of EsvoHit.
 struct EsvoHits : PacketHits {
   std::uint64_t slot[RayPacket::kMaxRays];  ///< EsvoVoxel::slot.
   std::uint8_t child[RayPacket::kMaxRays];  ///< EsvoVoxel::child.
@@ -32,12 +32,13 @@ struct PacketTarget<Nodes> {
   static constexpr bool kByDirection = false;
 };
 
-/// Casts the packet's rays. What each meets is what cast() in trace/esvo_cast.hpp finds for it, to
-/// the bit, on any instruction set. The rays' levels of detail must agree in the coarsest level.
+/// Casts the packet's rays. Each meets the voxel that cast() in trace/esvo_cast.hpp finds for it,
+/// to the bit, on any instruction set. The rays' levels of detail must have the same coarsest
+/// level.
 void cast_packet(const EsvoNodes& nodes, const RayPacket& packet, EsvoHits& hits);
 void cast_packet(const ContourNodes& nodes, const RayPacket& packet, EsvoHits& hits);
 
-/// Which of the rays meet anything, as PacketHits::met.
+/// Returns which of the rays meet anything, in the form of PacketHits::met.
 std::uint64_t cast_packet_any(const EsvoNodes& nodes, const RayPacket& packet);
 std::uint64_t cast_packet_any(const ContourNodes& nodes, const RayPacket& packet);
 

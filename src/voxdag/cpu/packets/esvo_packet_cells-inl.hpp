@@ -1,4 +1,5 @@
-// The rays of a packet against a voxel's cube, its contour and its children's cubes.
+// Tests the rays of a packet, as lanes, against a voxel's cube and contour, and its children's
+// cubes.
 #if defined(VOXDAG_ESVO_PACKET_CELLS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_ESVO_PACKET_CELLS_INL
 #undef VOXDAG_ESVO_PACKET_CELLS_INL
@@ -14,7 +15,7 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// ContourSlab::slack.
+/// Computes ContourSlab::slack().
 template <bool kWithContours, bool kOneOrigin>
 template <class VFloat, class VInt>
 HWY_INLINE VInt EsvoPacketWalk<kWithContours, kOneOrigin>::slack_of(VInt length1, VFloat exit) {
@@ -25,7 +26,7 @@ HWY_INLINE VInt EsvoPacketWalk<kWithContours, kOneOrigin>::slack_of(VInt length1
   return hn::ShiftRight<ContourSlab::kReachShift>(hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
 }
 
-/// ContourRay::span: where rays with n.O = position and n.d = speed are between planes.
+/// Computes ContourRay::span(): where rays with n.O = position and n.d = speed are between planes.
 template <bool kWithContours, bool kOneOrigin>
 template <class VFloat, class VInt>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::cut(VInt position, VInt speed,
@@ -45,8 +46,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::cut(VInt position, VI
   leave = hn::Max(t_high, t_low);
 }
 
-/// Which of `rays` meet the voxel's shape, and of these, with kWithStop, which end at it. With kCut
-/// it has a contour: sets the spans of its level.
+/// Returns which of `rays` meet the voxel's shape, and, with kWithStop, which of these end at it.
+/// With kCut the voxel has a contour: sets the spans of its level.
 template <bool kWithContours, bool kOneOrigin>
 template <bool kCut, bool kWithStop>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
@@ -126,7 +127,7 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, R
   return met;
 }
 
-/// Which of `rays` meet which children's cubes, of those that are there.
+/// Finds which of `rays` meet which cubes of the children that exist.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::intersect(const Visit& visit,
                                                                      const Spans& spans, Rays rays,
@@ -150,7 +151,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::intersect(const Visit
     const auto begin = hn::Load(d, spans.enter + first), end = hn::Load(d, spans.leave + first);
     const auto enter_z0 = hn::Max(tz1, begin), enter_z1 = hn::Max(tz2, begin);
     const auto exit_z0 = hn::Min(tz0, end), exit_z1 = hn::Min(tz1, end);
-    // A pair of children, one above the other.
+    // Two children, one above the other.
     const auto column = [&](VF enter_xy, VF exit_xy, Rays& lower, Rays& upper) HWY_ATTR {
       lower |= bits_of(hn::Lt(hn::Max(enter_xy, enter_z0), hn::Min(exit_xy, exit_z0))) << first;
       upper |= bits_of(hn::Lt(hn::Max(enter_xy, enter_z1), hn::Min(exit_xy, exit_z1))) << first;

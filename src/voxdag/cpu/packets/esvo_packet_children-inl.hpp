@@ -1,5 +1,5 @@
-// All children of a voxel at once, which are the lanes: their cubes and contours, and a few rays of
-// a packet, one after the other, against these.
+// Tests a few rays of a packet, one after the other, against the cubes and contours of all children
+// of a voxel at once: the children are the lanes.
 #if defined(VOXDAG_ESVO_PACKET_CHILDREN_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_ESVO_PACKET_CHILDREN_INL
 #undef VOXDAG_ESVO_PACKET_CHILDREN_INL
@@ -15,11 +15,11 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// The cubes of a voxel's children, which are numbered as in its descriptor.
+/// The cubes of a voxel's children, in the order of its descriptor.
 template <bool kWithContours, bool kOneOrigin>
 struct EsvoPacketWalk<kWithContours, kOneOrigin>::ChildCubes {
   VI8 corner[3];           ///< Float bits.
-  VF8 lower[3], upper[3];  ///< Their sides; with kOneOrigin how far from it.
+  VF8 lower[3], upper[3];  ///< Positions of the sides; with kOneOrigin, their distances.
 };
 
 template <bool kWithContours, bool kOneOrigin>
@@ -43,14 +43,14 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_cubes(
   }
 }
 
-/// Sets the children's contours of the voxel's level, eight at once. There is one at least.
+/// Decodes the children's contours, all eight at once. There must be at least one.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
     const Visit& visit, ChildDescriptor descriptor, const ChildCubes& cubes) {
   const DI8 di;
   const int bit = 22 - static_cast<int>(visit.level);
   ChildContours& contours = child_contours_[visit.level];
-  // They stand one after the other: each to the lane of its child.
+  // Moves the contours, which are stored without gaps, to the lanes of their children.
   const std::uint32_t with_contour = descriptor.contour_mask();
   const auto* const words = reinterpret_cast<const std::int32_t*>(esvo_.slots) + 2 * visit.slot +
                             descriptor.contour_pointer();
@@ -61,7 +61,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   const auto w = hn::TableLookupLanes(listed, hn::IndicesFromVec(di, places));
   hn::Store(w, di, contours.words);
 
-  // ContourSlab::make, and the centres.
+  // ContourSlab::make(), and the voxels' centres.
   const VI8 normal[3] = {hn::ShiftRight<26>(hn::ShiftLeft<26>(w)),
                          hn::ShiftRight<26>(hn::ShiftLeft<20>(w)),
                          hn::ShiftRight<26>(hn::ShiftLeft<14>(w))};
@@ -91,8 +91,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   hn::Store(hn::Add(plane(twice_high), wider), di, contours.high);
 }
 
-/// Sets the spans of the visited voxel's level to what end_at_children() has found for its parent;
-/// not those of all rays together, for which nobody asks where there are few.
+/// Sets the spans of the visited voxel's level to those that end_at_children() found for its
+/// parent. Leaves out the span of all rays together, which is not used with few rays.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Visit& visit,
                                                                         Rays rays) {
@@ -112,8 +112,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Vi
   }
 }
 
-/// Ends those of `rays` that first meet a leaf or a voxel that they end at; returns them. Sets
-/// which children the others meet.
+/// Ends those of `rays` that first meet a leaf, or a voxel at which they end, and returns them.
+/// Sets which children the others meet.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,

@@ -1,5 +1,5 @@
-// Many rays of a packet that are close together, taken for one wide ray, against all children of a
-// voxel at once: the lanes are the children.
+// Tests many rays of a packet that are close together as one wide ray, the hull, against all
+// children of a voxel at once: the children are the lanes.
 #if defined(VOXDAG_ESVO_PACKET_HULL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_ESVO_PACKET_HULL_INL
 #undef VOXDAG_ESVO_PACKET_HULL_INL
@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// The children whose cubes any ray can meet.
+/// Returns the children whose cubes any ray can meet.
 template <bool kWithContours, bool kOneOrigin>
 inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::cubes_met_by_hull(
     const Visit& visit, const Spans& spans) const {
@@ -33,23 +33,25 @@ inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::cubes_met_by_hul
   return bits_of_children(hn::Lt(enter, exit));
 }
 
-/// The children whose shapes any ray can meet.
+/// Returns the children whose shapes any ray can meet.
 ///
-/// While the rays are in a child's cube, n.(O - C) - T n.d is between what the ranges of O, d and T
-/// allow. Where that is all above the contour's planes, or all below, no ray comes between them.
-/// The planes are where ContourRay::span has them for a ray that leaves the cube last of all, T =
-/// cube_exit, or farther out, and then moved by as much again: by s + 1 with s > 8 |n| T + |n| /
-/// 256
-/// - 1, in units of 2^-23. Rounded are in ContourRay::span the quotient, by 2 |n| T, and n.d, made
-/// odd, by T / 2; here two conversions and two products, by 2 |n| T. That is less.
+/// While the rays are in a child's cube, n.(O - C) - T n.d lies in an interval given by the ranges
+/// of O, d and T. If that interval is above or below both planes of the contour, no ray comes
+/// between them.
+///
+/// Why rounding does not matter: the planes are those of ContourRay::span for the ray that leaves
+/// the cube last, at T = cube_exit, or farther out, moved outwards once more by s + 1 with s > 8
+/// |n| T + |n| / 256 - 1, in units of 2^-23. The rounding errors are smaller: those of
+/// ContourRay::span are 2 |n| T for the quotient and T / 2 for n.d, which is made odd; those of
+/// this function are 2 |n| T for two conversions and two products.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::shapes_met_by_hull(
     const Visit& visit, std::uint32_t with_contour, const ChildCubes& cubes,
     const Spans& spans) const {
   const DF8 d;
   const DI8 di;
-  // T is at most 1 in the grid. The slack goes by where the rays leave the cube, wherever their
-  // ranges end.
+  // T is at most 1 in the grid. The slack depends on where the rays leave the cube, even if their
+  // ranges end before.
   auto enter = hn::Set(d, spans.first), cube_exit = hn::Set(d, 1.0f);
   for (int axis = 0; axis < 3; ++axis) {
     if constexpr (kOneOrigin)

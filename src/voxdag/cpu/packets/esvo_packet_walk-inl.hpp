@@ -1,5 +1,5 @@
-// The walk of up to 64 rays of like direction through an ESVO: what its parts share. Included once
-// for each instruction set, by cast_esvo_packet.cpp, which says how it goes.
+// The walk of a packet of rays at an ESVO: its state, and the functions that its parts share. See
+// cast_esvo_packet.cpp for the algorithm. Included once for each instruction set.
 #if defined(VOXDAG_ESVO_PACKET_WALK_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_ESVO_PACKET_WALK_INL
 #undef VOXDAG_ESVO_PACKET_WALK_INL
@@ -22,7 +22,8 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// With kOneOrigin all rays start at one point, so that how far a plane is from it is found once.
+/// With kOneOrigin all rays start at one point: the distance of a plane is the same for all of
+/// them.
 template <bool kWithContours, bool kOneOrigin>
 class EsvoPacketWalk : PacketRays {
   using DI = hn::RebindToSigned<DF>;
@@ -32,7 +33,7 @@ class EsvoPacketWalk : PacketRays {
   using VI8 = hn::Vec<DI8>;
 
  public:
-  /// `hits` is null where it is only asked which rays meet anything.
+  /// `hits` is null if the caller only wants to know which rays meet anything.
   EsvoPacketWalk(const EsvoView& esvo, EsvoHits* hits) : esvo_(esvo), hits_(hits) {}
 
   Rays cast(const RayPacket& packet);
@@ -43,40 +44,41 @@ class EsvoPacketWalk : PacketRays {
   /// A voxel to visit.
   struct Visit : Cell {
     Rays rays;
-    std::uint64_t slot;   ///< Of its descriptor, or kLeaf.
-    std::uint32_t known;  ///< Of what follows.
+    std::uint64_t slot;   ///< Slot of its descriptor, or kLeaf.
+    std::uint32_t known;  ///< Flags, see below.
   };
-  /// Of a visit: the rays meet the voxel's cube; its shape, too, as end_at_children() has found;
-  /// some may end here by their level of detail; the voxel has a contour.
+  /// Flags of a visit: the rays meet the voxel's cube; they also meet its shape, as
+  /// end_at_children() found; the level of detail may end some here; the voxel has a contour.
   static constexpr std::uint32_t kMeetCube = 1, kMeetShape = 2, kMayStop = 4, kHasContour = 8;
-  /// What contours have left of each ray's range of T, and of all rays together.
+  /// The ranges of T that contours leave of each ray, and of all rays together.
   struct Spans {
     alignas(64) float enter[RayPacket::kMaxRays], leave[RayPacket::kMaxRays];
-    /// Of the voxel by whose contour the ray came to `enter`; 0: by the side of a cube, or none.
+    /// Level of the voxel through whose contour the ray came to `enter`; 0: through the side of a
+    /// cube, or none.
     alignas(64) std::int32_t enter_level[RayPacket::kMaxRays];
     float first, last;
   };
-  /// By mirrored child index, the rays that meet the child.
+  /// The rays that meet each child, by mirrored child index.
   struct ChildRays {
     Rays meet[8];
-    std::uint32_t met;  ///< The children, mirrored, that any meets.
+    std::uint32_t met;  ///< The children that any ray meets, by mirrored index.
   };
-  /// The contours of a voxel's children, which are numbered as in its descriptor. The planes are
-  /// where ContourSlab has them, but from the origin of the grid or of all rays.
+  /// The contours of a voxel's children, in the order of its descriptor. The planes are
+  /// ContourSlab's, but relative to the origin of the grid or of all rays.
   struct ChildContours {
     alignas(32) std::int32_t words[8];  ///< Contour::bits.
     alignas(32) std::int32_t normal[3][8], length1[8], low[8], high[8];
   };
-  /// What end_at_children() has found for each of its rays, by child.
+  /// The results of end_at_children() for each of its rays, by child.
   struct Tried {
     alignas(32) float enter[kFew][8], leave[kFew][8];
-    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< How the ray comes to `enter`.
+    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< How the ray comes to `enter`, by child.
     Rays rays;
   };
 
   using ByteTable = std::array<std::array<std::uint8_t, 8>, 256>;
   alignas(32) static constexpr std::int32_t kChildBits[8] = {1, 2, 4, 8, 16, 32, 64, 128};
-  /// By mask and child: how many bits of the mask stand before the child's.
+  /// The number of bits of a mask before the child's, by mask and child.
   static constexpr ByteTable bits_before() {
     ByteTable table{};
     for (std::size_t mask = 0; mask < 256; ++mask)
@@ -86,24 +88,24 @@ class EsvoPacketWalk : PacketRays {
     return table;
   }
   static constexpr ByteTable kBefore = bits_before();
-  /// The spans that the rays in a child of the path's voxel of `level` have.
+  /// Returns the spans of the rays in a child of the path's voxel of `level`.
   const Spans& spans_below(std::uint32_t level) const {
     return kWithContours ? spans_[span_at_[level]] : spans_[0];
   }
 
-  /// The number, in its parent's descriptor, of the voxel of `level` that holds this corner.
+  /// Returns the child index, in its parent's descriptor, of the voxel of `level` at this corner.
   std::uint32_t child_of(const std::uint32_t corner[3], std::uint32_t level) const {
     const auto word = [&](int axis) { return static_cast<std::int32_t>(corner[axis]); };
     const int child = child_index({word(0), word(1), word(2)}, static_cast<int>(23 - level));
     return static_cast<std::uint32_t>(child) ^ rays_.mirrored;
   }
-  /// What distance() wants of a plane at the float bits `position`: how far it is from the origin
-  /// of all rays, or where it is.
+  /// Returns the argument of distance() for a plane at the float bits `position`: its distance from
+  /// the origin of all rays, or its position.
   HWY_INLINE VF to_plane(DF d, int axis, std::uint32_t position) const {
     const float at = float_from_bits(position);
     return hn::Set(d, kOneOrigin ? origins_.least[axis] - at : at);
   }
-  /// How far the origins of the vector of rays at `first` are from a plane.
+  /// Returns the distances of the origins of the vector of rays at `first` from a plane.
   HWY_INLINE VF distance(int axis, std::size_t first, VF plane) const {
     if constexpr (kOneOrigin) return plane;
     return hn::Sub(hn::Load(DF(), rays_.origin[axis] + first), plane);
@@ -137,19 +139,19 @@ class EsvoPacketWalk : PacketRays {
 
   const EsvoView& esvo_;
   EsvoHits* hits_;
-  /// Positions and directions as ContourRay has them, by axis, then by ray.
+  /// Positions and directions in the form of ContourRay, by axis, then by ray.
   alignas(64) std::int32_t position_[3][RayPacket::kMaxRays], direction_[3][RayPacket::kMaxRays];
-  /// Least and greatest of them, by axis.
+  /// The least and greatest of them, by axis.
   std::int32_t position_range_[3][2], direction_range_[3][2];
   std::int32_t sign_[3];  ///< By axis: -1 where mirrored, else 0.
   std::size_t top_ = 0;
   Visit stack_[8 * kMaxLevels];
-  /// The path to the voxel that is visited, by level: its descriptors' slots; where the spans are
-  /// that its contours have left, of which 0 is the rays' own.
+  /// The path to the visited voxel, by level: the slots of its descriptors, and the indices of the
+  /// spans that its contours leave. spans_[0] are the rays' own.
   std::uint64_t slots_[kMaxLevels + 1];
   std::uint32_t span_at_[kMaxLevels + 1];
   Spans spans_[kWithContours ? kMaxLevels + 1 : 1];
-  /// By level of the parent.
+  /// By the level of the parent.
   ChildContours child_contours_[kWithContours ? kMaxLevels : 1];
   Tried tried_[kWithContours ? kMaxLevels : 1];
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// The caster of the CPU: sorts a stream of rays into packets of like direction.
+/// The caster of the CPU: divides a stream of rays into packets of similar direction.
 #include <algorithm>
 #include <utility>
 
@@ -9,9 +9,9 @@
 
 namespace voxdag {
 
-/// A caster (see trace/scalar_caster.hpp) on a BoundedDag, EsvoNodes, ContourNodes or
-/// StreamedNodes. Fast where rays that come within thousands of one another are near each other, as
-/// those of a tile of a picture are.
+/// A caster (see trace/scalar_caster.hpp) at a BoundedDag, EsvoNodes, ContourNodes or
+/// StreamedNodes. It is fast if rays that are a few thousand apart in the stream are near each
+/// other in space, as those of a tile of a picture are.
 template <class Target>
 class PacketCaster {
  public:
@@ -40,7 +40,7 @@ class PacketCaster {
  private:
   using Hits = typename PacketTarget<Target>::Hits;
   using Hit = decltype(std::declval<const Hits&>()[0]);
-  /// Whether the target is to be told of hits.
+  /// Whether the target wants to know of hits.
   static constexpr bool kTells =
       requires(const Target& target, const CastRay& ray, const Hit& hit) {
     target.on_hit(ray.ray, ray.stop, hit);
@@ -62,7 +62,7 @@ class PacketCaster {
           cast_packet(target_, packet, hits);
         else
           hits.met = cast_packet_any(target_, packet);
-        // Held here, where results that are written cannot change them.
+        // Copies, so that the compiler knows that writes of results do not change them.
         const std::size_t size = packet.size;
         const std::uint64_t met = hits.met;
         for (std::size_t at = 0; at < size; ++at, ++place) {

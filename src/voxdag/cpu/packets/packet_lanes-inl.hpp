@@ -1,4 +1,5 @@
-// What the walks of packets share: lanes of rays or beams. Included once for each instruction set.
+// Sets of rays or beams, and vectors of their values: the base of all walks of packets. Included
+// once for each instruction set.
 #if defined(VOXDAG_PACKET_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_PACKET_LANES_INL
 #undef VOXDAG_PACKET_LANES_INL
@@ -13,7 +14,7 @@
 
 #include "voxdag/core/bits.hpp"
 
-// Whether vectors have 8 lanes at least: rays, or children or voxels of one ray.
+// Whether vectors have at least 8 lanes, for rays, or for the children or voxels of one ray.
 #undef VOXDAG_PACKET_LANES
 #if HWY_MAX_BYTES >= 32 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 #define VOXDAG_PACKET_LANES 1
@@ -38,14 +39,15 @@ class PacketLanes {
 
   static Set first(std::size_t count) { return count == 64 ? ~Set{0} : (Set{1} << count) - 1; }
 
-  /// Where the vector of the first of them begins, which is taken off the set.
+  /// Removes the vector of the set's first member from the set. Returns the index at which it
+  /// begins.
   static HWY_INLINE std::size_t take_vector(Set& set) {
     const std::size_t at = static_cast<std::size_t>(lowest_bit64(set)) & ~(kWidth - 1);
     set &= ~(kVector << at);
     return at;
   }
 
-  /// The lanes of a vector whose bits are set, lane 0's the lowest.
+  /// Returns the mask of the lanes whose bits are set; lane 0 has the lowest bit.
   template <class D>
   static HWY_INLINE hn::Mask<D> lanes_of(D d, Set bits) {
     const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),

@@ -1,5 +1,5 @@
 #pragma once
-/// Rays of like direction that are cast together, and what they meet.
+/// Packets of rays of similar direction, and their hits.
 #include <cstddef>
 #include <cstdint>
 
@@ -7,20 +7,20 @@
 
 namespace voxdag {
 
-/// Up to 64 rays that are mirrored alike.
+/// Up to 64 rays with the same GridRay::mirrored.
 struct RayPacket {
   static constexpr std::size_t kMaxRays = 64;
 
-  const CastRay* rays[kMaxRays];  ///< With misses() false.
+  const CastRay* rays[kMaxRays];  ///< None of them misses().
   std::size_t size = 0;
 };
 
-/// What the rays of a packet met. Arrays are by ray, those of rays that met nothing undefined, but
-/// levels are always those of a cell.
+/// The hits of a packet. Arrays are indexed by ray; values of rays that met nothing are undefined,
+/// except that levels are always those of some cell.
 struct PacketHits {
   std::uint64_t met = 0;  ///< Bit i: ray i met a cell.
   alignas(64) float t[RayPacket::kMaxRays];
-  std::uint32_t corner[3][RayPacket::kMaxRays];  ///< By axis: the float bits.
+  std::uint32_t corner[3][RayPacket::kMaxRays];  ///< By axis, then by ray: float bits.
   int level[RayPacket::kMaxRays] = {};
 
   bool is_hit(std::size_t i) const { return (met >> i & 1u) != 0; }
@@ -37,8 +37,8 @@ struct PacketHits {
   }
 };
 
-/// Casts the packet's rays one by one: for machines whose vectors are too small. Returns which meet
-/// anything, bit i for ray i; `hits` may be null.
+/// Casts the packet's rays one at a time, for machines with small vectors. Returns which meet
+/// anything, in the form of PacketHits::met; `hits` may be null.
 template <class Nodes, class Hits>
 std::uint64_t cast_one_by_one(const Nodes& nodes, const RayPacket& packet, Hits* hits) {
   std::uint64_t met = 0;
@@ -51,8 +51,9 @@ std::uint64_t cast_one_by_one(const Nodes& nodes, const RayPacket& packet, Hits*
   return met;
 }
 
-/// Of what packets are cast at: the type of its PacketHits, and whether rays of many neighbouring
-/// points that run the same way make the better packet (true), or all rays of a few (false).
+/// Traits of a target of packets. Hits is its type of PacketHits. kByDirection says which packets
+/// of incoherent rays are better: rays of similar direction from many neighbouring points (true),
+/// or all rays of a few points (false).
 template <class Target>
 struct PacketTarget {};
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A part of a stream of rays, put in an order in which those that follow one another are alike.
+/// A window of a stream of rays, sorted so that consecutive rays are similar.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace voxdag {
 
-/// Up to kMaxRays rays. Rays of a packet must be mirrored alike; more likeness makes it faster.
-/// Neighbours in a stream of primary or shadow rays are alike as they are: of those it takes few,
-/// so that they stay in the nearest cache. Those of ambient occlusion are not: they may be put in
-/// the order of their directions, in cells of about a hundredth of the sphere, so that a packet has
-/// rays of many neighbouring pixels that run about the same way.
+/// Up to kMaxRays rays. The rays of a packet must have the same GridRay::mirrored; the more similar
+/// they are, the faster the packet is. Neighbours in a stream of primary or shadow rays are
+/// similar: the window takes few of them, so that they stay in the nearest cache. Rays of ambient
+/// occlusion are not: the window may sort them by direction, in cells of about a hundredth of the
+/// sphere, so that a packet has rays of many neighbouring pixels with similar directions.
 class RayWindow {
  public:
   static constexpr int kMaxRays = 4096;
@@ -23,9 +23,10 @@ class RayWindow {
   RayWindow(const RayWindow&) = delete;
   RayWindow& operator=(const RayWindow&) = delete;
 
-  /// Takes make_ray(0), make_ray(1) and so on, one at least and `available` at most. Where it
-  /// returns references, they must outlive what the window holds. Those that miss are told to
-  /// on_miss(i, ray). Without `by_direction` the others keep their order but for what mirrors them.
+  /// Takes make_ray(0), make_ray(1) and so on: at least one, at most `available`. References that
+  /// it returns must outlive the window's content. Calls on_miss(i, ray) for rays that miss. Sorts
+  /// the others by their octant (GridRay::mirrored), and with `by_direction` by their direction
+  /// too.
   template <class MakeRay, class OnMiss>
   void fill(int available, bool by_direction, const MakeRay& make_ray, const OnMiss& on_miss) {
     const auto take_one = [&](int i) {
@@ -40,13 +41,13 @@ class RayWindow {
     sort(by_direction && are_unlike() ? 0 : kCellBits);
   }
 
-  /// How many rays fill() took.
+  /// Returns how many rays fill() took.
   int taken() const { return taken_; }
-  /// How many of them do not miss: these are in the window.
+  /// Returns how many of them do not miss: these are in the window.
   int size() const { return size_; }
-  /// The i of the ray at this place, 0 <= place < size().
+  /// Returns the i of the ray at this place, 0 <= place < size().
   int index(int place) const { return order_[place]; }
-  /// Sets the rays from this place on that make a packet.
+  /// Fills a packet with the rays from this place on that have the same octant.
   void set_packet(int place, RayPacket& packet) const {
     const int most = std::min(size_ - place, static_cast<int>(RayPacket::kMaxRays));
     const std::uint32_t mirrored = rays_[order_[place]]->ray.mirrored;
@@ -60,11 +61,11 @@ class RayWindow {
 
  private:
   static constexpr int kCellBits = 6, kKeys = 8 << kCellBits;
-  /// How many are taken of those that are alike.
+  /// How many rays the window takes if they are similar.
   static constexpr int kAlike = 256;
 
-  /// Takes rays, which take_one(i) puts in their place, until there are `end`. Returns whether
-  /// those taken are all mirrored alike.
+  /// Takes rays with take_one(i) until there are `end`. Returns whether all that it took have the
+  /// same octant.
   template <class OnMiss, class TakeOne>
   bool take(int end, const OnMiss& on_miss, const TakeOne& take_one) {
     std::uint32_t octants = 0;  // bit m: there is a ray with `mirrored` m
@@ -81,8 +82,8 @@ class RayWindow {
     return (octants & (octants - 1)) == 0;
   }
 
-  /// The octant, then along a Morton curve the cell of the direction in the cube [0,1]³, where its
-  /// largest component is 1.
+  /// Returns the sort key: the octant, then the Morton code of the direction's cell in the cube
+  /// [0,1]³, with the largest component of the direction scaled to 1.
   static std::uint32_t key_of(const GridRay& ray) {
     std::uint32_t key = ray.mirrored << kCellBits;
     for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +95,7 @@ class RayWindow {
     return key;
   }
 
-  /// Whether neighbours are often in different octants, going by some of them.
+  /// Returns whether neighbours are often in different octants, judged by a sample.
   bool are_unlike() const {
     constexpr int kStep = 16;
     int unlike = 0, pairs = 0;
@@ -103,7 +104,7 @@ class RayWindow {
     return 4 * unlike > pairs;
   }
 
-  /// By all of the key but its lowest bits; equal ones stay in order.
+  /// Sorts stably by the key without its lowest bits.
   void sort(int ignored_bits) {
     std::uint16_t begin[kKeys + 1] = {}, keys[kMaxRays];
     for (int i = 0; i < size_; ++i) {
@@ -117,7 +118,7 @@ class RayWindow {
     std::copy_n(sorted, size_, order_);
   }
 
-  alignas(CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // where they come as values
+  alignas(CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // rays that come as values
   const CastRay* rays_[kMaxRays];
   std::uint16_t order_[kMaxRays];
   int taken_ = 0, size_ = 0;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/build/triangle_source.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
@@ -38,7 +39,7 @@ struct Walk {
     deepest = std::max(deepest, level);
     for (int child = 0; child < 8; ++child) {
       if ((d.valid_mask() >> child & 1) == 0) continue;
-      const Vec3i at = cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2};
+      const Vec3i at = cell * 2 + child_offset(child);
       // The point in the coordinates in which the child is [-1,1]³.
       Vec3d local;
       bool in_cube = true;

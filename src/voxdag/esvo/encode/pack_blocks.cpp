@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/encode/contour_pool.hpp"
 #include "voxdag/esvo/encode/encode_pair.hpp"
 
@@ -265,7 +266,7 @@ NodeCell cell_of(const EsvoTree& tree, const std::vector<std::uint32_t>& parents
   }
   for (std::size_t i = way.size(); i-- > 0;) {
     ++root.level;
-    root.cell = root.cell * 2 + Vec3i{way[i] & 1, way[i] >> 1 & 1, way[i] >> 2};
+    root.cell = root.cell * 2 + child_offset(way[i]);
   }
   return root;
 }

@@ -11,7 +11,6 @@
 #include <limits>
 #include <memory>
 
-#include "voxdag/mesh/mesh_checks.hpp"
 #endif
 
 namespace voxdag {

@@ -27,9 +27,7 @@ std::vector<T> load(const GltfFile& file, const GltfValue& primitive, const std:
 }
 
 Vec3f transformed(const GltfTransform& transform, Vec3f normal) {
-  const Vec3d n = transform.normal(static_cast<Vec3d>(normal));
-  const double length = std::sqrt(dot(n, n));
-  return length > 0 && std::isfinite(length) ? static_cast<Vec3f>(n * (1 / length)) : Vec3f{};
+  return static_cast<Vec3f>(normalized_or(transform.normal(static_cast<Vec3d>(normal)), {}));
 }
 
 /// Fits an array of the appearance to the triangles so far, if it is used from now on.

@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/readers/gltf/gltf_accessor.hpp"
 #include "voxdag/readers/gltf/gltf_corners.hpp"
 #include "voxdag/readers/gltf/gltf_file.hpp"

@@ -147,18 +147,13 @@ class ObjAppearanceReader {
           break;
         case Statement::kNormal:
           if (parse_numbers(line, numbers) >= 3)
-            normals_[normal] = unit_or_zero({numbers[0], numbers[1], numbers[2]});
+            normals_[normal] = normalized_or(Vec3f{numbers[0], numbers[1], numbers[2]}, {});
           ++normal;
           break;
         default:
           break;
       }
     });
-  }
-
-  static Vec3f unit_or_zero(Vec3f v) {
-    const float length = std::sqrt(dot(v, v));
-    return length > 0 && std::isfinite(length) ? v * (1 / length) : Vec3f{};
   }
 
   /// Gives the corners of the chunk's triangles what their faces refer to.

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/mesh/polygon.hpp"
 #include "voxdag/readers/chunks.hpp"
 #include "voxdag/readers/obj/obj_lines.hpp"

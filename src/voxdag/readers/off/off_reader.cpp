@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/mesh/polygon.hpp"
 #include "voxdag/readers/chunks.hpp"
 

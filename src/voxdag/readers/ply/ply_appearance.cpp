@@ -227,8 +227,7 @@ class PlyAppearanceReader {
     if (!normals_.empty()) {
       const Vec3f n{value_of(values, normals_[0]), value_of(values, normals_[1]),
                     value_of(values, normals_[2])};
-      const float length = std::sqrt(dot(n, n));
-      if (length > 0 && std::isfinite(length)) vertex_normals_[row] = n * (1 / length);
+      vertex_normals_[row] = normalized_or(n, {});
     }
     if (!uvs_.empty())
       vertex_uvs_[row] = uv_of(value_of(values, uvs_[0]), value_of(values, uvs_[1]));

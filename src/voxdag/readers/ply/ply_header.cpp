@@ -58,7 +58,7 @@ class HeaderParser {
 
  private:
   [[noreturn]] void fail(const std::string& reason) const {
-    throw Error(source_.name, "line " + std::to_string(line_), reason);
+    throw Error(source_.name, ErrorPlace::line(line_), reason);
   }
 
   /// The first line says how lines end: "\n" (also "\r\n") or "\r".

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/mesh/polygon.hpp"
 #include "voxdag/readers/chunks.hpp"
 #include "voxdag/readers/ply/ply_header.hpp"

@@ -1,6 +1,5 @@
 #include "voxdag/readers/stl/stl_reader.hpp"
 
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/readers/chunks.hpp"
 #include "voxdag/readers/stl/stl_text.hpp"
 #include "voxdag/readers/weld_soup.hpp"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "voxdag/core/vec.hpp"
-#include "voxdag/mesh/mesh_checks.hpp"
 #include "voxdag/readers/chunks.hpp"
 
 namespace voxdag {
@@ -101,7 +100,7 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
       for (int corner = 0; corner < 3; ++corner) {
         expect("vertex");
         const float x = number(), y = number(), z = number();
-        if (!is_finite({x, y, z}))
+        if (!is_finite(Vec3f{x, y, z}))
           throw Fault{token.data(), "facet with a vertex that is not finite"};
         body(Vec3f{x, y, z});
       }

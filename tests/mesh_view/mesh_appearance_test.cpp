@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSide = 16;
 
-class MeshLooksTest : public testing::Test {
+class MeshAppearanceTest : public testing::Test {
  protected:
   void SetUp() override {
     if (!VOXDAG_HAS_EMBREE) GTEST_SKIP() << "built without Embree";
@@ -30,7 +30,7 @@ class MeshLooksTest : public testing::Test {
   }
 };
 
-TEST_F(MeshLooksTest, ShowsItsTextureAndWhatIsBehindItsHoles) {
+TEST_F(MeshAppearanceTest, ShowsItsTextureAndWhatIsBehindItsHoles) {
   Square square;
   // Red on the left, nothing on the right; 0.5 of blue behind all of it.
   std::vector<std::uint16_t> texels;
@@ -60,7 +60,7 @@ TEST_F(MeshLooksTest, ShowsItsTextureAndWhatIsBehindItsHoles) {
     }
 }
 
-TEST_F(MeshLooksTest, FiltersTexturesOverThePixel) {
+TEST_F(MeshAppearanceTest, FiltersTexturesOverThePixel) {
   Square square;
   constexpr int kTexels = 256;
   square.material().color_map = square.noise(kTexels, 5);
@@ -75,7 +75,7 @@ TEST_F(MeshLooksTest, FiltersTexturesOverThePixel) {
   EXPECT_GT(most - least, 0.02f);
 }
 
-TEST_F(MeshLooksTest, NormalsAreTheFilesOnTheViewersSide) {
+TEST_F(MeshAppearanceTest, NormalsAreTheFilesOnTheViewersSide) {
   Square square;
   const Vec3f left = normalized(Vec3f{-1, 0, 2}), right = normalized(Vec3f{1, 0, 2});
   square.appearance.normals = {left, right, right, -left, -right, -left};
@@ -91,7 +91,7 @@ TEST_F(MeshLooksTest, NormalsAreTheFilesOnTheViewersSide) {
     }
 }
 
-TEST_F(MeshLooksTest, ATextureThatCannotBeReadIsNamed) {
+TEST_F(MeshAppearanceTest, ATextureThatCannotBeReadIsNamed) {
   Square square;
   square.material().name = "wall";
   square.appearance.images.push_back({"none.png", square.directory.path() / "none.png", {}});

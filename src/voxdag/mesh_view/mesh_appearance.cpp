@@ -1,4 +1,4 @@
-#include "voxdag/mesh_view/mesh_looks.hpp"
+#include "voxdag/mesh_view/mesh_appearance.hpp"
 
 #include <algorithm>
 
@@ -23,11 +23,12 @@ bool has_normals(const Appearance& appearance, std::size_t triangle) {
 
 }  // namespace
 
-MeshLooks::MeshLooks(const Mesh& mesh, const MeshViewOptions& options)
+MeshAppearance::MeshAppearance(const Mesh& mesh, const MeshViewOptions& options)
     : albedo_(options.albedo), smooth_normals_(corner_normals(mesh, options.crease_degrees)) {}
 
-MeshLooks::MeshLooks(const Mesh& mesh, Appearance appearance, const MeshViewOptions& options,
-                     std::vector<std::string>* warnings, Progress* progress)
+MeshAppearance::MeshAppearance(const Mesh& mesh, Appearance appearance,
+                               const MeshViewOptions& options, std::vector<std::string>* warnings,
+                               Progress* progress)
     : albedo_(options.albedo),
       appearance_(std::move(appearance)),
       has_colors_(voxdag::has_colors(*appearance_)) {
@@ -40,14 +41,14 @@ MeshLooks::MeshLooks(const Mesh& mesh, Appearance appearance, const MeshViewOpti
   if (!all_have_normals) smooth_normals_ = corner_normals(mesh, options.crease_degrees);
 }
 
-Vec3f MeshLooks::albedo(std::uint32_t triangle, std::span<const Vec2f> footprint) const {
+Vec3f MeshAppearance::albedo(std::uint32_t triangle, std::span<const Vec2f> footprint) const {
   if (!has_colors_) return albedo_;
   const Vec3f color = shading_->mean(triangle, footprint).color;
   return min(max(color, Vec3f{}), Vec3f{1, 1, 1});
 }
 
-Vec3f MeshLooks::normal(std::uint32_t triangle, Vec2f point,
-                        std::span<const Vec2f> footprint) const {
+Vec3f MeshAppearance::normal(std::uint32_t triangle, Vec2f point,
+                             std::span<const Vec2f> footprint) const {
   const bool is_mapped = shading_ && shading_->has_normal_map(triangle);
   if (is_mapped) return shading_->mean(triangle, footprint).normal;
   const auto interpolated = [&](const auto& corner) {
@@ -59,7 +60,7 @@ Vec3f MeshLooks::normal(std::uint32_t triangle, Vec2f point,
   return interpolated([&](std::size_t i) { return smooth_normals_[triangle][i].unpack(); });
 }
 
-bool MeshLooks::is_hole(std::uint32_t triangle, Vec2f point) const {
+bool MeshAppearance::is_hole(std::uint32_t triangle, Vec2f point) const {
   return has_holes_ && shading_->may_be_alpha_masked(triangle) &&
          shading_->mean(triangle, std::span(&point, 1)).coverage < 0.5f;
 }

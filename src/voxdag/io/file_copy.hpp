@@ -1,0 +1,29 @@
+#pragma once
+/// A file's bytes in memory of this process.
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "voxdag/io/open_input.hpp"
+
+namespace voxdag {
+
+/// A copy of a regular file, read once. Unlike a mapping it does not change when other programs
+/// rewrite or truncate the file: what a reader has checked stays true. Memory: the bytes of the
+/// file, on large pages where the system grants them. Copies of this object share the bytes.
+class FileCopy {
+ public:
+  /// Throws the errors of open_input, std::bad_alloc, and Error(path, place, reason) if the file
+  /// cannot be read, or is truncated meanwhile.
+  explicit FileCopy(const std::filesystem::path& path, SizeLimit limit = {});
+
+  /// Aligned to 16 bytes or more; empty for an empty file.
+  std::span<const std::byte> bytes() const { return {bytes_.get(), size_}; }
+
+ private:
+  std::shared_ptr<std::byte[]> bytes_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace voxdag
