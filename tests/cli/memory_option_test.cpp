@@ -1,4 +1,4 @@
-#include "cli/memory_option.hpp"
+#include "voxdag/io/process_memory.hpp"
 
 #include <gtest/gtest.h>
 

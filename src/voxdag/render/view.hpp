@@ -8,6 +8,9 @@
 
 namespace voxdag {
 
+/// The smallest vertical angle of view. Far below it, directions of pixels are no longer distinct.
+inline constexpr double kLeastFovDegrees = 1e-6;
+
 /// World units. The picture's vertical axis is `up` as far as the view direction allows.
 struct View {
   Vec3d eye{0, 0, 1};
@@ -21,6 +24,11 @@ struct ViewRequest {
   std::optional<Vec3d> eye, target, up;
   std::optional<double> vertical_fov_degrees;
 };
+
+/// Returns the request for just this view.
+inline ViewRequest as_request(const View& view) {
+  return {view.eye, view.target, view.up, view.vertical_fov_degrees};
+}
 
 /// Where eye and target are given, frame_scene asks the cells of this level what is up, and no
 /// others.
@@ -36,7 +44,7 @@ Vec3d up_across(Vec3d up, Vec3d forward);
 /// all voxels in the picture, or from inside where it is a closed box, as buildings are, with room
 /// to look around. A valid view even for an empty scene. Deterministic; some ten milliseconds.
 /// Throws Error for a request that names no view: numbers that are not finite, eye = target, an
-/// angle not in (0,180), up along the view.
+/// angle that is not at least kLeastFovDegrees and below 180, up along the view.
 View frame_scene(const VoxelScene& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request);
 
