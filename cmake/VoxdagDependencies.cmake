@@ -36,6 +36,5 @@ if("embree" IN_LIST VOXDAG_LIBRARY_PACKAGES)
 endif()
 
 if(VOXDAG_BUILD_APPS)
-  find_package(fmt REQUIRED)
   find_package(CLI11 REQUIRED)
 endif()

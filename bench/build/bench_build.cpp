@@ -18,34 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::uint64_t bytes_in(const fs::path& folder) {
-  std::uint64_t bytes = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.symlink_status().type() == fs::file_type::regular) bytes += entry.file_size();
-  return bytes;
-}
-
-std::string quoted(const std::string& text) {
-  std::string shell = "'";
-  for (const char c : text) shell += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return shell + "'";
-}
-
-std::string filled_in(std::string command,
-                      const std::array<std::array<std::string, 2>, 4>& values) {
-  for (const auto& [name, value] : values)
-    for (std::size_t at = 0; (at = command.find(name, at)) != std::string::npos; at += value.size())
-      command.replace(at, name.size(), value);
-  return command;
-}
-
-/// The last line where that is a JSON object, else nothing.
-std::string last_line_json(const std::string& text) {
-  std::string line = text.substr(0, text.find_last_not_of('\n') + 1);
-  line.erase(0, line.find_last_of('\n') + 1);
-  return Json::parse(line, nullptr, false).is_object() ? line : "";
-}
-
 class Bench {
  public:
   Bench(const BenchPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
@@ -55,7 +27,7 @@ class Bench {
       const fs::path path = prepare_mesh(mesh, folder_.path(), progress_);
       const std::string scene = is_procedural(mesh) ? mesh : fs::path(mesh).filename().string();
       for (const std::string& method : plan_.methods) run_builds(scene, path, method);
-      for (const Rival& rival : plan_.rivals) run_rival(scene, path, rival);
+      for (const auto& rival : plan_.rivals) run_rival(scene, path, *rival);
     }
     return std::move(results_);
   }
@@ -119,29 +91,14 @@ class Bench {
     return run;
   }
 
-  void run_rival(const std::string& scene, const fs::path& path, const Rival& rival) {
+  void run_rival(const std::string& scene, const fs::path& path, Rival& rival) {
     for (const int levels : plan_.levels) {
-      step(fmt::format("{}: {} {}", rival.name, scene, 1 << levels));
-      const ScratchFolder folder;
-      RivalRun run;
-      run.name = rival.name;
-      run.command = rival.command;
-      run.scene = scene;
-      run.levels = levels;
-      run.load_before = load_average();
-      const std::string command =
-          filled_in(rival.command, {{{"{mesh}", quoted(path)},
-                                     {"{out}", quoted(folder.path() / "out")},
-                                     {"{resolution}", std::to_string(1 << levels)},
-                                     {"{levels}", std::to_string(levels)}}});
-      const ChildResult child =
-          run_child({"/bin/sh", "-c", command}, folder.path(), plan_.rival_seconds, progress_);
-      run.cost = child.cost;
-      run.failure = failure_of(child, plan_.rival_seconds);
-      run.output_bytes = bytes_in(folder.path());
-      run.reported = last_line_json(child.out);
-      results_.rivals.push_back(run);
-      if (!run.failure.empty()) return;
+      step(fmt::format("{}: {} {}", rival.name(), scene, 1 << levels));
+      const double load = load_average();
+      std::optional<RivalBuild> build = rival.build({path, levels, plan_.rival_seconds}, progress_);
+      if (!build) return;
+      results_.rivals.push_back({rival.name(), scene, levels, load, std::move(*build)});
+      if (!results_.rivals.back().build.failure.empty()) return;
     }
   }
 

@@ -61,15 +61,16 @@ Json build_json(const std::vector<BuildRun>& builds, std::size_t index) {
 }
 
 Json rival_json(const RivalRun& run) {
+  const RivalBuild& build = run.build;
   Json json{{"name", run.name},
-            {"command", run.command},
+            {"command", build.command},
             {"scene", run.scene},
             {"resolution", std::int64_t{1} << run.levels},
             {"load_before", run.load_before}};
-  if (!run.failure.empty()) json["failure"] = run.failure;
-  json.update(cost_json(run.cost));
-  json["output_bytes"] = run.output_bytes;
-  if (!run.reported.empty()) json["reported"] = Json::parse(run.reported);
+  if (!build.failure.empty()) json["failure"] = build.failure;
+  json.update(cost_json(build.cost));
+  json["output_bytes"] = build.output_bytes;
+  if (!build.reported.empty()) json["reported"] = Json::parse(build.reported);
   return json;
 }
 

@@ -21,8 +21,6 @@ std::array<std::string, 2> split_scene(const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 /// Reads all of a file, so that the next reader finds it in memory.
 void warm_up(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -35,15 +33,6 @@ void warm_up(const fs::path& path) {
 }  // namespace
 
 std::string this_program() { return fs::read_symlink("/proc/self/exe"); }
-
-std::string failure_of(const ChildResult& result, double seconds_limit) {
-  if (result.timed_out) return fmt::format("ended after {} s", seconds_limit);
-  if (result.status == 0) return "";
-  const std::string line = first_line(result.err);
-  if (!line.empty()) return line.starts_with("voxdag: ") ? line.substr(8) : line;
-  return result.status > 128 ? fmt::format("ended by signal {}", result.status - 128)
-                             : fmt::format("exit status {}", result.status);
-}
 
 bool is_procedural(const std::string& mesh) {
   const std::string name = split_scene(mesh)[0];

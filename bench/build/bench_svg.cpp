@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bench/build/bench_report.hpp"
-#include "bench/report/svg_plot.hpp"
-#include "cli/human.hpp"
+#include "voxdag/report/human.hpp"
+#include "voxdag/report/svg_plot.hpp"
 
 namespace voxdag {
 

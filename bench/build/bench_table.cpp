@@ -5,7 +5,7 @@
 
 #include "bench/build/bench_published.hpp"
 #include "bench/build/bench_report.hpp"
-#include "cli/human.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
@@ -105,22 +105,22 @@ std::string rival_rows(const BenchResults& results, const std::string& scene) {
   std::string text;
   for (const RivalRun& run : results.rivals) {
     if (run.scene != scene) continue;
-    const std::string wall = fmt::format("{:.2f}", run.cost.wall_seconds);
-    if (!run.failure.empty()) {
+    const std::string wall = fmt::format("{:.2f}", run.build.cost.wall_seconds);
+    if (!run.build.failure.empty()) {
       text += fmt::format("  {:>9} {:>18}  failed: {}\n", resolution(run.levels), run.name,
-                          run.failure);
+                          run.build.failure);
       continue;
     }
     std::vector<std::string> cells{resolution(run.levels),
                                    run.name,
                                    wall,
-                                   fmt::format("{:.2f}", run.cost.cpu_seconds()),
-                                   human_bytes(run.cost.peak_bytes),
-                                   human_bytes(run.output_bytes)};
+                                   fmt::format("{:.2f}", run.build.cost.cpu_seconds()),
+                                   human_bytes(run.build.cost.peak_bytes),
+                                   human_bytes(run.build.output_bytes)};
     if (const auto own = ours(run.levels); own != results.builds.end()) {
-      cells.push_back(human_ratio(run.cost.wall_seconds / own->cost.wall_seconds));
-      cells.push_back(human_ratio(run.cost.cpu_seconds() / own->cost.cpu_seconds()));
-      cells.push_back(human_ratio(static_cast<double>(run.cost.peak_bytes) /
+      cells.push_back(human_ratio(run.build.cost.wall_seconds / own->cost.wall_seconds));
+      cells.push_back(human_ratio(run.build.cost.cpu_seconds() / own->cost.cpu_seconds()));
+      cells.push_back(human_ratio(static_cast<double>(run.build.cost.peak_bytes) /
                                   static_cast<double>(own->cost.peak_bytes)));
     }
     text += row(cells, widths);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/report/bench_child.hpp"
-#include "cli/parse.hpp"
+#include "voxdag/image/image_size.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {

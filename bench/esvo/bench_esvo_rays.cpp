@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bench/esvo/bench_esvo.hpp"
+#include "bench/rivals/embree_rival.hpp"
 #include "bench/trace/caster_runner.hpp"
 #include "bench/trace/trace_measure.hpp"
 #include "bench/trace/trace_rays.hpp"
@@ -135,7 +136,7 @@ class SceneRays {
         step("silhouettes of " + scene_.name);
         const PrimaryRays rays(contours.view(), contours.grid(), view, {1024, 768}, 0);
         std::vector<TraceRunner> runners =
-            embree_->prepare(contours.grid(), RayClass::kPrimary, rays.plain);
+            embree_->prepare(contours.grid(), {RayClass::kPrimary, rays.plain});
         runners.resize(1);
         runners.push_back(esvo_runner<EsvoNodes>(cubes.view(), rays.plain));
         runners.push_back(esvo_runner<ContourNodes>(contours.view(), rays.plain));
@@ -166,7 +167,8 @@ class SceneRays {
       forms.push_back(form);
     };
     if (embree_)
-      for (TraceRunner& runner : embree_->prepare(contours.grid(), RayClass::kPrimary, rays.plain))
+      for (TraceRunner& runner :
+           embree_->prepare(contours.grid(), {RayClass::kPrimary, rays.plain}))
         add(std::move(runner), kTriangles);
     add(esvo_runner<EsvoNodes>(cubes.view(), rays.plain), kCubes);
     add(esvo_runner<ContourNodes>(contours.view(), rays.plain), kContours);

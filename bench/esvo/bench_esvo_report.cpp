@@ -7,8 +7,8 @@
 #include "bench/esvo/bench_esvo.hpp"
 #include "bench/esvo/bench_esvo_published.hpp"
 #include "bench/report/bench_machine.hpp"
-#include "bench/report/svg_plot.hpp"
-#include "cli/human.hpp"
+#include "voxdag/report/human.hpp"
+#include "voxdag/report/svg_plot.hpp"
 
 namespace voxdag {
 namespace {

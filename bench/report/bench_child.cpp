@@ -1,6 +1,7 @@
 #include "bench/report/bench_child.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -92,6 +93,8 @@ bool wait_for_end(pid_t child, const Descriptor& handle, Clock::time_point start
   }
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 }  // namespace
 
 ChildResult run_child(const std::vector<std::string>& command,
@@ -128,6 +131,15 @@ ChildResult run_child(const std::vector<std::string>& command,
   result.out = contents(out.get());
   result.err = contents(err.get());
   return result;
+}
+
+std::string failure_of(const ChildResult& result, double seconds_limit) {
+  if (result.timed_out) return fmt::format("ended after {} s", seconds_limit);
+  if (result.status == 0) return "";
+  const std::string line = first_line(result.err);
+  if (!line.empty()) return line.starts_with("voxdag: ") ? line.substr(8) : line;
+  return result.status > 128 ? fmt::format("ended by signal {}", result.status - 128)
+                             : fmt::format("exit status {}", result.status);
 }
 
 }  // namespace voxdag

@@ -35,4 +35,8 @@ ChildResult run_child(const std::vector<std::string>& command,
                       const std::filesystem::path& directory, double seconds_limit,
                       const Progress& progress);
 
+/// Returns why the child failed: the first line of its errors, such as "a.obj: line 3: ...", or how
+/// it ended. Empty if it succeeded.
+std::string failure_of(const ChildResult& result, double seconds_limit);
+
 }  // namespace voxdag

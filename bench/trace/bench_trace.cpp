@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "bench/rivals/trace_rival_openvdb.hpp"
-#include "bench/rivals/trace_rivals.hpp"
+#include "bench/rivals/embree_rival.hpp"
+#include "bench/rivals/openvdb_rival.hpp"
 #include "bench/trace/trace_casters.hpp"
 #include "bench/trace/trace_cuda.hpp"
 #include "bench/trace/trace_measure.hpp"
@@ -16,7 +16,7 @@
 namespace voxdag {
 namespace {
 
-/// Adds up views.
+/// Sums over views.
 struct Sums {
   double seconds = 0, agreeing = 0;
   void add(double more_seconds, double more_agreeing) {
@@ -29,25 +29,15 @@ struct RowSums {
   Sums ours;
   double rays = 0, hits = 0, cells = 0, bytes = 0;
   std::vector<double> view_rates;
-  std::map<std::string, Sums> rivals;  ///< Sorted by name: a fixed order.
+  std::map<std::string, Sums> rivals;  ///< Sorted by name, for a fixed order.
 };
 
-/// A sample of a set, for what need not see all of it: whole packets.
-std::vector<CastRay> some_of(const std::vector<CastRay>& rays, std::size_t most) {
-  constexpr std::size_t kRun = 64;
-  const std::size_t step = std::max<std::size_t>(1, rays.size() / most);
-  std::vector<CastRay> some;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (i / kRun % step == 0) some.push_back(rays[i]);
-  return some;
-}
-
-/// Measures a set on our layout and its rivals, and adds what it took.
+/// Measures a set with our casts and those of rivals, and adds up the times.
 void measure_set(const TraceLayout& layout, const TraceRunner& ours,
                  const std::vector<CastRay>& casts, std::vector<TraceRunner> runners, int repeat,
                  RowSums& sums) {
   constexpr std::size_t kCounted = 50'000;
-  const WalkCost cost = layout.cost(some_of(casts, kCounted));
+  const WalkCost cost = layout.cost(sample_of(casts, kCounted));
   runners.insert(runners.begin(), ours);
   const std::vector<Measured> measured = measure(runners, casts.size(), repeat);
   const auto count = static_cast<double>(casts.size());
@@ -66,24 +56,6 @@ void measure_set(const TraceLayout& layout, const TraceRunner& ours,
     if (!is_new && s.seconds < at->second.seconds) at->second = s;
   }
   for (const auto& [name, s] : best) sums.rivals[name].add(s.seconds, s.agreeing);
-}
-
-/// A set that OpenVDB is to cast, and what we found for it.
-struct OpenVdbSet {
-  RayClass rays_class;
-  double rays;  ///< Of the whole set.
-  std::vector<std::uint8_t> hits;
-};
-
-std::vector<std::uint8_t> hits_of(const VoxelSet& voxels, const std::vector<CastRay>& casts) {
-  std::vector<std::uint8_t> hits;
-  visit_nodes(voxels, [&](const auto& nodes) {
-    for (const CastRay& ray : casts) {
-      CellHit cell;
-      hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
-    }
-  });
-  return hits;
 }
 
 TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::uint64_t layout_bytes,
@@ -105,32 +77,38 @@ TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::ui
   return row;
 }
 
+/// Returns the rivals that can cast rays of the scene.
+std::vector<std::unique_ptr<Rival>> rivals_for(const TraceScene& scene, const TracePlan& plan) {
+  std::vector<std::unique_ptr<Rival>> rivals;
+  if (scene.mesh != nullptr && EmbreeRival::is_available())
+    rivals.push_back(std::make_unique<EmbreeRival>(*scene.mesh));
+  if (!plan.openvdb_program.empty() && !scene.file.empty())
+    rivals.push_back(
+        std::make_unique<OpenVdbRival>(plan.openvdb_program, scene.file, scene.voxels));
+  return rivals;
+}
+
 }  // namespace
 
 void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progress,
                  TraceResults& results) {
-  constexpr std::size_t kOpenVdbRays = 100'000;  // of a set
   results.threads = tbb::this_task_arena::max_concurrency();
   results.rays = plan.rays;
   const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
   const std::vector<View> views = bench_views(scene.voxels, scene.grid, aspect, plan.views);
-  std::optional<EmbreeRival> embree;
-  if (scene.mesh != nullptr && EmbreeRival::is_available()) embree.emplace(*scene.mesh);
+  const std::vector<std::unique_ptr<Rival>> rivals = rivals_for(scene, plan);
   std::vector<std::string> names = plan.layouts;
   if (names.empty()) names = {trace_layouts(scene.voxels).front()};
   std::vector<std::unique_ptr<TraceLayout>> layouts;
   layouts.reserve(names.size());
   for (const std::string& name : names) layouts.push_back(make_trace_layout(name, scene.voxels));
-  std::vector<std::optional<DeviceScene>> device_dags;
+  std::vector<std::optional<DeviceScene>> device_scenes;
   for (const auto& layout : layouts) {
-    device_dags.push_back(layout->device_layout()
-                              ? load_on_device(plan.device, scene.voxels, *layout->device_layout())
-                              : std::nullopt);
-    if (device_dags.back()) results.cuda_device = device_dags.back()->device().name;
+    device_scenes.push_back(layout->device_layout() ? load_on_device(plan.device, scene.voxels,
+                                                                     *layout->device_layout())
+                                                    : std::nullopt);
+    if (device_scenes.back()) results.cuda_device = device_scenes.back()->device().name;
   }
-  std::optional<OpenVdbRival> openvdb;
-  if (!plan.openvdb_program.empty() && !scene.file.empty()) openvdb.emplace();
-  std::vector<OpenVdbSet> openvdb_sets;
 
   std::vector<std::array<RowSums, kRayClasses.size()>> sums(layouts.size());
   const double steps = static_cast<double>(views.size() * kRayClasses.size());
@@ -149,54 +127,44 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       // Rivals have no beams: they cast those rays from the eye.
       const bool with_beams = rays == RayClass::kPrimaryBeams;
       const std::vector<CastRay>& whole = with_beams ? recorded.of(RayClass::kPrimary) : casts;
-      std::vector<TraceRunner> rivals;
-      if (embree) rivals = embree->prepare(scene.grid, rays, whole);
+      std::vector<TraceRunner> rival_runners;
+      for (const auto& rival : rivals)
+        for (TraceRunner& runner : rival->prepare(scene.grid, {rays, whole}))
+          rival_runners.push_back(std::move(runner));
       for (std::size_t i = 0; i < layouts.size(); ++i) {
         std::optional<TimedBeams> device_beams;
         std::vector<CastRay> device_casts;
-        if (device_dags[i] && with_beams) {
-          device_beams.emplace(*device_dags[i], beams.setup());
+        if (device_scenes[i] && with_beams) {
+          device_beams.emplace(*device_scenes[i], beams.setup());
           device_casts = primary_rays(beams.setup(), device_beams->starts().data());
         }
         // The CPU's beams are not the device's.
         const std::vector<CastRay>& set = device_beams ? device_casts : casts;
         TraceRunner ours = layouts[i]->runner(rays, set);
         if (with_beams) ours.before = [&beams] { beams.run(); };
-        std::vector<TraceRunner> others = rivals;
-        if (device_dags[i]) {
+        std::vector<TraceRunner> others = rival_runners;
+        if (device_scenes[i]) {
           others.push_back(ours);
           others.back().name = "voxdag_cpu";
-          ours = cuda_runner(*device_dags[i], rays, set, device_beams);
+          ours = cuda_runner(*device_scenes[i], rays, set, device_beams);
         }
         measure_set(*layouts[i], ours, set, others, plan.repeat,
                     sums[i][static_cast<std::size_t>(rays)]);
       }
-      if (!openvdb) continue;
-      const std::vector<CastRay> some = some_of(whole, kOpenVdbRays);
-      openvdb->add(scene.grid, some);
-      openvdb_sets.push_back(
-          {rays, static_cast<double>(casts.size()), hits_of(scene.voxels, some)});
     }
   }
-  if (openvdb) {
-    const auto answers =
-        openvdb->cast(plan.openvdb_program, scene.file, results.threads, plan.repeat, progress);
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      const OpenVdbSet& set = openvdb_sets[i];
-      const double scale = set.rays / static_cast<double>(set.hits.size());
-      const double same = static_cast<double>(agreeing(set.hits, answers[i].hits));
+  for (const auto& rival : rivals)
+    for (const RivalTime& time : rival->cast_all(plan.repeat, progress))
       for (auto& layout_sums : sums)
-        layout_sums[static_cast<std::size_t>(set.rays_class)].rivals["openvdb"].add(
-            answers[i].seconds * scale, same * scale);
-    }
-  }
+        layout_sums[static_cast<std::size_t>(time.rays_class)].rivals[rival->name()].add(
+            time.seconds, time.agreeing);
   for (std::size_t i = 0; i < layouts.size(); ++i) {
-    const std::uint64_t bytes = device_dags[i] ? layouts[i]->device_bytes() : layouts[i]->bytes();
+    const std::uint64_t bytes = device_scenes[i] ? layouts[i]->device_bytes() : layouts[i]->bytes();
     for (const RayClass rays : kRayClasses) {
       const RowSums& s = sums[i][static_cast<std::size_t>(rays)];
       if (s.rays == 0) continue;
       results.rows.push_back(row_of(scene, names[i], bytes, rays, s));
-      results.rows.back().on_cuda = device_dags[i].has_value();
+      results.rows.back().on_cuda = device_scenes[i].has_value();
     }
   }
 }

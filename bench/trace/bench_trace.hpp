@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/trace/trace_rays.hpp"
-#include "cli/device.hpp"
+#include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
 

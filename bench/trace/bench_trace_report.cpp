@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "bench/report/bench_machine.hpp"
-#include "bench/report/svg_plot.hpp"
 #include "bench/trace/bench_trace.hpp"
-#include "cli/human.hpp"
+#include "voxdag/report/human.hpp"
+#include "voxdag/report/svg_plot.hpp"
 
 namespace voxdag {
 namespace {

@@ -2,7 +2,8 @@
 /// Any caster of ours as a runner of `voxdag bench`.
 #include <span>
 
-#include "bench/rivals/trace_rivals.hpp"
+#include "bench/rivals/trace_runner.hpp"
+#include "bench/trace/trace_rays.hpp"
 
 namespace voxdag {
 

@@ -1,11 +1,13 @@
 #pragma once
 /// Our own casts, by layout.
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/rivals/trace_rivals.hpp"
+#include "bench/rivals/trace_runner.hpp"
+#include "bench/trace/trace_rays.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/trace/visit_nodes.hpp"
 

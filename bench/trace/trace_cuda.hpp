@@ -2,7 +2,8 @@
 /// Casts on a CUDA device for `voxdag bench trace`.
 #include <optional>
 
-#include "bench/rivals/trace_rivals.hpp"
+#include "bench/rivals/trace_runner.hpp"
+#include "bench/trace/trace_rays.hpp"
 #include "voxdag/cuda/timed_casts.hpp"
 
 namespace voxdag {

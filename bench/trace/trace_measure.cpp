@@ -39,4 +39,13 @@ std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::
   return count;
 }
 
+std::vector<CastRay> sample_of(std::span<const CastRay> rays, std::size_t most) {
+  constexpr std::size_t kRun = 64;
+  const std::size_t step = std::max<std::size_t>(1, rays.size() / most);
+  std::vector<CastRay> sample;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (i / kRun % step == 0) sample.push_back(rays[i]);
+  return sample;
+}
+
 }  // namespace voxdag

@@ -1,26 +1,31 @@
 #pragma once
-/// How `voxdag bench` measures rays per second.
+/// Measures rays per second.
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "bench/rivals/trace_rivals.hpp"
+#include "bench/rivals/trace_runner.hpp"
+#include "bench/trace/trace_rays.hpp"
 
 namespace voxdag {
 
-/// What a runner took for a set, and found.
+/// The time that a runner took for a set, and its hits.
 struct Measured {
   double seconds = HUGE_VAL;
   std::vector<std::uint8_t> hits;
 };
 
-/// Casts the `count` rays of a set on all threads. All runners take turns, so that what disturbs
-/// the machine disturbs all of them; the first turn warms up, the fastest of `repeat` others
+/// Casts the `count` rays of a set on all threads. The runners take turns, so that a disturbance of
+/// the machine disturbs all of them. The first turn warms up; the fastest of `repeat` others
 /// counts.
 std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size_t count,
                               int repeat);
 
-/// For how many rays both or neither met something.
+/// Returns for how many rays both or neither hit something.
 std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
+
+/// Returns at most about `most` rays, in runs of 64 that are spread evenly over the set.
+std::vector<CastRay> sample_of(std::span<const CastRay> rays, std::size_t most);
 
 }  // namespace voxdag

@@ -106,8 +106,9 @@ TEST_F(Build, ABuildWithoutVoxelsIsAWarningAndAFileThatAllCommandsTake) {
   for (const std::string output : {dir_ / "none.vdag", dir_ / "none.esvo"}) {
     const ProcessResult built = build({"-r", "16", "--bounds", "9,9,9,10,10,10"}, output);
     EXPECT_EQ(built.status, 0);
-    EXPECT_EQ(built.err, "voxdag: warning: " + output +
-                             ": no voxels: none of the mesh's surface is seen in the grid\n");
+    EXPECT_EQ(built.err,
+              "voxdag: warning: " + output +
+                  ": no voxels: no visible part of the mesh's surface lies in the grid\n");
     EXPECT_EQ(Json::parse(run_voxdag({"info", output, "--json"}).out).at("voxels"), 0);
     const std::string picture = dir_ / "none.png", points = dir_ / "none.ply";
     const std::string rays = dir_ / "rays.npy", hits = dir_ / "hits.npy";

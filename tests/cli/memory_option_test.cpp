@@ -1,10 +1,9 @@
-#include "cli/memory_option.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "support/temp_dir.hpp"
+#include "voxdag/io/process_memory.hpp"
 
 namespace voxdag {
 namespace {

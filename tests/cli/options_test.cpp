@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "render/frame_names.hpp"
 #include "sponge.hpp"
 
 namespace voxdag {
@@ -160,14 +159,6 @@ TEST_F(Options, AFilmsUpIsThatOfItsPath) {
 
 TEST_F(Options, MemoryIsForEsvos) {
   expect_failure(render({"--memory", "1M"}), 1, "in.vdag: --memory is for an ESVO");
-}
-
-TEST_F(Options, PatternsSayWhatIsWrongWithThem) {
-  EXPECT_EQ(frame_pattern_fault("a%04d.png"), "");
-  for (const char* none : {"a.png", "a%s.png", "a%4d.png"})
-    EXPECT_NE(frame_pattern_fault(none).find("no place"), std::string::npos) << none;
-  EXPECT_NE(frame_pattern_fault("%d%d.png").find("2 places"), std::string::npos);
-  EXPECT_NE(frame_pattern_fault("100%_%d.png").find("a % that is no place"), std::string::npos);
 }
 
 TEST_F(Options, ABenchedMeshIsThatOfTheVoxels) {

@@ -1,22 +1,9 @@
 #include <algorithm>
 
-#include "render/frame_names.hpp"
 #include "sponge.hpp"
 
 namespace voxdag {
 namespace {
-
-TEST(FrameNames, TakeOneNumber) {
-  EXPECT_TRUE(is_frame_pattern("a_%04d.png"));
-  EXPECT_TRUE(is_frame_pattern("%d.png"));
-  EXPECT_EQ(frame_name("a_%04d.png", 12), "a_0012.png");
-  EXPECT_EQ(frame_name("%d.png", 7), "7.png");
-  EXPECT_EQ(frame_name("%02d", 12345), "12345");
-  for (const char* other : {"a.png", "%s.png", "%4d.png", "%d_%d.png", "100%.png", "%00d.png"}) {
-    EXPECT_FALSE(is_frame_pattern(other)) << other;
-    EXPECT_EQ(frame_name(other, 1), other);
-  }
-}
 
 class RenderPath : public Sponge {
  protected:

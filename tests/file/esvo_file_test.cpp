@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "support/error_of.hpp"
 #include "support/esvo_bytes.hpp"
 #include "support/temp_dir.hpp"
 #include "support/vdag_bytes.hpp"
@@ -18,12 +19,7 @@ using test::packed_esvo;
 using test::PackedEsvo;
 
 std::string error_of(const std::string& bytes) {
-  try {
-    parse_esvo(AlignedBytes(bytes).span());
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return voxdag::error_of([&] { parse_esvo(AlignedBytes(bytes).span()); });
 }
 
 std::string small_file() {

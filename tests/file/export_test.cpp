@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "support/brute_svdag.hpp"
+#include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/npy.hpp"
@@ -40,15 +41,6 @@ ExportOptions windowed(Vec3i lo, Vec3i hi) {
   ExportOptions options;
   options.window = Box3i{lo, hi};
   return options;
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 nlohmann::json placement_of(const std::filesystem::path& path) {
@@ -162,7 +154,8 @@ TEST(Export, AWindowMustLieInTheGrid) {
   const TempDir dir;
   const Scene scene(4);
   const auto with = [&](Vec3i lo, Vec3i hi) {
-    return error_of([&] { export_npy_dense("v.npy", scene.view(), scene.grid, windowed(lo, hi)); });
+    return voxdag::error_of(
+        [&] { export_npy_dense("v.npy", scene.view(), scene.grid, windowed(lo, hi)); });
   };
   EXPECT_EQ(with({0, 0, 0}, {17, 1, 1}),
             "v.npy: window: reaches out of the grid of 16 voxels a side");

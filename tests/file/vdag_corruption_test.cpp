@@ -2,6 +2,7 @@
 // checksums.
 #include <gtest/gtest.h>
 
+#include "support/error_of.hpp"
 #include "support/vdag_bytes.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_parse.hpp"
@@ -10,12 +11,7 @@ namespace voxdag {
 namespace {
 
 std::string error_of(const std::string& bytes) {
-  try {
-    parse_vdag(AlignedBytes(bytes).span());
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return voxdag::error_of([&] { parse_vdag(AlignedBytes(bytes).span()); });
 }
 
 std::string small_file() { return vdag_file_bytes(brute_svdag(4, {{0, 0, 0}, {15, 15, 15}})); }

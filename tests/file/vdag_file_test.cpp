@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 
+#include "support/error_of.hpp"
 #include "support/vdag_bytes.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -20,15 +21,6 @@ Svdag owned(const SvdagView& view) {
   dag.leaf_blocks.assign(view.leaf_blocks, view.leaf_blocks + view.leaf_block_count);
   std::copy(std::begin(view.level_begin), std::end(view.level_begin), dag.level_begin.begin());
   return dag;
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(VdagFile, GivesBackWhatWasWritten) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "support/error_of.hpp"
 #include "support/vdag_bytes.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -15,12 +16,7 @@ namespace {
 VdagMetadata example() { return example_metadata(brute_svdag(3, {{1, 2, 3}}).view()); }
 
 std::string error_of(const std::string& json) {
-  try {
-    parse_vdag_metadata(json);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return voxdag::error_of([&] { parse_vdag_metadata(json); });
 }
 
 /// The example's JSON with one piece of text changed.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/render/camera_path.hpp"
+#include "voxdag/film/camera_path.hpp"
 #include "voxdag/scenes/scenes.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"

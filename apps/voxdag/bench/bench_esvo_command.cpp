@@ -3,21 +3,22 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "bench/bench_output.hpp"
 #include "bench/esvo/bench_esvo.hpp"
 #include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
-#include "cli/number_check.hpp"
 #include "cli/parse.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
 
 struct BenchEsvoArguments {
   EsvoBenchPlan plan;
-  std::vector<std::string> scenes, resolutions{"1K", "2K", "4K"},
-      sizes{"512x384", "1024x768", "2048x1536"};
+  std::vector<std::string> scenes;
   BenchOutput output;
 };
 
@@ -39,65 +40,53 @@ void run(const BenchEsvoArguments& arguments, Session& session) {
 
 }  // namespace
 
-void add_bench_esvo_command(CLI::App& parent, Session& session) {
+void add_bench_esvo_command(const Command& bench_command, Session& session) {
   const auto arguments = std::make_shared<BenchEsvoArguments>();
   EsvoBenchPlan& plan = arguments->plan;
-  CLI::App& command = *parent.add_subcommand(
-      "esvo", "Size, time, rays and silhouettes of ESVOs, with contours and without");
-  command.footer(
-      "Example:\n  voxdag bench esvo Sibenik=sibenik.obj 'Sponza=sponza.obj --max-error 0.5' "
-      "-r 1K,2K,4K\n"
-      "A scene of the paper's name stands beside the paper's figures. Scratch files go to TMPDIR.");
-  command
-      .add_option("scenes", arguments->scenes,
-                  "NAME=MESH, and options of build after it; the mesh is a file, or a procedural "
-                  "scene as NAME or NAME:SIZE")
-      ->type_name("NAME=MESH")
-      ->required();
-  command
-      .add_option("-r,--resolution", arguments->resolutions,
-                  "Voxels a side, several with commas (default: 1K,2K,4K)")
-      ->delimiter(',')
-      ->type_name("N,N...");
-  command
-      .add_option("--size", arguments->sizes,
-                  "Pixels of the pictures whose rays are cast, several with commas (default: "
-                  "512x384,1024x768,2048x1536)")
-      ->delimiter(',')
-      ->type_name("WxH,WxH...");
-  command.add_option("--views", plan.views, "Cameras")
-      ->check(whole_number(1, 64))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--repeat", plan.repeat, "Cast so often and take the fastest")
-      ->check(whole_number(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--lod", plan.lod_pixels, "Rays end at cells of so many pixels; 0: voxels")
-      ->check(number_from(0, 1000))
-      ->type_name("PIXELS")
-      ->capture_default_str();
-  command.add_flag_callback(
-      "--no-silhouettes", [&plan] { plan.silhouettes = false; },
-      "Leave out the comparison with the mesh at every resolution");
-  command.add_option("-o,--output", arguments->output.json_file, "Write the JSON to a file, too")
-      ->type_name("FILE.json");
-  command
-      .add_option("--plot", arguments->output.plot_files[0],
-                  "Draw megabytes, seconds and silhouettes over the resolution")
-      ->type_name("FILE.svg");
-  command
-      .add_option("--rays-plot", arguments->output.plot_files[1], "Draw bars of rays per second")
-      ->type_name("FILE.svg");
+  plan.levels = {10, 11, 12};
+  plan.sizes = {{512, 384}, {1024, 768}, {2048, 1536}};
+  const Command command = bench_command.add(
+      "esvo",
+      "Size, build time, rays per second and silhouettes of ESVOs, with and without contours",
+      "voxdag bench esvo Sibenik=sibenik.obj 'Sponza=sponza.obj --max-error 0.5' -r 1K,2K,4K\n"
+      "A scene with a name of the paper is compared with the paper's figures. Scratch files go to "
+      "TMPDIR.");
+  const Option scenes = command
+                            .texts("scenes", arguments->scenes, "NAME=MESH...",
+                                   "Scenes, each one argument: NAME=MESH, then options of `build`; "
+                                   "MESH is a file, or a procedural scene as NAME or NAME:SIZE")
+                            .required();
+  command.list("-r,--resolution", plan.levels, parse_levels, "N,N...",
+               "Voxels per side (default: 1K,2K,4K)");
+  command.list("--size", plan.sizes, parse_image_size, "WxH,WxH...",
+               "Sizes of the pictures whose rays are cast, in pixels (default: "
+               "512x384,1024x768,2048x1536)");
+  command.number("--views", plan.views, NumberRange::whole(1, 64), "N", "Number of cameras");
+  command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
+                 "Number of casts; the fastest counts");
+  command.number("--lod", plan.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
+                 "End rays at cells of this size in the picture; 0: always at voxels");
+  command.off_switch("--no-silhouettes", plan.silhouettes,
+                     "Do not compare silhouettes with those of the mesh");
+  command.text("-o,--output", arguments->output.json_file, "FILE.json",
+               "Also write the JSON to a file");
+  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
+               "Plot megabytes, seconds and silhouettes over the resolution");
+  command.text("--rays-plot", arguments->output.plot_files[1], "FILE.svg",
+               "Plot bars of rays per second");
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);
-  command.callback([arguments, &session] {
-    parse_all("scenes", arguments->scenes, parse_esvo_scene, arguments->plan.scenes);
-    parse_all("--resolution", arguments->resolutions, parse_levels, arguments->plan.levels);
-    parse_all("--size", arguments->sizes, parse_image_size, arguments->plan.sizes);
+  command.when_parsed([arguments, scenes, &session] {
+    for (const std::string& text : arguments->scenes) {
+      try {
+        arguments->plan.scenes.push_back(parse_esvo_scene(text));
+      } catch (const std::invalid_argument& wrong) {
+        throw UsageError(scenes.name(), fmt::format("\"{}\": {}", text, wrong.what()));
+      }
+      session.inputs.push_back(arguments->plan.scenes.back().mesh);
+    }
     std::sort(arguments->plan.levels.begin(), arguments->plan.levels.end());
-    for (const EsvoBenchScene& scene : arguments->plan.scenes) session.inputs.push_back(scene.mesh);
     arguments->output.check_distinct(session);
     session.work = [arguments, &session] {
       arguments->plan.threads = session.threads;

@@ -2,15 +2,18 @@
 
 #include <fmt/core.h>
 
-#include "cli/output_files.hpp"
+#include <nlohmann/json.hpp>
+
 #include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
 
+std::vector<OutputFile> BenchOutput::files() const {
+  return {{"--output", json_file}, {"--plot", plot_files[0]}, {"--rays-plot", plot_files[1]}};
+}
+
 void BenchOutput::check_distinct(const Session& session) const {
-  voxdag::check_distinct(
-      {{"--output", json_file}, {"--plot", plot_files[0]}, {"--rays-plot", plot_files[1]}},
-      session);
+  voxdag::check_distinct(files(), session);
 }
 
 void BenchOutput::check_writable() const {

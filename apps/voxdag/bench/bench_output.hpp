@@ -1,24 +1,26 @@
 #pragma once
-/// Where `voxdag bench` writes what it measured.
+/// The output files of `voxdag bench`.
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/output_files.hpp"
 #include "cli/session.hpp"
 
 namespace voxdag {
 
 struct BenchOutput {
-  std::string json_file;  ///< Or empty.
+  std::string json_file;  ///< Empty: none.
   std::array<std::string, 2> plot_files;
 
-  /// Throws CLI::ValidationError where two files are the same.
+  std::vector<OutputFile> files() const;
+  /// Throws UsageError if two files are the same, or one is an input.
   void check_distinct(const Session& session) const;
-  /// Throws Error unless all files can be made: called before the work.
+  /// Throws Error unless all files can be made. Call it before the work.
   void check_writable() const;
-  /// Writes the files and prints JSON or `text`. `drawings` draw the plots that are wanted.
+  /// Writes the files, and prints JSON or `text`. `drawings` draw the plots.
   void write(const nlohmann::ordered_json& json,
              const std::vector<std::function<std::string()>>& drawings, const std::string& text,
              Session& session) const;

@@ -2,14 +2,12 @@
 
 #include <fmt/core.h>
 
-#include "cli/number_check.hpp"
 #include "cli/parse.hpp"
-#include "cli/session.hpp"
 
 namespace voxdag {
 namespace {
 
-/// The same cube in voxels twice as wide, until there are at most 2^levels a side.
+/// Returns the same cube in voxels so large that there are at most 2^levels per side.
 Grid coarser(Grid grid, int levels) {
   for (; grid.levels > levels; --grid.levels) {
     grid.voxel_size *= 2;
@@ -20,23 +18,21 @@ Grid coarser(Grid grid, int levels) {
 
 }  // namespace
 
-void add_bake_options(CLI::App& command, BakeArguments& arguments) {
+void add_bake_options(const Command& command, BakeArguments& arguments,
+                      const std::function<bool()>& has_colors, const std::string& group) {
   constexpr int kRays = 64;
-  CLI::Option* const bake =
+  const Option bake =
       command
-          .add_option("--bake-ao", arguments.rays,
-                      fmt::format("Darken colours by ambient occlusion, by RAYS rays of each point "
-                                  "({} where no number is given)",
-                                  kRays))
-          ->expected(0, 1)
-          ->default_str(std::to_string(kRays))
-          ->check(whole_number(1, 4096))
-          ->type_name("RAYS")
-          ->group("ESVO");
-  add_parsed_option(command, "--ao-distance", arguments.distance, parse_positive, "LENGTH",
-                    "How far --bake-ao reaches, in world units (default: 0.15 of the grid)")
-      ->needs(bake)
-      ->group("ESVO");
+          .flag_or_number("--bake-ao", arguments.rays, NumberRange::whole(1, 4096), kRays, "RAYS",
+                          "Darken colours by ambient occlusion, with RAYS rays per point")
+          .only_if(has_colors, "with --no-attributes")
+          .in_group(group);
+  command
+      .parsed("--ao-distance", arguments.distance, parse_positive, "LENGTH",
+              "With --bake-ao: length of its rays, in world units (default: 0.15 of the grid's "
+              "side)")
+      .needs(bake)
+      .in_group(group);
 }
 
 void add_bake_settings(const BakeArguments& arguments, const Grid& grid,

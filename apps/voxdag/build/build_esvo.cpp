@@ -1,23 +1,23 @@
-#include "build/build_esvo.hpp"
-
+/// `voxdag build` for an ESVO.
 #include <fmt/core.h>
 
-#include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "cli/human.hpp"
-#include "cli/number_check.hpp"
-#include "cli/process_usage.hpp"
-#include "inspect/esvo_report.hpp"
+#include "build/build_arguments.hpp"
+#include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_writer.hpp"
-#include "voxdag/readers/read_appearance.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/io/resolved_output.hpp"
+#include "voxdag/report/esvo_report.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Blocks to the file as they come, as long as there is memory.
+/// Appends blocks to the file, as long as the memory limit is kept.
 class FileSink : public EsvoSink {
  public:
   FileSink(EsvoFileWriter& writer, std::uint64_t memory_limit)
@@ -25,9 +25,8 @@ class FileSink : public EsvoSink {
 
   void append(std::span<const std::uint64_t> slots) override {
     writer_.append(slots);
-    if (memory_limit_ != 0 && peak_memory_bytes() > memory_limit_)
-      throw Error(
-          fmt::format("this takes more than the {} of --memory", human_bytes(memory_limit_)));
+    if (memory_limit_ != 0 && peak_resident_bytes() > memory_limit_)
+      throw Error(fmt::format("needs more than the {} of --memory", human_bytes(memory_limit_)));
   }
 
  private:
@@ -35,18 +34,26 @@ class FileSink : public EsvoSink {
   std::uint64_t memory_limit_;
 };
 
-std::map<std::string, std::string> settings_of(const EsvoArguments& arguments,
-                                               const EsvoBuild& build) {
-  const EsvoSettings& settings = arguments.options.settings;
-  std::map<std::string, std::string> all = build.settings;
+/// Throws Error unless `path` is or becomes a regular file: an ESVO is written out of order, and
+/// read again.
+void check_regular(const std::string& path) {
+  std::error_code unknown;
+  if (resolve_output(path).descriptor >= 0 ||
+      (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)))
+    throw Error(path, "", "an ESVO can only be written to a regular file");
+}
+
+std::map<std::string, std::string> settings_of(const BuildArguments& arguments) {
+  const EsvoSettings& settings = arguments.esvo.settings;
+  std::map<std::string, std::string> all = grid_settings(arguments);
   all["contours"] = settings.contours ? "yes" : "no";
   all["attributes"] = settings.attributes ? "yes" : "no";
-  const std::string displace = displace_text(arguments.displace);
+  const std::string displace = displace_text(arguments.esvo.displace);
   if (!displace.empty()) all["displace"] = displace;
   if (!settings.contours) return all;
   all["max_error"] = fmt::format("{}", settings.max_error);
   all["color_error"] = fmt::format("{}", settings.color_error);
-  all["normal_error_degrees"] = fmt::format("{}", arguments.normal_degrees);
+  all["normal_error_degrees"] = fmt::format("{}", arguments.esvo.normal_degrees);
   return all;
 }
 
@@ -55,8 +62,8 @@ struct EsvoSeconds {
   double total() const { return read + textures + build; }
 };
 
-void print_summary(const EsvoReport& report, const EsvoSeconds& seconds, const EsvoBuild& build,
-                   const Session& session) {
+void print_summary(const EsvoReport& report, const EsvoSeconds& seconds,
+                   const BuildArguments& arguments, const Session& session) {
   const double rate = static_cast<double>(report.metadata.counts.voxels()) / seconds.build;
   if (session.json) {
     nlohmann::ordered_json json = esvo_json(report);
@@ -65,7 +72,7 @@ void print_summary(const EsvoReport& report, const EsvoSeconds& seconds, const E
                        {"build", seconds.build},
                        {"total", seconds.total()}};
     json["voxels_per_second"] = rate;
-    json["peak_memory_bytes"] = peak_memory_bytes();
+    json["peak_memory_bytes"] = peak_resident_bytes();
     fmt::print("{}", json_text(json));
     return;
   }
@@ -75,83 +82,55 @@ void print_summary(const EsvoReport& report, const EsvoSeconds& seconds, const E
       "  time          {}: read {}, textures {}, build and write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
-      build.output, human_bytes(report.file_bytes), esvo_table(report),
+      arguments.output, human_bytes(report.file_bytes), esvo_table(report),
       human_seconds(seconds.total()), human_seconds(seconds.read), human_seconds(seconds.textures),
-      human_seconds(seconds.build), human_count(rate), human_bytes(peak_memory_bytes()));
-  if (build.stats) fmt::print("\n{}", esvo_level_table(report));
+      human_seconds(seconds.build), human_count(rate), human_bytes(peak_resident_bytes()));
+  if (arguments.stats) fmt::print("\n{}", esvo_level_table(report));
 }
 
 }  // namespace
 
-void add_esvo_options(CLI::App& command, EsvoArguments& arguments) {
-  EsvoSettings& settings = arguments.options.settings;
-  const auto add = [&](const std::string& name, auto& value, double most, const std::string& shape,
-                       const std::string& help) {
-    command.add_option(name, value, help)
-        ->check(number_from(0, most))
-        ->type_name(shape)
-        ->capture_default_str()
-        ->group("ESVO");
-  };
-  add("--max-error", settings.max_error, 1e6, "VOXELS",
-      "How far a leaf's shape may reach beyond the surface, in voxels of the finest level");
-  add("--color-error", settings.color_error, 1.0, "DIFFERENCE",
-      "How much colours may differ in a leaf: greatest difference of a channel, 0 to 1 (sRGB)");
-  add("--normal-error", arguments.normal_degrees, 180.0, "DEGREES",
-      "How much normals may differ in a leaf");
-  add_displace_option(command, arguments.displace);
-  add_no_displacement_option(command, arguments.displace);
-  add_bake_options(command, arguments.bake);
-  command
-      .add_flag_callback(
-          "--no-contours", [&settings] { settings.contours = false; },
-          "Cubes of the finest level only, as in a DAG")
-      ->group("ESVO");
-  command
-      .add_flag_callback(
-          "--no-attributes", [&settings] { settings.attributes = false; },
-          "The shape alone: no colours, no normals")
-      ->excludes("--bake-ao")
-      ->group("ESVO");
-}
-
-void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Session& session) {
+void build_esvo_file(const BuildArguments& arguments, Session& session) {
+  check_regular(arguments.output);
+  check_writable(arguments.output);
+  const EsvoArguments& esvo = arguments.esvo;
   Progress& progress = session.progress;
   Stopwatch watch;
   EsvoSeconds seconds;
-  MeshWithAppearance source = read_mesh_with_appearance(session.subject, &progress);
-  print_warnings(source.warnings, session);
+  MeshWithAppearance source =
+      read_mesh_file_with_appearance(session.subject, arguments.access, session);
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
   const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress);
   const std::optional<DisplacedTriangles> displaced =
-      open_displaced(arguments.displace, source.mesh, source.appearance, warnings, progress);
+      open_displaced(esvo.displace, source.mesh, source.appearance, warnings, progress);
   print_warnings(warnings, session);
   seconds.textures = watch.lap();
 
-  EsvoOptions options = arguments.options;
-  options.settings.normal_error =
-      static_cast<float>(arguments.normal_degrees * std::numbers::pi / 180);
+  EsvoOptions options;
+  options.settings = esvo.settings;
+  options.settings.normal_error = static_cast<float>(esvo.normal_degrees * std::numbers::pi / 180);
   const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
   EsvoMetadata metadata;
   const std::optional<Box3d> bounds =
       displaced ? std::optional(displaced_bounds(*displaced, source.mesh)) : std::nullopt;
-  metadata.grid = build.choose_grid(source.mesh, bounds);
+  metadata.grid = choose_grid(source.mesh, bounds, arguments);
   metadata.source = {std::filesystem::path(session.subject).filename().string(),
                      source.mesh.vertices.size(), source.mesh.triangles.size()};
   metadata.program = "voxdag " VOXDAG_VERSION;
-  metadata.build = settings_of(arguments, build);
+  metadata.build = settings_of(arguments);
   if (displaced) metadata.build["displaced"] = "yes";
   std::optional<Occluders> occluders;
-  if (arguments.bake.rays > 0 && options.settings.attributes) {
-    add_bake_settings(arguments.bake, metadata.grid, metadata.build);
-    occluders.emplace(source.mesh, metadata.grid, arguments.bake, options.settings, shading, moved,
+  if (esvo.bake.rays > 0 && options.settings.attributes) {
+    add_bake_settings(esvo.bake, metadata.grid, metadata.build);
+    occluders.emplace(source.mesh, metadata.grid, esvo.bake, options.settings, shading, moved,
                       progress);
     options.settings.light = occluders->light();
   }
   {
-    EsvoFileWriter writer(build.output);
-    FileSink sink(writer, build.memory_limit);
+    EsvoFileWriter writer(arguments.output);
+    FileSink sink(writer,
+                  arguments.memory_limit != 0 ? arguments.memory_limit : default_memory_limit());
     EsvoResult result =
         build_esvo(source.mesh, metadata.grid, options, &shading, moved, sink, &progress);
     metadata.root = result.root;
@@ -160,9 +139,9 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
     writer.finish(std::move(result.directory), metadata);
   }
   seconds.build = watch.lap();
-  warn_if_empty(metadata.counts.voxels(), build.output, session);
+  warn_if_empty(metadata.counts.voxels(), arguments.output, session);
   session.bar.clear();
-  print_summary(report_of(EsvoFile(build.output)), seconds, build, session);
+  print_summary(report_of(EsvoFile(arguments.output)), seconds, arguments, session);
 }
 
 }  // namespace voxdag

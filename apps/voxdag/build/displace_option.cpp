@@ -35,36 +35,31 @@ void parse_displace(const std::string& text, DisplaceArguments& arguments) {
     parts.pop_back();
     last = number(parts.back());
   }
-  if (parts.size() < 2 || !last) throw std::invalid_argument("not TEXTURE:AMOUNT[:SCALE]");
+  if (parts.size() < 2 || !last) throw std::invalid_argument("is not TEXTURE:AMOUNT[:SCALE]");
   arguments.amount = *last;
   parts.pop_back();
   arguments.texture = parts[0];
   for (std::size_t i = 1; i < parts.size(); ++i) arguments.texture += ":" + parts[i];
-  if (arguments.texture.empty()) throw std::invalid_argument("not TEXTURE:AMOUNT[:SCALE]");
+  if (arguments.texture.empty()) throw std::invalid_argument("is not TEXTURE:AMOUNT[:SCALE]");
 }
 
-CLI::Option* add_displace_option(CLI::App& command, DisplaceArguments& arguments) {
-  const auto store = [&arguments](const std::string& text) {
-    try {
-      parse_displace(text, arguments);
-    } catch (const std::invalid_argument& wrong) {
-      throw CLI::ValidationError("--displace", wrong.what());
-    }
+Option add_displace_option(const Command& command, DisplaceArguments& arguments) {
+  const auto parse = [base = arguments](const std::string& text) {
+    DisplaceArguments parsed = base;
+    parse_displace(text, parsed);
+    return parsed;
   };
-  return command
-      .add_option_function<std::string>(
-          "--displace", store,
-          "Move the surface by a height texture (PNG, JPEG, or \"stone\" for a built-in wall) of "
-          "AMOUNT world units, which covers SCALE world units (default: as texture coordinates "
-          "say)")
-      ->type_name("TEXTURE:AMOUNT[:SCALE]")
-      ->group("ESVO");
+  return command.parsed(
+      "--displace", arguments, parse, "TEXTURE:AMOUNT[:SCALE]",
+      "Displace the surface by a height texture (PNG, JPEG, or \"stone\", a built-in wall) by up "
+      "to "
+      "AMOUNT world units; the texture covers SCALE world units (default: as the texture "
+      "coordinates say)");
 }
 
-void add_no_displacement_option(CLI::App& command, DisplaceArguments& arguments) {
-  command.add_flag("--no-displacement", arguments.is_off, "Leave the materials' height maps out")
-      ->excludes("--displace")
-      ->group("ESVO");
+Option add_no_displacement_option(const Command& command, DisplaceArguments& arguments) {
+  return command.flag("--no-displacement", arguments.is_off,
+                      "Ignore the height maps of the materials");
 }
 
 std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,

@@ -5,10 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
-#include "cli/human.hpp"
-#include "cli/number_check.hpp"
 #include "cli/parse.hpp"
-#include "render/path_file.hpp"
+#include "voxdag/film/path_file.hpp"
+#include "voxdag/report/human.hpp"
 #include "voxdag/scenes/ply_writer.hpp"
 #include "voxdag/scenes/scenes.hpp"
 
@@ -21,18 +20,24 @@ struct SceneArguments {
   bool list = false, view = false, path = false;
 };
 
+bool uses_seed(const std::string& scene) {
+  for (const SceneInfo& info : scene_list())
+    if (info.name == scene) return info.uses_seed;
+  return true;
+}
+
 std::string option_text(const std::string& name, Vec3d v) {
   return fmt::format("{} {:.6g},{:.6g},{:.6g} ", name, v.x, v.y, v.z);
 }
 
-/// The options of `render` that show a scene well.
+/// Returns options of `render` that show the scene well.
 std::string view_options(const ScenePreset& preset) {
   return option_text("--eye", preset.eye) + option_text("--target", preset.target) +
          option_text("--up", preset.up) + option_text("--sun", preset.sun_direction) +
          fmt::format("--fov {:.6g}", preset.fov_degrees);
 }
 
-/// The flight through a scene as `render --path` reads it.
+/// Returns the flight through the scene as `render --path` reads it.
 PathFile path_file(const ScenePreset& preset) {
   PathFile path;
   path.sun = preset.sun_direction;
@@ -77,63 +82,58 @@ void make(const SceneArguments& arguments, const Session& session) {
   }
 }
 
+/// Throws UsageError for arguments that are missing, and sets the work.
+void choose_work(const std::shared_ptr<SceneArguments>& arguments, Session& session) {
+  if (arguments->list) {
+    session.work = [&session] { print_list(session.json); };
+    return;
+  }
+  if (arguments->name.empty()) throw UsageError("name", "is required (or --list)");
+  if (arguments->view) {
+    session.work = [arguments] {
+      fmt::print("{}\n", view_options(scene_preset(arguments->name, arguments->options)));
+    };
+  } else if (arguments->path) {
+    session.work = [arguments] {
+      fmt::print("{}", path_json(path_file(scene_preset(arguments->name, arguments->options))));
+    };
+  } else {
+    if (arguments->output.empty()) throw UsageError("--output", "is required");
+    session.work = [arguments, &session] { make(*arguments, session); };
+  }
+}
+
 }  // namespace
 
-void add_scene_command(CLI::App& app, Session& session) {
+void add_scene_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<SceneArguments>();
-  CLI::App& command = add_command(app, "scene", "Make a procedural scene as a PLY mesh",
-                                  "voxdag scene courtyard -o courtyard.ply");
-  command.add_option("name", arguments->name, "The scene; --list shows them")->type_name("NAME");
-  CLI::Option* const output =
-      command.add_option("-o,--output", arguments->output, "The mesh to write")
-          ->type_name("FILE.ply");
-  CLI::Option* const list =
-      command.add_flag("--list", arguments->list, "List the scenes and what their size counts")
-          ->excludes(output);
-  CLI::Option* const view =
-      command
-          .add_flag("--view", arguments->view,
-                    "Only print the options with which `voxdag render` shows the scene well")
-          ->excludes(output)
-          ->excludes(list);
-  command
-      .add_flag("--path", arguments->path,
-                "Only print a flight through the scene for `voxdag render --path`")
-      ->excludes(output)
-      ->excludes(list)
-      ->excludes(view);
-  add_parsed_option(command, "--size", arguments->options.size, parse_positive, "SIZE",
-                    "How large or fine the scene is; see --list");
-  command.add_option("--seed", arguments->options.seed, "Another seed gives another scene")
-      ->check(whole_number(0, 0xffff'ffff))
-      ->type_name("N")
-      ->capture_default_str();
-  add_quiet_option(command, session);
-  add_json_option(command, session);
-  command.callback([arguments, &session] {
-    if (session.json && (arguments->view || arguments->path))
-      throw CLI::ValidationError("--json", "has no effect with --view or --path");
-    if (arguments->list) {
-      if (!arguments->name.empty()) throw CLI::ValidationError("--list", "lists all scenes");
-      session.work = [&session] { print_list(session.json); };
-      return;
-    }
-    if (arguments->name.empty()) throw CLI::RequiredError("a scene's name (or --list)");
-    if (arguments->view) {
-      session.work = [arguments] {
-        fmt::print("{}\n", view_options(scene_preset(arguments->name, arguments->options)));
-      };
-      return;
-    }
-    if (arguments->path) {
-      session.work = [arguments] {
-        fmt::print("{}", path_json(path_file(scene_preset(arguments->name, arguments->options))));
-      };
-      return;
-    }
-    if (arguments->output.empty()) throw CLI::RequiredError("--output");
-    session.work = [arguments, &session] { make(*arguments, session); };
-  });
+  const Command command = program.add("scene", "Make a procedural scene as a PLY mesh",
+                                      "voxdag scene courtyard -o courtyard.ply");
+  const Option name =
+      command.text("name", arguments->name, "NAME", "The scene; --list prints their names");
+  const Option output =
+      command.text("-o,--output", arguments->output, "FILE.ply", "The mesh to write");
+  const Option list = command.flag("--list", arguments->list,
+                                   "Only list the scenes and the meaning of their sizes");
+  const Option view =
+      command.flag("--view", arguments->view,
+                   "Only print options with which `voxdag render` shows the scene well");
+  const Option path = command.flag("--path", arguments->path,
+                                   "Only print a camera path for `voxdag render --path`");
+  const Option size = command.parsed("--size", arguments->options.size, parse_positive, "SIZE",
+                                     "How large or fine the scene is (default: see --list)");
+  const Option seed =
+      command.number("--seed", arguments->options.seed, NumberRange::whole(0, 0xffff'ffff), "N",
+                     "Seed of the random numbers");
+  add_json_option(command, session).not_with(view).not_with(path);
+  add_quiet_option(command, session).not_with(list).not_with(view).not_with(path);
+  output.not_with(list).not_with(view).not_with(path);
+  view.not_with(list);
+  path.not_with(list).not_with(view);
+  for (const Option& option : {name, size, seed}) option.not_with(list);
+  seed.not_with(view).not_with(path).only_if([arguments] { return uses_seed(arguments->name); },
+                                             "on this scene");
+  command.when_parsed([arguments, &session] { choose_work(arguments, session); });
 }
 
 }  // namespace voxdag

@@ -4,16 +4,17 @@
 
 namespace voxdag {
 
-void add_build_command(CLI::App& app, Session& session);
-void add_info_command(CLI::App& app, Session& session);
-void add_verify_command(CLI::App& app, Session& session);
-void add_render_command(CLI::App& app, Session& session);
-void add_trace_command(CLI::App& app, Session& session);
-void add_export_command(CLI::App& app, Session& session);
-void add_scene_command(CLI::App& app, Session& session);
-void add_bench_command(CLI::App& app, Session& session);
-void add_bench_trace_command(CLI::App& parent, Session& session);  ///< Below `bench`.
-void add_bench_esvo_command(CLI::App& parent, Session& session);   ///< Likewise.
-void add_completion_command(CLI::App& app, Session& session);
+void add_build_command(const Command& program, Session& session);
+void add_info_command(const Command& program, Session& session);
+void add_verify_command(const Command& program, Session& session);
+void add_render_command(const Command& program, Session& session);
+void add_trace_command(const Command& program, Session& session);
+void add_export_command(const Command& program, Session& session);
+void add_scene_command(const Command& program, Session& session);
+void add_bench_command(const Command& program, Session& session);
+void add_bench_build_command(const Command& bench, Session& session);
+void add_bench_trace_command(const Command& bench, Session& session);
+void add_bench_esvo_command(const Command& bench, Session& session);
+void add_completion_command(const Command& program, Session& session);
 
 }  // namespace voxdag

@@ -1,27 +1,19 @@
-/// Completion of the command line in a shell, made from the parser itself.
+/// `voxdag completion`: completion of command lines in a shell, made from the parser itself.
 #include <fmt/core.h>
+
+#include <memory>
 
 #include "cli/commands.hpp"
 
 namespace voxdag {
 namespace {
 
-std::string option_names(const CLI::App& command) {
-  std::string words;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) words += "--" + name + " ";
-    for (const std::string& name : option->get_snames()) words += "-" + name + " ";
-  }
-  if (!words.empty()) words.pop_back();
-  return words;
-}
-
-/// A bash script that completes subcommands, their options and file names.
-std::string bash_completion(const CLI::App& app) {
+/// Returns a bash script that completes subcommands, their options and file names.
+std::string bash_completion(const Command& program) {
   std::string commands, cases;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    commands += command->get_name() + " ";
-    cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), option_names(*command));
+  for (const Command& command : program.subcommands()) {
+    commands += command.name() + " ";
+    cases += fmt::format("    {}) words=\"{}\" ;;\n", command.name(), command.option_names());
   }
   return fmt::format(R"(# bash completion of {0}: source this file, or put it into
 # ~/.local/share/bash-completion/completions/{0}
@@ -40,18 +32,25 @@ _{0}() {{
 }}
 complete -o filenames -F _{0} {0}
 )",
-                     app.get_name(), cases, option_names(app), commands);
+                     program.name(), cases, program.option_names(), commands);
+}
+
+void check_shell(const std::string& shell) {
+  if (shell != "bash") throw UsageError("shell", fmt::format("\"{}\" is not bash", shell));
 }
 
 }  // namespace
 
-void add_completion_command(CLI::App& app, Session& session) {
-  CLI::App& command =
-      add_command(app, "completion", "Print a script that completes command lines in a shell",
+void add_completion_command(const Command& program, Session& session) {
+  const auto shell = std::make_shared<std::string>();
+  const Command command =
+      program.add("completion", "Print a script that completes command lines in a shell",
                   "voxdag completion bash > ~/.local/share/bash-completion/completions/voxdag");
-  command.add_option("shell", "The shell: bash")->required()->check(CLI::IsMember({"bash"}));
-  command.callback(
-      [&app, &session] { session.work = [&app] { fmt::print("{}", bash_completion(app)); }; });
+  command.text("shell", *shell, "SHELL", "The shell: bash").required();
+  command.when_parsed([program, shell, &session] {
+    check_shell(*shell);
+    session.work = [program] { fmt::print("{}", bash_completion(program)); };
+  });
 }
 
 }  // namespace voxdag

@@ -24,24 +24,23 @@ DeviceChoice parse_device(const std::string& text) {
       fmt::format("\"{}\" is none of cpu, cuda, cuda:NUMBER and auto", text));
 }
 
-void add_device_option(CLI::App& command, DeviceChoice& choice) {
-  add_parsed_option(command, "--device", choice, parse_device, "cpu|cuda|auto",
-                    "Where rays are cast; auto: on a CUDA device where there is one (default cpu)");
+void add_device_option(const Command& command, DeviceChoice& choice) {
+  command.parsed("--device", choice, parse_device, "cpu|cuda|auto",
+                 "Where rays are cast. cuda:1 is the second CUDA device; auto is a CUDA device if "
+                 "there is one with enough memory (default: cpu)");
 }
 
-std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelSet& scene,
-                                          DeviceLayout layout) {
-  if (choice.kind == DeviceChoice::Kind::kCpu) return std::nullopt;
+std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice,
+                                                 const VoxelSet& scene) {
   try {
-    return DeviceScene(choose_cuda_device(choice.index), scene, layout);
+    return load_on_device(choice, scene);
   } catch (const Error& error) {
-    if (choice.kind == DeviceChoice::Kind::kAuto) return std::nullopt;
     throw Error("--device cuda", "", error.what());
   }
 }
 
-std::string device_name(const std::optional<DeviceScene>& dag) {
-  return dag ? dag->device().name : "the CPU";
+std::string device_name(const std::optional<DeviceScene>& scene) {
+  return scene ? scene->device().name : "the CPU";
 }
 
 }  // namespace voxdag

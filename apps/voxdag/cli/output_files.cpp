@@ -1,9 +1,10 @@
 #include "cli/output_files.hpp"
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
+#include <fmt/core.h>
+
 #include <map>
 
+#include "voxdag/core/error.hpp"
 #include "voxdag/io/resolved_output.hpp"
 
 namespace voxdag {
@@ -16,9 +17,14 @@ bool is_device(const fs::path& path) {
   return fs::is_other(path, unknown);
 }
 
+void check_input(const OutputFile& output, const std::string& input) {
+  if (are_same_file(output.path, input))
+    throw UsageError(output.option, fmt::format("would overwrite {}, an input file", input));
+}
+
 }  // namespace
 
-fs::path place_of(const std::string& path) {
+fs::path canonical_output(const std::string& path) {
   std::error_code unknown;
   const fs::path file = resolve_output(path).file;
   const fs::path place = fs::weakly_canonical(fs::absolute(file, unknown), unknown);
@@ -31,19 +37,27 @@ bool are_same_file(const std::string& a, const std::string& b) {
 }
 
 void check_distinct(const std::vector<OutputFile>& outputs, const Session& session) {
-  const auto check_input = [](const OutputFile& output, const std::string& input) {
-    if (are_same_file(output.path, input))
-      throw CLI::ValidationError(output.option, "would overwrite " + input + ", which is read");
-  };
   std::map<fs::path, std::string> writers;
   for (const OutputFile& output : outputs) {
     if (output.path.empty() || is_device(output.path)) continue;
     check_input(output, session.subject);
     for (const std::string& input : session.inputs) check_input(output, input);
-    const auto [writer, is_new] = writers.emplace(place_of(output.path), output.option);
+    const auto [writer, is_new] = writers.emplace(canonical_output(output.path), output.option);
     if (!is_new)
-      throw CLI::ValidationError(output.option,
-                                 "would overwrite " + output.path + " of " + writer->second);
+      throw UsageError(output.option,
+                       fmt::format("would overwrite {} of {}", output.path, writer->second));
+  }
+}
+
+void check_keeps(const std::vector<OutputFile>& outputs, std::span<const fs::path> files,
+                 const std::string& namer) {
+  for (const OutputFile& output : outputs) {
+    if (output.path.empty() || is_device(output.path)) continue;
+    for (const fs::path& file : files)
+      if (are_same_file(output.path, file.string()))
+        throw Error(
+            output.path, "",
+            fmt::format("{} would overwrite this file, which {} names", output.option, namer));
   }
 }
 

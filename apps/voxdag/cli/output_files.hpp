@@ -1,6 +1,7 @@
 #pragma once
-/// The files that a command is to write.
+/// The files that a command writes, and what they must not overwrite.
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,16 +10,20 @@
 namespace voxdag {
 
 struct OutputFile {
-  std::string option;  ///< That names it, for errors.
-  std::string path;    ///< Empty: none is wanted.
+  std::string option;  ///< The option that names it, for errors.
+  std::string path;    ///< Empty: none.
 };
 
-/// Throws CLI::ValidationError where one would overwrite another, or what is read: their paths lead
-/// to the same file. Devices and pipes can be written several times.
+/// Throws UsageError if an output would overwrite another output or an input of the session: their
+/// paths lead to the same file. Devices and pipes may be written several times.
 void check_distinct(const std::vector<OutputFile>& outputs, const Session& session);
 
-/// Where what is written to a path goes: the same for all names of a file.
-std::filesystem::path place_of(const std::string& path);
+/// Throws Error if an output would overwrite one of `files`, which the file `namer` names.
+void check_keeps(const std::vector<OutputFile>& outputs,
+                 std::span<const std::filesystem::path> files, const std::string& namer);
+
+/// Returns the canonical path of the file that output to `path` goes to.
+std::filesystem::path canonical_output(const std::string& path);
 
 /// Whether both are names of one file that exists.
 bool are_same_file(const std::string& a, const std::string& b);

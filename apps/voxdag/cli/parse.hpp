@@ -9,12 +9,9 @@
 
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/vec.hpp"
+#include "voxdag/image/image_size.hpp"
 
 namespace voxdag {
-
-struct ImageSize {
-  int width = 0, height = 0;
-};
 
 /// Nothing where the whole of the text is not a finite number, or a whole one.
 std::optional<double> read_number(std::string_view text);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "cli/human.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,5 +1,6 @@
 #include "cli/session.hpp"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,31 +10,23 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "cli/number_check.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/resolved_output.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 
-CLI::App& add_command(CLI::App& app, const std::string& name, const std::string& purpose,
-                      const std::string& example) {
-  CLI::App& command = *app.add_subcommand(name, purpose);
-  command.footer("Example:\n  " + example);
-  return command;
+Option add_threads_option(const Command& command, Session& session) {
+  return command.optional_number<int>("--threads", session.threads, NumberRange::whole(1, 4096),
+                                      "N", "Number of threads (default: one per processor)");
 }
 
-void add_threads_option(CLI::App& command, Session& session) {
-  command.add_option("--threads", session.threads, "Threads to use (default: one per processor)")
-      ->check(whole_number(1, 4096))
-      ->type_name("N");
+Option add_quiet_option(const Command& command, Session& session) {
+  return command.flag("-q,--quiet", session.quiet, "Print neither progress bar nor summary");
 }
 
-void add_quiet_option(CLI::App& command, Session& session) {
-  command.add_flag("-q,--quiet", session.quiet, "No progress bar and no summary");
-}
-
-void add_json_option(CLI::App& command, Session& session) {
-  command.add_flag("--json", session.json, "Print the result as JSON");
+Option add_json_option(const Command& command, Session& session) {
+  return command.flag("--json", session.json, "Print the result as JSON");
 }
 
 void print_line(std::string text) {
@@ -48,9 +41,16 @@ void print_warnings(const std::vector<std::string>& warnings, Session& session) 
   for (const std::string& warning : warnings) print_line("warning: " + warning);
 }
 
+void announce_cost(const std::string& work, double seconds, Session& session) {
+  constexpr double kWorthALine = 60;
+  if (seconds <= kWorthALine) return;
+  session.bar.clear();
+  print_line(fmt::format("{} takes about {}", work, human_duration(seconds)));
+}
+
 void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& session) {
   if (voxels == 0)
-    print_warnings({output + ": no voxels: none of the mesh's surface is seen in the grid"},
+    print_warnings({output + ": no voxels: no visible part of the mesh's surface lies in the grid"},
                    session);
 }
 
@@ -61,7 +61,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
 
 void check_writable(const std::string& path) {
   std::error_code unknown;
-  // Who reads it would see its end.
+  // A pipe is not opened here: its reader would see end of file.
   if (resolve_output(path).descriptor < 0 && std::filesystem::is_fifo(path, unknown) &&
       access(path.c_str(), W_OK) == 0)
     return;

@@ -36,27 +36,24 @@ void export_file(ExportArguments& arguments, Session& session) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app, Session& session) {
+void add_export_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App& command =
-      add_command(app, "export", "Write the voxels as .npy, .ply or .raw, by the extension",
+  const Command command =
+      program.add("export", "Write the voxels as .npy, .ply or .raw, by the extension",
                   "voxdag export scene.vdag -o voxels.npy");
-  command.add_option("file", session.subject, "The .vdag or .esvo file")
-      ->type_name("FILE")
-      ->required();
+  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
-      .add_option("-o,--output", arguments->output,
-                  ".npy: coordinates, or dense bytes with --window; .ply: points, or with --faces "
-                  "the outer faces of cubes; .raw: dense bytes")
-      ->type_name("OUT")
-      ->required();
-  add_parsed_option(command, "--window", arguments->options.window, parse_window,
-                    "X0,Y0,Z0,X1,Y1,Z1", "Only these voxels; the last corner is one past the end");
-  command.add_flag("--faces", arguments->faces, "For .ply: the outer faces of the voxels");
+      .text("-o,--output", arguments->output, "OUT",
+            ".npy: coordinates, or a dense array with --window; .ply: points, or with --faces the "
+            "outer faces of the voxels; .raw: a dense array")
+      .required();
+  command.parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
+                 "Export only these voxels, from the first corner up to but without the second");
+  command.flag("--faces", arguments->faces, "Write the outer faces of the voxels")
+      .only_if([arguments] { return arguments->output.ends_with(".ply"); },
+               "on an output that does not end in .ply");
   add_quiet_option(command, session);
-  command.callback([arguments, &session] {
-    if (arguments->faces && !arguments->output.ends_with(".ply"))
-      throw CLI::ValidationError("--faces", "is for an output that ends in .ply");
+  command.when_parsed([arguments, &session] {
     check_distinct({{"--output", arguments->output}, {"--output", arguments->output + ".json"}},
                    session);
     session.work = [arguments, &session] { export_file(*arguments, session); };

@@ -1,11 +1,13 @@
 /// `voxdag info`: what a .vdag or .esvo file holds.
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/commands.hpp"
-#include "cli/human.hpp"
-#include "inspect/dag_report.hpp"
-#include "inspect/esvo_report.hpp"
 #include "voxdag/file/vdag_file.hpp"
+#include "voxdag/report/dag_report.hpp"
+#include "voxdag/report/esvo_report.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
@@ -33,15 +35,13 @@ void info(const std::string& path, bool json) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app, Session& session) {
-  CLI::App& command = add_command(
-      app, "info", "Show what a .vdag or .esvo file holds: counts, sizes, placement, source",
+void add_info_command(const Command& program, Session& session) {
+  const Command command = program.add(
+      "info", "Print what a .vdag or .esvo file holds: counts, sizes, placement, source",
       "voxdag info scene.vdag --json");
-  command.add_option("file", session.subject, "The .vdag or .esvo file")
-      ->type_name("FILE")
-      ->required();
+  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   add_json_option(command, session);
-  command.callback(
+  command.when_parsed(
       [&session] { session.work = [&session] { info(session.subject, session.json); }; });
 }
 

@@ -7,23 +7,25 @@
 
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
-#include "cli/human.hpp"
 #include "cli/number_check.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/readers/read_appearance.hpp"
-#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
 
 using Result = VerifyCheck::Result;
 
+/// Hours of work on any machine.
+constexpr std::int64_t kMostSamples = 1'000'000'000;
+
 struct VerifyArguments {
   std::string mesh;
+  MeshAccess access;
   std::uint64_t samples = 20'000;
   std::uint64_t seed = 1;
   DisplaceArguments displace;
@@ -37,7 +39,7 @@ VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for an ESVO, and this is a DAG");
   const VdagFile file(session.subject);
-  const Mesh mesh = read_mesh(arguments.mesh, &session.progress);
+  const Mesh mesh = read_mesh_file(arguments.mesh, arguments.access, session);
   const CoverCheck cover = check_cover(file.view(), file.grid(), mesh, arguments.samples,
                                        arguments.seed, &session.progress);
   VerifyCheck check{"cover", Result::kPassed, {}};
@@ -96,7 +98,8 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
     return {"enclosure", Result::kSkipped,
             fmt::format("the surface is displaced: needs --displace, which was {}",
                         file.metadata().build.at("displace"))};
-  const MeshWithAppearance source = read_mesh_with_appearance(arguments.mesh, &session.progress);
+  const MeshWithAppearance source =
+      read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
   const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
   std::vector<std::string> warnings;
   const std::optional<DisplacedTriangles> displaced =
@@ -141,36 +144,31 @@ void verify(const VerifyArguments& arguments, Session& session) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, Session& session) {
+void add_verify_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App& command = add_command(
-      app, "verify",
-      "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh its voxels too",
+  const Command command = program.add(
+      "verify",
+      "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh also its voxels",
       "voxdag verify sponza.vdag --mesh sponza.obj");
-  command.add_option("file", session.subject, "The .vdag or .esvo file")
-      ->type_name("FILE")
-      ->required();
-  CLI::Option* const mesh =
-      command
-          .add_option("--mesh", arguments->mesh,
-                      "Compare with this mesh, in a sample of cells or of points")
-          ->type_name("MESH");
-  const CLI::Validator any_count = whole_number(0, std::numeric_limits<std::int64_t>::max());
-  command.add_option("--samples", arguments->samples, "Cells or points of the sample")
-      ->check(any_count)
-      ->needs(mesh)
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--seed", arguments->seed, "Another seed takes another sample")
-      ->check(any_count)
-      ->needs(mesh)
-      ->type_name("N")
-      ->capture_default_str();
-  add_displace_option(command, arguments->displace)->needs(mesh);
+  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
+  const Option mesh = command.text("--mesh", arguments->mesh, "MESH",
+                                   "Compare with this mesh, in random cells or points");
+  command
+      .number("--samples", arguments->samples, NumberRange::whole(0, kMostSamples), "N",
+              "With --mesh: number of random cells or points")
+      .needs(mesh);
+  command
+      .number("--seed", arguments->seed,
+              NumberRange::whole(0, std::numeric_limits<std::int64_t>::max()), "N",
+              "With --mesh: seed of the random numbers")
+      .needs(mesh)
+      .only_if([arguments] { return arguments->samples > 0; }, "with --samples 0");
+  add_displace_option(command, arguments->displace).needs(mesh);
+  add_mesh_access_options(command, arguments->access, &mesh);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);
-  command.callback([arguments, &session] {
+  command.when_parsed([arguments, &session] {
     session.work = [arguments, &session] { verify(*arguments, session); };
   });
 }

@@ -1,40 +1,60 @@
 #pragma once
-/// What `voxdag render` is told.
-#include <CLI/CLI.hpp>
+/// What the command line of `voxdag render` asks for.
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/device.hpp"
-#include "cli/parse.hpp"
-#include "cli/session.hpp"
-#include "render/render_mesh.hpp"
-#include "render/render_passes.hpp"
-#include "render/render_path.hpp"
+#include "cli/mesh_input.hpp"
+#include "voxdag/film/picture_pass.hpp"
+#include "voxdag/image/image_size.hpp"
 #include "voxdag/render/render_options.hpp"
 
 namespace voxdag {
 
+/// --mesh: view samples come from triangles.
+struct MeshArguments {
+  std::string file;  ///< Empty: none.
+  MeshAccess access;
+  bool grey = false;    ///< Ignore the mesh's colours, textures and normals.
+  std::string primary;  ///< "mesh", "voxels" or empty: the mesh if there is one.
+
+  bool is_seen() const { return !file.empty() && primary != "voxels"; }
+};
+
+/// --path: the frames of a film.
+struct PathArguments {
+  std::string file;     ///< The camera path; empty: one picture.
+  std::string timings;  ///< A CSV to write, with a plot beside it; empty: none.
+  double frames_per_second = 30;
+};
+
 struct RenderArguments {
   std::string output, depth, normal;
-  std::vector<RenderPass> passes;
+  std::vector<PicturePass> passes;  ///< Of --pass.
   ImageSize size{1920, 1080};
   RenderOptions options;
-  std::optional<bool> filter;  ///< Without: for ESVOs.
+  bool filter = false, no_filter = false;  ///< Neither: filter an ESVO.
   MeshArguments mesh;
   PathArguments path;
   DeviceChoice device;
-  std::uint64_t stream_memory = 0;  ///< Of an ESVO's blocks, bytes; 0: all are loaded.
+  std::uint64_t stream_memory = 0;  ///< Bytes for the blocks of an ESVO; 0: all are loaded.
 };
 
-/// They are set when the command line is read; both must live until then.
-void add_render_options(CLI::App& command, Session& session, RenderArguments& arguments);
+/// Adds all options of `voxdag render`. They store into `arguments` and `session`.
+void add_render_options(const Command& command, Session& session, RenderArguments& arguments);
 
-/// Throws CLI::ValidationError for what no scene can be asked for, or not together.
-void check_render_arguments(const RenderArguments& arguments, Session& session);
+/// Throws UsageError for values that no scene allows, alone or together, and for wrong outputs.
+void check_render_arguments(RenderArguments& arguments, Session& session);
 
-/// Every picture to write.
-std::vector<RenderPass> all_passes(const RenderArguments& arguments);
+/// Returns all passes to write: the picture, --depth, --normal and --pass.
+std::vector<PicturePass> all_passes(const RenderArguments& arguments);
+
+/// Returns the options of the picture or of each frame. `is_esvo` says what the scene is.
+RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo);
+
+/// Returns the name of the plot beside the CSV of --timings.
+std::string timings_plot(const std::string& csv);
 
 }  // namespace voxdag

@@ -1,54 +1,19 @@
 #include "render/render_mesh.hpp"
 
-#include "voxdag/mesh_view/mesh_in_grid.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/mesh_view/mesh_view_source.hpp"
-#include "voxdag/readers/read_appearance.hpp"
-#include "voxdag/readers/read_mesh.hpp"
 
 namespace voxdag {
-
-void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
-  CLI::Option* const mesh =
-      command
-          .add_option("--mesh", arguments.file,
-                      "The mesh of the voxels: what is seen are its triangles, with their colours, "
-                      "textures and normals; shadows and occlusion are the voxels'")
-          ->type_name("MESH");
-  command
-      .add_flag("--grey", arguments.grey,
-                "Show the mesh in one grey, with normals of its triangles")
-      ->needs(mesh);
-  command
-      .add_option("--primary", arguments.primary,
-                  "What is seen (default: the mesh if there is one)")
-      ->check(CLI::IsMember({"voxels", "mesh"}))
-      ->type_name("voxels|mesh");
-}
-
-void check_mesh_options(const MeshArguments& arguments) {
-  if (arguments.primary == "mesh" && arguments.file.empty())
-    throw CLI::ValidationError("--primary", "mesh needs --mesh");
-}
-
-void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
-                      const Grid& grid) {
-  try {
-    check_mesh_in_grid(mesh, scene, grid);
-  } catch (const Error& error) {
-    throw error.in_file(file);
-  }
-}
 
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
                                              const VoxelSet& scene, const Grid& grid,
                                              Session& session) {
-  if (arguments.file.empty() || arguments.primary == "voxels") return nullptr;
+  if (!arguments.is_seen()) return nullptr;
   MeshWithAppearance source;
   if (arguments.grey)
-    source.mesh = read_mesh(arguments.file, &session.progress);
+    source.mesh = read_mesh_file(arguments.file, arguments.access, session);
   else
-    source = read_mesh_with_appearance(arguments.file, &session.progress);
-  print_warnings(source.warnings, session);
+    source = read_mesh_file_with_appearance(arguments.file, arguments.access, session);
   check_is_mesh_of(arguments.file, source.mesh, scene, grid);
   try {
     MeshViewOptions options;

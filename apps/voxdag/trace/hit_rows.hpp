@@ -1,5 +1,5 @@
 #pragma once
-/// The rows of the hits that `voxdag trace` writes.
+/// The rows that `voxdag trace` writes.
 #include <cstddef>
 #include <span>
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace voxdag {
 
-/// Rows of a structured array, without padding: t, voxel, face, hit; of an ESVO also the normal and
-/// colour that it stores of the voxel. They are looked up by where the hit is, so that they do not
-/// depend on the device that cast the ray.
+/// Rows of a structured array without padding: t, voxel, face, hit; for an ESVO also the normal and
+/// colour that it stores for the voxel. These are looked up by voxel, so that they do not depend on
+/// the device that cast the ray.
 class HitRows {
  public:
-  /// `scene` points to what the hits are of.
+  /// The data that `scene` points to must outlive the rows.
   explicit HitRows(const VoxelSet& scene);
 
-  /// As of NpyHeader.
+  /// Returns the dtype for NpyHeader.
   const std::string& dtype() const { return dtype_; }
   std::size_t row_bytes() const { return row_bytes_; }
 

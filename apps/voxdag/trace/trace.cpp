@@ -1,4 +1,4 @@
-/// `voxdag trace`: batch visibility queries, rays in and hits out as NumPy arrays.
+/// `voxdag trace`: casts rays of a NumPy array and writes their hits as another.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,18 +7,17 @@
 
 #include "cli/commands.hpp"
 #include "cli/device.hpp"
-#include "cli/human.hpp"
 #include "cli/output_files.hpp"
 #include "trace/hit_rows.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/file/scene_file.hpp"
+#include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Rays in memory at once: enough for every thread of a CPU or GPU, little to hold.
+/// Rays in memory at once: enough for all threads of a CPU or GPU.
 constexpr std::size_t kBatch = std::size_t{1} << 20;
 
 struct TraceArguments {
@@ -29,9 +28,9 @@ struct TraceArguments {
 void trace(const TraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
   const VoxelSet scene = file.voxels();
-  const std::optional<DeviceScene> device_dag = load_on_device(arguments.device, scene);
+  const std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   std::optional<CudaTracer> cuda;
-  if (device_dag) cuda.emplace(*device_dag, file.grid());
+  if (device_scene) cuda.emplace(*device_scene, file.grid());
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
   std::optional<CpuScene> cpu_scene;
   if (!cuda) cpu_scene.emplace(scene, reader.rows());
@@ -65,35 +64,31 @@ void trace(const TraceArguments& arguments, Session& session) {
   session.bar.clear();
   if (!session.quiet)
     fmt::print("{}: {} rays, {} hits, on {}\n", arguments.output, with_commas(reader.rows()),
-               with_commas(hit_count), device_name(device_dag));
+               with_commas(hit_count), device_name(device_scene));
 }
 
 }  // namespace
 
-void add_trace_command(CLI::App& app, Session& session) {
+void add_trace_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<TraceArguments>();
-  CLI::App& command =
-      add_command(app, "trace", "Cast rays from a NumPy file and write what they hit",
+  const Command command =
+      program.add("trace", "Cast rays from a NumPy file and write what they hit",
                   "voxdag trace scene.vdag --rays rays.npy -o hits.npy");
-  command.add_option("file", session.subject, "The .vdag or .esvo file")
-      ->type_name("FILE")
-      ->required();
+  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
-      .add_option("--rays", arguments->rays,
-                  "float32 array N x 8: origin, t_min, direction, t_max, in world units")
-      ->type_name("RAYS.npy")
-      ->required();
+      .text("--rays", arguments->rays, "RAYS.npy",
+            "float32 array of shape (N, 8): origin, t_min, direction, t_max, in world units")
+      .required();
   command
-      .add_option("-o,--output", arguments->output,
-                  "Structured array of N: t, voxel, face (0..5 = -x,+x,-y,+y,-z,+z; -1 where the "
-                  "ray starts inside), hit; of a .esvo also what it stores: normal (world space), "
-                  "color (sRGB, 0..255)")
-      ->type_name("HITS.npy")
-      ->required();
+      .text("-o,--output", arguments->output, "HITS.npy",
+            "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
+            "the ray starts inside), hit; for an ESVO also its normal (world space) and color "
+            "(sRGB, 0 to 255)")
+      .required();
   add_device_option(command, arguments->device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
-  command.callback([arguments, &session] {
+  command.when_parsed([arguments, &session] {
     session.inputs = {arguments->rays};
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [arguments, &session] { trace(*arguments, session); };

@@ -95,14 +95,20 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
   return view;
 }
 
-void check(const View& view) {
+/// Throws Error for numbers that are wrong whatever the target is.
+void check_numbers(const View& view) {
   if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
     throw Error("the camera's coordinates must be finite");
-  if (!(view.vertical_fov_degrees > 0 && view.vertical_fov_degrees < 180))
-    throw Error("the camera's field of view must lie between 0 and 180 degrees");
-  const Vec3d forward = view.target - view.eye;
-  if (!(length(forward) > 0)) throw Error("the camera's eye and target are the same point");
+  if (!(view.vertical_fov_degrees >= kLeastFovDegrees && view.vertical_fov_degrees < 180))
+    throw Error("the camera's field of view must be at least 0.000001 and below 180 degrees");
   if (!(length(view.up) > 0)) throw Error("the camera's up vector is zero");
+}
+
+void check(const View& view) {
+  check_numbers(view);
+  if (view.target == view.eye) throw Error("the camera's eye and target are the same point");
+  const Vec3d forward = view.target - view.eye;
+  if (!(length(forward) > 0)) throw Error("the camera's eye and target are too close");
   if (!(length(cross(normalized(forward), normalized(view.up))) > 1e-6))
     throw Error("the camera's up vector points along the view");
 }
@@ -133,8 +139,7 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
   const CoarseCells scene(voxels, kCoarseLevel);
   if (!request.up) view.up = guess_up(scene);
   view.eye = request.eye.value_or(Vec3d{});
-  view.target = view.eye + Vec3d{0.6, 0.5, 0.4};
-  check(view);  // before up and angle are put to use
+  check_numbers(view);  // before they are used
   const Compass compass(view.up);
   if (request.eye) {
     const Vec3i twice_middle = scene.bounds().lo + scene.bounds().hi;

@@ -8,6 +8,9 @@
 
 namespace voxdag {
 
+/// The smallest vertical angle of view. Far below it, directions of pixels are no longer distinct.
+inline constexpr double kLeastFovDegrees = 1e-6;
+
 /// World units. The picture's vertical axis is `up` as far as the view direction allows.
 struct View {
   Vec3d eye{0, 0, 1};
@@ -21,6 +24,11 @@ struct ViewRequest {
   std::optional<Vec3d> eye, target, up;
   std::optional<double> vertical_fov_degrees;
 };
+
+/// Returns the request for just this view.
+inline ViewRequest as_request(const View& view) {
+  return {view.eye, view.target, view.up, view.vertical_fov_degrees};
+}
 
 /// If the caller gives eye and target, frame_scene reads the voxels no deeper than this level, to
 /// guess what is up.
@@ -36,7 +44,7 @@ Vec3d up_across(Vec3d up, Vec3d forward);
 /// that all voxels are in the picture, or inside of a scene that is closed and roomy like a
 /// building. An empty scene gets a valid view, too. Deterministic; takes some ten milliseconds.
 /// Throws Error for requests that define no view: numbers that are not finite, eye = target, an
-/// angle outside of (0,180), an up vector along the view.
+/// angle that is not at least kLeastFovDegrees and below 180, an up vector along the view.
 View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request);
 

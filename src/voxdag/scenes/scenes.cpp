@@ -29,7 +29,7 @@ constexpr std::array kEntries = {
            2000, 1, 150000},
           scenes::make_hairball,
           scenes::hairball_preset},
-    Entry{{"sponge", "a Menger sponge", "depth: the cube is 3^depth cells wide", 4, 1, 6},
+    Entry{{"sponge", "a Menger sponge", "depth: the cube is 3^depth cells wide", 4, 1, 6, false},
           scenes::make_sponge,
           scenes::sponge_preset},
     Entry{{"terrain", "eroded mountains above a lake, with rocks and firs",

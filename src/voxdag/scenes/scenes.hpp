@@ -13,9 +13,8 @@
 namespace voxdag {
 
 struct SceneOptions {
-  double size = 0;  ///< What it counts is said by SceneInfo; 0 takes the default.
-  std::uint32_t seed =
-      1;  ///< Another seed, another scene of the same kind (`sponge` has one only).
+  double size = 0;         ///< What it counts is said by SceneInfo; 0 takes the default.
+  std::uint32_t seed = 1;  ///< Of the random numbers, if SceneInfo::uses_seed.
 };
 
 struct SceneInfo {
@@ -23,6 +22,7 @@ struct SceneInfo {
   std::string_view description;   ///< One line.
   std::string_view size_meaning;  ///< What SceneOptions::size counts.
   double default_size, min_size, max_size;
+  bool uses_seed = true;  ///< Whether SceneOptions::seed changes the scene.
 };
 
 /// Where a flight is at a time.

@@ -1,0 +1,106 @@
+/// The command line of `voxdag bench build`.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench/bench_output.hpp"
+#include "bench/build/bench_build.hpp"
+#include "bench/build/bench_report.hpp"
+#include "bench/report/bench_machine.hpp"
+#include "bench/rivals/command_rival.hpp"
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/scenes/scenes.hpp"
+
+namespace voxdag {
+namespace {
+
+struct BenchArguments {
+  BenchPlan plan;
+  BenchOutput output;
+};
+
+std::string parse_method(const std::string& text) {
+  if (text != "hash" && text != "sort") throw std::invalid_argument("is neither hash nor sort");
+  return text;
+}
+
+/// Parses "NAME=COMMAND"; throws std::invalid_argument.
+std::shared_ptr<Rival> parse_rival(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
+    throw std::invalid_argument("is not NAME=COMMAND");
+  return std::make_shared<CommandRival>(text.substr(0, equals), text.substr(equals + 1));
+}
+
+void bench(const BenchArguments& arguments, Session& session) {
+  arguments.output.check_writable();
+  const nlohmann::ordered_json machine = machine_json();
+  const BenchResults results = bench_build(arguments.plan, session.progress);
+  arguments.output.write(
+      bench_json(results, machine), {[&] { return bench_svg(results); }},
+      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
+                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
+                  machine.at("load_average").get<double>(), bench_table(results)),
+      session);
+  for (const BuildRun& run : results.builds)
+    if (!run.failure.empty()) throw Error(run.scene, std::to_string(1 << run.levels), run.failure);
+}
+
+void finish_plan(BenchPlan& plan) {
+  if (plan.meshes.empty())
+    for (const SceneInfo& scene : scene_list()) plan.meshes.emplace_back(scene.name);
+  std::sort(plan.levels.begin(), plan.levels.end());
+}
+
+}  // namespace
+
+void add_bench_build_command(const Command& bench_command, Session& session) {
+  const auto arguments = std::make_shared<BenchArguments>();
+  BenchPlan& plan = arguments->plan;
+  plan.methods = {"hash"};
+  plan.levels = {9, 10, 11};
+  const Command command = bench_command.add(
+      "build", "Time, memory and growth of builds; every run is a process of its own",
+      "voxdag bench build sponza.obj hairball -r 2048,4096,8192 --plot growth.svg\n"
+      "Other programs: --rival 'other=other-program {mesh} {resolution} {out}'\n"
+      "Scratch files go to TMPDIR.");
+  command.texts("meshes", plan.meshes, "MESH...",
+                "Mesh files, or procedural scenes as NAME or NAME:SIZE (default: all scenes)");
+  command.list("-r,--resolution", plan.levels, parse_levels, "N,N...",
+               "Voxels per side (default: 512,1024,2048)");
+  command.list("--method", plan.methods, parse_method, "METHOD,METHOD",
+               "hash, sort or both (default: hash)");
+  const Option rival = command.repeated(
+      "--rival", plan.rivals, parse_rival, "NAME=COMMAND",
+      "Run another program for comparison: a shell command with {mesh}, {out}, {resolution} and "
+      "{levels}; repeatable");
+  command
+      .number("--rival-seconds", plan.rival_seconds, NumberRange::positive(), "S",
+              "Time limit for a rival, in seconds")
+      .needs(rival);
+  command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
+                 "Number of runs; the fastest counts");
+  command.text("-o,--output", arguments->output.json_file, "FILE.json",
+               "Also write the JSON to a file");
+  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
+               "Plot seconds and bytes over the resolution");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.when_parsed([arguments, &session] {
+    finish_plan(arguments->plan);
+    session.inputs = arguments->plan.meshes;
+    arguments->output.check_distinct(session);
+    session.work = [arguments, &session] {
+      arguments->plan.threads = session.threads;
+      bench(*arguments, session);
+    };
+  });
+}
+
+}  // namespace voxdag

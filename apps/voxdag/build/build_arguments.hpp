@@ -1,0 +1,49 @@
+#pragma once
+/// What the command line of `voxdag build` asks for.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "build/bake_ao.hpp"
+#include "build/displace_option.hpp"
+#include "cli/mesh_input.hpp"
+#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/esvo/build/build_esvo.hpp"
+
+namespace voxdag {
+
+struct EsvoArguments {
+  EsvoSettings settings;
+  double normal_degrees = 3;  ///< EsvoSettings::normal_error in degrees.
+  DisplaceArguments displace;
+  BakeArguments bake;
+};
+
+struct BuildArguments {
+  std::string output;
+  MeshAccess access;
+  std::optional<int> levels;  ///< Either this or voxel_size.
+  std::optional<double> voxel_size;
+  std::optional<Box3d> bounds;
+  BuildMethod method = BuildMethod::kHashConsed;
+  std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
+  bool stats = false;
+  bool as_esvo = false;
+  EsvoArguments esvo;
+};
+
+/// Returns the grid that the arguments ask for. `surface` holds the surface where it is not where
+/// the triangles are, as after displacement.
+Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
+                 const BuildArguments& arguments);
+
+/// Returns the settings that shape the voxels, for the metadata of the output.
+std::map<std::string, std::string> grid_settings(const BuildArguments& arguments);
+
+/// Builds a DAG of session.subject, writes it, and prints the summary.
+void build_dag_file(const BuildArguments& arguments, Session& session);
+
+/// Builds an ESVO of session.subject with its textures, writes it, and prints the summary.
+void build_esvo_file(const BuildArguments& arguments, Session& session);
+
+}  // namespace voxdag

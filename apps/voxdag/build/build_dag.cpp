@@ -1,0 +1,106 @@
+/// `voxdag build` for a DAG.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "build/build_arguments.hpp"
+#include "cli/stopwatch.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/report/dag_report.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+std::uint64_t bytes_of(const Mesh& mesh) {
+  return mesh.vertices.capacity() * sizeof(Vec3f) + mesh.triangles.capacity() * sizeof(Triangle) +
+         mesh.triangle_materials.capacity() * sizeof(std::uint32_t);
+}
+
+/// Wall-clock seconds of the steps of a build.
+struct StageSeconds {
+  double read = 0, build = 0, write = 0;
+  double total() const { return read + build + write; }
+};
+
+nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
+                               const StageSeconds& seconds) {
+  nlohmann::ordered_json json = dag_json(dag);
+  json["seconds"] = {{"read", seconds.read},
+                     {"quantize", build.quantize_seconds},
+                     {"voxelize", build.voxelize_seconds},
+                     {"merge", build.merge_seconds},
+                     {"reduce", build.reduce_seconds},
+                     {"sort", build.sort_seconds},
+                     {"canonical", build.canonical_seconds},
+                     {"build", seconds.build},
+                     {"write", seconds.write},
+                     {"total", seconds.total()}};
+  json["voxels_per_second"] = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
+  json["peak_memory_bytes"] = peak_resident_bytes();
+  return json;
+}
+
+std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
+  const double rate = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
+  return fmt::format(
+      "{}\n"
+      "  time          {}: read {}, build {}, write {}\n"
+      "  rate          {} voxels/s\n"
+      "  peak memory   {}\n",
+      dag_table(dag), human_seconds(seconds.total()), human_seconds(seconds.read),
+      human_seconds(seconds.build), human_seconds(seconds.write), human_count(rate),
+      human_bytes(peak_resident_bytes()));
+}
+
+}  // namespace
+
+void build_dag_file(const BuildArguments& arguments, Session& session) {
+  check_writable(arguments.output);
+  Progress& progress = session.progress;
+  Stopwatch watch;
+  StageSeconds seconds;
+
+  MemoryBudget memory = command_budget(arguments.memory_limit);
+  Mesh mesh = read_mesh_file(session.subject, arguments.access, session);
+  MemoryReservation mesh_memory(&memory, bytes_of(mesh));
+  seconds.read = watch.lap();
+
+  DagReport report;
+  report.metadata.grid = choose_grid(mesh, std::nullopt, arguments);
+  report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
+                            mesh.vertices.size(), mesh.triangles.size()};
+  report.metadata.program = "voxdag " VOXDAG_VERSION;
+  report.metadata.build = grid_settings(arguments);
+  const BuildResult result =
+      build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
+  mesh = {};
+  mesh_memory.resize(0);
+  seconds.build = watch.lap();
+
+  progress.throw_if_cancelled();
+  const SvdagView view = result.dag.view();
+  report.metadata.counts = count_svdag(view);
+  report.svdag_bytes = view.bytes();
+  progress.throw_if_cancelled();
+  write_vdag(arguments.output, view, report.metadata);
+  seconds.write = watch.lap();
+  std::error_code unknown;
+  report.file_bytes = std::filesystem::file_size(arguments.output, unknown);
+  if (unknown) report.file_bytes = 0;  // written to a pipe or a device
+
+  warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
+  session.bar.clear();
+  if (session.json) {
+    fmt::print("{}", json_text(json_of(report, result.report, seconds)));
+  } else if (!session.quiet) {
+    fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
+               table_of(report, seconds));
+    if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
+  }
+}
+
+}  // namespace voxdag

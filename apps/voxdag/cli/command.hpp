@@ -1,0 +1,120 @@
+#pragma once
+/// Subcommands and their options. CLI11 does the parsing; only command.cpp and command_line.cpp
+/// include its header, which takes ten seconds to compile.
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "cli/number_range.hpp"
+#include "cli/option.hpp"
+#include "cli/usage_error.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace voxdag {
+
+/// A handle of a subcommand, or of the program itself; cheap to copy. Variables that options store
+/// into must live until the command line is parsed.
+class Command {
+ public:
+  explicit Command(CLI::App& app);
+
+  /// Adds a subcommand. `purpose` is one line; `footer` ends the help: an example, and notes.
+  Command add(const std::string& name, const std::string& purpose, const std::string& footer) const;
+  void require_subcommand() const;
+
+  /// Adds a text. Names are "-o,--output" for an option, "file" for a positional.
+  Option text(const std::string& names, std::string& value, const std::string& shape,
+              const std::string& help) const;
+  /// Adds a positional that takes any number of texts.
+  Option texts(const std::string& name, std::vector<std::string>& values, const std::string& shape,
+               const std::string& help) const;
+  /// Adds a flag that sets `value`.
+  Option flag(const std::string& names, bool& value, const std::string& help) const;
+  /// Adds a flag that clears `value`.
+  Option off_switch(const std::string& name, bool& value, const std::string& help) const;
+  /// Adds a number. The help says its range and its default, which is the value that it has now.
+  template <class Number>
+  Option number(const std::string& names, Number& value, const NumberRange& range,
+                const std::string& shape, const std::string& help) const {
+    const auto store = [&value, range](const std::string& text) {
+      value = range.parse<Number>(text);
+    };
+    return add_option(names, store, shape, help + note(range, default_text(value)));
+  }
+  /// Adds a number whose default is no number; `help` says what it is.
+  template <class Number, class Target>
+  Option optional_number(const std::string& names, Target& value, const NumberRange& range,
+                         const std::string& shape, const std::string& help) const {
+    const auto store = [&value, range](const std::string& text) {
+      value = range.parse<Number>(text);
+    };
+    return add_option(names, store, shape, help);
+  }
+  /// Adds an option whose text `parse` turns into a value. parse throws std::invalid_argument with
+  /// the reason if the text is wrong.
+  template <class Value, class Parse>
+  Option parsed(const std::string& names, Value& value, const Parse& parse,
+                const std::string& shape, const std::string& help) const {
+    const auto store = [&value, parse](const std::string& text) { value = parse(text); };
+    return add_option(names, store, shape, help);
+  }
+  /// Adds an option that may be given several times, with one text each.
+  template <class Value, class Parse>
+  Option repeated(const std::string& name, std::vector<Value>& values, const Parse& parse,
+                  const std::string& shape, const std::string& help) const {
+    const auto store = [&values, parse](const std::string& text) { values.push_back(parse(text)); };
+    return add_repeated(name, store, shape, help);
+  }
+  /// Adds an option that takes texts separated by commas. The values replace those of `values`.
+  template <class Value, class Parse>
+  Option list(const std::string& names, std::vector<Value>& values, const Parse& parse,
+              const std::string& shape, const std::string& help) const {
+    const auto store = [&values, parse](const std::string& text) { values.push_back(parse(text)); };
+    return add_list(
+        names, [&values] { values.clear(); }, store, shape, help, ',');
+  }
+  /// Adds a whole number that may be left out: "--name" alone stores `if_left_out`.
+  Option flag_or_number(const std::string& name, int& value, const NumberRange& range,
+                        int if_left_out, const std::string& shape, const std::string& help) const;
+
+  /// Calls `done` once all options of this command are parsed and each of them has an effect.
+  /// `done` may throw UsageError.
+  void when_parsed(std::function<void()> done) const;
+  /// Throws UsageError if an option of the group was given.
+  void refuse_group(const std::string& group, const std::string& reason) const;
+
+  std::string name() const;
+  std::vector<Command> subcommands() const;
+  /// "--output -o --help -h", for completion.
+  std::string option_names() const;
+
+ private:
+  using Store = std::function<void(const std::string&)>;
+
+  Option add_option(const std::string& names, const Store& store, const std::string& shape,
+                    const std::string& help) const;
+  Option add_repeated(const std::string& name, const Store& store, const std::string& shape,
+                      const std::string& help) const;
+  Option add_list(const std::string& names, const std::function<void()>& clear, const Store& store,
+                  const std::string& shape, const std::string& help, char separator) const;
+  /// " (1 to 16; default: 4)".
+  static std::string note(const NumberRange& range, const std::string& default_value);
+  template <class Number>
+  static std::string default_text(Number value) {
+    if constexpr (std::is_integral_v<Number>)
+      return std::to_string(value);
+    else
+      return number_text(static_cast<double>(value));
+  }
+  static std::string number_text(double value);
+
+  CLI::App* app_;
+  std::shared_ptr<EffectRules> rules_;
+};
+
+}  // namespace voxdag

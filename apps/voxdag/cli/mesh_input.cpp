@@ -1,0 +1,74 @@
+#include "cli/mesh_input.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/mesh_view/mesh_in_grid.hpp"
+#include "voxdag/readers/read_mesh.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Returns whether all importers are wanted.
+bool parse_importers(const std::string& text) {
+  if (text != "any" && text != "safe")
+    throw std::invalid_argument("\"" + text + "\" is neither safe nor any");
+  return text == "any";
+}
+
+/// Calls read(options) and checks that the mesh names no output.
+template <class Read>
+auto read_and_check(const std::string& file, const MeshAccess& access, Session& session,
+                    const Read& read) {
+  std::vector<std::filesystem::path> named;
+  ReadOptions options;
+  options.progress = &session.progress;
+  options.memory = access.memory;
+  options.allow_outside = access.allow_outside;
+  options.any_assimp_importer = access.any_importer;
+  options.named_files = &named;
+  auto result = read(options);
+  check_keeps(access.outputs, named, file);
+  return result;
+}
+
+}  // namespace
+
+void add_mesh_access_options(const Command& command, MeshAccess& access, const Option* mesh) {
+  const Option outside = command.flag(
+      "--allow-outside", access.allow_outside,
+      "Let the mesh name files outside of its own folder: textures, buffers, material libraries");
+  const Option assimp = command.parsed(
+      "--assimp", access.any_importer, parse_importers, "safe|any",
+      "Formats that assimp reads: only those whose importers survive fuzzing, or any (default: "
+      "safe)");
+  if (mesh == nullptr) return;
+  for (const Option& option : {outside, assimp}) option.needs(*mesh);
+}
+
+Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session) {
+  return read_and_check(file, access, session, [&](const ReadOptions& options) {
+    return read_mesh(file, options.progress);
+  });
+}
+
+MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const MeshAccess& access,
+                                                  Session& session) {
+  MeshWithAppearance read = read_and_check(file, access, session, [&](const ReadOptions& options) {
+    return read_mesh_with_appearance(file, options.progress);
+  });
+  print_warnings(read.warnings, session);
+  return read;
+}
+
+void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
+                      const Grid& grid) {
+  try {
+    check_mesh_in_grid(mesh, scene, grid);
+  } catch (const Error& error) {
+    throw Error(file, error.place(), error.reason());
+  }
+}
+
+}  // namespace voxdag

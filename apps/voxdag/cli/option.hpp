@@ -1,0 +1,47 @@
+#pragma once
+/// One option or positional of a subcommand.
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class Option;
+}
+
+namespace voxdag {
+
+/// A condition under which an option changes the result. An option without effect is refused.
+struct EffectRule {
+  CLI::Option* option = nullptr;
+  std::function<bool()> has_effect;
+  std::string why_not;  ///< After "has no effect": "with --no-sun", "without --mesh".
+};
+using EffectRules = std::vector<EffectRule>;
+
+/// A handle; cheap to copy.
+class Option {
+ public:
+  Option(CLI::Option* option, std::shared_ptr<EffectRules> rules)
+      : option_(option), rules_(std::move(rules)) {}
+
+  bool is_given() const;
+  std::string name() const;  ///< "--output", or "file" for a positional.
+
+  Option required() const;
+  /// Lists the option under this heading of the help.
+  Option in_group(const std::string& group) const;
+  /// Refuses the option where has_effect() is false once all options are parsed: "has no effect"
+  /// and `why_not`.
+  Option only_if(std::function<bool()> has_effect, const std::string& why_not) const;
+  /// Refuses the option without `other`.
+  Option needs(const Option& other) const;
+  /// Refuses the option with `other`.
+  Option not_with(const Option& other) const;
+
+ private:
+  CLI::Option* option_;
+  std::shared_ptr<EffectRules> rules_;
+};
+
+}  // namespace voxdag

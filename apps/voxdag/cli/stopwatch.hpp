@@ -1,0 +1,25 @@
+#pragma once
+/// Measures wall-clock time.
+#include <chrono>
+#include <utility>
+
+namespace voxdag {
+
+class Stopwatch {
+ public:
+  /// Returns the seconds since the last lap, or since the start.
+  double lap() {
+    const Clock::time_point before = std::exchange(start_, Clock::now());
+    return std::chrono::duration<double>(start_ - before).count();
+  }
+  /// Returns the seconds since the last lap, without beginning a new one.
+  double since_start() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace voxdag

@@ -1,0 +1,29 @@
+#include "render/picture_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+
+void print_picture_summary(const std::string& file, const RenderedImage& image, double seconds,
+                           const std::string& device) {
+  fmt::print("{}: {} x {} pixels in {}, {} rays/s on {}\n", file, image.width, image.height,
+             human_seconds(seconds), human_count(static_cast<double>(image.rays) / seconds),
+             device);
+  const View& view = image.view;
+  // {} prints the shortest number that parses to the same value: the same picture.
+  fmt::print("  --eye {},{},{} --target {},{},{} --up {},{},{} --fov {} --exposure {}\n",
+             view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z,
+             view.up.x, view.up.y, view.up.z, view.vertical_fov_degrees, image.exposure);
+  if (image.steps.empty()) return;
+  const double sum = std::accumulate(image.steps.begin(), image.steps.end(), 0.0);
+  fmt::print("  steps per primary ray: {:.1f} on average, {:.0f} at most\n",
+             sum / static_cast<double>(image.steps.size()),
+             static_cast<double>(*std::max_element(image.steps.begin(), image.steps.end())));
+}
+
+}  // namespace voxdag

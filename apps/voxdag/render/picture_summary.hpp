@@ -1,0 +1,13 @@
+#pragma once
+/// What `voxdag render` prints about a picture.
+#include <string>
+
+#include "voxdag/render/render_options.hpp"
+
+namespace voxdag {
+
+/// Prints size, time and ray rate of the picture in `file`, and the options that reproduce it.
+void print_picture_summary(const std::string& file, const RenderedImage& image, double seconds,
+                           const std::string& device);
+
+}  // namespace voxdag

@@ -1,0 +1,190 @@
+/// The options of `voxdag render`.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "cli/parse.hpp"
+#include "render/render_arguments.hpp"
+#include "render/render_light.hpp"
+#include "voxdag/film/film.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Parses "depth=z.exr"; throws std::invalid_argument.
+PicturePass parse_pass(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw std::invalid_argument("needs NAME=FILE");
+  const PicturePass pass{find_picture_kind(text.substr(0, equals)), text.substr(equals + 1)};
+  if (pass.kind == nullptr) {
+    std::vector<std::string_view> names;
+    for (const PictureKind& kind : picture_kinds()) names.push_back(kind.name);
+    throw std::invalid_argument(
+        fmt::format("\"{}\" is none of {}", text.substr(0, equals), fmt::join(names, ", ")));
+  }
+  return pass;
+}
+
+std::string parse_primary(const std::string& text) {
+  if (text != "voxels" && text != "mesh")
+    throw std::invalid_argument(fmt::format("\"{}\" is neither voxels nor mesh", text));
+  return text;
+}
+
+/// Whether any light has soft edges.
+bool has_soft_light(const RenderOptions& options) {
+  return (options.with_sun && options.sun_degrees > 0) ||
+         std::any_of(options.lights.begin(), options.lights.end(),
+                     [](const LightSpec& light) { return light.kind != LightKind::kPoint; });
+}
+
+struct ViewOptions {
+  Option eye, target;
+};
+
+ViewOptions add_view_options(const Command& command, ViewRequest& view) {
+  const Option eye = command.parsed("--eye", view.eye, parse_vec3, "X,Y,Z",
+                                    "Position of the camera (default: where the scene shows well)");
+  const Option target = command.parsed("--target", view.target, parse_vec3, "X,Y,Z",
+                                       "The point in the centre of the picture");
+  command.parsed("--up", view.up, parse_direction, "X,Y,Z",
+                 "The up direction (default: y, or z if the scene lies or stands on it)");
+  command.optional_number<double>(
+      "--fov", view.vertical_fov_degrees, NumberRange::half_open(kLeastFovDegrees, 180), "DEGREES",
+      "Vertical angle of view, below 180 (default: what suits the scene)");
+  return {eye, target};
+}
+
+void add_sun_options(const Command& command, RenderOptions& options) {
+  const auto has_sun = [&options] { return options.with_sun; };
+  command
+      .parsed("--sun", options.sun, parse_direction, "X,Y,Z",
+              "Direction towards the sun (default: over the viewer's left shoulder)")
+      .only_if(has_sun, "with --no-sun");
+  command
+      .number("--sun-angle", options.sun_degrees, NumberRange::from(0, 89), "DEGREES",
+              "Angular diameter of the sun; 0: hard shadows")
+      .only_if(has_sun, "with --no-sun");
+  command.off_switch("--no-sun", options.with_sun, "Switch the sun off");
+}
+
+void add_light_options(const Command& command, RenderOptions& options) {
+  add_sun_options(command, options);
+  command.repeated(
+      "--light", options.lights, parse_light, "KIND:...",
+      "Add a light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
+      "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
+  command.number("--sky", options.sky, NumberRange::from(0, 1e6), "FACTOR",
+                 "Brightness of the sky; 0: black");
+  command.off_switch("--no-shadows", options.shadows, "Switch the shadows of sun and lights off")
+      .only_if([&options] { return options.with_sun || !options.lights.empty(); },
+               "without sun and lights");
+  command
+      .number("--shadow-samples", options.shadow_samples, NumberRange::whole(1, 4096), "N",
+              "Shadow rays per pixel and per light with soft edges")
+      .only_if([&options] { return options.shadows; }, "with --no-shadows")
+      .only_if([&options] { return has_soft_light(options); }, "without a light with soft edges");
+}
+
+void add_occlusion_options(const Command& command, RenderOptions& options) {
+  const auto has_occlusion = [&options] { return options.occlusion_samples > 0; };
+  command.number("--ao", options.occlusion_samples, NumberRange::whole(0, 4096), "N",
+                 "Ambient occlusion rays per pixel; 0: none");
+  command
+      .parsed("--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
+              "Length of ambient occlusion rays, in world units (default: 0.15 of the grid's side)")
+      .only_if(has_occlusion, "with --ao 0");
+  command
+      .number("--ao-cone", options.occlusion_cone, NumberRange::from(0, 6), "SR",
+              "End ambient occlusion rays at cells of this solid angle, such as 0.07; 0: never")
+      .only_if(has_occlusion, "with --ao 0");
+}
+
+void add_quality_options(const Command& command, RenderOptions& options) {
+  command.number("--spp,--samples", options.samples_per_pixel, NumberRange::whole(1, 4096), "N",
+                 "Samples per pixel");
+  command.number("--lod", options.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
+                 "End rays at cells of this size in the picture; 0: always at voxels");
+  command.off_switch("--no-beams", options.beams,
+                     "Cast every ray over its whole length: slower, the same picture");
+  command.optional_number<float>(
+      "--exposure", options.exposure, NumberRange::positive(), "FACTOR",
+      "Factor on the light before tone mapping (default: what suits the picture)");
+}
+
+Option add_mesh_options(const Command& command, MeshArguments& mesh) {
+  const Option file = command.text(
+      "--mesh", mesh.file, "MESH",
+      "The mesh that the voxels were built from: show its triangles, with their colours, textures "
+      "and normals; the voxels still cast shadows and occlusion");
+  const auto is_seen = [&mesh] { return mesh.primary != "voxels"; };
+  command.flag("--grey", mesh.grey, "With --mesh: ignore its colours, textures and normals")
+      .needs(file)
+      .only_if(is_seen, "with --primary voxels");
+  command.parsed("--primary", mesh.primary, parse_primary, "voxels|mesh",
+                 "What the picture shows (default: the mesh if --mesh names one)");
+  add_mesh_access_options(command, mesh.access, &file);
+  return file;
+}
+
+void add_filter_options(const Command& command, RenderArguments& arguments) {
+  const Option filter =
+      command.flag("--filter", arguments.filter,
+                   "Smooth voxels that are larger than pixels (default for an ESVO)");
+  command.flag("--no-filter", arguments.no_filter, "Show every voxel as it is").not_with(filter);
+}
+
+void add_path_options(const Command& command, PathArguments& path, const ViewOptions& view) {
+  const Option file = command.text(
+      "--path", path.file, "KEYS.json",
+      "Render a film along this camera path (see `voxdag scene NAME --path`); names of output "
+      "files then have a placeholder for the frame number, such as frame_%04d.png");
+  view.eye.not_with(file);
+  view.target.not_with(file);
+  command
+      .number("--fps", path.frames_per_second, NumberRange::up_to(kMostFramesPerSecond), "N",
+              "With --path: frames per second")
+      .needs(file);
+  command
+      .text("--timings", path.timings, "OUT.csv",
+            "With --path: write the time of each frame, and a plot of it as OUT.svg")
+      .needs(file);
+}
+
+}  // namespace
+
+void add_render_options(const Command& command, Session& session, RenderArguments& arguments) {
+  RenderOptions& options = arguments.options;
+  command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
+  command
+      .text("-o,--output", arguments.output, "OUT",
+            "The picture to write: .png, or .exr for linear light")
+      .required();
+  command.parsed("--size", arguments.size, parse_image_size, "WxH",
+                 "Width and height in pixels (default: 1920x1080)");
+  const ViewOptions view = add_view_options(command, options.view);
+  add_light_options(command, options);
+  add_occlusion_options(command, options);
+  add_quality_options(command, options);
+  add_filter_options(command, arguments);
+  command.text("--depth", arguments.depth, "OUT", "Short for --pass depth=OUT");
+  command.text("--normal", arguments.normal, "OUT", "Short for --pass normal=OUT");
+  command.repeated(
+      "--pass", arguments.passes, parse_pass, "NAME=OUT",
+      "Also write picture, radiance, depth, normal, occlusion, shadow or steps to a .exr or .png "
+      "file; repeatable");
+  add_mesh_options(command, arguments.mesh);
+  add_path_options(command, arguments.path, view);
+  add_device_option(command, arguments.device);
+  command.parsed(
+      "--memory", arguments.stream_memory, parse_memory, "LIMIT",
+      "Stream an ESVO: load only the parts that the picture shows, into this much memory (512M). "
+      "A coarse picture is written at once and replaced as it becomes finer; frames of --path are "
+      "written once");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,28 @@
+#pragma once
+/// Embree 3: casts the same rays at the triangles of the mesh.
+#include <memory>
+
+#include "bench/rivals/rival.hpp"
+#include "voxdag/mesh/mesh.hpp"
+
+namespace voxdag {
+
+/// Its casts are "embree_single", one ray at a time, and "embree_packet16", packets of 16
+/// consecutive rays with the flag for coherent and with the one for incoherent rays.
+class EmbreeRival : public Rival {
+ public:
+  /// Whether voxdag was built with Embree.
+  static bool is_available();
+
+  /// Requires is_available().
+  explicit EmbreeRival(Mesh mesh);
+  ~EmbreeRival() override;
+
+  std::vector<TraceRunner> prepare(const Grid& grid, const RaySet& set) override;
+
+ private:
+  class Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace voxdag

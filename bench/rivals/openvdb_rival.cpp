@@ -1,0 +1,91 @@
+#include "bench/rivals/openvdb_rival.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "bench/report/bench_child.hpp"
+#include "bench/trace/trace_measure.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/npy.hpp"
+#include "voxdag/trace/ray.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::size_t kSampleRays = 100'000;  // of a set
+
+void write_rays(const std::filesystem::path& file, const Grid& grid,
+                const std::vector<CastRay>& casts) {
+  std::vector<Ray> rays;
+  rays.reserve(casts.size());
+  for (const CastRay& cast : casts) {
+    const WorldRay world = to_world_ray(grid, cast.ray);
+    rays.push_back({static_cast<Vec3f>(world.origin), world.t_min,
+                    static_cast<Vec3f>(world.direction), world.t_max});
+  }
+  NpyWriter writer(file, "<f4", {8}, sizeof(float), rays.size());
+  writer.write_rows(rays.data(), rays.size());
+  writer.commit();
+}
+
+/// Returns 1 for each ray that hits a voxel, else 0.
+std::vector<std::uint8_t> hits_of(const VoxelSet& voxels, const std::vector<CastRay>& casts) {
+  std::vector<std::uint8_t> hits;
+  hits.reserve(casts.size());
+  voxels.visit_nodes([&](const auto& nodes) {
+    for (const CastRay& ray : casts) {
+      CellHit cell;
+      hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
+    }
+  });
+  return hits;
+}
+
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+OpenVdbRival::OpenVdbRival(std::string program, std::filesystem::path vdag, const VoxelSet& voxels)
+    : Rival("openvdb"), program_(std::move(program)), vdag_(std::move(vdag)), voxels_(voxels) {}
+
+std::vector<TraceRunner> OpenVdbRival::prepare(const Grid& grid, const RaySet& set) {
+  const std::vector<CastRay> casts = sample_of(set.casts, kSampleRays);
+  Sample sample;
+  sample.rays_class = set.rays_class;
+  sample.set_size = static_cast<double>(set.casts.size());
+  sample.rays_file = folder_.path() / (std::to_string(samples_.size()) + ".npy");
+  sample.hits = hits_of(voxels_, casts);
+  write_rays(sample.rays_file, grid, casts);
+  samples_.push_back(std::move(sample));
+  return {};
+}
+
+std::vector<RivalTime> OpenVdbRival::cast_all(int repeat, Progress& progress) {
+  std::vector<std::string> command{program_, std::filesystem::absolute(vdag_),
+                                   std::to_string(tbb::this_task_arena::max_concurrency()),
+                                   std::to_string(repeat)};
+  for (const Sample& sample : samples_) command.push_back(sample.rays_file);
+  const ChildResult result = run_child(command, folder_.path(), 0, progress);
+  const auto json = nlohmann::json::parse(result.out, nullptr, false);
+  if (result.status != 0 || !json.is_object() ||
+      json.value("seconds", json).size() != samples_.size())
+    throw Error(program_, "", "failed: " + result.err.substr(0, result.err.find('\n')));
+  std::vector<RivalTime> times;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const Sample& sample = samples_[i];
+    const double scale = sample.set_size / static_cast<double>(sample.hits.size());
+    const auto same =
+        static_cast<double>(agreeing(sample.hits, read_bytes(sample.rays_file.string() + ".hits")));
+    times.push_back(
+        {sample.rays_class, json.at("seconds").at(i).get<double>() * scale, same * scale});
+  }
+  return times;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,72 @@
+#pragma once
+/// Other programs and libraries that do the same work: what each of them implements.
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/report/bench_child.hpp"
+#include "bench/rivals/trace_runner.hpp"
+#include "bench/trace/trace_rays.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// One build for a rival.
+struct RivalTask {
+  std::filesystem::path mesh;  ///< Absolute.
+  int levels = 0;              ///< The grid has 2^levels voxels per side.
+  double seconds_limit = 0;    ///< The rival is ended after this time.
+};
+
+/// What a rival's build took.
+struct RivalBuild {
+  std::string command;  ///< The command line that ran.
+  std::string failure;  ///< Why there is no result, or empty.
+  ProcessCost cost;
+  std::uint64_t output_bytes = 0;  ///< Of all files that it left.
+  std::string reported;            ///< The last line of its output if that is a JSON object.
+};
+
+/// A set of rays in one scene.
+struct RaySet {
+  RayClass rays_class;
+  std::span<const CastRay> casts;
+};
+
+/// What a rival took for a set that it cast by itself.
+struct RivalTime {
+  RayClass rays_class;
+  double seconds = 0;   ///< For the whole set.
+  double agreeing = 0;  ///< Rays for which both or neither of rival and voxdag hit something.
+};
+
+/// A rival builds or casts rays, or both. What it does not do keeps the default.
+class Rival {
+ public:
+  explicit Rival(std::string name) : name_(std::move(name)) {}
+  virtual ~Rival() = default;
+  Rival(const Rival&) = delete;
+  Rival& operator=(const Rival&) = delete;
+
+  const std::string& name() const { return name_; }
+
+  /// Builds from a mesh file in a process of its own. Returns nothing if the rival does not build.
+  /// Throws Cancelled.
+  virtual std::optional<RivalBuild> build(const RivalTask& task, Progress& progress);
+
+  /// Takes a set of rays and returns casts of it that take turns with voxdag's, valid until the
+  /// next call. Of several with one name the fastest counts. A rival that casts its sets later
+  /// returns none.
+  virtual std::vector<TraceRunner> prepare(const Grid& grid, const RaySet& set);
+
+  /// Casts the sets that prepare() took and returned no casts for; one result for each, in order.
+  /// Throws Error if the rival fails, and Cancelled.
+  virtual std::vector<RivalTime> cast_all(int repeat, Progress& progress);
+
+ private:
+  std::string name_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,21 @@
+#pragma once
+/// Casts of a set of rays, by voxdag or by a rival, whose time is measured.
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace voxdag {
+
+struct TraceRunner {
+  std::string name;
+  /// Casts rays [first, last) of the set; hits[i] becomes 1 if ray i hits something. Called from
+  /// many threads at once.
+  std::function<void(std::size_t first, std::size_t last, std::uint8_t* hits)> cast;
+  /// Work for the whole set before the rays, whose time counts, too; may be empty.
+  std::function<void()> before;
+  /// If not empty, used instead: casts the whole set and returns the seconds that count.
+  std::function<double(std::uint8_t* hits)> cast_set{};
+};
+
+}  // namespace voxdag

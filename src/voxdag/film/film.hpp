@@ -1,0 +1,33 @@
+#pragma once
+/// Films: the frames along a camera path, rendered and written.
+#include <vector>
+
+#include "voxdag/film/film_exposure.hpp"
+#include "voxdag/film/frame_timings.hpp"
+#include "voxdag/film/picture_pass.hpp"
+
+namespace voxdag {
+
+inline constexpr double kMostFramesPerSecond = 1000;
+inline constexpr double kMostFrames = 1e6;
+
+struct Film {
+  CameraPath path;
+  double frames_per_second = 30;    ///< At most kMostFramesPerSecond.
+  RenderOptions options;            ///< Of each frame; the path sets the view.
+  std::vector<PicturePass> passes;  ///< What is written of each frame, to numbered files.
+};
+
+/// Returns the times of the frames, from the path's first key to its last one, in seconds. Throws
+/// Error if there would be more than kMostFrames.
+std::vector<double> frame_times(const CameraPath& path, double frames_per_second);
+
+/// Returns about how many seconds it takes to render the film: renders a thumbnail of the first
+/// frame, measures the time, and multiplies by frames and pixels.
+double estimate_seconds(const Film& film, const PictureRenderer& render);
+
+/// Renders and writes all frames. Throws Error if a file cannot be written, and Cancelled.
+std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& render,
+                                     Progress& progress);
+
+}  // namespace voxdag

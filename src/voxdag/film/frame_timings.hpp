@@ -1,0 +1,27 @@
+#pragma once
+/// The time that each frame of a film took, as CSV and as a plot.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace voxdag {
+
+struct FrameTiming {
+  int frame = 0;
+  double time = 0;       ///< Of the film, seconds.
+  double render_ms = 0;  ///< Casting and shading.
+  double write_ms = 0;   ///< Encoding and writing the picture.
+  std::uint64_t rays = 0;
+
+  double mrays_per_second() const {
+    return render_ms > 0 ? static_cast<double>(rays) / render_ms * 1e-3 : 0;
+  }
+};
+
+/// Returns a header line and a line per frame.
+std::string timings_csv(const std::vector<FrameTiming>& frames);
+
+/// Returns an SVG: milliseconds and rays per second over the film's time.
+std::string timings_svg(const std::vector<FrameTiming>& frames);
+
+}  // namespace voxdag

@@ -1,0 +1,105 @@
+#include "voxdag/report/dag_report.hpp"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// 0 where there is nothing to divide by.
+double quotient(double a, double b) { return b > 0 ? a / b : 0; }
+
+double bits_per_voxel(std::uint64_t bytes, const SvdagCounts& counts) {
+  return quotient(8 * static_cast<double>(bytes), static_cast<double>(counts.voxels));
+}
+
+std::string ratio_of(std::uint64_t svo, std::uint64_t dag) {
+  return dag == 0 ? "" : human_ratio(static_cast<double>(svo) / static_cast<double>(dag));
+}
+
+std::string row(const std::string& name, const std::string& svo, const std::string& dag,
+                const std::string& ratio) {
+  std::string line = fmt::format("  {:<14}{:>20}{:>20}{:>10}", name, svo, dag, ratio);
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+Json vec_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
+
+}  // namespace
+
+Json dag_json(const DagReport& report) {
+  const VdagMetadata& metadata = report.metadata;
+  const SvdagCounts& counts = metadata.counts;
+  const std::uint64_t svo_bytes = counts.svo_nodes();
+  Json json;
+  json["resolution"] = metadata.grid.resolution();
+  json["levels"] = metadata.grid.levels;
+  json["voxels"] = counts.voxels;
+  json["svo_nodes"] = counts.svo_nodes();
+  json["dag_nodes"] = counts.dag_nodes();
+  json["svo_nodes_per_level"] = counts.svo_nodes_per_level;
+  json["dag_nodes_per_level"] = counts.dag_nodes_per_level;
+  json["bytes"] = {{"svo_pointerless", svo_bytes},
+                   {"svdag_paper", report.svdag_bytes},
+                   {"file", report.file_bytes}};
+  json["bits_per_voxel"] = {{"svo_pointerless", bits_per_voxel(svo_bytes, counts)},
+                            {"svdag_paper", bits_per_voxel(report.svdag_bytes, counts)},
+                            {"file", bits_per_voxel(report.file_bytes, counts)}};
+  add_placement_json(json, metadata.grid, metadata.source, metadata.program, metadata.build);
+  return json;
+}
+
+void add_placement_json(Json& json, const Grid& grid, const VdagSource& source,
+                        const std::string& program,
+                        const std::map<std::string, std::string>& build) {
+  json["transform"] = {{"origin", vec_json(grid.origin)},
+                       {"voxel_size", grid.voxel_size},
+                       {"quantization_scale", grid.quantization_scale}};
+  json["source"] = {
+      {"name", source.name}, {"vertices", source.vertices}, {"triangles", source.triangles}};
+  json["program"] = program;
+  json["build"] = build;
+}
+
+std::string placement_table(const Grid& grid, const VdagSource& source) {
+  const Vec3d lo = grid.origin, hi = grid.bounds().hi;
+  return fmt::format(
+      "  {:<14}{}, {} triangles\n"
+      "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
+      "mesh", source.name, with_commas(source.triangles), "grid",
+      with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x, lo.y, lo.z,
+      hi.x, hi.y, hi.z);
+}
+
+std::string dag_table(const DagReport& report) {
+  const SvdagCounts& counts = report.metadata.counts;
+  const std::uint64_t svo_bytes = counts.svo_nodes();
+  std::string text = placement_table(report.metadata.grid, report.metadata.source);
+  text += fmt::format("  {:<14}{}\n\n", "voxels", with_commas(counts.voxels));
+  text += row("", "SVO", "DAG", "ratio");
+  text += row("nodes", with_commas(counts.svo_nodes()), with_commas(counts.dag_nodes()),
+              ratio_of(counts.svo_nodes(), counts.dag_nodes()));
+  text += row("size", human_bytes(svo_bytes), human_bytes(report.svdag_bytes),
+              ratio_of(svo_bytes, report.svdag_bytes));
+  text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(svo_bytes, counts)),
+              fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes, counts)), "");
+  return text;
+}
+
+std::string level_table(const SvdagCounts& counts) {
+  std::string text = row("level", "SVO nodes", "DAG nodes", "ratio");
+  for (std::size_t level = 0; level < counts.svo_nodes_per_level.size(); ++level) {
+    const std::uint64_t svo = counts.svo_nodes_per_level[level];
+    const std::uint64_t dag = counts.dag_nodes_per_level[level];
+    text += row(std::to_string(level), with_commas(svo), with_commas(dag), ratio_of(svo, dag));
+  }
+  return text;
+}
+
+}  // namespace voxdag

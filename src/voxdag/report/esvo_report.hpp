@@ -1,0 +1,34 @@
+#pragma once
+/// What an ESVO holds and takes, as a table and as JSON: `build` and `info` show the same.
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/layout/esvo_bytes.hpp"
+
+namespace voxdag {
+
+struct EsvoReport {
+  EsvoMetadata metadata;
+  EsvoBytes bytes;
+  std::uint64_t file_bytes = 0;
+
+  double bytes_per_voxel() const {
+    const std::uint64_t voxels = metadata.counts.voxels();
+    return voxels == 0 ? 0 : static_cast<double>(bytes.total()) / static_cast<double>(voxels);
+  }
+};
+
+EsvoReport report_of(const EsvoFile& file);
+
+/// The keys of `info --json`; docs/cli.md lists them.
+nlohmann::ordered_json esvo_json(const EsvoReport& report);
+
+/// Grid and placement, counts, and what the bytes are for.
+std::string esvo_table(const EsvoReport& report);
+
+/// Voxels and leaves of each level.
+std::string esvo_level_table(const EsvoReport& report);
+
+}  // namespace voxdag
