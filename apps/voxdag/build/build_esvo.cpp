@@ -11,7 +11,7 @@
 #include "inspect/esvo_report.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_writer.hpp"
-#include "voxdag/readers/read_appearance.hpp"
+#include "voxdag/readers/read_mesh.hpp"
 
 namespace voxdag {
 namespace {

@@ -14,7 +14,6 @@
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/readers/read_appearance.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 
 namespace voxdag {

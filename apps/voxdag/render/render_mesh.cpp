@@ -2,7 +2,6 @@
 
 #include "voxdag/mesh_view/mesh_in_grid.hpp"
 #include "voxdag/mesh_view/mesh_view_source.hpp"
-#include "voxdag/readers/read_appearance.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 
 namespace voxdag {
