@@ -35,7 +35,7 @@ void write_rays(const std::filesystem::path& file, const Grid& grid,
 std::vector<std::uint8_t> hits_of(const VoxelSet& voxels, const std::vector<CastRay>& casts) {
   std::vector<std::uint8_t> hits;
   hits.reserve(casts.size());
-  voxels.visit_nodes([&](const auto& nodes) {
+  visit_nodes(voxels, [&](const auto& nodes) {
     for (const CastRay& ray : casts) {
       CellHit cell;
       hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "support/temp_dir.hpp"
-#include "voxdag/readers/read_appearance.hpp"
+#include "voxdag/readers/read_mesh.hpp"
 
 namespace voxdag {
 

@@ -3,23 +3,35 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/mesh/mesh.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
-using Reader = Mesh (*)(const MeshBytes&);
+/// A reader of meshes without appearance.
+class Reader {
+ public:
+  Reader(Mesh (*read)(const MeshSource&)) : read_(read) {}
+  Reader(MeshWithAppearance (*read)(const MeshSource&, ReadParts))
+      : read_([read](const MeshSource& source) { return read(source, ReadParts::kMesh).mesh; }) {}
 
-inline Mesh read_text(Reader reader, std::string_view text) {
-  return reader({text, "mesh", {}, nullptr, nullptr});
+  Mesh operator()(const MeshSource& source) const { return read_(source); }
+
+ private:
+  std::function<Mesh(const MeshSource&)> read_;
+};
+
+inline Mesh read_text(const Reader& reader, std::string_view text) {
+  return reader({text, "mesh", {}, nullptr, {}});
 }
 
 /// The message of the Error that reading throws; fails the test if there is none.
-inline std::string refusal(Reader reader, std::string_view text) {
+inline std::string refusal(const Reader& reader, std::string_view text) {
   try {
     read_text(reader, text);
   } catch (const Error& error) {
@@ -31,7 +43,7 @@ inline std::string refusal(Reader reader, std::string_view text) {
 }
 
 /// Reading a prefix of any length must give a mesh or an Error, nothing else.
-inline void expect_any_prefix_is_safe(Reader reader, std::string_view text) {
+inline void expect_any_prefix_is_safe(const Reader& reader, std::string_view text) {
   for (std::size_t size = 0; size <= text.size(); ++size) {
     const std::vector<char> exact(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size));
     try {

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/readers/read_appearance.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 
 namespace voxdag {

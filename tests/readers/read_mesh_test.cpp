@@ -133,7 +133,7 @@ TEST_F(ReadMesh, TheNumberOfThreadsChangesNothing) {
   ply += std::to_string((kSide - 1) * (kSide - 1));
   ply += "\nproperty list uchar int vertex_indices\nend_header\n" + ply_rows + ply_faces;
   stl += "endsolid\n";
-  const auto read_with = [](int threads, Reader reader, const std::string& text) {
+  const auto read_with = [](int threads, const Reader& reader, const std::string& text) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);

@@ -109,4 +109,11 @@ struct Appearance {
   }
 };
 
+/// What reading a mesh file with its appearance gives.
+struct MeshWithAppearance {
+  Mesh mesh;
+  Appearance appearance;
+  std::vector<std::string> warnings;  ///< One line each: what is missing, and what replaces it.
+};
+
 }  // namespace voxdag

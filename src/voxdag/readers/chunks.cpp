@@ -22,7 +22,7 @@ std::vector<std::string_view> split_lines(std::string_view text, char line_end,
   return chunks;
 }
 
-void throw_fault(const MeshBytes& source, const Fault& fault, char line_end) {
+void throw_fault(const MeshSource& source, const Fault& fault, char line_end) {
   if (line_end == kBinary)
     throw source.error_at_byte(static_cast<std::size_t>(fault.position - source.bytes.data()),
                                fault.reason);

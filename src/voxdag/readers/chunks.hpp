@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "voxdag/parallel/parallel_for.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 #include "voxdag/readers/text_scan.hpp"
 
 namespace voxdag {
@@ -31,12 +31,12 @@ struct Fault {
 };
 
 /// Throws the fault as an Error that names its line (or byte) from the start of `source.bytes`.
-[[noreturn]] void throw_fault(const MeshBytes& source, const Fault& fault, char line_end);
+[[noreturn]] void throw_fault(const MeshSource& source, const Fault& fault, char line_end);
 
 /// Runs body(i) for every chunk in parallel and lets the chunk's pages go. A body reports bad input
 /// by throwing Fault; the fault of the earliest chunk is then thrown as an Error.
 template <class Body>
-void for_each_chunk(const MeshBytes& source, const std::vector<std::string_view>& chunks,
+void for_each_chunk(const MeshSource& source, const std::vector<std::string_view>& chunks,
                     char line_end, std::string_view stage, const Body& body) {
   std::vector<std::optional<Fault>> faults(chunks.size());
   parallel_for(chunks.size(), [&](std::size_t i) {

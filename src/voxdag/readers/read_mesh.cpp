@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 
+#include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/readers/assimp/assimp_reader.hpp"
 #include "voxdag/readers/gltf/gltf_reader.hpp"
 #include "voxdag/readers/obj/obj_reader.hpp"
@@ -12,6 +13,63 @@
 #include "voxdag/readers/text_scan.hpp"
 
 namespace voxdag {
+namespace {
+
+/// Adds grey materials with the mesh's names to a mesh whose format has no appearance.
+MeshWithAppearance in_grey(Mesh mesh) {
+  MeshWithAppearance result;
+  std::vector<Material>& materials = result.appearance.materials;
+  materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
+  for (Material& material : materials) material.base_color = kDefaultColor;
+  for (std::size_t i = 0; i < mesh.materials.size(); ++i) materials[i].name = mesh.materials[i];
+  result.mesh = std::move(mesh);
+  return result;
+}
+
+MeshWithAppearance read_format(const MeshSource& source, const std::string& extension,
+                               ReadParts parts) {
+  const auto finish = [&](Mesh mesh) {
+    if (parts == ReadParts::kMesh) return MeshWithAppearance{std::move(mesh), {}, {}};
+    const MemoryReservation materials(source.options.memory,
+                                      mesh.materials.size() * sizeof(Material));
+    return in_grey(std::move(mesh));
+  };
+  switch (detect_mesh_format(source.bytes, extension)) {
+    case MeshFormat::kObj:
+      return read_obj(source, parts);
+    case MeshFormat::kPly:
+      return read_ply(source, parts);
+    case MeshFormat::kGltf:
+      return read_gltf(source, parts);
+    case MeshFormat::kStl:
+      return finish(read_stl(source));
+    case MeshFormat::kOff:
+      return finish(read_off(source));
+    case MeshFormat::kOther:
+      break;
+  }
+  return finish(read_with_assimp(source, extension));
+}
+
+MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& options,
+                        ReadParts parts) {
+  const MappedFile file(path, MappedFile::Access::kSequential);
+  const MeshSource source{file.text(), path.string(), path.parent_path(), &file, options};
+  if (source.bytes.empty()) throw source.error("the file is empty");
+  try {
+    MeshWithAppearance result = read_format(source, path.extension().string(), parts);
+    if (options.memory != nullptr)
+      options.memory->reserve(memory_bytes(result.mesh) + memory_bytes(result.appearance));
+    return result;
+  } catch (const OverMemory& over) {
+    if (!over.file().empty()) throw;
+    throw OverMemory(source.name, "", over.reason());
+  } catch (const std::bad_alloc&) {
+    throw source.error("not enough memory for this mesh");
+  }
+}
+
+}  // namespace
 
 MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension) {
   std::string ext(extension);
@@ -31,29 +89,13 @@ MeshFormat detect_mesh_format(std::string_view bytes, std::string_view extension
   return MeshFormat::kOther;
 }
 
-Mesh read_mesh(const std::filesystem::path& path, Progress* progress) {
-  const MappedFile file(path, MappedFile::Access::kSequential);
-  const MeshBytes source{file.text(), path.string(), path.parent_path(), progress, &file};
-  if (source.bytes.empty()) throw source.error("the file is empty");
-  try {
-    switch (detect_mesh_format(source.bytes, path.extension().string())) {
-      case MeshFormat::kObj:
-        return read_obj(source);
-      case MeshFormat::kPly:
-        return read_ply(source);
-      case MeshFormat::kStl:
-        return read_stl(source);
-      case MeshFormat::kGltf:
-        return read_gltf(source);
-      case MeshFormat::kOff:
-        return read_off(source);
-      case MeshFormat::kOther:
-        break;
-    }
-    return read_with_assimp(source, path.extension().string());
-  } catch (const std::bad_alloc&) {
-    throw source.error("not enough memory for this mesh");
-  }
+Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+  return read(path, options, ReadParts::kMesh).mesh;
+}
+
+MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
+                                             const ReadOptions& options) {
+  return read(path, options, ReadParts::kMeshAndAppearance);
 }
 
 }  // namespace voxdag

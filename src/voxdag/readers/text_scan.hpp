@@ -1,5 +1,5 @@
 #pragma once
-/// Pieces of text parsing that OBJ, ascii PLY and ascii STL share.
+/// Text parsing that OBJ, MTL, OFF, ascii PLY and ascii STL share.
 #include <fast_float/fast_float.h>
 
 #include <charconv>
@@ -8,13 +8,15 @@
 #include <string>
 #include <string_view>
 
+#include "voxdag/readers/quoted.hpp"
+
 namespace voxdag {
 
 inline bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/// Takes the next token off `line`: a run of characters that are not blank; empty at the end.
+/// Removes the next run of non-blank characters from `line` and returns it; empty at the end.
 inline std::string_view next_token(std::string_view& line) {
   const char* p = line.data();
   const char* const end = p + line.size();
@@ -31,22 +33,22 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// The nearest float32 (ties to even) of the number that the text starts with, and where that ends;
-/// null if it starts with none. Infinities and NaN are numbers here, and what is too large is
-/// infinite.
+/// Parses the number that the text starts with into the nearest float32 (ties to even) and returns
+/// the number's end, or null if the text does not start with a number. Accepts infinities and NaN;
+/// a number too large for float32 becomes infinite.
 inline const char* parse_float_prefix(const char* first, const char* last, float& value) {
   if (first != last && *first == '+' && last - first > 1 && first[1] != '-') ++first;
   const auto result = fast_float::from_chars(first, last, value);
   return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
 }
 
-/// As above for the whole token. Returns false if it is not a number.
+/// Parses the whole token like parse_float_prefix. Returns false if it is not a number.
 inline bool parse_float(std::string_view token, float& value) {
   const char* const last = token.data() + token.size();
   return parse_float_prefix(token.data(), last, value) == last;
 }
 
-/// The whole token as a decimal integer, with or without a sign.
+/// Parses the whole token as a decimal integer with or without a sign. Returns false if it is none.
 inline bool parse_int(std::string_view token, std::int64_t& value) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   const char* const last = token.data() + token.size();
@@ -54,14 +56,7 @@ inline bool parse_int(std::string_view token, std::int64_t& value) {
   return result.ec == std::errc() && result.ptr == last;
 }
 
-/// A token for an error message: in quotes, shortened, without control characters.
-inline std::string in_quotes(std::string_view token) {
-  std::string out = "'";
-  for (const char c : token.substr(0, 40)) out += c >= 32 && c < 127 ? c : '?';
-  return out + (token.size() > 40 ? "...'" : "'");
-}
-
-/// The character that ends lines: '\n', or '\r' in a text that has no '\n' near its start.
+/// Returns the character that ends lines: '\n', or '\r' if only '\r' occurs near the start.
 inline char line_end_of(std::string_view text) {
   const std::string_view head = text.substr(0, 65536);
   return head.find('\n') == head.npos && head.find('\r') != head.npos ? '\r' : '\n';
@@ -71,7 +66,7 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
-/// Takes the next line, without its end, off `text`.
+/// Removes the next line and its end from `text` and returns it without the end.
 inline std::string_view next_line(std::string_view& text, char line_end) {
   const void* found = std::memchr(text.data(), line_end, text.size());
   const std::size_t size =

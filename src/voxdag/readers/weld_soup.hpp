@@ -31,7 +31,7 @@ struct SoupSize {
 /// Reads a soup in parts: `visit(part, body)` calls body(Vec3f) for the corners of one part in
 /// order, three for each triangle, and throws Fault at bad input, which is thrown as an Error.
 template <class Visit>
-SoupSize measure_soup(const MeshBytes& source, const std::vector<std::string_view>& parts,
+SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_view>& parts,
                       char line_end, const Visit& visit) {
   constexpr unsigned kOneIn = 16;  // vertices in the sample, by hash
   SoupSize size{std::vector<std::size_t>(parts.size() + 1), 0};
@@ -60,7 +60,7 @@ SoupSize measure_soup(const MeshBytes& source, const std::vector<std::string_vie
 
 /// Welds a soup as measure_soup takes it, which has fewer than 2^32 / 3 triangles.
 template <class Visit>
-Mesh weld(const MeshBytes& source, const std::vector<std::string_view>& parts, char line_end,
+Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, char line_end,
           const Visit& visit, const SoupSize& size) {
   Mesh mesh;
   const std::vector<std::size_t>& starts = size.first_triangles;

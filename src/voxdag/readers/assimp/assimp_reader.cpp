@@ -40,7 +40,7 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-void add_mesh(const MeshBytes& source, const aiMesh& part, Mesh& mesh) {
+void add_mesh(const MeshSource& source, const aiMesh& part, Mesh& mesh) {
   const std::size_t start = mesh.vertices.size();
   if (part.mNumVertices >= std::numeric_limits<std::uint32_t>::max() - start)
     throw source.error("more than 4,294,967,294 vertices");
@@ -68,7 +68,7 @@ void add_mesh(const MeshBytes& source, const aiMesh& part, Mesh& mesh) {
 
 }  // namespace
 
-Mesh read_with_assimp(const MeshBytes& source, const std::string& extension) {
+Mesh read_with_assimp(const MeshSource& source, const std::string& extension) {
   Assimp::Importer importer;
   if (!extension.empty() && !importer.IsExtensionSupported(extension))
     throw source.error("unknown mesh format '" + extension + "'");
@@ -91,7 +91,7 @@ Mesh read_with_assimp(const MeshBytes& source, const std::string& extension) {
 
 #else
 
-Mesh read_with_assimp(const MeshBytes& source, const std::string& extension) {
+Mesh read_with_assimp(const MeshSource& source, const std::string& extension) {
   throw source.error("mesh format '" + extension +
                      "' needs assimp, which this program was built without");
 }

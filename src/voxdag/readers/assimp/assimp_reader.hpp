@@ -1,7 +1,7 @@
 #pragma once
 /// Every other mesh format, through the Open Asset Import Library where it is installed.
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
@@ -9,6 +9,6 @@ namespace voxdag {
 /// lines left out. `extension` (".off") says which of assimp's readers; without one assimp goes by
 /// the content. Throws Error for what assimp refuses, with its reason, for formats that it does not
 /// know, and where this library was built without assimp.
-Mesh read_with_assimp(const MeshBytes& source, const std::string& extension);
+Mesh read_with_assimp(const MeshSource& source, const std::string& extension);
 
 }  // namespace voxdag

@@ -4,6 +4,9 @@
 #include <cstring>
 #include <optional>
 
+#include "voxdag/readers/named_files.hpp"
+#include "voxdag/readers/quoted.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -145,7 +148,7 @@ double GltfValue::number(double absent) const {
   return value_->get<double>();
 }
 
-GltfFile::GltfFile(const MeshBytes& source) : source_(source) {
+GltfFile::GltfFile(const MeshSource& source) : source_(source) {
   const std::string_view bytes = source.bytes;
   if (!bytes.starts_with("glTF")) {
     parse_json(bytes);
@@ -231,11 +234,13 @@ void GltfFile::open_buffers(std::string_view binary_chunk, bool has_chunk) {
         throw value.error("buffer in another place than beside the file");
       const std::string name = decode_percent(uri);
       if (name.find('\0') != name.npos) throw value.error("malformed URI");
+      const Error place = value.error("");
+      const std::filesystem::path path =
+          NamedFiles(source_).find(source_.folder, name, {place.file(), place.place()});
       try {
-        buffer.file =
-            std::make_unique<MappedFile>(source_.folder / name, MappedFile::Access::kSequential);
+        buffer.file = std::make_unique<MappedFile>(path, MappedFile::Access::kSequential);
       } catch (const Error& fault) {
-        throw value.error("buffer '" + name + "': " + fault.reason());
+        throw value.error("buffer " + name_in_quotes(name) + ": " + fault.reason());
       }
       buffer.bytes = buffer.file->text();
     }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
@@ -15,7 +15,7 @@ namespace voxdag {
 /// Members that are absent have a null value.
 class GltfValue {
  public:
-  GltfValue(const MeshBytes& source, const nlohmann::json& value, std::string path)
+  GltfValue(const MeshSource& source, const nlohmann::json& value, std::string path)
       : source_(&source), value_(&value), path_(std::move(path)) {}
 
   /// The member of an object; throws Error if this is there but is no object.
@@ -37,7 +37,7 @@ class GltfValue {
   Error error(const std::string& reason) const { return {source_->name, path_, reason}; }
 
  private:
-  const MeshBytes* source_;
+  const MeshSource* source_;
   const nlohmann::json* value_;
   std::string path_;
 };
@@ -53,7 +53,7 @@ class GltfFile {
  public:
   /// Parses the container (JSON text or GLB) and checks version and required extensions. Buffers
   /// are opened too: files beside the asset are mapped, `data:` URIs are decoded. Images are not.
-  explicit GltfFile(const MeshBytes& source);
+  explicit GltfFile(const MeshSource& source);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
@@ -74,7 +74,7 @@ class GltfFile {
   void check_version() const;
   void open_buffers(std::string_view binary_chunk, bool has_chunk);
 
-  const MeshBytes& source_;
+  const MeshSource& source_;
   nlohmann::json json_;
   std::vector<std::pair<std::string, std::vector<GltfValue>>> arrays_;
   std::vector<GltfBuffer> buffers_;

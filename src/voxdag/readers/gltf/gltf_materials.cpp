@@ -50,7 +50,7 @@ TextureWrap wrap_of(const GltfValue& mode) {
 
 class MaterialReader {
  public:
-  MaterialReader(const MeshBytes& source, const GltfFile& file, Appearance& appearance,
+  MaterialReader(const MeshSource& source, const GltfFile& file, Appearance& appearance,
                  std::vector<std::string>& warnings)
       : source_(source), file_(file), appearance_(appearance), warnings_(warnings) {}
 
@@ -142,7 +142,7 @@ class MaterialReader {
     return use;
   }
 
-  const MeshBytes& source_;
+  const MeshSource& source_;
   const GltfFile& file_;
   Appearance& appearance_;
   std::vector<std::string>& warnings_;
@@ -160,7 +160,7 @@ std::uint64_t gltf_uv_set(const GltfFile& file, const GltfValue& primitive) {
   }
 }
 
-void read_gltf_materials(const MeshBytes& source, const GltfFile& file, const Mesh& mesh,
+void read_gltf_materials(const MeshSource& source, const GltfFile& file, const Mesh& mesh,
                          Appearance& appearance, std::vector<std::string>& warnings) {
   MaterialReader(source, file, appearance, warnings).read(mesh);
 }

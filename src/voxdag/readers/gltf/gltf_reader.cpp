@@ -62,7 +62,7 @@ std::array<std::size_t, 3> triangle_corners(std::uint64_t mode, std::size_t i) {
 
 class GltfReader {
  public:
-  explicit GltfReader(const MeshBytes& source) : source_(source), file_(source) {}
+  explicit GltfReader(const MeshSource& source) : source_(source), file_(source) {}
 
   /// Lets `corners` gather the attributes while the mesh is read.
   void gather(GltfCorners& corners) { corners_ = &corners; }
@@ -72,7 +72,7 @@ class GltfReader {
     find_instances();
     reserve();
     for (const auto& [mesh, transform] : instances_) {
-      if (source_.progress != nullptr) source_.progress->throw_if_cancelled();
+      if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
       vertex_starts_.clear();
       for (const GltfValue& primitive : (*mesh)["primitives"].items())
         add_primitive(primitive, transform);
@@ -243,7 +243,7 @@ class GltfReader {
     if (uses_default_material_) mesh_.materials.emplace_back();
   }
 
-  const MeshBytes& source_;
+  const MeshSource& source_;
   const GltfFile file_;
   std::vector<Instance> instances_;
   /// Where the vertices of a position accessor start, in the instance at hand.
@@ -259,19 +259,15 @@ class GltfReader {
 
 }  // namespace
 
-Mesh read_gltf(const MeshBytes& source) {
-  if (source.bytes.empty()) throw source.error("the file is empty");
-  return GltfReader(source).read();
-}
-
-MeshWithAppearance read_gltf_with_appearance(const MeshBytes& source) {
+MeshWithAppearance read_gltf(const MeshSource& source, ReadParts parts) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   MeshWithAppearance result;
   GltfReader reader(source);
   GltfCorners corners(result.appearance, result.warnings);
-  reader.gather(corners);
+  if (parts == ReadParts::kMeshAndAppearance) reader.gather(corners);
   result.mesh = reader.read();
-  read_gltf_materials(source, reader.file(), result.mesh, result.appearance, result.warnings);
+  if (parts == ReadParts::kMeshAndAppearance)
+    read_gltf_materials(source, reader.file(), result.mesh, result.appearance, result.warnings);
   return result;
 }
 

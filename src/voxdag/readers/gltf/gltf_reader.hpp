@@ -1,8 +1,7 @@
 #pragma once
 /// glTF 2.0, as JSON text (.gltf) or binary (.glb).
-#include "voxdag/mesh/mesh.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
-#include "voxdag/readers/read_appearance.hpp"
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
@@ -18,10 +17,9 @@ namespace voxdag {
 /// beyond their buffers, indices out of range, vertices that are used and not finite, nodes that do
 /// not form trees, missing buffers, required extensions that change geometry (Draco, meshopt).
 /// Throws Error if there are no triangles.
-Mesh read_gltf(const MeshBytes& source);
-
-/// As above, with NORMAL, TEXCOORD_n (the set that a material's colour texture uses), COLOR_0 and
-/// the materials.
-MeshWithAppearance read_gltf_with_appearance(const MeshBytes& source);
+///
+/// With its appearance: NORMAL, TEXCOORD_n (the set that a material's colour texture uses), COLOR_0
+/// and the materials.
+MeshWithAppearance read_gltf(const MeshSource& source, ReadParts parts);
 
 }  // namespace voxdag

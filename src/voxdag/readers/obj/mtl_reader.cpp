@@ -2,177 +2,115 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <map>
+#include <limits>
 #include <span>
-#include <stdexcept>
+#include <vector>
 
 #include "voxdag/image/color.hpp"
+#include "voxdag/readers/name_table.hpp"
+#include "voxdag/readers/obj/mtl_map.hpp"
 #include "voxdag/readers/obj/obj_lines.hpp"
 
 namespace voxdag {
-namespace {
 
-std::string to_lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return out;
-}
-
-/// A statement that is not what it should be; the message is the reason.
-struct Malformed : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// Takes the numbers that the text starts with off it, `numbers.size()` at most, and returns how
-/// many there were. Those that are not finite are taken, too: nothing else begins like that.
-std::size_t take_numbers(std::string_view& text, std::span<float> numbers) {
-  std::size_t count = 0;
-  std::string_view rest = text;
-  for (float number; count < numbers.size() && parse_float(next_token(rest), number); text = rest)
-    numbers[count++] = number;
-  return count;
-}
-
-bool all_finite(std::span<const float> numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });
-}
-
-/// The same where there must be at least so many, all finite; the others stay as given.
-void take_numbers(std::string_view& text, std::span<float> numbers, std::size_t least,
-                  const char* expected) {
-  const std::size_t count = take_numbers(text, numbers);
-  if (count < least || !all_finite(numbers.first(count))) throw Malformed(expected);
-}
-
-/// A map statement: its options and its file.
-struct Map {
-  std::string file;
-  std::array<float, 3> scale{1, 1, 1}, offset{0, 0, 0};
-  std::array<float, 2> base_gain{0, 1};
-  float bump = 1;
-  bool clamp = false;
-};
-
-bool take_switch(std::string_view& text) {
-  const std::string value = to_lower(next_token(text));
-  if (value != "on" && value != "off") throw Malformed("-clamp takes on or off");
-  return value == "on";
-}
-
-/// Throws Malformed.
-Map parse_map(std::string_view text) {
-  Map map;
-  for (text = trim(text); text.starts_with('-'); text = trim(text)) {
-    std::string_view rest = text;
-    const std::string option = to_lower(next_token(rest));
-    std::array<float, 3> ignored{};
-    if (option == "-s")
-      take_numbers(rest, map.scale, 1, "-s takes one to three finite numbers");
-    else if (option == "-o")
-      take_numbers(rest, map.offset, 1, "-o takes one to three finite numbers");
-    else if (option == "-mm")
-      take_numbers(rest, map.base_gain, 2, "-mm takes two finite numbers");
-    else if (option == "-bm")
-      take_numbers(rest, std::span(&map.bump, 1), 1, "-bm takes a finite number");
-    else if (option == "-clamp")
-      map.clamp = take_switch(rest);
-    else if (option == "-t")
-      take_numbers(rest, ignored);
-    else if (option == "-boost" || option == "-texres")
-      take_numbers(rest, std::span(ignored).first(1));
-    else if (option == "-blendu" || option == "-blendv" || option == "-cc" ||
-             option == "-imfchan" || option == "-type")
-      next_token(rest);
-    else
-      break;  // A file whose name starts with a dash.
-    text = rest;
-  }
-  map.file = text;
-  if (map.file.empty()) throw Malformed("it names no file");
-  return map;
-}
-
-class MtlReader {
+class MtlReader::Impl {
  public:
-  MtlReader(const std::filesystem::path& file, Appearance& appearance,
-            std::vector<std::string>& warnings)
-      : file_(file), folder_(file.parent_path()), appearance_(appearance), warnings_(warnings) {
-    for (std::size_t i = 0; i < appearance.images.size(); ++i)
-      images_.emplace(appearance.images[i].path.string(), static_cast<int>(i));
+  Impl(const MeshSource& source, const NamedFiles& files, Appearance& appearance,
+       Warnings& warnings)
+      : source_(source),
+        files_(files),
+        appearance_(appearance),
+        warnings_(warnings),
+        names_(source.options.memory),
+        images_(source.options.memory),
+        image_memory_(source.options.memory, 0),
+        is_described_(appearance.materials.size(), false) {
+    for (const Material& material : appearance.materials) names_.find_or_add(material.name);
   }
 
-  std::vector<std::string> read(std::string_view text) {
+  void read(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
+    folder_ = folder;
+    file_ = name;
+    material_ = nullptr;
     text = without_byte_order_mark(text);
     const char line_end = line_end_of(text);
-    for_each_line(text, line_end, [&](std::string_view line, const char* position) {
-      const std::string_view whole = trim(line);
-      const std::string keyword = to_lower(next_token(line));
-      if (keyword == "newmtl") return start(trim(line));
-      if (material_ == nullptr) return;
-      const auto warn = [&](const std::string& what) {
-        const auto number = 1 + std::count(text.data(), position, line_end);
-        warnings_.push_back(file_.string() + ": line " + std::to_string(number) + ": " +
-                            in_quotes(whole) + ": " + what);
-      };
-      take(keyword, trim(line), warn);
-    });
-    return std::move(described_);
+    line_number_ = 1;
+    const char* counted = text.data();
+    CancelPoll poll(source_.options.progress);
+    for_each_line(
+        text, line_end, source_.options.memory, [&](std::string_view line, const char* position) {
+          poll.step();
+          line_number_ += static_cast<std::size_t>(std::count(counted, position, line_end));
+          counted = position;
+          statement_ = trim(line);
+          const std::string keyword = to_lower(next_token(line));
+          if (keyword == "newmtl")
+            start(trim(line));
+          else if (material_ != nullptr)
+            take(keyword, trim(line));
+        });
   }
+
+  bool describes(std::size_t material) const { return is_described_[material]; }
 
  private:
   void start(std::string_view name) {
-    const auto found =
-        std::find_if(appearance_.materials.begin(), appearance_.materials.end(),
-                     [&](const Material& material) { return material.name == name; });
-    material_ = found == appearance_.materials.end() ? nullptr : &*found;
-    if (material_ == nullptr) return;
+    const auto found = names_.find(name);
+    material_ = found ? &appearance_.materials[*found] : nullptr;
+    if (!found) return;
     *material_ = {};
     material_->name = name;
-    described_.emplace_back(name);
+    is_described_[*found] = true;
   }
 
-  /// warn(what is wrong and what stands in) is called for what is malformed.
-  template <class Warn>
-  void take(const std::string& keyword, std::string_view line, const Warn& warn) {
+  std::string place() const { return "line " + std::to_string(line_number_); }
+
+  /// Adds what is wrong with the statement at hand, and what replaces it.
+  void warn(const std::string& what) {
+    warnings_.add(file_ + ": " + place() + ": " + in_quotes(statement_) + ": " + what);
+  }
+
+  /// Runs body(), which parses a statement. If that is malformed, warns that `replacement` holds:
+  /// callers set it before.
+  template <class Body>
+  void attempt(const char* replacement, const Body& body) {
+    try {
+      body();
+    } catch (const MalformedMtl& fault) {
+      warn(std::string(fault.what()) + ": " + replacement);
+    }
+  }
+
+  void take(const std::string& keyword, std::string_view line) {
     Material& material = *material_;
-    // What stands in for what is malformed is set before.
-    const auto attempt = [&](const char* stands_in, const auto& body) {
-      try {
-        body();
-      } catch (const Malformed& fault) {
-        warn(std::string(fault.what()) + ": " + stands_in);
-      }
-    };
     if (keyword == "kd") {
       material.base_color = kDefaultColor;
-      attempt("the material's colour is grey", [&] { set_color(line, warn); });
+      attempt("the material's colour is grey", [&] { set_color(line); });
     } else if (keyword == "d" || keyword == "tr") {
       material.alpha = 1;
-      attempt("the material is opaque", [&] { set_alpha(line, keyword == "tr", warn); });
+      attempt("the material is opaque", [&] { set_alpha(line, keyword == "tr"); });
       if (material.alpha < 1 && material.alpha_mode == AlphaMode::kOpaque)
         material.alpha_mode = AlphaMode::kBlend;
     } else if (keyword == "map_kd") {
       material.color_map = {};
       attempt("the material's colour stands in for the texture",
-              [&] { material.color_map = use(parse_map(line)); });
+              [&] { material.color_map = use(parse_mtl_map(line)); });
     } else if (keyword == "map_d") {
       material.alpha_map = {};
       attempt("the material is opaque without its alpha map", [&] {
-        material.alpha_map = use(parse_map(line));
+        material.alpha_map = use(parse_mtl_map(line));
         material.alpha_mode = AlphaMode::kMask;
       });
     } else if (keyword == "norm" || keyword == "map_kn") {
-      set_normal_map(line, NormalMapKind::kTangentSpace, attempt);
+      set_normal_map(line, NormalMapKind::kTangentSpace);
     } else if (keyword == "bump" || keyword == "map_bump") {
       if (material.normal_map.exists() && material.normal_kind == NormalMapKind::kTangentSpace)
-        return;  // `norm` says more.
-      set_normal_map(line, NormalMapKind::kEither, attempt);
+        return;  // `norm` is exact; `bump` may be either kind.
+      set_normal_map(line, NormalMapKind::kEither);
     } else if (keyword == "disp" || keyword == "map_disp") {
       material.displacement_map = {};
       attempt("the surface stays without displacement", [&] {
-        const Map map = parse_map(line);
+        const MtlMap map = parse_mtl_map(line);
         material.displacement_map = use(map);
         material.displacement_base = map.base_gain[0];
         material.displacement_gain = map.base_gain[1];
@@ -180,24 +118,22 @@ class MtlReader {
     }
   }
 
-  template <class Warn>
-  void set_color(std::string_view line, const Warn& warn) {
+  void set_color(std::string_view line) {
     std::string_view rest = line;
     if (const std::string kind = to_lower(next_token(rest)); kind == "spectral" || kind == "xyz")
-      throw Malformed("spectral curves and CIEXYZ are not read");
+      throw MalformedMtl("spectral curves and CIEXYZ are not read");
     std::array<float, 3> kd{};
     const std::size_t count = take_numbers(line, kd);
-    // One is for all three.
+    // One number is for all three channels.
     const bool is_grey = count == 1 && next_corner(line).empty();
     if (is_grey) kd[1] = kd[2] = kd[0];
-    if ((count != 3 && !is_grey) || !all_finite(kd)) throw Malformed(kColorNumbers);
+    if ((count != 3 && !is_grey) || !all_finite(kd)) throw MalformedMtl(kColorNumbers);
     for (std::size_t c = 0; c < 3; ++c)
       material_->base_color[static_cast<int>(c)] = srgb_to_linear(std::clamp(kd[c], 0.0f, 1.0f));
     if (std::any_of(kd.begin(), kd.end(), is_outside)) warn(kClamped);
   }
 
-  template <class Warn>
-  void set_alpha(std::string_view line, bool is_transparency, const Warn& warn) {
+  void set_alpha(std::string_view line, bool is_transparency) {
     if (line.starts_with("-halo")) next_token(line);
     float value = 0;
     take_numbers(line, std::span(&value, 1), 1, "not a finite number");
@@ -205,50 +141,76 @@ class MtlReader {
     if (is_outside(value)) warn(kClamped);
   }
 
-  template <class Attempt>
-  void set_normal_map(std::string_view line, NormalMapKind kind, const Attempt& attempt) {
+  void set_normal_map(std::string_view line, NormalMapKind kind) {
     material_->normal_map = {};
     attempt("the mesh's own normals stand in for the normal map", [&] {
-      const Map map = parse_map(line);
+      const MtlMap map = parse_mtl_map(line);
       material_->normal_map = use(map);
       material_->normal_kind = kind;
       material_->normal_scale = map.bump;
     });
   }
 
-  TextureUse use(const Map& map) {
+  TextureUse use(const MtlMap& map) {
     TextureUse use;
-    std::string file = map.file;
-    std::replace(file.begin(), file.end(), '\\', '/');  // Written on Windows.
-    const std::filesystem::path path = folder_ / file;
-    const auto [known, is_new] =
-        images_.try_emplace(path.string(), static_cast<int>(appearance_.images.size()));
-    if (is_new) appearance_.images.push_back({path.string(), path, {}});
-    use.image = known->second;
+    use.image = image(map.file);
     if (map.clamp) use.wrap_u = use.wrap_v = TextureWrap::kClamp;
     // The file's v runs up and ours, 1 - v, down: s * v + o becomes s * (1 - v) + (1 - s - o).
     use.uv = {map.scale[0], 0, 0, map.scale[1], map.offset[0], 1 - map.scale[1] - map.offset[1]};
     return use;
   }
 
+  /// Returns the index of an image, which it adds if it is new.
+  int image(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');  // Written on Windows.
+    std::vector<TextureImage>& images = appearance_.images;
+    const std::string key = (folder_ / name).string();
+    if (const auto known = images_.find(key)) return static_cast<int>(*known);
+    const std::filesystem::path path = files_.find(folder_, name, {file_, place()});
+    if (images.size() == images.capacity())
+      images.reserve(grown(images.size(), sizeof(TextureImage)));
+    image_memory_.resize(image_memory_.bytes() + 3 * key.size());  // Name, path, its components.
+    images.push_back({printable_path(folder_, name), path, {}});
+    return static_cast<int>(images_.find_or_add(key));
+  }
+
+  /// Reserves memory for twice as many elements and returns their number.
+  std::size_t grown(std::size_t count, std::size_t element_bytes) {
+    const std::size_t capacity = std::max<std::size_t>(16, 2 * count);
+    image_memory_.resize(image_memory_.bytes() + capacity * element_bytes);
+    return capacity;
+  }
+
   static constexpr const char* kColorNumbers = "not one or three finite numbers";
   static constexpr const char* kClamped = "outside of 0 to 1: it is clamped";
   static bool is_outside(float value) { return value < 0 || value > 1; }
 
-  const std::filesystem::path& file_;
-  const std::filesystem::path folder_;
+  const MeshSource& source_;
+  const NamedFiles& files_;
   Appearance& appearance_;
-  std::vector<std::string>& warnings_;
-  std::map<std::string, int> images_;
+  Warnings& warnings_;
+  NameTable names_;   ///< Of the materials.
+  NameTable images_;  ///< Paths of the images.
+  MemoryReservation image_memory_;
+  std::vector<bool> is_described_;
+  std::filesystem::path folder_;  ///< Of the file at hand.
+  std::string file_;              ///< Its name in messages.
+  std::size_t line_number_ = 1;
+  std::string_view statement_;
   Material* material_ = nullptr;
-  std::vector<std::string> described_;
 };
 
-}  // namespace
+MtlReader::MtlReader(const MeshSource& source, const NamedFiles& files, Appearance& appearance,
+                     Warnings& warnings)
+    : impl_(std::make_unique<Impl>(source, files, appearance, warnings)) {}
 
-std::vector<std::string> read_mtl(std::string_view text, const std::filesystem::path& file,
-                                  Appearance& appearance, std::vector<std::string>& warnings) {
-  return MtlReader(file, appearance, warnings).read(text);
+MtlReader::~MtlReader() = default;
+
+void MtlReader::read(std::string_view text, const std::filesystem::path& folder,
+                     const std::string& name) {
+  impl_->read(text, folder, name);
 }
+
+bool MtlReader::describes(std::size_t material) const { return impl_->describes(material); }
 
 }  // namespace voxdag

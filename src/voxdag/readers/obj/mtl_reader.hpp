@@ -1,23 +1,40 @@
 #pragma once
 /// MTL, the material files of Wavefront OBJ.
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "voxdag/mesh/appearance.hpp"
+#include "voxdag/readers/mesh_source.hpp"
+#include "voxdag/readers/named_files.hpp"
+#include "voxdag/readers/warnings.hpp"
 
 namespace voxdag {
 
-/// Fills those of `appearance.materials` that the file describes, by name, and adds the images that
-/// they use. `file` is its path: names of images start in its folder.
+/// Fills materials from MTL files, by name, and adds the images that they use.
 ///
-/// Read are Kd (taken as sRGB), d and Tr, map_Kd, map_d, norm, bump (map_bump) with -bm, disp
-/// (map_disp) with -mm, and for each map -s, -o and -clamp; other statements and options are passed
-/// over. A map_Kd gives the colour alone: Kd stands in where it is missing. A map_d makes the
-/// material a mask. Appends to `warnings` what is malformed among these, with its line and what
-/// stands in. Returns the names of the materials that the file describes.
-std::vector<std::string> read_mtl(std::string_view text, const std::filesystem::path& file,
-                                  Appearance& appearance, std::vector<std::string>& warnings);
+/// Reads Kd (as sRGB), d and Tr, map_Kd, map_d, norm, bump (map_bump) with -bm, disp (map_disp)
+/// with -mm, and for each map -s, -o and -clamp; ignores other statements and options. A map_Kd
+/// alone gives the colour; Kd replaces it where the image cannot be read. A map_d makes the
+/// material a mask. A malformed statement is a warning with its line and with what replaces it.
+class MtlReader {
+ public:
+  /// `appearance` has the materials, with distinct names. The references must stay valid.
+  MtlReader(const MeshSource& source, const NamedFiles& files, Appearance& appearance,
+            Warnings& warnings);
+  ~MtlReader();
+
+  /// Reads the text of one file, whose names of images start in `folder`. `name` names the file in
+  /// messages. Throws Error for an image outside of the mesh file's folder, OverMemory, Cancelled.
+  void read(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+  /// Whether a file that was read describes appearance.materials[material].
+  bool describes(std::size_t material) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace voxdag

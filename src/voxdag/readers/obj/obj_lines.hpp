@@ -3,28 +3,23 @@
 #include <string>
 #include <string_view>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/readers/text_scan.hpp"
 
 namespace voxdag {
 
-/// The next corner of a face line; empty at its end or at a comment.
+/// Removes the next corner from a face line and returns it; empty at its end or at a comment.
 inline std::string_view next_corner(std::string_view& line) {
   const std::string_view token = next_token(line);
   return token.starts_with('#') ? std::string_view{} : token;
 }
 
-/// Triangles in the fan of a face line.
-inline std::size_t count_fan_triangles(std::string_view corners) {
-  std::size_t count = 0;
-  while (!next_corner(corners).empty()) ++count;
-  return count < 3 ? 0 : count - 2;
-}
-
-/// Calls line(text, position) for every line of a chunk, leading blanks removed and continued lines
-/// joined. `position` points to the line's place in the file.
+/// Calls body(text, position) for every line of a chunk, with leading blanks removed and continued
+/// lines joined. `position` points to the line's start in the file. Counts joined lines against
+/// `memory`, which may be null.
 template <class Line>
-void for_each_line(std::string_view chunk, char line_end, const Line& body) {
-  std::string joined;
+void for_each_line(std::string_view chunk, char line_end, MemoryBudget* memory, const Line& body) {
+  std::basic_string<char, std::char_traits<char>, CountedAllocator<char>> joined(memory);
   while (!chunk.empty()) {
     std::string_view line = next_line(chunk, line_end);
     const char* const position = line.data();

@@ -1,51 +1,44 @@
-/// OBJ in two passes over chunks of whole lines, both parallel: the first counts what each chunk
-/// holds, so that the second can parse straight into its place in arrays of the exact size.
+/// Two parallel passes over chunks of whole lines: the first counts what each chunk holds, so that
+/// the second can parse into arrays of their final size. Then faces are cut, when all vertices are
+/// known.
 #include "voxdag/readers/obj/obj_reader.hpp"
 
-#include <cmath>
 #include <limits>
-#include <map>
-#include <set>
+#include <optional>
 
-#include "voxdag/mesh/polygon.hpp"
+#include "voxdag/readers/bad_vertex.hpp"
 #include "voxdag/readers/chunks.hpp"
-#include "voxdag/readers/obj/obj_lines.hpp"
+#include "voxdag/readers/obj/obj_attributes.hpp"
+#include "voxdag/readers/obj/obj_materials.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kNoMaterial = std::numeric_limits<std::uint32_t>::max();
 
-/// What one chunk holds, then where that starts in the mesh.
-struct Chunk {
-  std::size_t vertices = 0, triangles = 0;
-  std::size_t first_vertex = 0, first_triangle = 0;
+/// Where a chunk starts in the mesh, and what the second pass leaves for the cut.
+struct PlacedChunk {
+  explicit PlacedChunk(MemoryBudget* memory) : is_same_face(memory) {}
+
+  ObjCounts first;                       ///< What precedes the chunk.
+  std::size_t triangles = 0;             ///< In the chunk.
   std::uint32_t material = kNoMaterial;  ///< In force at the start of the chunk.
-  bool faces_before_material = false;
-  bool not_finite = false;         ///< A vertex of the chunk is NaN or infinite.
-  std::vector<bool> is_same_face;  ///< Triangles of the face of the one before, if there are any.
-  std::vector<std::string> materials;  ///< Distinct, in the order of first appearance.
-  std::set<std::string, std::less<>> known_materials;
-  std::string last_material;
+  bool has_bad_vertex = false;           ///< A vertex of the chunk is NaN or infinite.
+  /// Whether a triangle of the chunk belongs to the face of the triangle before; empty if none
+  /// does.
+  CountedVector<bool> is_same_face;
 };
 
-enum class Statement { kVertex, kFace, kMaterial, kOther };
+/// A corner as parsed.
+struct Corner {
+  std::uint32_t vertex = 0;
+  ObjReferences references;
+};
 
-/// What a line, which is not empty and starts with no blank, states; leaves its arguments in
-/// `line`.
-Statement take_keyword(std::string_view& line) {
-  const std::size_t size = line.starts_with("usemtl") ? 6 : 1;
-  if (line.size() > size && !is_blank(line[size])) return Statement::kOther;
-  const char first = line.front();
-  line.remove_prefix(size);
-  if (size == 6) return Statement::kMaterial;
-  return first == 'v' ? Statement::kVertex : first == 'f' ? Statement::kFace : Statement::kOther;
-}
-
-/// Index of the vertex that a corner (`v`, `v/vt`, `v//vn` or `v/vt/vn`) names. `seen` vertices
-/// precede the line in the file; `total` are in the file.
-std::uint32_t parse_corner(std::string_view corner, std::size_t seen, std::size_t total,
-                           const char* position) {
+/// Returns the index of the vertex that a corner (`v`, `v/vt`, `v//vn` or `v/vt/vn`) names. `seen`
+/// vertices precede the line in the file, `total` are in the file. Throws Fault.
+std::uint32_t parse_vertex_index(std::string_view corner, std::size_t seen, std::size_t total,
+                                 const char* position) {
   const std::string_view reference = corner.substr(0, corner.find('/'));
   std::int64_t index = 0;
   if (!parse_int(reference, index) || corner.find_first_not_of("0123456789+-/") != corner.npos)
@@ -60,7 +53,8 @@ std::uint32_t parse_corner(std::string_view corner, std::size_t seen, std::size_
                             (relative ? " vertices so far" : " vertices")};
 }
 
-Vec3f parse_vertex(std::string_view numbers, const char* position) {
+/// Removes three coordinates from a line. Throws Fault.
+Vec3f take_vertex(std::string_view& numbers, const char* position) {
   Vec3f vertex;
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view token = next_token(numbers);
@@ -73,172 +67,219 @@ Vec3f parse_vertex(std::string_view numbers, const char* position) {
 
 class ObjReader {
  public:
-  explicit ObjReader(const MeshBytes& source)
+  ObjReader(const MeshSource& source, ReadParts parts)
       : source_(source),
+        has_appearance_(parts == ReadParts::kMeshAndAppearance),
         line_end_(line_end_of(source.bytes)),
         texts_(split_lines(without_byte_order_mark(source.bytes), line_end_)),
-        chunks_(texts_.size()) {}
+        memory_(source.options.memory, 0),
+        material_ids_(source.options.memory),
+        libraries_(source.options.memory) {}
 
-  Mesh read() {
-    for_each_chunk(source_, texts_, line_end_, "scan", [this](std::size_t i) { count(i); });
-    place_chunks();
+  MeshWithAppearance read() {
+    count_chunks();
+    report_obj_libraries(source_, libraries_);
     for_each_chunk(source_, texts_, line_end_, "read", [this](std::size_t i) { parse(i); });
     check_finite();
     parallel_for(chunks_.size(), [this](std::size_t i) { cut_faces(chunks_[i]); });
-    return std::move(mesh_);
+    MeshWithAppearance result;
+    if (has_appearance_) {
+      attributes_->finish(mesh_, result.appearance);
+      result.warnings = read_obj_materials(source_, mesh_, libraries_, attributes_->has_colors(),
+                                           attributes_->bad_references(), result.appearance);
+    }
+    result.mesh = std::move(mesh_);
+    return result;
   }
 
  private:
-  void count(std::size_t i) {
-    Chunk& chunk = chunks_[i];
-    for_each_line(texts_[i], line_end_, [&](std::string_view line, const char*) {
-      const Statement statement = take_keyword(line);
-      if (statement == Statement::kVertex) {
-        ++chunk.vertices;
-      } else if (statement == Statement::kFace) {
-        chunk.triangles += count_fan_triangles(line);
-        chunk.faces_before_material |= chunk.materials.empty();
-      } else if (statement == Statement::kMaterial) {
-        const std::string_view name = trim(line);
-        if (chunk.known_materials.contains(name)) {
-          chunk.last_material = name;
-        } else {
-          chunk.last_material = chunk.materials.emplace_back(name);
-          chunk.known_materials.emplace(name);
-        }
-      }
-    });
-    chunk.known_materials.clear();
-  }
-
-  /// Turns the counts of the chunks into places in the mesh, and makes room there.
-  void place_chunks() {
-    std::size_t vertices = 0, triangles = 0;
+  /// Counts what the chunks hold, turns the counts into places in the mesh, and makes room there.
+  void count_chunks() {
+    std::vector<std::optional<ObjChunk>> counted(texts_.size());
+    for_each_chunk(source_, texts_, line_end_, "scan",
+                   [&](std::size_t i) { counted[i].emplace(source_, texts_[i], line_end_); });
     std::uint32_t material = kNoMaterial;
-    for (Chunk& chunk : chunks_) {
-      chunk.first_vertex = vertices;
-      chunk.first_triangle = triangles;
-      vertices += chunk.vertices;
-      triangles += chunk.triangles;
-      if (material == kNoMaterial && chunk.faces_before_material)
-        material = material_id("");  // The faces before any usemtl; unused if there is none.
-      chunk.material = material;
-      for (const auto& name : chunk.materials) material_id(name);
-      if (!chunk.materials.empty()) material = material_id(chunk.last_material);
+    bool has_colors = false;
+    for (std::optional<ObjChunk>& chunk : counted) {
+      PlacedChunk& placed = chunks_.emplace_back(source_.options.memory);
+      placed.first = totals_;
+      placed.triangles = chunk->counts.triangles;
+      totals_ += chunk->counts;
+      has_colors = has_colors || chunk->has_colors;
+      if (material == kNoMaterial && chunk->faces_before_material)
+        material = material_ids_.find_or_add("");  // For the faces before any usemtl.
+      placed.material = material;
+      for (std::size_t i = 0; i < chunk->materials.size(); ++i)
+        material_ids_.find_or_add(chunk->materials[i]);
+      if (!chunk->materials.empty())
+        material = *material_ids_.find(chunk->materials[chunk->last_material]);
+      for (std::size_t i = 0; i < chunk->libraries.size(); ++i)
+        libraries_.find_or_add(chunk->libraries[i]);
+      chunk.reset();
     }
-    if (triangles == 0) throw source_.error("OBJ without faces: there is no surface to read");
-    if (vertices >= kNoMaterial) throw source_.error("more than 4,294,967,294 vertices");
-    const bool has_materials = material_ids_.size() > material_ids_.count("");
-    if (!has_materials) mesh_.materials.clear();
-    mesh_.vertices.resize(vertices);
-    mesh_.triangles.resize(triangles);
-    if (has_materials) mesh_.triangle_materials.resize(triangles);
+    if (totals_.triangles == 0)
+      throw source_.error("OBJ without faces: there is no surface to read");
+    if (totals_.vertices >= kNoMaterial) throw source_.error("more than 4,294,967,294 vertices");
+    make_room(has_colors);
   }
 
-  std::uint32_t material_id(std::string_view name) {
-    const auto found = material_ids_.find(name);
-    if (found != material_ids_.end()) return found->second;
-    const auto id = static_cast<std::uint32_t>(mesh_.materials.size());
-    material_ids_.emplace(name, id);
-    mesh_.materials.emplace_back(name);
-    return id;
+  void make_room(bool has_colors) {
+    const bool has_materials = material_ids_.size() > (material_ids_.find("") ? 1 : 0);
+    std::uint64_t bytes = totals_.vertices * sizeof(Vec3f) + totals_.triangles * sizeof(Triangle);
+    if (has_materials) {
+      bytes += totals_.triangles * sizeof(std::uint32_t);
+      for (std::size_t i = 0; i < material_ids_.size(); ++i)
+        bytes += sizeof(std::string) + material_ids_[i].size() + 1;
+    }
+    memory_.resize(bytes);
+    mesh_.vertices.resize(totals_.vertices);
+    mesh_.triangles.resize(totals_.triangles);
+    if (has_materials) {
+      mesh_.triangle_materials.resize(totals_.triangles);
+      mesh_.materials.reserve(material_ids_.size());
+      for (std::size_t i = 0; i < material_ids_.size(); ++i)
+        mesh_.materials.push_back(material_ids_[i]);
+    }
+    if (has_appearance_) attributes_.emplace(source_, totals_, has_colors);
   }
 
   void parse(std::size_t i) {
-    Chunk& chunk = chunks_[i];
-    std::size_t vertex = chunk.first_vertex, triangle = chunk.first_triangle;
+    PlacedChunk& chunk = chunks_[i];
+    ObjCounts seen = chunk.first;  // What precedes the line.
     std::uint32_t material = chunk.material;
-    for_each_line(texts_[i], line_end_, [&](std::string_view line, const char* position) {
-      const Statement statement = take_keyword(line);
-      if (statement == Statement::kVertex) {
-        const Vec3f p = parse_vertex(line, position);
-        chunk.not_finite |= !is_finite(p);
-        mesh_.vertices[vertex++] = p;
-      } else if (statement == Statement::kFace) {
-        const std::size_t end = parse_face(line, position, vertex, triangle);
-        if (!mesh_.triangle_materials.empty())
-          std::fill(mesh_.triangle_materials.begin() + static_cast<std::ptrdiff_t>(triangle),
-                    mesh_.triangle_materials.begin() + static_cast<std::ptrdiff_t>(end), material);
-        if (end > triangle + 1) mark_face(chunk, triangle, end);
-        triangle = end;
-      } else if (statement == Statement::kMaterial) {
-        material = material_ids_.find(trim(line))->second;
-      }
-    });
+    CancelPoll poll(source_.options.progress);
+    for_each_line(texts_[i], line_end_, source_.options.memory,
+                  [&](std::string_view line, const char* position) {
+                    switch (take_keyword(line)) {
+                      case ObjStatement::kVertex: {
+                        const Vec3f p = take_vertex(line, position);
+                        chunk.has_bad_vertex |= !is_finite(p);
+                        mesh_.vertices[seen.vertices] = p;
+                        if (has_appearance_ && attributes_->has_colors() && is_finite(p))
+                          attributes_->set_color(seen.vertices, line);
+                        ++seen.vertices;
+                        break;
+                      }
+                      case ObjStatement::kUv:
+                        if (has_appearance_) attributes_->set_uv(seen.uvs, line);
+                        ++seen.uvs;
+                        break;
+                      case ObjStatement::kNormal:
+                        if (has_appearance_) attributes_->set_normal(seen.normals, line);
+                        ++seen.normals;
+                        break;
+                      case ObjStatement::kFace: {
+                        const std::size_t first = seen.triangles;
+                        parse_face(line, position, seen, poll);
+                        if (!mesh_.triangle_materials.empty())
+                          for (std::size_t t = first; t < seen.triangles; ++t)
+                            mesh_.triangle_materials[t] = material;
+                        if (seen.triangles > first + 1) mark_face(chunk, first, seen.triangles);
+                        break;
+                      }
+                      case ObjStatement::kMaterial:
+                        material = *material_ids_.find(trim(line));
+                        break;
+                      default:
+                        break;
+                    }
+                  });
   }
 
-  /// Writes the fan of one face from `triangle` on and returns the index after it.
-  std::size_t parse_face(std::string_view corners, const char* position, std::size_t seen,
-                         std::size_t triangle) {
-    std::uint32_t first = 0, previous = 0;
+  /// Writes the fan of one face from seen.triangles on, which it moves behind the fan.
+  void parse_face(std::string_view corners, const char* position, ObjCounts& seen,
+                  CancelPoll& poll) {
+    Corner first, previous;
     for (std::size_t n = 0;; ++n) {
-      const std::string_view corner = next_corner(corners);
-      if (corner.empty()) return triangle;
-      const std::uint32_t index = parse_corner(corner, seen, mesh_.vertices.size(), position);
-      if (n == 0) first = index;
-      if (n >= 2) mesh_.triangles[triangle++] = {first, previous, index};
-      previous = index;
+      poll.step();
+      const std::string_view text = next_corner(corners);
+      if (text.empty()) return;
+      Corner corner{parse_vertex_index(text, seen.vertices, mesh_.vertices.size(), position), {}};
+      if (has_appearance_) {
+        const std::size_t slash = text.find('/');
+        if (slash != text.npos)
+          corner.references = attributes_->parse_references(text.substr(slash + 1), seen);
+      }
+      if (n == 0) first = corner;
+      if (n >= 2) {
+        mesh_.triangles[seen.triangles] = {first.vertex, previous.vertex, corner.vertex};
+        if (has_appearance_)
+          attributes_->set_references(seen.triangles, first.references, previous.references,
+                                      corner.references);
+        ++seen.triangles;
+      }
+      previous = corner;
     }
   }
 
   /// Notes that the triangles [first, end) are the fan of one face.
-  static void mark_face(Chunk& chunk, std::size_t first, std::size_t end) {
+  static void mark_face(PlacedChunk& chunk, std::size_t first, std::size_t end) {
     if (chunk.is_same_face.empty()) chunk.is_same_face.resize(chunk.triangles, false);
     for (std::size_t t = first + 1; t < end; ++t)
-      chunk.is_same_face[t - chunk.first_triangle] = true;
+      chunk.is_same_face[t - chunk.first.triangles] = true;
   }
 
-  /// Cuts the faces of a chunk, now that every vertex is known.
-  void cut_faces(const Chunk& chunk) {
-    const std::vector<bool>& is_same_face = chunk.is_same_face;
-    const auto triangles = std::span(mesh_.triangles).subspan(chunk.first_triangle);
+  void cut_faces(const PlacedChunk& chunk) {
+    if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
+    FaceCutter cutter(source_.options.memory);
+    const auto& is_same_face = chunk.is_same_face;
+    const auto triangles = std::span(mesh_.triangles).subspan(chunk.first.triangles);
     for (std::size_t first = 0; first < is_same_face.size();) {
       std::size_t end = first + 1;
       while (end < is_same_face.size() && is_same_face[end]) ++end;
-      cut_polygon(triangles.subspan(first, end - first), mesh_.vertices);
+      const auto fan = triangles.subspan(first, end - first);
+      if (has_appearance_) {
+        cutter.cut_and_match(fan, mesh_.vertices);
+        attributes_->move_references(cutter, chunk.first.triangles + first, fan.size());
+      } else {
+        cutter.cut(fan, mesh_.vertices);
+      }
       first = end;
     }
   }
 
-  /// Refuses a triangle with a vertex that is not finite; such vertices may stay if nothing uses
-  /// them.
+  /// Refuses triangles with a vertex that is not finite. Such a vertex may stay if unused.
   void check_finite() const {
-    if (std::none_of(chunks_.begin(), chunks_.end(), [](const Chunk& c) { return c.not_finite; }))
+    if (std::none_of(chunks_.begin(), chunks_.end(),
+                     [](const PlacedChunk& chunk) { return chunk.has_bad_vertex; }))
       return;
-    for (const Triangle& triangle : mesh_.triangles)
-      for (const std::uint32_t index : triangle)
-        if (!is_finite(mesh_.vertices[index]))
-          throw_fault(source_, {vertex_line(index), "vertex is not finite and a face uses it"},
-                      line_end_);
+    if (const auto bad = find_bad_vertex(mesh_, source_.options.progress))
+      throw_fault(source_, {vertex_line(*bad), kBadVertex}, line_end_);
   }
 
-  /// The line of the file that defines a vertex.
+  /// Returns the start of the line that defines a vertex.
   const char* vertex_line(std::size_t index) const {
     std::size_t i = chunks_.size() - 1;
-    while (chunks_[i].first_vertex > index) --i;
+    while (chunks_[i].first.vertices > index) --i;
     const char* found = nullptr;
-    std::size_t vertex = chunks_[i].first_vertex;
-    for_each_line(texts_[i], line_end_, [&](std::string_view line, const char* position) {
-      if (take_keyword(line) == Statement::kVertex && vertex++ == index) found = position;
-    });
+    std::size_t vertex = chunks_[i].first.vertices;
+    for_each_line(texts_[i], line_end_, source_.options.memory,
+                  [&](std::string_view line, const char* position) {
+                    if (take_keyword(line) == ObjStatement::kVertex && vertex++ == index)
+                      found = position;
+                  });
     return found;
   }
 
-  const MeshBytes& source_;
+  const MeshSource& source_;
+  const bool has_appearance_;
   const char line_end_;
   const std::vector<std::string_view> texts_;
-  std::vector<Chunk> chunks_;
-  std::map<std::string, std::uint32_t, std::less<>> material_ids_;
+  std::vector<PlacedChunk> chunks_;
+  ObjCounts totals_;
+  MemoryReservation memory_;  ///< The arrays of the mesh.
+  NameTable material_ids_, libraries_;
+  std::optional<ObjAttributes> attributes_;  ///< If the appearance is read.
   Mesh mesh_;
 };
 
 }  // namespace
 
-Mesh read_obj(const MeshBytes& source) {
+MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   if (source.bytes.starts_with("\xFF\xFE") || source.bytes.starts_with("\xFE\xFF"))
     throw source.error("OBJ in UTF-16: save it as ASCII or UTF-8");
-  return ObjReader(source).read();
+  return ObjReader(source, parts).read();
 }
 
 }  // namespace voxdag

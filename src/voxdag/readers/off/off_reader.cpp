@@ -10,7 +10,7 @@ namespace {
 
 class OffReader {
  public:
-  explicit OffReader(const MeshBytes& source)
+  explicit OffReader(const MeshSource& source)
       : source_(source),
         line_end_(line_end_of(source.bytes)),
         rest_(without_byte_order_mark(source.bytes)) {}
@@ -144,7 +144,7 @@ class OffReader {
     released_ = here;
   }
 
-  const MeshBytes& source_;
+  const MeshSource& source_;
   const char line_end_;
   std::string_view rest_;
   std::size_t released_ = 0;
@@ -160,7 +160,7 @@ bool is_off(std::string_view bytes) {
   return bytes.starts_with("OFF") && (bytes.size() == 3 || bytes[3] == '\n' || is_blank(bytes[3]));
 }
 
-Mesh read_off(const MeshBytes& source) {
+Mesh read_off(const MeshSource& source) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   return OffReader(source).read();
 }

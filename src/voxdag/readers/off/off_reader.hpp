@@ -1,7 +1,7 @@
 #pragma once
 /// OFF, the Object File Format of Geomview, as text.
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
@@ -14,6 +14,6 @@ bool is_off(std::string_view bytes);
 /// fewer than three corners are left out. Throws Error with the line: malformed lines, counts that
 /// the file is too short for, indices out of range, vertices that are used and not finite, the
 /// binary and higher-dimensional variants. Throws Error if there are no triangles.
-Mesh read_off(const MeshBytes& source);
+Mesh read_off(const MeshSource& source);
 
 }  // namespace voxdag

@@ -1,13 +1,16 @@
-/// The body of an ascii PLY file: one row per line. Chunks of lines are counted, so that each knows
-/// which rows it holds; then triangles are counted; then everything is parsed into its place.
+/// The body of an ascii PLY file: one row per line. One pass over chunks of lines counts the rows,
+/// a second one the triangles; then all values are parsed into their places.
+#include "voxdag/readers/ply/ply_attributes.hpp"
 #include "voxdag/readers/ply/ply_rows.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Takes the values of one property off a row; calls on_item(token) for each.
+/// Removes the values of one property from a row and calls on_item(token) for each. Throws Fault,
+/// Cancelled.
 template <class OnItem>
-void take_property(std::string_view& row, const PlyProperty& property, const OnItem& on_item) {
+void take_property(std::string_view& row, const PlyProperty& property, CancelPoll& poll,
+                   const OnItem& on_item) {
   const auto token = [&] {
     const std::string_view text = next_token(row);
     if (text.empty())
@@ -20,7 +23,10 @@ void take_property(std::string_view& row, const PlyProperty& property, const OnI
     if (!parse_int(count, items) || items < 0)
       throw Fault{row.data(), "list count " + in_quotes(count) + " is not a number of items"};
   }
-  for (; items > 0; --items) on_item(token());
+  for (; items > 0; --items) {
+    poll.step();
+    on_item(token());
+  }
 }
 
 std::int64_t to_int(std::string_view token) {
@@ -32,31 +38,31 @@ std::int64_t to_int(std::string_view token) {
 
 class AsciiReader {
  public:
-  AsciiReader(const MeshBytes& source, const PlyHeader& header)
-      : source_(source),
-        header_(header),
-        fields_(header),
-        texts_(split_lines(source.bytes.substr(header.body), header.line_end)),
+  AsciiReader(const PlyBody& body, MemoryReservation& memory)
+      : body_(body),
+        source_(body.source),
+        header_(body.header),
+        fields_(body.fields),
+        memory_(memory),
+        texts_(split_lines(source_.bytes.substr(header_.body), header_.line_end)),
         first_rows_(texts_.size() + 1),
         first_triangles_(texts_.size() + 1),
-        not_finite_(texts_.size(), 0) {}
+        has_bad_vertex_(texts_.size(), 0) {}
 
   Mesh read() {
     count_rows();
-    mesh_.vertices.resize(fields_.vertex.count);
-    for_each_row("scan", face_rows_, [this](std::size_t chunk, std::size_t, std::string_view row) {
-      const std::size_t corners = count_corners(row);
-      if (corners > 2) first_triangles_[chunk + 1] += corners - 2;
+    resize_ply_vertices(body_, memory_, mesh_);
+    for_each_row("scan", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
+      const std::size_t corners = count_corners(row, chunk.poll);
+      if (corners > 2) first_triangles_[chunk.index + 1] += corners - 2;
     });
     for (std::size_t i = 0; i < texts_.size(); ++i) first_triangles_[i + 1] += first_triangles_[i];
-    size_faces(source_, header_, fields_, first_triangles_.back(), mesh_);
-    for_each_row("read", vertex_rows_,
-                 [this](std::size_t chunk, std::size_t i, std::string_view row) {
-                   parse_vertex(chunk, i, row);
-                 });
-    std::vector<std::size_t> triangle(first_triangles_);
-    for_each_row("read", face_rows_, [&](std::size_t chunk, std::size_t, std::string_view row) {
-      triangle[chunk] = parse_face(row, triangle[chunk]);
+    resize_ply_triangles(body_, first_triangles_.back(), memory_, mesh_);
+    for_each_row("read", vertex_rows_, [this](Chunk& chunk, std::size_t i, std::string_view row) {
+      parse_vertex(chunk, i, row);
+    });
+    for_each_row("read", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
+      parse_face(chunk, row);
     });
     check_finite();
     return std::move(mesh_);
@@ -66,6 +72,22 @@ class AsciiReader {
   /// Rows of the body that belong to one element.
   struct Rows {
     std::size_t first = 0, last = 0;
+  };
+
+  /// The state of a thread that parses a chunk.
+  struct Chunk {
+    Chunk(const ReadOptions& options, std::size_t i, std::size_t first_triangle)
+        : index(i),
+          triangle(first_triangle),
+          poll(options.progress),
+          values(options.memory),
+          cutter(options.memory) {}
+
+    std::size_t index;
+    std::size_t triangle;  ///< The next one to write.
+    CancelPoll poll;
+    PlyRowValues values;
+    FaceCutter cutter;
   };
 
   void count_rows() {
@@ -92,24 +114,25 @@ class AsciiReader {
     }
   }
 
-  /// Calls body(chunk, index in the element, row) for the rows of one element, chunks in parallel.
+  /// Calls body(chunk, index in the element, row) for the rows of one element; chunks are parallel.
   template <class Body>
   void for_each_row(std::string_view stage, Rows rows, const Body& body) {
     for_each_chunk(source_, texts_, header_.line_end, stage, [&](std::size_t i) {
       if (first_rows_[i + 1] <= rows.first || first_rows_[i] >= rows.last) return;
       std::string_view text = texts_[i];
+      Chunk chunk(source_.options, i, first_triangles_[i]);
       for (std::size_t row = first_rows_[i]; row < rows.last && !text.empty();) {
         const std::string_view line = next_line(text, header_.line_end);
         if (trim(line).empty()) continue;
-        if (row >= rows.first) body(i, row - rows.first, line);
+        if (row >= rows.first) body(chunk, row - rows.first, line);
         ++row;
       }
     });
   }
 
-  std::size_t count_corners(std::string_view row) const {
+  std::size_t count_corners(std::string_view row, CancelPoll& poll) const {
     for (int p = 0; p < fields_.indices; ++p)
-      take_property(row, fields_.face.properties[static_cast<std::size_t>(p)],
+      take_property(row, fields_.face.properties[static_cast<std::size_t>(p)], poll,
                     [](std::string_view) {});
     const char* const start = row.data();
     std::int64_t corners = 0;
@@ -120,45 +143,72 @@ class AsciiReader {
     return static_cast<std::size_t>(corners);
   }
 
-  void parse_vertex(std::size_t chunk, std::size_t index, std::string_view row) {
-    const auto& properties = fields_.vertex.properties;
-    Vec3f vertex;
-    for (int p = 0; p < static_cast<int>(properties.size()); ++p)
-      take_property(row, properties[static_cast<std::size_t>(p)], [&](std::string_view token) {
-        for (int axis = 0; axis < 3; ++axis)
-          if (fields_.axes[static_cast<std::size_t>(axis)] == p &&
-              !parse_float(token, vertex[axis]))
-            throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
-      });
-    check_row_end(row);
-    if (!is_finite(vertex)) not_finite_[chunk] = 1;
-    mesh_.vertices[index] = vertex;
+  /// Takes a value of the appearance. What is no number is 0, or the number that it starts with.
+  static void take_value(const PlyColumns& columns, std::size_t property, std::string_view token,
+                         PlyRowValues& values) {
+    float value = 0;
+    if (static_cast<int>(property) == columns.texcoord) {
+      parse_float(token, value);
+      values.texcoord.push_back(value);
+    } else if (columns.slots[property] >= 0) {
+      parse_float(token, value);
+      values.scalars[static_cast<std::size_t>(columns.slots[property])] = value;
+    }
   }
 
-  /// Writes the triangles of one face from `triangle` on and returns the index after it.
-  std::size_t parse_face(std::string_view row, std::size_t triangle) {
+  void parse_vertex(Chunk& chunk, std::size_t index, std::string_view row) {
+    const auto& properties = fields_.vertex.properties;
+    const bool has_values = body_.attributes != nullptr;
+    Vec3f vertex;
+    for (std::size_t p = 0; p < properties.size(); ++p)
+      take_property(row, properties[p], chunk.poll, [&](std::string_view token) {
+        for (int axis = 0; axis < 3; ++axis)
+          if (fields_.axes[static_cast<std::size_t>(axis)] == static_cast<int>(p) &&
+              !parse_float(token, vertex[axis]))
+            throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
+        if (has_values) take_value(body_.attributes->vertex_columns(), p, token, chunk.values);
+      });
+    check_row_end(row);
+    if (!is_finite(vertex)) has_bad_vertex_[chunk.index] = 1;
+    mesh_.vertices[index] = vertex;
+    if (has_values) body_.attributes->take_vertex(index, chunk.values);
+  }
+
+  /// Writes the triangles of one face from chunk.triangle on, which it moves behind them.
+  void parse_face(Chunk& chunk, std::string_view row) {
     const auto& properties = fields_.face.properties;
-    const std::size_t first_triangle = triangle;
+    const bool has_values = body_.attributes != nullptr;
+    const std::size_t first_triangle = chunk.triangle;
     std::uint32_t material = 0;
-    for (int p = 0; p < static_cast<int>(properties.size()); ++p) {
+    chunk.values.texcoord.clear();
+    for (std::size_t p = 0; p < properties.size(); ++p) {
+      const int property = static_cast<int>(p);
       std::uint32_t first = 0, previous = 0;
       std::size_t corner = 0;
-      take_property(row, properties[static_cast<std::size_t>(p)], [&](std::string_view token) {
-        if (p == fields_.material) material = checked_material(to_int(token), mesh_, token.data());
-        if (p != fields_.indices) return;
+      take_property(row, properties[p], chunk.poll, [&](std::string_view token) {
+        if (property == fields_.material)
+          material = checked_material(to_int(token), mesh_, token.data());
+        if (has_values) take_value(body_.attributes->face_columns(), p, token, chunk.values);
+        if (property != fields_.indices) return;
         const std::uint32_t index =
             checked_index(to_int(token), mesh_.vertices.size(), token.data());
         if (corner == 0) first = index;
-        if (corner >= 2) mesh_.triangles[triangle++] = {first, previous, index};
+        if (corner >= 2) mesh_.triangles[chunk.triangle++] = {first, previous, index};
         previous = index;
         ++corner;
       });
     }
     check_row_end(row);
-    cut_face(mesh_, first_triangle, triangle);
-    for (std::size_t t = first_triangle; t < triangle && fields_.material >= 0; ++t)
+    const std::size_t count = chunk.triangle - first_triangle;
+    const auto fan = std::span(mesh_.triangles).subspan(first_triangle, count);
+    if (has_values) {
+      chunk.cutter.cut_and_match(fan, mesh_.vertices);
+      body_.attributes->take_face(first_triangle, count, chunk.values, chunk.cutter);
+    } else {
+      chunk.cutter.cut(fan, mesh_.vertices);
+    }
+    for (std::size_t t = first_triangle; t < chunk.triangle && fields_.material >= 0; ++t)
       mesh_.triangle_materials[t] = material;
-    return triangle;
   }
 
   static void check_row_end(std::string_view row) {
@@ -169,28 +219,31 @@ class AsciiReader {
   }
 
   void check_finite() {
-    if (std::find(not_finite_.begin(), not_finite_.end(), 1) == not_finite_.end()) return;
-    const std::int64_t bad = find_bad_vertex(mesh_);
-    if (bad < 0) return;
-    for_each_row("read", vertex_rows_, [&](std::size_t, std::size_t i, std::string_view row) {
-      if (i == static_cast<std::size_t>(bad)) throw Fault{row.data(), kBadVertex};
+    if (std::find(has_bad_vertex_.begin(), has_bad_vertex_.end(), 1) == has_bad_vertex_.end())
+      return;
+    const auto bad = find_bad_vertex(mesh_, source_.options.progress);
+    if (!bad) return;
+    for_each_row("read", vertex_rows_, [&](Chunk&, std::size_t i, std::string_view row) {
+      if (i == *bad) throw Fault{row.data(), kBadVertex};
     });
   }
 
-  const MeshBytes& source_;
+  const PlyBody& body_;
+  const MeshSource& source_;
   const PlyHeader& header_;
-  const PlyFields fields_;
+  const PlyFields& fields_;
+  MemoryReservation& memory_;
   const std::vector<std::string_view> texts_;
-  std::vector<std::size_t> first_rows_, first_triangles_;
-  std::vector<char> not_finite_;  ///< Per chunk.
+  std::vector<std::size_t> first_rows_, first_triangles_;  ///< By chunk and, last, the totals.
+  std::vector<char> has_bad_vertex_;                       ///< By chunk.
   Rows vertex_rows_, face_rows_;
   Mesh mesh_;
 };
 
 }  // namespace
 
-Mesh read_ply_ascii(const MeshBytes& source, const PlyHeader& header) {
-  return AsciiReader(source, header).read();
+Mesh read_ply_ascii(const PlyBody& body, MemoryReservation& memory) {
+  return AsciiReader(body, memory).read();
 }
 
 }  // namespace voxdag

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "voxdag/readers/text_scan.hpp"
 
@@ -26,7 +27,10 @@ std::optional<PlyType> parse_type(std::string_view name) {
 
 class HeaderParser {
  public:
-  explicit HeaderParser(const MeshBytes& source) : source_(source), rest_(source.bytes) {}
+  explicit HeaderParser(const MeshSource& source) : source_(source), rest_(source.bytes) {
+    header_.materials = CountedVector<std::string_view>(source.options.memory);
+    header_.textures = CountedVector<std::string_view>(source.options.memory);
+  }
 
   PlyHeader parse() {
     find_line_end();
@@ -70,6 +74,7 @@ class HeaderParser {
 
   std::string_view line() {
     ++line_;
+    poll_.step();
     return next_line(rest_, header_.line_end);
   }
 
@@ -104,7 +109,9 @@ class HeaderParser {
     if (header_.elements.size() >= kMaxDeclared) fail("too many elements");
     for (const PlyElement& known : header_.elements)
       if (known.name == name) fail("element " + in_quotes(name) + " is declared twice");
-    header_.elements.push_back({std::string(name), static_cast<std::uint64_t>(count), {}});
+    property_names_.clear();
+    header_.elements.push_back({name, static_cast<std::uint64_t>(count),
+                                CountedVector<PlyProperty>(source_.options.memory)});
   }
 
   void parse_property(std::string_view text) {
@@ -124,8 +131,9 @@ class HeaderParser {
     if (name.empty()) fail("property without a name");
     PlyElement& element = header_.elements.back();
     if (element.properties.size() >= kMaxDeclared) fail("too many properties");
-    if (element.find({name}) >= 0) fail("property " + in_quotes(name) + " is declared twice");
-    element.properties.push_back({std::string(name), *type, count_type});
+    if (!property_names_.insert(name).second)
+      fail("property " + in_quotes(name) + " is declared twice");
+    element.properties.push_back({name, *type, count_type});
   }
 
   void check_elements() {
@@ -157,10 +165,10 @@ class HeaderParser {
       fail("PLY faces whose indices are no list of integers");
   }
 
-  /// A count that the rest of the file cannot hold is refused before anything is made of it.
+  /// Refuses a count that the rest of the file cannot hold, before memory is taken for it.
   void check_size(const PlyElement& element) const {
     const std::size_t rest = source_.bytes.size() - header_.body;
-    // A row of text takes a digit and a separator per property; the last one may lack the latter.
+    // A row of text has a digit and a separator per property. The last separator may be missing.
     const std::size_t least = header_.format == PlyFormat::kAscii ? 2 * element.properties.size()
                                                                   : element.least_row_bytes();
     if (least > 0 && element.count > (rest + 1) / least)
@@ -168,9 +176,11 @@ class HeaderParser {
            in_quotes(element.name));
   }
 
-  const MeshBytes& source_;
+  const MeshSource& source_;
   std::string_view rest_;
   std::size_t line_ = 0;
+  CancelPoll poll_{source_.options.progress};
+  std::set<std::string_view> property_names_;  ///< Of the last element.
   PlyHeader header_;
 };
 
@@ -190,6 +200,6 @@ std::size_t PlyElement::least_row_bytes() const {
   return bytes;
 }
 
-PlyHeader parse_ply_header(const MeshBytes& source) { return HeaderParser(source).parse(); }
+PlyHeader parse_ply_header(const MeshSource& source) { return HeaderParser(source).parse(); }
 
 }  // namespace voxdag

@@ -2,11 +2,10 @@
 /// The header of a PLY file (Greg Turk, The PLY Polygon File Format, 1994).
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
@@ -27,20 +26,21 @@ constexpr std::size_t size_of(PlyType type) {
 }
 constexpr bool is_integer(PlyType type) { return type < PlyType::kFloat; }
 
+/// Names are views into the file.
 struct PlyProperty {
-  std::string name;
-  PlyType type;                       ///< Of the value, or of each item of the list.
-  std::optional<PlyType> count_type;  ///< Of the number of items, where this is a list.
+  std::string_view name;
+  PlyType type;                       ///< Type of the value, or of the items of a list.
+  std::optional<PlyType> count_type;  ///< Type of a list's number of items. None: no list.
 };
 
 struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<PlyProperty> properties;
+  std::string_view name;
+  std::uint64_t count = 0;  ///< Number of rows.
+  CountedVector<PlyProperty> properties;
 
-  /// Index of the property that has one of the names, or -1.
+  /// Returns the index of the property that has one of the names, or -1.
   int find(std::initializer_list<std::string_view> names) const;
-  /// The least number of bytes that a row takes in a binary file.
+  /// Returns the least number of bytes that a row takes in a binary file.
   std::size_t least_row_bytes() const;
 };
 
@@ -48,19 +48,19 @@ enum class PlyFormat : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
-  char line_end = '\n';  ///< Of the header, and of the body if that is text.
+  char line_end = '\n';  ///< Ends the lines of the header, and of a body of text.
   std::vector<PlyElement> elements;
-  std::vector<std::string> materials;  ///< From comments `material NUMBER NAME`, numbered from 0.
-  std::vector<std::string> textures;   ///< From comments `TextureFile NAME`.
-  std::size_t body = 0;                ///< Offset of the first byte after the header.
+  CountedVector<std::string_view> materials;  ///< Comments `material NUMBER NAME`, by number.
+  CountedVector<std::string_view> textures;   ///< Comments `TextureFile NAME`.
+  std::size_t body = 0;                       ///< Offset of the first byte after the header.
 
-  int vertex = -1;  ///< Index of element `vertex`; after parse_ply_header always in range.
-  int face = -1;    ///< Index of element `face`; after parse_ply_header always in range.
+  int vertex = -1;  ///< Index of element `vertex`; always in range after parse_ply_header().
+  int face = -1;    ///< Index of element `face`; always in range after parse_ply_header().
 };
 
-/// Parses and checks the header: every line is known, there are vertices with x, y and z and faces
-/// with a list of integer indices, and the file is long enough for the least size that the counts
-/// imply. Throws Error with the line.
-PlyHeader parse_ply_header(const MeshBytes& source);
+/// Parses the header and checks it: every line is known, vertices have x, y and z, faces have a
+/// list of integer indices, and the file is at least as long as the counts imply. Throws Error with
+/// the line, OverMemory.
+PlyHeader parse_ply_header(const MeshSource& source);
 
 }  // namespace voxdag

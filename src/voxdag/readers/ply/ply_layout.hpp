@@ -1,5 +1,5 @@
 #pragma once
-/// How the rows of a binary PLY file lie in memory.
+/// The layout of the rows of a binary PLY file.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -43,22 +43,23 @@ inline float load_float(PlyType type, const char* p, bool swap) {
   return static_cast<float>(load_int(type, p, swap));
 }
 
-/// Properties of fixed size, then one list; the last run of a row has no list.
+/// Properties of fixed size, followed by one list. The last run of a row has no list.
 struct Run {
   std::size_t fixed_bytes = 0;
   PlyType count_type = PlyType::kUint8;
   std::size_t item_bytes = 0;  ///< 0: no list.
 };
 
-/// Where a property lies: this many bytes into its run; a list follows its run's fixed bytes.
+/// The place of a property: its run, and its offset in bytes in the run. A list follows the run's
+/// fixed bytes.
 struct Place {
   std::size_t run = 0, offset = 0;
 };
 
-/// How the rows of one element lie in memory.
+/// The layout of one element's rows.
 struct RowLayout {
   std::vector<Run> runs{1};
-  std::vector<Place> places;  ///< Of each property.
+  std::vector<Place> places;  ///< By property.
 
   explicit RowLayout(const PlyElement& element) {
     for (const PlyProperty& property : element.properties) {
@@ -76,7 +77,7 @@ struct RowLayout {
   std::size_t fixed_row_bytes() const { return runs[0].fixed_bytes; }
 
   /// Calls on_run(index, start of its fixed bytes, items in its list) for each run of the row at
-  /// `p` and returns the row's end. Throws Fault if it does not end before `end`.
+  /// `p`. Returns the row's end. Throws Fault if the row does not end by `end`.
   template <class OnRun>
   const char* walk(const char* p, const char* end, bool swap, const OnRun& on_run) const {
     for (std::size_t k = 0; k < runs.size(); ++k) {

@@ -1,20 +1,22 @@
 #pragma once
 /// PLY, the Polygon File Format.
-#include "voxdag/mesh/mesh.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
 /// Reads x, y and z of element `vertex` and the list `vertex_indices` (or `vertex_index`) of
-/// element `face`, in ascii and in both binary orders; other elements and properties are passed
-/// over. A coordinate of another type becomes the nearest float32. A polygon becomes a fan around
-/// its first corner, which is exact for convex polygons; polygons of fewer than three corners are
-/// left out. Comments `material NUMBER NAME`, numbered from 0, with a face property
-/// `material_index` give the materials. In ascii each row is one line.
+/// element `face`, in ascii and in both binary orders; ignores other elements and properties.
+/// Rounds coordinates of other types to the nearest float32. Cuts polygons with cut_polygon() and
+/// ignores those of fewer than three corners. Comments `material NUMBER NAME`, numbered from 0,
+/// with a face property `material_index` give the materials. In ascii each row is one line.
 ///
-/// Throws Error with the line (the byte in a binary body): malformed headers and values, counts
-/// that the file is too short for, truncation, references out of range, triangles with a vertex
-/// that is not finite, triangle strips. Throws Error if there are no triangles.
-Mesh read_ply(const MeshBytes& source);
+/// With its appearance: reads what PlyAttributes lists; a comment `TextureFile NAME` names the
+/// colour texture of all materials.
+///
+/// Throws Error with the line (in a binary body with the byte): malformed headers and values,
+/// counts that the file is too short for, truncation, references out of range, triangles with a
+/// vertex that is not finite, triangle strips. Throws Error if there are no triangles.
+MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts);
 
 }  // namespace voxdag

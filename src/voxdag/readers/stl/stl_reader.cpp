@@ -27,7 +27,7 @@ float load_float(const char* p) {
 }
 
 /// The facets of a binary file, in parts.
-std::vector<std::string_view> split_binary(const MeshBytes& source) {
+std::vector<std::string_view> split_binary(const MeshSource& source) {
   if (source.bytes.size() < kHeaderBytes)
     throw source.error("neither an ascii STL file nor long enough for a binary one");
   std::size_t left = binary_facet_count(source.bytes);
@@ -60,8 +60,8 @@ void parse_binary(std::string_view facets, const Body& body) {
 }
 
 template <class Visit>
-Mesh weld_facets(const MeshBytes& source, const std::vector<std::string_view>& parts, char line_end,
-                 const Visit& visit) {
+Mesh weld_facets(const MeshSource& source, const std::vector<std::string_view>& parts,
+                 char line_end, const Visit& visit) {
   const SoupSize size = measure_soup(source, parts, line_end, visit);
   const std::size_t facets = size.first_triangles.back();
   if (facets == 0) throw source.error("STL without facets: there is no surface to read");
@@ -84,7 +84,7 @@ bool is_ascii_stl(std::string_view bytes) {
   return same_word(word, "facet") || same_word(word, "endsolid");
 }
 
-Mesh read_stl(const MeshBytes& source) {
+Mesh read_stl(const MeshSource& source) {
   if (source.bytes.empty()) throw source.error("the file is empty");
   std::string_view head = without_byte_order_mark(source.bytes).substr(0, 4096);
   const bool starts_as_text = same_word(StlTokens(head).next(), "solid");

@@ -1,7 +1,7 @@
 #pragma once
 /// STL, binary and ascii.
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/readers/mesh_bytes.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
@@ -13,7 +13,7 @@ namespace voxdag {
 ///
 /// Throws Error with the line or byte: malformed text, truncation, vertices that are not finite,
 /// 2^32 / 3 facets or more. Throws Error if there are no facets.
-Mesh read_stl(const MeshBytes& source);
+Mesh read_stl(const MeshSource& source);
 
 /// Whether the bytes are a binary STL file of exactly the size that it says.
 bool is_exact_binary_stl(std::string_view bytes);

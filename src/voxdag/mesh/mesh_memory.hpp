@@ -1,0 +1,33 @@
+#pragma once
+/// The memory that a mesh and its appearance hold.
+#include <cstdint>
+
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/mesh/mesh.hpp"
+
+namespace voxdag {
+
+/// Returns the bytes that the arrays of a mesh hold.
+inline std::uint64_t memory_bytes(const Mesh& mesh) {
+  std::uint64_t bytes = mesh.vertices.capacity() * sizeof(Vec3f) +
+                        mesh.triangles.capacity() * sizeof(Triangle) +
+                        mesh.triangle_materials.capacity() * sizeof(std::uint32_t) +
+                        mesh.materials.capacity() * sizeof(std::string);
+  for (const std::string& name : mesh.materials) bytes += name.capacity();
+  return bytes;
+}
+
+/// Returns the bytes that the arrays, materials and encoded images of an appearance hold.
+inline std::uint64_t memory_bytes(const Appearance& appearance) {
+  std::uint64_t bytes = appearance.normals.capacity() * sizeof(Vec3f) +
+                        appearance.uvs.capacity() * sizeof(Vec2f) +
+                        appearance.colors.capacity() * sizeof(Rgba16) +
+                        appearance.materials.capacity() * sizeof(Material) +
+                        appearance.images.capacity() * sizeof(TextureImage);
+  for (const Material& material : appearance.materials) bytes += material.name.capacity();
+  for (const TextureImage& image : appearance.images)
+    bytes += image.name.capacity() + image.path.native().capacity() + image.bytes.capacity();
+  return bytes;
+}
+
+}  // namespace voxdag

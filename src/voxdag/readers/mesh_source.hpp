@@ -1,0 +1,55 @@
+#pragma once
+/// The input of a mesh reader: the bytes of one file, in memory or mapped, and the options.
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/readers/read_options.hpp"
+
+namespace voxdag {
+
+enum class ReadParts { kMesh, kMeshAndAppearance };
+
+struct MeshSource {
+  std::string_view bytes;            ///< The whole file. Must stay valid while a reader runs.
+  std::string name;                  ///< Names the file in error messages.
+  std::filesystem::path folder;      ///< Relative names of other files start here.
+  const MappedFile* file = nullptr;  ///< The mapping that `bytes` views. Null: plain memory.
+  ReadOptions options;
+
+  /// Drops the mapped pages of `part`, which has been read, from memory. Reports progress. Throws
+  /// Cancelled.
+  void done_with(std::string_view part, std::string_view stage) const {
+    if (file != nullptr) file->release(part);
+    if (options.progress == nullptr) return;
+    options.progress->throw_if_cancelled();
+    const auto end = static_cast<std::size_t>(part.data() + part.size() - bytes.data());
+    options.progress->report(stage, static_cast<double>(end) / static_cast<double>(bytes.size()),
+                             end);
+  }
+
+  Error error(const std::string& reason) const { return {name, "", reason}; }
+  Error error_at_byte(std::size_t offset, const std::string& reason) const {
+    return {name, "byte " + std::to_string(offset), reason};
+  }
+};
+
+/// Polls cancellation once in 65,536 steps, for loops inside of one very long line or array.
+class CancelPoll {
+ public:
+  explicit CancelPoll(const Progress* progress) : progress_(progress) {}
+  /// Call once per step. Throws Cancelled.
+  void step() {
+    if ((++steps_ & 0xFFFF) == 0 && progress_ != nullptr) progress_->throw_if_cancelled();
+  }
+
+ private:
+  const Progress* progress_;
+  std::uint32_t steps_ = 0;
+};
+
+}  // namespace voxdag

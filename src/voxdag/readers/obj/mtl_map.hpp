@@ -1,0 +1,42 @@
+#pragma once
+/// The statements of MTL files that name an image.
+#include <array>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace voxdag {
+
+/// A malformed statement; the message is the reason.
+struct MalformedMtl : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The options of a map statement and its file.
+struct MtlMap {
+  std::string file;
+  std::array<float, 3> scale{1, 1, 1}, offset{0, 0, 0};
+  std::array<float, 2> base_gain{0, 1};
+  float bump = 1;
+  bool clamp = false;
+};
+
+/// Parses the arguments of a map statement. Throws MalformedMtl.
+MtlMap parse_mtl_map(std::string_view text);
+
+/// Removes the numbers that the text starts with, `numbers.size()` at most, and returns how many
+/// there were, those included that are not finite.
+std::size_t take_numbers(std::string_view& text, std::span<float> numbers);
+
+/// Removes numbers in the same way. Throws MalformedMtl with the message `expected` if fewer than
+/// `least` are there or one is not finite.
+void take_numbers(std::string_view& text, std::span<float> numbers, std::size_t least,
+                  const char* expected);
+
+bool all_finite(std::span<const float> numbers);
+
+/// Returns the text with ASCII letters in lower case.
+std::string to_lower(std::string_view text);
+
+}  // namespace voxdag

@@ -1,0 +1,36 @@
+#pragma once
+/// Warnings of a reader, limited in number.
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace voxdag {
+
+/// Keeps the first kMost warnings and counts the rest.
+class Warnings {
+ public:
+  static constexpr std::size_t kMost = 200;
+
+  void add(std::string warning) {
+    if (kept_.size() < kMost)
+      kept_.push_back(std::move(warning));
+    else
+      ++left_out_;
+  }
+  /// Whether add() will only count.
+  bool is_full() const { return kept_.size() >= kMost; }
+
+  /// Returns the warnings. The last one says how many were left out, if any were.
+  std::vector<std::string> take(const std::string& file) {
+    if (left_out_ > 0)
+      kept_.push_back(file + ": " + std::to_string(left_out_) + " more warnings are left out");
+    left_out_ = 0;
+    return std::exchange(kept_, {});
+  }
+
+ private:
+  std::vector<std::string> kept_;
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace voxdag
