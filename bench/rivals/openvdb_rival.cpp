@@ -11,6 +11,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/trace/ray.hpp"
+#include "voxdag/trace/visit_nodes.hpp"
 
 namespace voxdag {
 namespace {

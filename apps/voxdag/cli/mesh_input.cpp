@@ -49,14 +49,14 @@ void add_mesh_access_options(const Command& command, MeshAccess& access, const O
 
 Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& session) {
   return read_and_check(file, access, session, [&](const ReadOptions& options) {
-    return read_mesh(file, options.progress);
+    return read_mesh(file, options);
   });
 }
 
 MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const MeshAccess& access,
                                                   Session& session) {
   MeshWithAppearance read = read_and_check(file, access, session, [&](const ReadOptions& options) {
-    return read_mesh_with_appearance(file, options.progress);
+    return read_mesh_with_appearance(file, options);
   });
   print_warnings(read.warnings, session);
   return read;
@@ -67,7 +67,7 @@ void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet&
   try {
     check_mesh_in_grid(mesh, scene, grid);
   } catch (const Error& error) {
-    throw Error(file, error.place(), error.reason());
+    throw error.in_file(file);
   }
 }
 

@@ -7,7 +7,7 @@
 #include "cli/session.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/layout/voxel_set.hpp"
-#include "voxdag/readers/read_appearance.hpp"
+#include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/readers/read_options.hpp"
 
 namespace voxdag {

@@ -1,7 +1,8 @@
 #pragma once
-/// Tells ThreadSanitizer what TBB guarantees: a loop's items run after what its caller did before,
-/// and before what its caller does next. The distributions' TBB is not built with ThreadSanitizer,
-/// which therefore cannot see it. Without ThreadSanitizer nothing is left of this.
+/// Annotates for ThreadSanitizer the order that TBB guarantees: the items of a loop run after
+/// everything that the caller did before the loop, and before everything that it does after the
+/// loop. Debian's TBB is not built with ThreadSanitizer, which therefore does not see this order.
+/// Without ThreadSanitizer these types are empty.
 
 #if defined(__SANITIZE_THREAD__)
 #define VOXDAG_TSAN 1
@@ -19,7 +20,7 @@ namespace voxdag {
 
 #ifdef VOXDAG_TSAN
 
-/// Lives in the caller, around the loop.
+/// The caller holds one around the loop.
 class LoopOrder {
  public:
   LoopOrder() { __tsan_release(&begin_); }
@@ -27,7 +28,7 @@ class LoopOrder {
   LoopOrder(const LoopOrder&) = delete;
   LoopOrder& operator=(const LoopOrder&) = delete;
 
-  /// Lives around items, however they end.
+  /// Each task holds one around its items, also if an item throws.
   class Items {
    public:
     explicit Items(LoopOrder& order) : order_(order) { __tsan_acquire(&order.begin_); }

@@ -10,7 +10,7 @@
 namespace voxdag {
 
 /// Calls body(i) for every i in [0, count), in any order, on the threads of the current TBB arena.
-/// `grain` is the least number of items that one task takes.
+/// `grain` is the smallest number of items of a task.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
   LoopOrder order;
@@ -21,7 +21,7 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
                     });
 }
 
-/// As above with one item per task: for few, heavy items.
+/// Calls body(i) for every i in [0, count) with one item per task: for few, expensive items.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body) {
   LoopOrder order;

@@ -1,5 +1,5 @@
 #pragma once
-/// How long work tells its caller how far it is, and how the caller stops it.
+/// Reports the progress of long work to its caller, and lets the caller cancel it.
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -9,23 +9,25 @@
 
 namespace voxdag {
 
-/// Passed by pointer to long operations; null means "nobody listens". Callbacks may come from any
+/// Passed by pointer to long operations; null: no reports, no cancellation. Reports come from any
 /// thread, one at a time.
 class Progress {
  public:
-  /// `fraction` is 0..1 of `stage`; `items` counts what the stage makes (voxels, triangles, bytes).
+  /// `fraction` of `stage` is done, 0 to 1; `items` counts the results of the stage (voxels,
+  /// triangles, bytes).
   using Report = std::function<void(std::string_view stage, double fraction, std::uint64_t items)>;
 
   Progress() = default;
   explicit Progress(Report report) : report_(std::move(report)) {}
 
+  /// Calls the callback, unless another thread is calling it.
   void report(std::string_view stage, double fraction, std::uint64_t items = 0) {
     if (!report_ || busy_.test_and_set(std::memory_order_acquire)) return;
     report_(stage, fraction, items);
     busy_.clear(std::memory_order_release);
   }
 
-  /// Asks the work to stop; safe in a signal handler.
+  /// Asks the work to stop. Async-signal-safe.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
   void throw_if_cancelled() const {
