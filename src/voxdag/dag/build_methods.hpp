@@ -2,8 +2,8 @@
 /// The two builders behind build_svdag(), and what they share.
 #include <chrono>
 
-#include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
