@@ -45,8 +45,8 @@ class HelpFormatter : public CLI::Formatter {
   }
   std::string make_option_opts(const CLI::Option* option) const override {
     if (option->get_type_size() == 0 || option->get_type_name().empty()) return "";
-    const bool is_optional = option->get_expected_min() == 0;
-    return fmt::format(is_optional ? " [{}]" : " {}", option->get_type_name());
+    const std::string name = option->get_type_name();
+    return option->get_expected_min() == 0 ? fmt::format(" [{}]", name) : " " + name;
   }
   std::string make_subcommand(const CLI::App* command) const override {
     return help_row(command->get_name(), command->get_description());

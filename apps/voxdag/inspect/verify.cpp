@@ -7,7 +7,7 @@
 
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
-#include "cli/number_check.hpp"
+#include "cli/mesh_input.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"

@@ -12,6 +12,7 @@
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/file/scene_file.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {

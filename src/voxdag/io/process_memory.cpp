@@ -62,7 +62,9 @@ std::optional<std::uint64_t> cgroup_memory_limit(const fs::path& root) {
   for (std::string line; std::getline(groups, line);) {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    std::string controllers(1, ',');
+    controllers += line.substr(first + 1, second - first - 1);
+    controllers += ',';
     const fs::path group = fs::path(line.substr(second + 1)).relative_path().lexically_normal();
     const bool version_2 = controllers == ",,";
     if (!version_2 && controllers.find(",memory,") == std::string::npos) continue;

@@ -4,14 +4,15 @@
 #include <string>
 #include <string_view>
 
+#include "voxdag/core/error_place.hpp"
 #include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
 /// Where a name stands, for error messages.
 struct NamePlace {
-  std::string file;   ///< The mesh file, or the MTL file that it names.
-  std::string place;  ///< "line 3", "buffers[0]".
+  std::string file;  ///< The mesh file, or the MTL file that it names.
+  ErrorPlace place;  ///< "line 3", "buffers[0]".
 };
 
 class NamedFiles {

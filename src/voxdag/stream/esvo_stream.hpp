@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "voxdag/core/error_place.hpp"
 #include "voxdag/file/esvo_metadata.hpp"
 #include "voxdag/layout/esvo.hpp"
 #include "voxdag/layout/esvo_directory.hpp"

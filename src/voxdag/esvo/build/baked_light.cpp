@@ -8,11 +8,6 @@
 namespace voxdag {
 namespace {
 
-Vec3f normalized_or(Vec3f v, Vec3f otherwise) {
-  const float length2 = dot(v, v);
-  return length2 > 0 ? v * (1 / std::sqrt(length2)) : otherwise;
-}
-
 /// Returns the mean of a polygon's corners, a point well inside of it.
 Vec3d middle_of(const SurfacePolygon& polygon) {
   Vec3d sum{};
@@ -23,7 +18,7 @@ Vec3d middle_of(const SurfacePolygon& polygon) {
 SurfacePlace place_on(const Cell& cell, const TrianglePiece& piece, const PieceSampler& sampler) {
   const auto own = static_cast<Vec3f>(cell.triangle_of(piece).normal);
   SurfacePlace place;
-  place.normal = normalized_or(sampler.sample(cell, piece).normal, {0, 1, 0});
+  place.normal = normalized_or(sampler.sample(cell, piece).normal, Vec3f{0, 1, 0});
   place.face = dot(own, place.normal) < 0 ? -own : own;
   if (place.face == Vec3f{}) place.face = place.normal;
   return place;
