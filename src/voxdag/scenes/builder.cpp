@@ -84,7 +84,7 @@ void Builder::square(const Profile& profile) {
 }
 
 void Builder::moulding(const Profile& profile, double half_x, double half_z, bool outside) {
-  // The way round that keeps the rectangle's chosen side on the moulding's right.
+  // The direction of the path that has the chosen side of the rectangle on its right.
   static constexpr int kSigns[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
   const double out = outside ? 1 : -1;
   std::vector<Frame> corners;
@@ -100,7 +100,7 @@ void Builder::moulding(const Profile& profile, double half_x, double half_z, boo
 
 void Builder::tube(const std::vector<Vec3d>& path, const std::vector<double>& radii, int sides) {
   const std::size_t n = path.size();
-  // A frame that turns no more than the path itself: the last normal, made perpendicular again.
+  // Parallel transport: the previous normal, made perpendicular to the new tangent.
   std::vector<Vec3d> normals(n), sideways(n);
   Vec3d normal{};
   for (std::size_t i = 0; i < n; ++i) {

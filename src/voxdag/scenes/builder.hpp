@@ -1,6 +1,6 @@
 #pragma once
-/// Puts a mesh together from shapes. Shapes are closed or open surfaces whose outside is the side
-/// of counter-clockwise triangles; triangles without area are left out.
+/// Assembles a mesh from shapes. Shapes are closed or open surfaces. Their outside is the side on
+/// which triangles wind counter-clockwise. Triangles without area are dropped.
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace voxdag::scenes {
 
-/// A point of a profile: distance from the axis, or sideways, and height.
+/// A point of a profile: x is the distance from the axis or wall, y the height.
 struct Point2 {
   double x, y;
 };
@@ -19,16 +19,16 @@ using Profile = std::vector<Point2>;
 
 class Builder {
  public:
-  /// Throws Cancelled from triangle() when `progress` is asked to stop.
+  /// triangle() throws Cancelled if `progress` is cancelled.
   explicit Builder(const Progress* progress = nullptr) : progress_(progress) {}
 
-  /// What follows has this material, found by name or made.
+  /// Sets the material of the next triangles, by name; adds a new name to the mesh.
   void material(std::string_view name);
-  /// What follows has its coordinates in this frame.
+  /// Sets the frame of the next coordinates.
   void frame(const Frame& f) { frame_ = f; }
   const Frame& frame() const { return frame_; }
 
-  /// Calls draw() with coordinates local to `f`, which is itself local to the present frame.
+  /// Calls draw() with coordinates local to `f`; `f` is local to the current frame.
   template <class Draw>
   void at(const Frame& f, const Draw& draw) {
     const Frame outer = frame_;
@@ -39,12 +39,12 @@ class Builder {
 
   std::uint32_t vertex(Vec3d local);
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
-  /// Split along a-c.
+  /// Adds two triangles, split along a-c.
   void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
   void quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d);
 
-  /// The surface f(i, j), 0 <= i <= nu, 0 <= j <= nv, whose outside is that of df/di x df/dj. A
-  /// closed direction has its last row joined to its first instead of a row of its own.
+  /// Adds the surface f(i, j), 0 <= i <= nu, 0 <= j <= nv; df/di x df/dj points outside. In a
+  /// closed direction the last row is the first one.
   template <class F>
   void surface(int nu, int nv, bool closed_u, bool closed_v, const F& f) {
     const int rows = closed_u ? nu : nu + 1, columns = closed_v ? nv : nv + 1;
@@ -59,15 +59,14 @@ class Builder {
   }
 
   void box(Vec3d lo, Vec3d hi);
-  /// A box whose upper edges are cut off at 45 degrees by `bevel`; no bottom.
+  /// Adds a box without a bottom, whose upper edges are cut at 45 degrees by `bevel`.
   void bevelled_slab(Vec3d lo, Vec3d hi, double bevel);
-  /// Turns a profile (radius, height), listed from bottom to top along its outside, about the y
-  /// axis.
-  /// The first side begins `phase` turns from the x axis.
+  /// Adds the surface of a profile (radius, height) that turns about the y axis. The profile goes
+  /// from bottom to top along its outside. The first side begins `phase` turns from the x axis.
   void lathe(const Profile& profile, int sides, double phase = 0);
-  /// A square block with this profile: x is half its width.
+  /// Adds a square block with this profile; x is half its width.
   void square(const Profile& profile);
-  /// A lathe whose radii are multiplied by f(turns, profile index).
+  /// Adds a lathe whose radii are multiplied by f(turns, profile index).
   template <class F>
   void carved_lathe(const Profile& profile, int sides, const F& f, double phase = 0) {
     surface(sides, static_cast<int>(profile.size()) - 1, true, false, [&](int i, int j) {
@@ -77,21 +76,22 @@ class Builder {
       return Vec3d{r * cos_turns(t), p.y, r * sin_turns(t)};
     });
   }
-  /// A round tube about a path with the radius at each of its points; pointed ends where the first
-  /// or last radius is 0, else open ones.
+  /// Adds a round tube along a path, with a radius per point. An end is pointed if its radius is 0,
+  /// else open.
   void tube(const std::vector<Vec3d>& path, const std::vector<double>& radii, int sides);
   void tube(const std::vector<Vec3d>& path, double radius, int sides);
-  /// Sweeps an outline along frames. The outline runs counter-clockwise in a frame's x and y, and
-  /// the path goes the way of their cross product.
+  /// Sweeps an outline along frames. The outline runs counter-clockwise in the x and y of a frame;
+  /// the path runs along their cross product.
   void sweep(const Profile& outline, const std::vector<Frame>& path, bool closed_path,
              bool closed_outline);
-  /// Sweeps a moulding (x: how far it stands out, y: height), listed from bottom to top, along the
-  /// rectangle |x| = half_x, |z| = half_z with mitred corners, on its inner or outer side.
+  /// Sweeps a moulding along the rectangle |x| = half_x, |z| = half_z with mitred corners, on its
+  /// inner or outer side. The profile goes from bottom to top; x is the distance from the wall.
   void moulding(const Profile& profile, double half_x, double half_z, bool outside = false);
   /// Fills a planar convex or star-shaped polygon from its first corner.
   void fan(const std::vector<Vec3d>& corners);
   void torus(double radius, double thickness, int sides, int ring_sides);
-  /// Anything with a distance from the origin in each direction: a sphere of cells on a cube.
+  /// Adds the surface at distance radius(direction) from the origin: a cube of cells x cells quads
+  /// per side, blown up to a sphere.
   template <class F>
   void ball(int cells, const F& radius);
 
@@ -105,12 +105,12 @@ class Builder {
   std::uint32_t material_ = 0;
 };
 
-/// Every point of a polyline replaced by a rounder run of `steps` segments (Catmull-Rom).
+/// Returns the polyline as a Catmull-Rom curve with `steps` segments per segment.
 Profile rounded(const Profile& points, int steps);
 
 template <class F>
 void Builder::ball(int cells, const F& radius) {
-  // Six faces of a cube; the corners of neighbours coincide in position.
+  // Six faces of a cube. Neighbouring faces have equal positions along their edge.
   for (int side = 0; side < 6; ++side) {
     surface(cells, cells, false, false, [&](int i, int j) {
       const double a = 2.0 * i / cells - 1, b = 2.0 * j / cells - 1;

@@ -15,7 +15,7 @@ using namespace city;
 constexpr double kBlockX = 76, kBlockZ = 60, kStreet = 16, kSidewalk = 3.6, kKerb = 0.16;
 constexpr double kPitchX = kBlockX + kStreet, kPitchZ = kBlockZ + kStreet;
 
-/// Cuts a rectangle into lots and builds on each.
+/// Divides a rectangle into lots and draws a building on each.
 void lots(Builder& b, Random& random, double x0, double x1, double z0, double z1,
           double centrality) {
   const double w = x1 - x0, d = z1 - z0, limit = lerp(21, 34, centrality);
@@ -34,7 +34,7 @@ void lots(Builder& b, Random& random, double x0, double x1, double z0, double z1
   building(b, random, x0 + gap, x1 - gap, z0 + gap, z1 - gap, centrality);
 }
 
-/// Trees and lamps along the four sides of a block whose half extents are hx and hz.
+/// Draws trees and lamps along the four sides of a block whose half extents are hx and hz.
 void kerbside(Builder& b, Random& random, double hx, double hz) {
   for (int side = 0; side < 4; ++side) {
     const double half = side % 2 == 0 ? hx : hz, out = side % 2 == 0 ? hz : hx;
@@ -82,7 +82,7 @@ void block(Builder& b, std::uint32_t seed, int i, int k, int blocks) {
   });
 }
 
-/// Asphalt, lane marks, zebra crossings and moving cars.
+/// Draws asphalt, lane marks, zebra crossings and moving cars.
 void streets(Builder& b, std::uint32_t seed, int blocks) {
   Random random(seed, 1);
   const double hx = blocks * kPitchX / 2 + kStreet / 2, hz = blocks * kPitchZ / 2 + kStreet / 2;

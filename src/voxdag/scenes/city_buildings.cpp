@@ -6,14 +6,14 @@
 namespace voxdag::scenes::city {
 namespace {
 
-/// Storeys above the shops; higher towards the centre.
+/// Returns the number of storeys above the shops; more towards the centre.
 int storeys_for(Random& random, double centrality) {
   const double u = random.uniform();
   return 2 +
          static_cast<int>(3 * u + centrality * (4 + 8 * u) + centrality * centrality * 30 * u * u);
 }
 
-/// A block of even height that may step back once or twice on its way up.
+/// Draws a block that may step back once or twice.
 void stepped_tower(Builder& b, Random& random, double x0, double x1, double z0, double z1,
                    int storeys) {
   const Style style = random_style(random, true);
@@ -37,7 +37,7 @@ void stepped_tower(Builder& b, Random& random, double x0, double x1, double z0, 
   roof_clutter(b, random, x0 + 0.6, x1 - 0.6, z0 + 0.6, z1 - 0.6, y);
 }
 
-/// A tower with many sides, or a slab turned in its lot.
+/// Draws a tower with many sides, or a slab that is turned in its lot.
 void turned_tower(Builder& b, Random& random, double x0, double x1, double z0, double z1,
                   int storeys) {
   Style style = random_style(random, true);
@@ -73,7 +73,7 @@ void corner_block(Builder& b, Random& random, double x0, double x1, double z0, d
   const Style style = random_style(random, false);
   const double cut_x = lerp(x0, x1, random.uniform(0.4, 0.55)),
                cut_z = lerp(z0, z1, random.uniform(0.4, 0.55));
-  // The inner corner first: all of the L is seen from it.
+  // The inner corner comes first: the L is star-shaped as seen from it.
   const Footprint f = {{cut_x, cut_z}, {x1, cut_z}, {x1, z0}, {x0, z0}, {x0, z1}, {cut_x, z1}};
   double y = shops(b, random, f, 0, style);
   y = walls(b, random, f, y, storeys, style);

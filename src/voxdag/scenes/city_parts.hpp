@@ -1,44 +1,44 @@
 #pragma once
-/// What the city is made of.
+/// The parts of the city.
 #include "voxdag/scenes/builder.hpp"
 #include "voxdag/scenes/random.hpp"
 
 namespace voxdag::scenes::city {
 
-/// A footprint: corners (x, z) in the order in which x runs along the front edge (largest z), so
-/// that the outside lies to the right of the way. Star-shaped seen from the first corner.
+/// A footprint: corners (x, z), starting along the front edge (largest z) in the direction of x,
+/// with the outside to the right. It is star-shaped as seen from the first corner.
 using Footprint = Profile;
 
 Footprint rectangle(double x0, double x1, double z0, double z1);
 
-/// How the walls of a building look.
+/// The style of the walls of a building.
 struct Style {
   double storey, bay;                  ///< Metres.
-  double window_width, window_height;  ///< Parts of a bay and of a storey.
-  double recess;                       ///< Metres that the pane lies behind the wall.
+  double window_width, window_height;  ///< Fractions of a bay and of a storey.
+  double recess;                       ///< Metres from the wall back to the pane.
   bool sills, fins, balconies, cornices;
   const char* wall;  ///< Material.
 };
 
 Style random_style(Random& random, bool tower);
 
-/// Walls with windows from y = `bottom`, `storeys` storeys high, over every edge of the footprint.
-/// Returns the height of the top.
+/// Draws walls with windows over every edge of the footprint, from y = `bottom`, `storeys` storeys
+/// high. Returns the height of the top.
 double walls(Builder& b, Random& random, const Footprint& footprint, double bottom, int storeys,
              const Style& style);
-/// The ground floor: shop windows, doors and awnings. Returns the height of its top.
+/// Draws the ground floor: shop windows, doors and awnings. Returns the height of its top.
 double shops(Builder& b, Random& random, const Footprint& footprint, double bottom,
              const Style& style);
-/// A moulding (x: outwards, y: height above `y`) around a footprint, mitred.
+/// Draws a mitred moulding around a footprint (x: outwards, y: height above `y`).
 void band(Builder& b, const Footprint& footprint, double y, const Profile& moulding);
-/// A flat roof at `y` with a parapet.
+/// Draws a flat roof at `y` with a parapet.
 void flat_roof(Builder& b, const Footprint& footprint, double y);
-/// Machines, tanks and huts on the flat roof of a rectangle.
+/// Draws machines, tanks and huts on the flat roof of a rectangle.
 void roof_clutter(Builder& b, Random& random, double x0, double x1, double z0, double z1, double y);
-/// A pitched roof with dormers and a chimney over a rectangle whose longer side is along x.
+/// Draws a pitched roof with dormers and a chimney over a rectangle whose longer side is along x.
 void pitched_roof(Builder& b, Random& random, double x0, double x1, double z0, double z1, double y);
 
-/// One building on a lot; `centrality` is 0 at the outskirts and 1 in the centre.
+/// Draws one building on a lot; `centrality` is 0 at the outskirts and 1 in the centre.
 void building(Builder& b, Random& random, double x0, double x1, double z0, double z1,
               double centrality);
 

@@ -7,7 +7,7 @@
 namespace voxdag::scenes::city {
 namespace {
 
-/// A cell of the wall z = 0, [x0,x1] x [y0,y1], with an opening [a0,a1] x [c0,c1] of some depth.
+/// Draws a cell of the wall z = 0, [x0,x1] x [y0,y1], with a recess [a0,a1] x [c0,c1].
 void opening(Builder& b, double x0, double x1, double y0, double y1, double a0, double a1,
              double c0, double c1, double depth, const char* wall, const char* pane) {
   b.material(wall);

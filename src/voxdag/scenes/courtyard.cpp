@@ -167,7 +167,7 @@ void Courtyard::mouldings() {
               rx, rz);
 }
 
-/// One side of the court: x runs along the arcade, whose axis is z = 0; +z is the court.
+/// Draws one side of the court: x runs along the arcade, whose axis is z = 0; +z is the court.
 void Courtyard::range(int side, int bays) {
   for (int bay = 0; bay < bays; ++bay)
     b_.at({{bay * kBay, 0, 0}}, [&] {
@@ -279,7 +279,7 @@ void Courtyard::outer_wall(int bay) {
   b_.box({0, kGroundTop - 0.05, -kGallery}, {kBay, kUpperFloor, 0});
 }
 
-/// The pier at the start of a side and the square of the galleries behind it.
+/// Draws the pier at the start of a side, and the square of the galleries behind it.
 void Courtyard::corner() {
   b_.material("marble");
   square_pier(b_, kSpring, 0.36);
@@ -296,7 +296,7 @@ void Courtyard::corner() {
   b_.box({-kGallery - 0.5, kCourtFloor, -kGallery}, {-kGallery, kWallTop, 0});
 }
 
-/// Mouldings around the outer walls and stones at their corners.
+/// Draws mouldings around the outer walls and stones at their corners.
 void Courtyard::outside() {
   const double x = kHalfX + kGallery + 0.5, z = kHalfZ + kGallery + 0.5;
   b_.material("marble");
@@ -339,7 +339,7 @@ void Courtyard::furniture() {
       b_.at(placed({sx * 2.9, kCourtFloor, sz * 9.2}, 0.125 * sx * sz),
             [&] { bench(b_, detail_); });
     }
-  // Vases at the feet of the columns, turned this way and that.
+  // Vases at the feet of the columns, turned at random.
   for (const double sx : {-1.0, 1.0})
     for (int i = 0; i < 7; ++i) {
       const double z = (i - 3) * kBay;

@@ -3,7 +3,7 @@
 
 #include "voxdag/scenes/courtyard_parts.hpp"
 
-/// What the walls and floors of the courtyard are covered with.
+/// Coverings of walls and floors.
 namespace voxdag::scenes::courtyard {
 
 void door(Builder& b, const Detail& d, double width) {

@@ -6,7 +6,7 @@
 namespace voxdag::scenes::courtyard {
 namespace {
 
-/// A sheet between the edges left(v) and right(v), v = 0 at the top, with `folds` folds.
+/// Draws a sheet between the edges left(v) and right(v), v = 0 at the top, with `folds` folds.
 template <class Left, class Right>
 void sheet(Builder& b, const Detail& d, Random& random, int folds, double top, double bottom,
            const Left& left, const Right& right) {
@@ -41,7 +41,7 @@ void rod(Builder& b, const Detail& d, double width, double y) {
 void tied_curtains(Builder& b, const Detail& d, Random& random, double width, double top) {
   rod(b, d, width, top);
   const double tie = 0.56, half = width / 2;
-  // How far the cloth reaches from its side: full at the rod, gathered at the tie, wider below.
+  // Width of the cloth: full at the rod, gathered at the tie, wider below.
   const auto reach = [&](double v) {
     if (v < tie) {
       const double t = v / tie;

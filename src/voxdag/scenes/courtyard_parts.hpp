@@ -1,12 +1,12 @@
 #pragma once
-/// What the courtyard is made of. Each part is drawn in the builder's frame: y is up, the part
-/// stands on y = 0 and, where it has a front, looks along +z.
+/// The parts of the courtyard. Each function draws one part in the builder's frame: y is up, the
+/// part stands on y = 0, and its front, if any, faces +z.
 #include "voxdag/scenes/builder.hpp"
 #include "voxdag/scenes/random.hpp"
 
 namespace voxdag::scenes::courtyard {
 
-/// How finely curves are divided: 1 is the default, the number of triangles goes with its square.
+/// Fineness of curves: 1 is the default; the number of triangles grows with its square.
 struct Detail {
   double scale = 1;
   int operator()(int segments, int least = 3) const {

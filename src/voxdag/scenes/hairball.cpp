@@ -11,11 +11,11 @@ namespace voxdag::scenes {
 namespace {
 
 constexpr int kSides = 6, kRings = 120;  // 2 * 6 * 120 = 1440 triangles a hair.
-// Thick enough for about the octree nodes of the SVDAG paper's hairball: 769 million at 8192³
-// (781).
+// Gives about as many octree nodes as the SVDAG paper's hairball at 8192³: 769 million; the paper's
+// has 781 million.
 constexpr double kRadius = 0.0036;
 
-/// A hair climbs from near the centre to near the surface while two slow waves turn it about.
+/// Returns a path from near the centre to near the surface, bent by two slow waves.
 std::vector<Vec3d> hair_path(Random& random) {
   Vec3d direction = random.direction();
   const Vec3d axes[2] = {random.direction(), random.direction()};

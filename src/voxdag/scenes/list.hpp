@@ -1,6 +1,6 @@
 #pragma once
-/// The makers behind make_scene, one file each. `size` is in the range of the scene's entry.
-/// `progress` may be null; a maker throws Cancelled when it is asked to stop.
+/// The generators behind make_scene(), one file each. `size` is in the range of the scene's entry.
+/// `progress` may be null; a generator throws Cancelled if it is cancelled.
 #include <cstdint>
 
 #include "voxdag/mesh/mesh.hpp"

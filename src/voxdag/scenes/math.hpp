@@ -1,6 +1,6 @@
 #pragma once
-/// The little mathematics that scenes need, from exactly rounded operations only, so that meshes
-/// are the same on every machine. Angles are in turns: 1 is the full circle.
+/// Mathematics for scenes. It uses exactly rounded operations only, so that meshes are equal on
+/// every machine. Angles are in turns: 1 is the full circle.
 #include <cmath>
 #include <initializer_list>
 
@@ -8,7 +8,8 @@
 
 namespace voxdag::scenes {
 
-/// Sine of 2 pi t by its Taylor polynomial on a quarter turn; absolute error below 1e-15.
+/// Returns the sine of 2 pi t, by its Taylor polynomial on a quarter turn; absolute error below
+/// 1e-15.
 inline double sin_turns(double t) {
   t -= std::floor(t + 0.5);
   if (t > 0.25) t = 0.5 - t;
@@ -26,7 +27,7 @@ inline double cos_turns(double t) { return sin_turns(t + 0.25); }
 inline double lerp(double a, double b, double t) { return a + (b - a) * t; }
 inline Vec3d lerp(Vec3d a, Vec3d b, double t) { return a + (b - a) * t; }
 inline double clamp01(double v) { return v < 0 ? 0 : v > 1 ? 1 : v; }
-/// 0 below a, 1 above b, smooth between.
+/// Returns 0 below a, 1 above b, and a smooth value between.
 inline double smoothstep(double a, double b, double v) {
   const double t = clamp01((v - a) / (b - a));
   return t * t * (3 - 2 * t);
@@ -35,26 +36,26 @@ inline double smoothstep(double a, double b, double v) {
 inline double length(Vec3d v) { return std::sqrt(dot(v, v)); }
 inline Vec3d normalize(Vec3d v) { return v * (1 / length(v)); }
 
-/// Some unit vector perpendicular to the unit vector v.
+/// Returns a unit vector perpendicular to the unit vector v.
 inline Vec3d perpendicular(Vec3d v) {
   const Vec3d axis = v.x * v.x < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   return normalize(cross(v, axis));
 }
 
-/// Where local coordinates lie in the world: axes are orthogonal, right-handed and of equal length.
+/// Maps local coordinates to the world: axes are orthogonal, right-handed and of equal length.
 struct Frame {
   Vec3d origin{};
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
   Vec3d point(Vec3d p) const { return origin + direction(p); }
   Vec3d direction(Vec3d d) const { return x * d.x + y * d.y + z * d.z; }
-  /// The frame whose coordinates are local to this one.
+  /// Returns the frame `f`, given in local coordinates, in the world.
   Frame operator*(const Frame& f) const {
     return {point(f.origin), direction(f.x), direction(f.y), direction(f.z)};
   }
 };
 
-/// Moves to `origin`, after a turn about y (from z towards x) and a uniform scale.
+/// Returns a frame at `origin`, turned about y (from z towards x) and scaled uniformly.
 inline Frame placed(Vec3d origin, double turns = 0, double scale = 1) {
   const double c = cos_turns(turns) * scale, s = sin_turns(turns) * scale;
   return {origin, {c, 0, -s}, {0, scale, 0}, {s, 0, c}};

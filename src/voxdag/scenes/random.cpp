@@ -14,7 +14,7 @@ std::uint32_t hash(std::int64_t x, std::int64_t y, std::int64_t z, std::uint32_t
   return static_cast<std::uint32_t>((h * 0x94D049BB133111EBull) >> 32);
 }
 
-/// The dot product with one of the twelve edge directions of a cube.
+/// Returns the dot product with one of the twelve edge directions of a cube.
 double gradient(std::uint32_t h, double x, double y, double z) {
   const std::uint32_t g = h & 15;
   const double u = g < 8 ? x : y, v = g < 4 ? y : g == 12 || g == 14 ? x : z;

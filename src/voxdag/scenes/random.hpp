@@ -1,5 +1,5 @@
 #pragma once
-/// Random numbers that are the same everywhere, and noise made of them.
+/// Random numbers and noise that are equal on every machine.
 #include <cstdint>
 
 #include "voxdag/scenes/math.hpp"
@@ -10,7 +10,7 @@ namespace voxdag::scenes {
 /// Algorithms for Random Number Generation", 2014 (XSH-RR 64/32).
 class Random {
  public:
-  /// Streams of one seed are independent: a part that draws more or less leaves the others alone.
+  /// Streams of one seed are independent: the numbers drawn from one do not change another.
   explicit Random(std::uint32_t seed, std::uint64_t stream = 0) : increment_(stream * 2 + 1) {
     next();
     state_ += seed;
@@ -23,13 +23,13 @@ class Random {
     const auto rotation = static_cast<std::uint32_t>(old >> 59);
     return shifted >> rotation | shifted << ((32 - rotation) & 31);
   }
-  /// In [0, 1).
+  /// Returns a number in [0, 1).
   double uniform() { return next() * (1.0 / 4294967296.0); }
   double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
-  /// In [0, n).
+  /// Returns an integer in [0, n).
   int below(int n) { return static_cast<int>(uniform() * n); }
   bool chance(double probability) { return uniform() < probability; }
-  /// Uniform on the unit sphere.
+  /// Returns a unit vector, uniform on the sphere.
   Vec3d direction() {
     for (;;) {
       const Vec3d v{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
@@ -42,11 +42,12 @@ class Random {
   std::uint64_t state_ = 0, increment_;
 };
 
-/// Gradient noise in about [-1, 1], smooth, one feature per unit.
+/// Returns smooth gradient noise in about [-1, 1], with one feature per unit.
 /// Source: Perlin, "Improving Noise", SIGGRAPH 2002, with hashed lattice gradients.
 double noise(Vec3d p, std::uint32_t seed);
 
-/// Sum of `octaves` noises, each of twice the frequency and `gain` times the height of the last.
+/// Returns the sum of `octaves` noises, each of twice the frequency and `gain` times the height of
+/// the one before.
 double fractal_noise(Vec3d p, std::uint32_t seed, int octaves, double gain = 0.5);
 
 }  // namespace voxdag::scenes

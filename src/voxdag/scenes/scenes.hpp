@@ -1,6 +1,6 @@
 #pragma once
-/// Procedural scenes: seeded, and the same bytes on every machine (only +, -, *, / and square roots
-/// of IEEE doubles are used; sines come from a polynomial of our own).
+/// Procedural scenes. A scene has the same bytes on every machine: the generators use only +, -, *,
+/// / and square roots of IEEE doubles, and compute sines by a polynomial.
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -13,21 +13,20 @@
 namespace voxdag {
 
 struct SceneOptions {
-  double size = 0;  ///< What it counts is said by SceneInfo; 0 takes the default.
-  std::uint32_t seed =
-      1;  ///< Another seed, another scene of the same kind (`sponge` has one only).
+  double size = 0;         ///< Counts what SceneInfo::size_meaning says; 0: the default size.
+  std::uint32_t seed = 1;  ///< Seed of the random numbers; `sponge` has none.
 };
 
 struct SceneInfo {
   std::string_view name;
   std::string_view description;   ///< One line.
-  std::string_view size_meaning;  ///< What SceneOptions::size counts.
+  std::string_view size_meaning;  ///< The thing that SceneOptions::size counts.
   double default_size, min_size, max_size;
 };
 
-/// Where a flight is at a time.
+/// The camera of a flight at one time.
 struct SceneKey {
-  double time = 0;  ///< Seconds, from 0 on, rising.
+  double time = 0;  ///< Seconds, from 0, increasing.
   Vec3d eye, target;
 };
 
@@ -35,21 +34,22 @@ struct SceneKey {
 struct ScenePreset {
   Vec3d eye, target;
   Vec3d up{0, 1, 0};
-  double fov_degrees = 60;       ///< Vertical angle of view, for pictures of 16:9.
+  double fov_degrees = 60;       ///< Vertical field of view, for pictures of 16:9.
   Vec3d sun_direction;           ///< Unit vector from the scene towards the sun.
-  std::vector<SceneKey> flight;  ///< A film, with the same up and angle of view.
+  std::vector<SceneKey> flight;  ///< A camera path with this up and field of view.
 };
 
-/// Every scene, in alphabetical order.
+/// Returns all scenes, in alphabetical order.
 std::span<const SceneInfo> scene_list();
 
-/// World units are metres, y is up, right-handed; triangles wind counter-clockwise seen from
-/// outside. Materials name the parts. Throws Error for an unknown name or a size outside the
-/// scene's range, Cancelled when `progress` (may be null) is asked to stop.
+/// Generates a scene. World units are metres, y is up, axes are right-handed, triangles wind
+/// counter-clockwise seen from outside. Materials name the parts. Throws Error for an unknown name
+/// or a size outside the scene's range, and Cancelled if `progress` (may be null) is cancelled.
 Mesh make_scene(std::string_view name, const SceneOptions& options = {},
                 const Progress* progress = nullptr);
 
-/// The view for the scene that make_scene gives for the same arguments. Throws as make_scene.
+/// Returns a view of the scene that make_scene() makes of these arguments. Throws Error for an
+/// unknown name or a size outside the scene's range.
 ScenePreset scene_preset(std::string_view name, const SceneOptions& options = {});
 
 }  // namespace voxdag

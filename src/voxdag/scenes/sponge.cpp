@@ -3,9 +3,9 @@
 #include "voxdag/scenes/builder.hpp"
 #include "voxdag/scenes/list.hpp"
 
-/// The Menger sponge: a cube of 3^depth cells a side without those whose base-3 coordinates have
-/// two ones at the same place. Only faces between a cell and nothing are made; every coordinate is
-/// a multiple of a power of two, so nothing is rounded. The side is between 0.5 m and 1 m.
+/// The Menger sponge: a cube of 3^depth cells a side, without the cells whose base-3 coordinates
+/// have two ones at the same digit. It has outer faces only. Every coordinate is a multiple of a
+/// power of two, so nothing is rounded. The side is between 0.5 m and 1 m.
 namespace voxdag::scenes {
 namespace {
 
@@ -35,7 +35,7 @@ Mesh make_sponge(double size, std::uint32_t, const Progress* progress) {
   const double cell = sponge_cell(cells);
   Builder builder(progress);
   builder.material("sponge");
-  // Vertices of the two planes that a layer of cells lies between, so that neighbours share them.
+  // Vertices of the two planes around a layer of cells: neighbouring cells share them.
   constexpr std::uint32_t kNone = ~0u;
   const int stride = cells + 1;
   std::vector<std::uint32_t> planes[2];
@@ -54,7 +54,7 @@ Mesh make_sponge(double size, std::uint32_t, const Progress* progress) {
             Vec3i next{x, y, z};
             next[axis] += side == 0 ? -1 : 1;
             if (is_solid(next.x, next.y, next.z, cells)) continue;
-            // Counter-clockwise from outside for the far side; the near side runs backwards.
+            // Counter-clockwise from outside: the near side has the reverse order of the far side.
             std::uint32_t v[4];
             for (int i = 0; i < 4; ++i) {
               const int turn = side == 1 ? i : 3 - i;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kCourses = 8;
 
-/// Evenly distributed in [0,1).
+/// Returns a hash, evenly distributed in [0,1).
 double random(std::uint32_t seed, int x, int y) {
   std::uint32_t h = seed * 0x9E3779B9u;
   for (const int key : {x, y}) {
@@ -24,7 +24,7 @@ double smooth(double t) {
   return t * t * (3 - 2 * t);
 }
 
-/// Smooth noise in [0,1) of period `cells` over the unit square.
+/// Returns smooth noise in [0,1) of period `cells` over the unit square.
 double noise(std::uint32_t seed, double u, double v, int cells) {
   const double x = u * cells, y = v * cells;
   const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
@@ -37,7 +37,7 @@ double noise(std::uint32_t seed, double u, double v, int cells) {
   return top * (1 - wy) + bottom * wy;
 }
 
-/// Noise of several sizes, about 0.
+/// Returns noise of several frequencies, around 0.
 double roughness(std::uint32_t seed, double u, double v) {
   double sum = 0, weight = 0.5;
   for (int cells = 16; cells <= 128; cells *= 2, weight *= 0.55)
@@ -46,7 +46,7 @@ double roughness(std::uint32_t seed, double u, double v) {
 }
 
 double stone_height(std::uint32_t seed, double u, double v) {
-  // Joints that waver.
+  // Uneven joints.
   const double wu = u + 0.008 * (noise(seed + 1, u, v, 24) - 0.5);
   const double wv = v + 0.008 * (noise(seed + 2, u, v, 24) - 0.5);
   const double y = (wv - std::floor(wv)) * kCourses;
@@ -54,7 +54,7 @@ double stone_height(std::uint32_t seed, double u, double v) {
   const int blocks = 3 + static_cast<int>(random(seed + 3, course, 0) * 3);
   const double x = wu * blocks + random(seed + 4, course, 0);
   const double cell = std::floor(x);
-  // The joint before block k is a little off the even spacing.
+  // The joint before block k deviates a little from even spacing.
   const auto joint = [&](double k) {
     const int block = (static_cast<int>(k) % blocks + blocks) % blocks;
     return k + 0.35 * (random(seed + 5, block, course) - 0.5);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSide = 2000, kBottom = -140, kLake = 4;
 
-/// How many of `count` rocks or trees a field gets: all of them on 512 cells a side or more.
+/// Returns the number of rocks or trees of a field: `count` from 512 cells a side on, else fewer.
 int things(const HeightField& field, int count) {
   const double part = std::min(1.0, field.cells / 512.0);
   return static_cast<int>(count * part * part);
@@ -40,7 +40,7 @@ void block(Builder& b, const HeightField& field) {
   b.quad({0, kBottom, 0}, {kSide, kBottom, 0}, {kSide, kBottom, kSide}, {0, kBottom, kSide});
 }
 
-/// A sheet of water, with sides down to the ground where it is cut.
+/// Draws the sheet of water, with walls down to the ground at the edge of the block.
 void lake(Builder& b, const HeightField& field, std::uint32_t seed) {
   b.material("water");
   const int n = std::min(400, field.cells);
@@ -62,7 +62,7 @@ void lake(Builder& b, const HeightField& field, std::uint32_t seed) {
   side(0, 0, 0, kSide);
 }
 
-/// Makes most of [0,1] small. The library's pow may round differently elsewhere.
+/// Makes most of [0,1] small. std::pow may round differently on other machines.
 double sixth_power(double v) { return v * v * v * v * v * v; }
 
 void rocks(Builder& b, const HeightField& field, std::uint32_t seed) {
@@ -78,7 +78,7 @@ void rocks(Builder& b, const HeightField& field, std::uint32_t seed) {
     if (slope > 0.9 || slope < 0.12) continue;
     b.at(placed({x, field.height(x, z) + 0.15 * size, z}, turns), [&] {
       b.ball(size > 3 ? 10 : 5, [&](Vec3d d) {
-        // Cut by a few planes, then roughened.
+        // A ball cut by a few planes, with noise.
         double r = 1 + 0.25 * noise(d * 1.3, shape);
         for (int k = 0; k < 5; ++k) {
           const Vec3d n =
@@ -94,7 +94,7 @@ void rocks(Builder& b, const HeightField& field, std::uint32_t seed) {
   }
 }
 
-/// A trunk and skirts of branches, each a ragged cone.
+/// Draws a trunk and skirts of branches, each a ragged cone.
 void fir(Builder& b, Random& random, double height) {
   b.material("bark");
   b.lathe({{0, -1}, {0.035 * height, -1}, {0.02 * height, 0.3 * height}, {0, 0.3 * height}}, 6);

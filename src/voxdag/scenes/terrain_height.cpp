@@ -53,7 +53,7 @@ class Erosion {
 
   void drop() {
     const int n = field_.cells;
-    // Heights in cells, so that the process looks alike at every resolution.
+    // Heights in cells: erosion then looks alike at every resolution.
     const double unit = field_.cell();
     double x = random_.uniform(0, n), z = random_.uniform(0, n), dir_x = 0, dir_z = 0;
     double speed = 1, water = 1, soil = 0;
@@ -107,7 +107,7 @@ class Erosion {
   std::vector<Dab> brush_;
 };
 
-/// One binomial filter of 3 by 3: drops leave pits of a single cell.
+/// Applies a binomial filter of 3 by 3, since drops leave pits of single cells.
 void soften(HeightField& field) {
   const HeightField old = field;
   const int n = field.cells;

@@ -1,5 +1,5 @@
 #pragma once
-/// A square of mountains as heights on a grid.
+/// Mountains as a grid of heights.
 #include <cstdint>
 #include <vector>
 
@@ -14,13 +14,13 @@ struct HeightField {
   double& at(int x, int z) { return heights[static_cast<std::size_t>(z) * (cells + 1) + x]; }
   double at(int x, int z) const { return heights[static_cast<std::size_t>(z) * (cells + 1) + x]; }
   double cell() const { return side / cells; }
-  /// Between grid points, x and z in metres within [0, side].
+  /// Returns the interpolated height; x and z are metres in [0, side].
   double height(double x, double z) const;
-  /// Metres of rise per metre.
+  /// Returns the slope in metres per metre.
   double slope(double x, double z) const;
 };
 
-/// Ridges from folded noise, then carved by drops of rain that carry soil downhill.
+/// Returns ridges from folded noise, eroded by raindrops that carry soil downhill.
 HeightField mountain_heights(int cells, double side, std::uint32_t seed);
 
 }  // namespace voxdag::scenes
