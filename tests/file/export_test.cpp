@@ -158,11 +158,11 @@ TEST(Export, AWindowMustLieInTheGrid) {
         [&] { export_npy_dense("v.npy", scene.view(), scene.grid, windowed(lo, hi)); });
   };
   EXPECT_EQ(with({0, 0, 0}, {17, 1, 1}),
-            "v.npy: window: reaches out of the grid of 16 voxels a side");
+            "v.npy: window: extends beyond the grid of 16 voxels a side");
   EXPECT_EQ(with({-1, 0, 0}, {1, 1, 1}),
-            "v.npy: window: reaches out of the grid of 16 voxels a side");
+            "v.npy: window: extends beyond the grid of 16 voxels a side");
   EXPECT_EQ(with({0, 5, 0}, {1, 5, 1}),
-            "v.npy: window: has no voxels: each end must lie behind its start");
+            "v.npy: window: is empty: each end must be greater than its start");
 }
 
 /// A binary PLY as the exporters make it.
@@ -297,7 +297,8 @@ TEST(Export, TheExtensionChooses) {
   EXPECT_TRUE(Ply(run("a.ply", PlyContent::kPoints)).faces.empty());
   EXPECT_FALSE(Ply(run("b.ply", PlyContent::kFaces)).faces.empty());
   EXPECT_EQ(error_of([&] { run("a.xyz", PlyContent::kPoints); }),
-            (dir / "a.xyz").string() + ": cannot export to '.xyz': known are .npy, .ply and .raw");
+            (dir / "a.xyz").string() +
+                ": cannot export to '.xyz': the extensions are .npy, .ply and .raw");
 }
 
 TEST(Export, AnEmptyDagMakesEmptyFiles) {

@@ -119,7 +119,7 @@ TEST(Npy, EveryTruncationIsRefused) {
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_NE(error_of(bytes.substr(0, size)), "no error") << size;
   EXPECT_EQ(error_of(bytes.substr(0, 150)), "byte 150: truncated: 2 rows need 192 bytes");
-  EXPECT_EQ(error_of(bytes + "x"), "byte 192: bytes behind the array: 2 rows need 192 bytes");
+  EXPECT_EQ(error_of(bytes + "x"), "byte 192: trailing bytes: 2 rows need 192 bytes");
 }
 
 TEST(Npy, SaysWhatIsWrong) {

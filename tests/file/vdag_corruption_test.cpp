@@ -124,9 +124,9 @@ TEST(VdagCorruption, ChunksMustStandInOrderWithoutGapsOrOverlap) {
   const std::size_t offset = entry_offset(2) + offsetof(VdagChunkEntry, offset);
   const auto right = peek<std::uint64_t>(small_file(), offset);
   for (const std::uint64_t wrong : {right + 64, right - 64, right + 8, std::uint64_t{0}})
-    EXPECT_EQ(error_of(repaired_with(offset, wrong)), "chunk table, chunk NODE: at byte " +
-                                                          std::to_string(wrong) + " where byte " +
-                                                          std::to_string(right) + " is expected");
+    EXPECT_EQ(error_of(repaired_with(offset, wrong)),
+              "chunk table, chunk NODE: starts at byte " + std::to_string(wrong) +
+                  ", expected byte " + std::to_string(right));
 }
 
 TEST(VdagCorruption, AChunkTwiceOrMissingIsRefused) {

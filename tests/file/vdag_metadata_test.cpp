@@ -85,7 +85,8 @@ TEST(VdagMetadata, SaysWhatIsWrong) {
       "byte " + std::to_string(vdag_metadata_json(example()).size() + 1) + ": not valid JSON");
   EXPECT_EQ(error_of("[]"), "not an object");
   EXPECT_EQ(error_of("{}"), "grid: missing");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":1")), "grid.levels: 1 is not 2 to 20");
+  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":1")),
+            "grid.levels: 1 is not in the range 2 to 20");
   EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":3.0")), "grid.levels: not a count");
   EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":-3")), "grid.levels: not a count");
   EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":4")),
@@ -95,9 +96,9 @@ TEST(VdagMetadata, SaysWhatIsWrong) {
   EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":0.0")),
             "grid.voxel_size: not positive");
   EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":1e308")),
-            "grid: reaches beyond the finite numbers");
+            "grid: the grid exceeds the range of doubles");
   EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":4e-324")),
-            "grid.voxel_size: too small");
+            "grid.voxel_size: is too small");
   EXPECT_EQ(error_of(with("\"voxels\":1", "\"voxels\":\"1\"")), "counts.voxels: not a count");
   EXPECT_EQ(error_of(with("\"bunny.ply\"", "7")), "source.name: not a string");
   EXPECT_EQ(error_of(with("\"exact\"", "1")), "build.cover: not a string");

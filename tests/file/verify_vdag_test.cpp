@@ -72,7 +72,7 @@ TEST(VerifyVdag, FindsWrongCounts) {
   write_vdag(dir / "a.vdag", dag.view(), metadata);
   EXPECT_EQ(summary(verify_vdag(dir / "a.vdag")),
             "container, checksums, metadata, structure, canonical order, minimality, "
-            "counts! chunk META, counts.svo_nodes_per_level[1]: 3 where the DAG has 2");
+            "counts! chunk META, counts.svo_nodes_per_level[1]: 3, but the DAG has 2");
 }
 
 }  // namespace

@@ -121,10 +121,10 @@ TEST(ValidateSvdag, RefusesABadLevelTable) {
   EXPECT_EQ(fault(validate_svdag, dag), "level table: level 4 has words");
   dag = two_corners();
   dag.levels = 1;
-  EXPECT_EQ(fault(validate_svdag, dag), "level table: 1 levels, not 2 to 20");
+  EXPECT_EQ(fault(validate_svdag, dag), "level table: 1 levels are not in the range 2 to 20");
   dag = two_corners();
   dag.leaf_blocks.clear();
-  EXPECT_EQ(fault(validate_svdag, dag), "level table: nodes, but no leaf blocks");
+  EXPECT_EQ(fault(validate_svdag, dag), "level table: there are nodes, but no leaf blocks");
 }
 
 TEST(CheckCanonical, RefusesSwappedNodes) {

@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-/// Filters the picture, if asked to, exposes and tone maps it.
+/// Filters the picture if the options ask for it, exposes it and tone maps it.
 RenderedImage finish(const RenderPlan& plan, RenderedImage image, const RenderOptions& options,
                      const ViewSource* source) {
   if (options.filter && source == nullptr) filter_picture(image);

@@ -21,14 +21,14 @@ float SurfaceOpenness::operator()(Vec3d point, Vec3f normal, Vec3f face) const {
 template <class Nodes, class Caster>
 float SurfaceOpenness::open_part(const Nodes& nodes, const Caster& caster, Vec3d point,
                                  Vec3f normal, Vec3f face) const {
-  constexpr float kSlack = 0.25f;  // voxels, as where the renderer's rays start
+  constexpr float kSlack = 0.25f;  // voxels, as for the renderer's rays
   const double lift = static_cast<double>(cube_height(face) + kSlack) * grid_.voxel_size;
   const Vec3d lifted = point + static_cast<Vec3d>(face) * lift;
   SurfacePoint start;
   start.start = make_grid_point(grid_, lifted);
   start.normal = normal;
   start.face = face;
-  // In a corner the point may lie in a voxel of the other surface, which stands beside it.
+  // In a corner, the point may lie in a voxel of the other surface: starts beside it.
   const auto is_inside = [&] {
     CellHit cell;
     return cast(nodes, make_grid_ray(start.start, face, 0, 0), StopAtVoxels{}, cell);

@@ -31,7 +31,7 @@ CudaDevices cuda_devices() {
   CudaDevices found;
   int count = 0;
   if (const cudaError_t status = cudaGetDeviceCount(&count); status != cudaSuccess) {
-    cudaGetLastError();  // forget it
+    cudaGetLastError();  // clears the error
     found.why_none = why_none(status);
     return found;
   }

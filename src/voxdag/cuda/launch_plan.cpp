@@ -45,7 +45,7 @@ void LaunchPlan::measured(const LaunchRange& range, double seconds) {
   const double work = work_per_sample_ * (range.last_block - range.first_block) *
                       (range.last_sample - range.first_sample);
   const double factor = kSecondsPerLaunch / std::max(seconds, kSecondsPerLaunch / kMostGrowth);
-  // A last piece that is small says nothing about larger ones.
+  // The time of a small last launch says nothing about larger ones.
   if (factor < 1 || work * factor > work_per_launch_) work_per_launch_ = work * factor;
 }
 

@@ -57,7 +57,7 @@ void copy_to_device(void* device, const void* host, std::uint64_t bytes) {
   if (bytes == 0) return;
   const char* doing = "copying to the device";
   check_cuda(cudaMemcpy(device, host, bytes, cudaMemcpyHostToDevice), doing);
-  // It may return while the last bytes are on their way, and other queues would not wait for them.
+  // cudaMemcpy may return before the last bytes arrive, and other streams would not wait for them.
   check_cuda(cudaStreamSynchronize(nullptr), doing);
 }
 

@@ -1,4 +1,4 @@
-/// What stands for the CUDA backend in a build without nvcc.
+/// Stands in for the CUDA backend in a build without nvcc: every function reports that.
 #include "voxdag/core/error.hpp"
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_scene.hpp"

@@ -16,15 +16,15 @@ namespace {
 
 /// Rays of the first launch: half a second on a slow device.
 constexpr double kFirstRays = 1 << 25;
-/// Blocks whose samples are found on the host at once.
+/// Blocks whose view samples the host finds at once.
 constexpr std::uint32_t kSourceBlocks = 4096;
 /// Coarse beams per launch.
 constexpr std::uint32_t kBeamsPerLaunch = 1 << 18;
 
-/// Blocks are counted in 32 bits, by launches in 31.
+/// Block numbers have 32 bits, launches 31.
 constexpr std::uint32_t kMostBlocks = 1u << 30;
 
-/// Two of these take turns: one is with the device while the host fills the other.
+/// Two of these take turns: the device reads one while the host fills the other.
 struct SourceSamples {
   PinnedBuffer<ViewSample> host;
   DeviceBuffer<ViewSample> device;
@@ -51,7 +51,7 @@ double rays_per_sample(const RenderSetup& setup) {
   return rays;
 }
 
-/// The view samples of a launch, which has one for each pixel.
+/// Finds the view samples of a launch, one for each pixel.
 void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& setup,
           const LaunchRange& range) {
   parallel_for(std::size_t{range.last_block} - range.first_block, [&](std::size_t i) {
@@ -78,7 +78,7 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* 
     part.device = make_device_buffer<ViewSample>(kSourceBlocks * kBlockPixels, "view samples");
   }
   const CudaEvent begin, end;
-  const CudaStream stream;  // last: destroyed before the memory that it works on
+  const CudaStream stream;  // last, so that it is destroyed before the memory that it uses
   int turn = 0;
   auto range = plan.next();
   if (has_source && range) fill(samples[turn], *source, setup, *range);

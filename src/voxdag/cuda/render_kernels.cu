@@ -9,10 +9,10 @@ namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kBeamThreads = 64;
-constexpr int kFilterSide = 16;  // pixels of a block, across and down
+constexpr int kFilterSide = 16;  // pixels along a side of a block
 
-/// Sixteen blocks on a multiprocessor: the beams of a picture of 1920×1080 run all at once on a
-/// hundred and thirty of them.
+/// Sixteen blocks per multiprocessor: 130 multiprocessors run all beams of a picture of 1920×1080
+/// at once.
 template <class Nodes>
 __global__ void __launch_bounds__(kBeamThreads, 16)
     beams_kernel(Nodes nodes, const __grid_constant__ RenderSetup setup, std::uint32_t first,

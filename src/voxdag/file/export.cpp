@@ -13,8 +13,9 @@ void export_voxels(const std::filesystem::path& path, const VoxelSet& voxels, co
   if (extension == ".ply" && ply_content == PlyContent::kFaces)
     return export_ply_faces(path, voxels, grid, options);
   if (extension == ".ply") return export_ply_points(path, voxels, grid, options);
-  throw Error(path.string(), "",
-              "cannot export to '" + extension.string() + "': known are .npy, .ply and .raw");
+  throw Error(
+      path.string(), "",
+      "cannot export to '" + extension.string() + "': the extensions are .npy, .ply and .raw");
 }
 
 }  // namespace voxdag

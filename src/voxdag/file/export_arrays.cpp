@@ -1,4 +1,4 @@
-// The exporters of plain arrays: .npy and .raw.
+// Exports plain arrays: .npy and .raw.
 #include <algorithm>
 #include <span>
 
@@ -31,8 +31,8 @@ void refuse_too_large(const std::filesystem::path& path, const Box3i& window,
                     ": choose a smaller window");
 }
 
-/// Calls write(bytes) with one run of the dense array after the other. A run is a strip of the
-/// window: a stretch of the slowest axis, or of the middle one where a single layer is too much.
+/// Calls write(bytes) with one part of the dense array after the other. A part is a strip of the
+/// window: a range of the slowest axis, or of the middle axis if a single layer is too large.
 template <class Write>
 void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std::string& axes,
                           const ExportOptions& options, const Write& write) {

@@ -17,7 +17,7 @@ Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
       throw Error(path.string(), "window", "is empty: each end must be greater than its start");
     if (window.lo[axis] < 0 || window.hi[axis] > grid.hi[axis])
       throw Error(path.string(), "window",
-                  "reaches out of the grid of " + std::to_string(grid.hi.x) + " voxels a side");
+                  "extends beyond the grid of " + std::to_string(grid.hi.x) + " voxels a side");
   }
   return window;
 }

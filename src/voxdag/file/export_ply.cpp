@@ -1,4 +1,4 @@
-// The exporters to PLY: voxel centres, and the outer faces of the voxels' cubes.
+// Exports PLY: voxel centres, or the outer faces of the voxels' cubes.
 #include <array>
 #include <bitset>
 #include <charconv>
@@ -19,7 +19,7 @@ std::string shortest(double value) {
   return {text, result.ptr};
 }
 
-/// Whether float coordinates are exact to 1/16 voxel in the whole grid.
+/// Returns whether float coordinates are exact to 1/16 voxel in the whole grid.
 bool float_suffices(const Grid& grid) {
   const Box3d bounds = grid.bounds();
   double largest = 0;
@@ -29,8 +29,8 @@ bool float_suffices(const Grid& grid) {
          grid.voxel_size > 16 * std::numeric_limits<float>::min();
 }
 
-/// A PLY file whose counts are known at the end only: the header is then written again, padded
-/// to the same length by a comment.
+/// A PLY file whose counts are known only at the end. Then the header is written again, padded to
+/// the same length with a comment.
 class PlyFile {
  public:
   struct Content {
@@ -55,7 +55,7 @@ class PlyFile {
     ++vertices_;
   }
 
-  /// What the last vertex looks like: to be called after each, if there are normals or colours.
+  /// Writes the last vertex's normal and colour. If there are any, call it after each vertex.
   void write_look(const EsvoView& esvo, const EsvoVoxel& voxel) {
     Vec3f normal;
     Vec3<std::uint8_t> color;
@@ -110,18 +110,19 @@ class PlyFile {
   std::uint64_t vertices_ = 0, faces_ = 0;
 };
 
-constexpr int kCorners = 5 * 5 * 5;  ///< Of the voxels of a leaf block.
+constexpr int kCorners = 5 * 5 * 5;  ///< Corners of the voxels of a leaf block.
 
 int corner_index(Vec3i corner) { return corner.x + 5 * (corner.y + 5 * corner.z); }
 
-/// The faces of a leaf block's voxels whose neighbour is not set.
+/// The faces of a leaf block's voxels whose neighbours are not set.
 struct BlockSurface {
-  /// [2 * axis + side]: the voxels whose face on the low (0) or high (1) side is outside.
+  /// [2 * axis + side] is the mask of the voxels with an outer face on the low (0) or high (1)
+  /// side.
   std::array<std::uint64_t, 6> faces{};
-  std::bitset<kCorners> corners;  ///< Those that the faces use.
+  std::bitset<kCorners> corners;  ///< Corners that the faces use.
 };
 
-/// The corners of a face in order, counter-clockwise from outside.
+/// Returns the corners of a face, counter-clockwise from outside.
 std::array<Vec3i, 4> face_corners(Vec3i voxel, int axis, int side) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::array<Vec3i, 4> corners;
@@ -135,8 +136,8 @@ std::array<Vec3i, 4> face_corners(Vec3i voxel, int axis, int side) {
 }
 
 /// Moves every voxel's bit to its neighbour at a higher (lower) coordinate on an axis; bits of
-/// `next` come in from the block that lies beyond. In Morton order a step inside a 2³ octant is one
-/// bit position of the axis, a step from one octant to the next is seven.
+/// `next`, the block beyond, move in. In Morton order, a step inside of an octant of 2³ moves by
+/// one bit position of the axis, a step to the next octant by seven.
 std::uint64_t shift_up(std::uint64_t block, std::uint64_t below, int axis) {
   const auto& slab = kLeafSlabs[axis];
   return (block << (1 << axis) & (slab[1] | slab[3])) | (block << (7 << axis) & slab[2]) |
@@ -210,7 +211,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
                       const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
   PlyFile file(path, grid, {.faces = true});
-  // PLY has all vertices before all faces: two walks that make the same surfaces.
+  // In PLY all vertices come before all faces: two walks make the same surfaces.
   export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t block) {
     const BlockSurface surface = block_surface(voxels, window, origin, block);
     for (int i = 0; i < kCorners; ++i)

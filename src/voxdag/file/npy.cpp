@@ -19,14 +19,14 @@ namespace {
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 constexpr std::size_t kPrefixBytes = 10;  ///< Magic, version and length of version 1.0.
 constexpr std::uint32_t kMostHeaderBytes = 1 << 20;
-/// Room that the writer leaves for N: the digits of 2^64.
+/// Space that the writer reserves for N: the digits of 2^64.
 constexpr std::size_t kMostDigits = 20;
 
 std::string dtype_literal(const std::string& dtype) {
   return dtype.starts_with('[') ? dtype : "'" + dtype + "'";
 }
 
-/// Python's spelling: "(5,)", "(5, 8)"; `first` stands for the first number.
+/// Returns Python's form of a shape, "(5,)" or "(5, 8)", with `first` for the first number.
 std::string shape_literal(const std::string& first, std::span<const std::uint64_t> rest) {
   std::string text = "(" + first + ",";
   for (std::size_t i = 0; i < rest.size(); ++i)
@@ -115,8 +115,8 @@ void NpyReader::check_size() const {
   const std::uint64_t expected = position_ + rows_ * row_bytes_;
   if (size != expected)
     throw Error(path_.string(), ErrorPlace::byte(std::min(size, expected)),
-                (size < expected ? "truncated: " : "bytes behind the array: ") +
-                    std::to_string(rows_) + " rows need " + std::to_string(expected) + " bytes");
+                (size < expected ? "truncated: " : "trailing bytes: ") + std::to_string(rows_) +
+                    " rows need " + std::to_string(expected) + " bytes");
 }
 
 void NpyReader::fail(const std::string& reason) const {
@@ -153,7 +153,7 @@ std::string NpyWriter::header(std::uint64_t rows) const {
   std::string dictionary =
       "{'descr': " + dtype_literal(dtype_) +
       ", 'fortran_order': False, 'shape': " + shape_literal(number, row_shape_) + ", }";
-  // Always as long as for the largest N, so that it can be overwritten; data aligned to 64 bytes.
+  // As long as for the largest N, so that it can be overwritten; aligns the data to 64 bytes.
   const std::size_t longest = kPrefixBytes + dictionary.size() - number.size() + kMostDigits + 1;
   const std::size_t padded = (longest + 63) / 64 * 64;
   dictionary.resize(padded - kPrefixBytes - 1, ' ');

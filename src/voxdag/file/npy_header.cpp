@@ -1,4 +1,4 @@
-// The header of a .npy file: a Python dictionary of three literals.
+// Parses the header of a .npy file, a Python dictionary of three literals.
 #include <charconv>
 
 #include "voxdag/core/error.hpp"
@@ -43,7 +43,7 @@ class Parser {
     throw Error("", ErrorPlace::byte(first_byte_ + at_), reason);
   }
 
-  /// The next character that is no space; 0 at the end.
+  /// Returns the next character that is not a space; 0 at the end.
   char peek() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n')) ++at_;
     return at_ < text_.size() ? text_[at_] : '\0';
@@ -68,7 +68,7 @@ class Parser {
     return value;
   }
 
-  /// A bracketed list as it stands; brackets inside strings do not count.
+  /// Returns the text of a bracketed list. Brackets inside of strings do not count.
   std::string list() {
     const std::size_t begin = at_;
     int depth = 0;

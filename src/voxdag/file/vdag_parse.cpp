@@ -29,7 +29,7 @@ VdagHeader read_header(std::span<const std::byte> file) {
   if (file.size() < sizeof header)
     fail(ErrorPlace::byte(file.size()), "truncated: the file ends inside its header");
   std::memcpy(&header, file.data(), sizeof header);
-  // The version comes first: it decides what all the rest means.
+  // The version is checked first: the meaning of the rest depends on it.
   if (header.version > kVdagVersion)
     fail("header", "version " + std::to_string(header.version) +
                        " is newer than this program's version " + std::to_string(kVdagVersion));

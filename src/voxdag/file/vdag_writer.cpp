@@ -24,7 +24,7 @@ std::span<const std::byte> bytes_of(const T* values, std::size_t count) {
   return std::as_bytes(std::span<const T>(values, count));
 }
 
-/// Header and table with checksums, padded: all that stands before the first chunk.
+/// Returns the bytes before the first chunk: header and table with checksums, padded.
 std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
   const std::size_t table_end = sizeof(VdagHeader) + chunks.size() * sizeof(VdagChunkEntry);
   std::vector<std::byte> head(vdag_align(table_end));

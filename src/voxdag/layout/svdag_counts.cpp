@@ -21,8 +21,8 @@ SvdagCounts count_svdag(const SvdagView& dag) {
   if (dag.is_empty()) return counts;
 
   constexpr std::uint64_t kAhead = 24;
-  // paths[p / 2]: how many octree nodes the DAG node at p (of the level in hand) stands for; a node
-  // has at least two words. Leaf blocks: paths[p].
+  // paths[p / 2] is the number of octree nodes that the DAG node at word p of the current level
+  // represents; a node has at least two words. For leaf blocks it is paths[p].
   std::vector<std::uint64_t> paths{1}, below;
   for (int level = 0; level < levels - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
@@ -36,7 +36,7 @@ SvdagCounts count_svdag(const SvdagView& dag) {
       const std::uint64_t paths_here = paths[(at - begin) / 2];
       const int children = popcount(child_mask(node));
       for (int i = 1; i <= children; ++i) below[(node[i] - below_begin) >> shift] += paths_here;
-      // The sums are all over the level below: ask for them early. Masks among the words do no
+      // Prefetches the sums, which are scattered over the level below. Words that are masks do no
       // harm.
       for (int i = 1; i <= children && at + i + kAhead < end; ++i)
         if (const std::uint64_t sum = (node[i + kAhead] - below_begin) >> shift; sum < below.size())

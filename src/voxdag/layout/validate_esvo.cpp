@@ -18,7 +18,7 @@ std::uint32_t slots_per_pair(EsvoAttachmentKind kind) {
   return kind == EsvoAttachmentKind::kColors ? 1 : kind == EsvoAttachmentKind::kNormals ? 2 : 0;
 }
 
-/// The info section, which holds together with the page headers.
+/// Returns the info section, after checking it against the page headers and the block's size.
 EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
   constexpr std::size_t kInfoSlots = sizeof(EsvoBlockInfo) / 8;
   if (slots.size() < kEsvoPageSlots || slots.size() % kEsvoPageSlots != 0 ||
@@ -50,7 +50,7 @@ EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
   return info;
 }
 
-/// Walks a block from its first group and remembers which slots it has seen.
+/// Walks a block from its first group and marks the slots that it has seen.
 class BlockWalk {
  public:
   BlockWalk(std::span<const std::uint64_t> slots, const EsvoBlockInfo& info, int levels)
@@ -73,11 +73,11 @@ class BlockWalk {
  private:
   struct Step {
     std::uint64_t slot;
-    int level;  // of the voxel of this descriptor
+    int level;  // of this descriptor's voxel
     Vec3i cell;
   };
 
-  /// Siblings may stand there, and have not been seen before.
+  /// Checks that a group of siblings may be stored there, and that its slots are new.
   void check_group(std::uint64_t first, std::uint64_t count) {
     const std::uint64_t end = first + count;
     if (end > info_.descriptor_slots)
@@ -150,7 +150,7 @@ class BlockWalk {
     }
   }
 
-  EsvoView view_;  // of the block alone
+  EsvoView view_;  // of this block alone
   const EsvoBlockInfo& info_;
   std::vector<bool> seen_;
   std::vector<Step> stack_;
@@ -229,7 +229,7 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
       if (child.parent != entry.begin + link.slot || child.level != link.level ||
           child.cell != link.cell)
         fail(from, "the directory disagrees with this slot about its child block");
-      // The info section is looked at again, and for good, when the block's turn comes.
+      // The whole info section is checked again when the walk visits the block.
       const std::span<const std::uint64_t> slots(view.slots + child.begin, child.slots);
       if (check_info(slots).first_descriptor != static_cast<std::uint64_t>(target) - child.begin)
         fail(from, "the far pointer does not lead to the first descriptor of a block");

@@ -23,8 +23,8 @@ constexpr std::uint64_t kMostWords = std::uint64_t{1} << 32;
 
 void validate_level_table(const SvdagView& dag) {
   if (dag.levels < kMinLevels || dag.levels > kMaxLevels)
-    fail_level_table(std::to_string(dag.levels) + " levels, not " + std::to_string(kMinLevels) +
-                     " to " + std::to_string(kMaxLevels));
+    fail_level_table(std::to_string(dag.levels) + " levels are not in the range " +
+                     std::to_string(kMinLevels) + " to " + std::to_string(kMaxLevels));
   if (dag.level_begin[0] != 0) fail_level_table("level 0 does not begin at word 0");
   for (int level = 0; level < kMaxLevels; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
@@ -35,8 +35,9 @@ void validate_level_table(const SvdagView& dag) {
       fail_level_table(name + " has no nodes");
   }
   if (dag.node_words() > kMostWords || dag.leaf_block_count > kMostWords)
-    fail_level_table("more words than 32-bit pointers reach");
-  if (dag.is_empty() && dag.node_words() != 0) fail_level_table("nodes, but no leaf blocks");
+    fail_level_table("more words than 32-bit pointers can address");
+  if (dag.is_empty() && dag.node_words() != 0)
+    fail_level_table("there are nodes, but no leaf blocks");
   if (dag.levels == 2 && dag.leaf_block_count > 1) fail_level_table("more than one root");
 }
 
@@ -56,7 +57,7 @@ void mark_nodes(const SvdagView& dag, int level, std::vector<std::uint64_t>& sta
   }
 }
 
-/// Checks the pointers of a level above the leaf blocks' parents; its own nodes are sound.
+/// Checks the pointers of a level above the leaf blocks' parents. Its nodes must be sound.
 void check_pointers(const SvdagView& dag, int level, const std::vector<std::uint64_t>& starts) {
   const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
   const std::uint64_t below_words = dag.level_begin[level + 2] - end;
@@ -87,7 +88,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
   return hash ^ hash >> 32;
 }
 
-/// A hash set of 32-bit positions in a level, compared by what stands there.
+/// A hash set of 32-bit positions in a level, compared by the nodes at these positions.
 class PositionSet {
  public:
   explicit PositionSet(std::uint64_t count) {
@@ -95,7 +96,7 @@ class PositionSet {
     while (slots < 2 * count) slots *= 2;
     slots_.assign(slots, kFree);
   }
-  /// Adds `position`, or returns true if `equals(other)` for one already there.
+  /// Returns true if `equals(other)` for some position in the set; else adds `position`.
   template <class Equals>
   bool has_or_add(std::uint64_t position, std::uint64_t hash, const Equals& equals) {
     for (std::size_t slot = hash & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
@@ -108,7 +109,7 @@ class PositionSet {
   }
 
  private:
-  /// No node starts at a level's last word, so this is no position of 2^32 words.
+  /// Not a position: no node starts at a level's last word, and a level has at most 2^32 words.
   static constexpr std::uint32_t kFree = 0xFFFFFFFF;
   std::vector<std::uint32_t> slots_;
 };
@@ -167,7 +168,7 @@ void check_canonical(const SvdagView& dag) {
   for (int level = 0; level < dag.levels - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     const bool above_leaf_blocks = level + 1 == dag.levels - 2;
-    // Whatever a scan of this level has not met yet starts here: the next new child must be it.
+    // The first node below that the scan of this level has not met: the next new child must be it.
     std::uint64_t next = above_leaf_blocks ? 0 : end;
     const std::uint64_t below_end =
         above_leaf_blocks ? dag.leaf_block_count : dag.level_begin[level + 2];

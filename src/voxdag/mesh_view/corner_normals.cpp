@@ -1,5 +1,5 @@
 /// Source: Thürmer and Wüthrich, "Computing Vertex Normals from Polygonal Facets", Journal of
-/// Graphics Tools 3(1), 1998: weights by angle do not depend on how faces are cut into triangles.
+/// Graphics Tools 3(1), 1998: weights by angle do not depend on how faces are triangulated.
 #include "voxdag/mesh_view/corner_normals.hpp"
 
 #include <algorithm>
@@ -21,12 +21,12 @@ struct CornersByPosition {
   std::size_t positions() const { return starts.size() - 1; }
 };
 
-/// Where each vertex lies: the same number for those in the same place.
+/// Returns a number for each vertex, the same for vertices at equal positions.
 std::vector<std::uint32_t> position_numbers(const std::vector<Vec3f>& vertices) {
   std::vector<std::uint32_t> numbers(vertices.size());
   VertexTable table(vertices.size(), 2 * vertices.size() + 1);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Vec3f plus_zero{0, 0, 0};  // -0 and +0 are one place
+    const Vec3f plus_zero{0, 0, 0};  // -0 and +0 are equal positions
     numbers[i] = table.find_or_add(vertices[i] + plus_zero);
   }
   return numbers;
@@ -48,7 +48,7 @@ CornersByPosition corners_by_position(const Mesh& mesh) {
 
 /// A triangle at one of its corners.
 struct Wedge {
-  Vec3d normal;      ///< Unit length; zero where the triangle has no area.
+  Vec3d normal;      ///< Unit length; zero if the triangle has no area.
   double angle = 0;  ///< Radians.
 };
 
@@ -68,10 +68,11 @@ Wedge wedge_at(const Mesh& mesh, std::uint64_t corner) {
 
 std::vector<std::array<PackedNormal, 3>> corner_normals(const Mesh& mesh, float crease_degrees) {
   constexpr double kRadiansPerDegree = 0.017453292519943295;
-  /// Where more triangles meet, as at the tip of a fan, all pairs would take too long.
+  /// If more triangles meet, as at the tip of a fan, comparing all pairs would take too long.
   constexpr std::uint64_t kMostTriangles = 1024;
   constexpr std::size_t kBlock = 1024;
-  // A little more than asked: planes that differ by just the angle are smooth in spite of rounding.
+  // A little more than requested, so that planes that differ by exactly the angle are smoothed in
+  // spite of rounding.
   const double least_cosine = std::cos(crease_degrees * kRadiansPerDegree) - 1e-6;
   std::vector<std::array<PackedNormal, 3>> normals(mesh.triangles.size());
   const CornersByPosition by = corners_by_position(mesh);

@@ -36,7 +36,7 @@ EmbreeScene::EmbreeScene(Mesh mesh, EmbreeMode mode) : mesh_(std::move(mesh)) {
   }
   for (Vec3f& vertex : mesh_.vertices)
     vertex = static_cast<Vec3f>(from_world(static_cast<Vec3d>(vertex)));
-  // Embree loads 16 bytes from each vertex, also from the last one.
+  // Embree loads 16 bytes from each vertex, the last one included.
   mesh_.vertices.reserve(mesh_.vertices.size() + 1);
   mesh_.vertices.push_back({});
 
@@ -54,7 +54,7 @@ EmbreeScene::EmbreeScene(Mesh mesh, EmbreeMode mode) : mesh_(std::move(mesh)) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
-  // Not rtcCommitScene, which would leave the arena that the caller chose.
+  // rtcCommitScene would leave the caller's TBB arena.
   rtcJoinCommitScene(scene_);
   const RTCError code = rtcGetDeviceError(device_);
   if (code == RTC_ERROR_NONE) return;

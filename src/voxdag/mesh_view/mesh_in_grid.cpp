@@ -52,7 +52,7 @@ void check_mesh_in_grid(const Mesh& mesh, const VoxelSet& scene, const Grid& gri
     const Vec3d vertex = static_cast<Vec3d>(mesh.vertices[mesh.triangles[i][i / step % 3]]);
     bounds.extend(vertex);
     const Vec3d at = grid.to_grid(vertex);
-    // The grid's upper faces may round to just outside.
+    // Points on the grid's upper faces may round to just outside.
     const Vec3d p = max(at, Vec3d{}), q = min(p, {side - 0.5, side - 0.5, side - 0.5});
     const Vec3d off = at - q;
     if (!(std::fabs(off.x) <= 1 && std::fabs(off.y) <= 1 && std::fabs(off.z) <= 1)) continue;

@@ -1,4 +1,4 @@
-/// MeshViewSource of a library that was built without Embree.
+/// Stands in for MeshViewSource in a library built without Embree: every use reports that.
 #include "voxdag/core/error.hpp"
 #include "voxdag/mesh_view/mesh_view_source.hpp"
 

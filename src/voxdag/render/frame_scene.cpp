@@ -139,7 +139,7 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
   const CoarseCells scene(voxels, kCoarseLevel);
   if (!request.up) view.up = guess_up(scene);
   view.eye = request.eye.value_or(Vec3d{});
-  check_numbers(view);  // before they are used
+  check_numbers(view);  // before its up vector and angle are used
   const Compass compass(view.up);
   if (request.eye) {
     const Vec3i twice_middle = scene.bounds().lo + scene.bounds().hi;
@@ -172,7 +172,7 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
 
 std::vector<View> scene_views(const VoxelSet& voxels, const Grid& grid, double aspect, int count) {
   constexpr int kCoarseLevel = 7;
-  constexpr double kApart = 0.12;    // of the scene's size, for views that look much the same way
+  constexpr double kApart = 0.12;    // of the grid's side, for views with similar directions
   constexpr double kOtherWay = 0.3;  // cosine
   const CoarseCells scene(voxels, kCoarseLevel);
   const SceneExplorer explorer(voxels, grid);

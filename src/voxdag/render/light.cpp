@@ -30,7 +30,7 @@ void check(const LightSpec& spec) {
       throw Error("a light's colour must be finite and not negative");
 }
 
-/// A box around the light, wider by more than what sampling it in float rounds.
+/// Sets a box around the light, widened by more than the rounding errors of sampling in float.
 void set_bounds(Light& light) {
   constexpr float kRounding = 1e-5f;
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,7 +57,7 @@ void set_bounds(Light& light) {
   }
 }
 
-/// What gives `irradiance` on a surface that faces the light from a distance far beyond its size.
+/// Returns the colour that gives `irradiance` on a surface that faces the light from afar.
 Vec3f color_for(const Light& light, Vec3f irradiance, float distance) {
   const float distance2 = distance * distance;
   switch (light.kind) {

@@ -11,14 +11,14 @@ constexpr int kReach = static_cast<int>(kFilterRadius);
 
 float length(float x, float y) { return std::sqrt(x * x + y * y); }
 
-/// Distances between samples at this distance from the centre, up to a factor.
+/// Returns the spacing of samples at this distance from the centre, up to a factor.
 float spacing(float distance) { return std::sqrt(std::sqrt(std::max(distance, 0.25f))); }
 
 FilterSample sample_at(int x, int y) {
   return {x, y, length(static_cast<float>(x), static_cast<float>(y)), 0.0f};
 }
 
-/// How far a pixel lies from all samples so far, for the spacing there.
+/// Returns the distance of a pixel from the closest sample so far, relative to the spacing there.
 float room(const FilterTable& table, int count, const FilterSample& at) {
   float least = INFINITY;
   for (int i = 0; i < count; ++i) {
@@ -30,8 +30,8 @@ float room(const FilterTable& table, int count, const FilterSample& at) {
   return least;
 }
 
-/// Of the pixels about as far from the centre as `distance` the one with most room. Pixels of the
-/// upper half only: its opposite has as much.
+/// Returns the pixel with most room among those at about this distance from the centre. Considers
+/// only the upper half: opposite pixels have equal room.
 FilterSample roomiest(const FilterTable& table, int count, float distance) {
   FilterSample best{};
   float most = -1.0f;
@@ -43,7 +43,7 @@ FilterSample roomiest(const FilterTable& table, int count, float distance) {
         continue;
       const float space =
           std::min(room(table, count, candidate),
-                   2.0f * candidate.distance / spacing(candidate.distance));  // from its opposite
+                   2.0f * candidate.distance / spacing(candidate.distance));  // to its opposite
       if (space <= most) continue;
       most = space;
       best = candidate;
@@ -51,7 +51,7 @@ FilterSample roomiest(const FilterTable& table, int count, float distance) {
   return best;
 }
 
-/// Gives every quarter of the disc's pixels to the nearest sample.
+/// Sets the weights: assigns every quarter of a pixel in the disc to its closest sample.
 void weigh(FilterTable& table) {
   constexpr int kPerPixel = 2;
   constexpr int kSteps = kReach * kPerPixel;
@@ -74,7 +74,8 @@ void weigh(FilterTable& table) {
 }
 
 FilterTable make_filter_table() {
-  // A density that falls as the square root of the distance has distance^(3/2) samples within.
+  // If the density falls with the square root of the distance, distance^(3/2) samples are within
+  // it.
   FilterTable table{};
   table[0] = sample_at(0, 0);
   for (int count = 1; count < kFilterSamples; count += 2) {

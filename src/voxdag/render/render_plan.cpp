@@ -39,7 +39,8 @@ void check(const RenderOptions& options) {
     throw Error("tiles have 1 to 32 pixels a side");
 }
 
-/// Samples per view sample when a pixel with `samples_per_pixel` of those takes `per_pixel`.
+/// Returns the rays per view sample for `per_pixel` rays in a pixel of `samples_per_pixel` view
+/// samples.
 int per_view_sample(int per_pixel, int samples_per_pixel) {
   return (per_pixel + samples_per_pixel - 1) / samples_per_pixel;
 }
@@ -51,7 +52,7 @@ SampleSets make_samples(const RenderOptions& options) {
           std::max(1, per_view_sample(options.occlusion_samples, samples) * samples)};
 }
 
-/// Without a direction, the sun is where it models what the camera looks at.
+/// Sets the sun's direction; by default one from which it shows the shapes in view.
 Sky make_sky(const Camera& camera, const View& view, const RenderOptions& options) {
   Sky sky;
   const Vec3d up = normalized(view.up);

@@ -14,8 +14,9 @@ std::uint32_t reverse_bits(std::uint32_t v) {
   return (v & 0x55555555u) << 1 | (v & 0xAAAAAAAAu) >> 1;
 }
 
-/// An Owen scrambling: each bit is flipped by a hash of the bits above it. Source: S. Laine and T.
-/// Karras, "Stratified Sampling for Stochastic Transparency", EGSR 2011; constants by N. Vegdahl.
+/// Returns an Owen scrambling: a hash of the bits above each bit decides whether to flip it.
+/// Source: S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", EGSR 2011;
+/// constants by N. Vegdahl.
 std::uint32_t scramble(std::uint32_t v, std::uint32_t seed) {
   v = reverse_bits(v);
   v ^= v * 0x3D20ADEAu;
@@ -26,10 +27,10 @@ std::uint32_t scramble(std::uint32_t v, std::uint32_t seed) {
   return reverse_bits(v);
 }
 
-/// Point `index` of the first three dimensions of the Sobol sequence.
+/// Returns point `index` of the first three dimensions of the Sobol sequence.
 void sobol(std::uint32_t index, std::uint32_t point[3]) {
-  // Direction numbers: of dimension 0 single bits; 1 has the polynomial x + 1 and m = {1}; 2 has
-  // x² + x + 1 and m = {1, 3} (Joe and Kuo).
+  // Direction numbers: single bits for dimension 0; polynomial x + 1 and m = {1} for 1; x² + x + 1
+  // and m = {1, 3} for 2 (S. Joe and F. Kuo).
   std::uint32_t v1 = 1u << 31, v2[2] = {1u << 31, 3u << 30};
   point[0] = reverse_bits(index);
   point[1] = point[2] = 0;
@@ -45,7 +46,7 @@ void sobol(std::uint32_t index, std::uint32_t point[3]) {
   }
 }
 
-/// Calls body(set, i, u) for all points of all sets, u being three numbers in (0,1).
+/// Calls body(set, i, u) for all points of all sets; u are three numbers in (0,1).
 template <class Body>
 void for_each_point(int count, std::uint32_t seed, const Body& body) {
   for (int set = 0; set < SampleTables::kSets; ++set) {
@@ -74,8 +75,8 @@ SampleSets::SampleSets(int light_count, int hemisphere_count) {
   });
   for_each_point(hemisphere_count, 2, [&](int, int, const double* u) {
     const double r = std::sqrt(u[0]), angle = 2 * std::numbers::pi * u[1];
-    // A hit at distance d, as a part of the greatest, is to count (1 - d)². A ray of random length
-    // with P(length > d) = (1 - d)² meets it just as often.
+    // A hit at distance d, as a fraction of the greatest, has the weight (1 - d)². A ray of random
+    // length with P(length > d) = (1 - d)² hits with that probability.
     const double reach = 1 - std::sqrt(u[2]);
     hemisphere_.push_back(
         {{static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)),

@@ -62,7 +62,7 @@ void StreamBlocks::load(std::size_t block) {
   while (!stream_.is_loaded(block)) {
     std::size_t next = block;
     while (!stream_.can_load(next)) next = static_cast<std::size_t>(stream_.parent(next));
-    // Without the others a block fits beside those above it, if all of them lie side by side.
+    // Without other blocks, a block and its ancestors fit side by side.
     if (!make_room(next)) {
       evict_all();
       continue;
@@ -81,7 +81,7 @@ std::size_t StreamBlocks::load_missing(Vec3d eye) {
                    [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
   for (const std::size_t block : wanted) {
     mark_above(block);
-    // Making room for one may have taken what is above another.
+    // Making room for one block may have evicted the parent of another.
     if (!stream_.can_load(block)) continue;
     if (!make_room(block)) continue;
     stream_.load(block);

@@ -13,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-/// Wants the blocks that rays miss, and knows whether there were any.
+/// Requests the blocks that rays miss, and records whether there were any.
 class TileListener : public LeafListener {
  public:
   explicit TileListener(const BlockSource& source) : source_(source) {}
@@ -65,13 +65,13 @@ class StreamedPicture {
 
   Vec3d eye() { return plan_.image().view.eye; }
 
-  /// Its beams end at what is loaded.
+  /// Its beams end at the loaded voxels.
   void make_renderer() {
     const ContourNodes nodes(source_.view());
     renderer_.emplace(nodes, PacketCaster(nodes), plan_.setup(), options_.beams, nullptr);
   }
 
-  /// Renders tiles with what is loaded; returns those whose rays missed any of it.
+  /// Renders tiles with the loaded blocks. Returns the tiles whose rays missed blocks.
   std::vector<ViewTile> render_loaded(const std::vector<ViewTile>& tiles, const char* stage) {
     std::vector<char> has_missed(tiles.size());
     std::atomic<std::size_t> done{0};
@@ -93,7 +93,7 @@ class StreamedPicture {
     return missed;
   }
 
-  /// Renders the tiles that are left, a few at a time.
+  /// Renders the remaining tiles, a few at a time.
   void render_parts() {
     const auto at_once = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     for (std::size_t begin = 0; begin < left_.size(); begin += at_once) {
