@@ -8,7 +8,9 @@
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/esvo_writer.hpp"
+#include "voxdag/io/mapped_file.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/io/resolved_output.hpp"
 #include "voxdag/report/esvo_report.hpp"
@@ -141,7 +143,10 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   seconds.build = watch.lap();
   warn_if_empty(metadata.counts.voxels(), arguments.output, session);
   session.bar.clear();
-  print_summary(report_of(EsvoFile(arguments.output)), seconds, arguments, session);
+  // Mapped, because the file may be larger than the memory limit.
+  const MappedFile file(arguments.output);
+  print_summary(report_of(parse_esvo(file.bytes()), file.bytes().size()), seconds, arguments,
+                session);
 }
 
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
+#include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/esvo_report.hpp"
@@ -13,7 +14,8 @@ namespace voxdag {
 namespace {
 
 void esvo_info(const std::string& path, bool json) {
-  const EsvoReport report = report_of(EsvoFile(path));
+  const EsvoFile file(path);
+  const EsvoReport report = report_of(file.contents(), file.file_bytes());
   if (json)
     fmt::print("{}", json_text(esvo_json(report)));
   else

@@ -15,6 +15,7 @@ class EsvoFile {
   /// Throws Error(path, place, reason) for a file that cannot be read or fails a check.
   explicit EsvoFile(const std::filesystem::path& path);
 
+  const EsvoContents& contents() const { return contents_; }
   const EsvoView& view() const { return contents_.view; }
   const EsvoMetadata& metadata() const { return contents_.metadata; }
   const Grid& grid() const { return contents_.metadata.grid; }

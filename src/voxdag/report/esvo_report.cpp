@@ -23,8 +23,8 @@ double share(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-EsvoReport report_of(const EsvoFile& file) {
-  return {file.metadata(), esvo_bytes(file.view(), file.directory()), file.file_bytes()};
+EsvoReport report_of(const EsvoContents& contents, std::uint64_t file_bytes) {
+  return {contents.metadata, esvo_bytes(contents.view, contents.directory), file_bytes};
 }
 
 Json esvo_json(const EsvoReport& report) {

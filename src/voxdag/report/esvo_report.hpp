@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/layout/esvo_bytes.hpp"
 
 namespace voxdag {
@@ -20,7 +20,8 @@ struct EsvoReport {
   }
 };
 
-EsvoReport report_of(const EsvoFile& file);
+/// Returns the report of an octree that was parsed from a file of `file_bytes` bytes.
+EsvoReport report_of(const EsvoContents& contents, std::uint64_t file_bytes);
 
 /// The keys of `info --json`; docs/cli.md lists them.
 nlohmann::ordered_json esvo_json(const EsvoReport& report);
