@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cli/human.hpp"
+#include "cli/memory_option.hpp"
 #include "cli/number_check.hpp"
 #include "cli/process_usage.hpp"
 #include "inspect/esvo_report.hpp"
@@ -118,13 +119,14 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   Progress& progress = session.progress;
   Stopwatch watch;
   EsvoSeconds seconds;
+  MemoryBudget memory = command_budget(build.memory_limit);
   MeshWithAppearance source = read_mesh_with_appearance(session.subject, &progress);
   print_warnings(source.warnings, session);
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
-  const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress);
-  const std::optional<DisplacedTriangles> displaced =
-      open_displaced(arguments.displace, source.mesh, source.appearance, warnings, progress);
+  const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress, &memory);
+  const std::optional<DisplacedTriangles> displaced = open_displaced(
+      arguments.displace, source.mesh, source.appearance, warnings, progress, &memory);
   print_warnings(warnings, session);
   seconds.textures = watch.lap();
 

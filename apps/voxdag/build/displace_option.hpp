@@ -29,7 +29,8 @@ void add_no_displacement_option(CLI::App& command, DisplaceArguments& arguments)
 std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,
                                                  const Mesh& mesh, const Appearance& appearance,
                                                  std::vector<std::string>& warnings,
-                                                 Progress& progress);
+                                                 Progress& progress,
+                                                 MemoryBudget* memory = nullptr);
 
 /// What holds all of the displaced surface.
 Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh);
