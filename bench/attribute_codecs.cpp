@@ -18,8 +18,7 @@
 
 #include "voxdag/esvo/encode/encode_color_block.hpp"
 #include "voxdag/esvo/encode/encode_normal_block.hpp"
-#include "voxdag/image/jpeg.hpp"
-#include "voxdag/image/png.hpp"
+#include "voxdag/image/decode.hpp"
 
 namespace {
 
@@ -213,19 +212,20 @@ Blocks lines(float noise) {
   });
 }
 
-Blocks pixels(const ImageRgb8& image, bool half) {
+Blocks pixels(const DecodedImage& image, bool half) {
   std::mt19937 random(2);
   Blocks blocks;
-  const int columns = image.width / 4, rows = image.height / 4;
+  const int columns = image.width() / 4, rows = image.height() / 4;
   const int every = std::max(1, columns * rows / kBlocks);
   for (int at = 0; at < columns * rows; at += every) {
     Block block;
     for (int i = 0; i < kValuesPerBlock; ++i) {
-      const std::uint8_t* rgb = image.pixel(at % columns * 4 + i % 4, at / columns * 4 + i / 4);
+      const DecodedImage::Rgba rgb =
+          image.pixel(at % columns * 4 + i % 4, at / columns * 4 + i / 4);
       block.values[static_cast<std::size_t>(i)] =
           Vec3f{static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
                 static_cast<float>(rgb[2])} *
-          (1.0f / 255.0f);
+          (1.0f / 65535.0f);
     }
     block.used = half ? static_cast<std::uint32_t>(random()) & 0xFFFFu : 0xFFFFu;
     if (block.used != 0) blocks.push_back(block);
@@ -255,8 +255,7 @@ int main(int count, char** arguments) try {
   report_colors("random lines with noise of 0.02", lines(0.02f));
   for (int i = 1; i < count; ++i) {
     const std::string file = arguments[i];
-    const bool png = file.size() > 4 && file.compare(file.size() - 4, 4, ".png") == 0;
-    const ImageRgb8 image = png ? read_png(file) : read_jpeg(file);
+    const DecodedImage image = read_image(file);
     const std::string name = file.substr(file.find_last_of('/') + 1);
     report_colors(name, pixels(image, false));
     report_colors(name + ", half", pixels(image, true));

@@ -3,8 +3,7 @@
 
 #include "npy_rays.hpp"
 #include "sponge.hpp"
-#include "voxdag/image/exr.hpp"
-#include "voxdag/image/png.hpp"
+#include "support/read_pictures.hpp"
 
 namespace voxdag {
 namespace {
@@ -36,7 +35,7 @@ TEST_F(RenderCommand, WritesEveryPassInBothFormats) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("steps per primary ray"), std::string::npos);
   for (const std::string& name : names) {
-    EXPECT_EQ(read_png(path(name + ".png")).width, 40) << name;
+    EXPECT_EQ(read_rgb8(path(name + ".png")).width, 40) << name;
     EXPECT_EQ(read_exr(path(name + ".exr")).image.height, 30) << name;
   }
   for (const float part : read_exr(path("occlusion.exr")).image.pixels) {

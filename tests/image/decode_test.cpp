@@ -19,32 +19,44 @@ std::vector<std::uint16_t> ramp(std::size_t count, unsigned step) {
   return samples;
 }
 
+/// All pixels as four values of 16 bits.
+std::vector<std::uint16_t> pixels_of(const DecodedImage& image) {
+  std::vector<std::uint16_t> pixels;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      for (const std::uint16_t value : image.pixel(x, y)) pixels.push_back(value);
+  return pixels;
+}
+
 TEST(DecodeImage, SixteenBitsAndAlphaAreKept) {
   const TempDir dir;
   for (const bool interlaced : {false, true}) {
     const auto samples = ramp(7 * 5 * 4, 997);
     write_test_png(dir.path / "a.png", 7, 5, 4, 16, samples, interlaced);
-    const ImageRgba16 image = read_image(dir.path / "a.png");
-    EXPECT_EQ(image.width, 7);
-    EXPECT_EQ(image.height, 5);
-    EXPECT_TRUE(image.has_alpha);
-    EXPECT_EQ(image.pixels, samples);
+    const DecodedImage image = read_image(dir.path / "a.png");
+    EXPECT_EQ(image.width(), 7);
+    EXPECT_EQ(image.height(), 5);
+    EXPECT_TRUE(image.has_alpha());
+    EXPECT_EQ(pixels_of(image), samples);
   }
 }
 
 TEST(DecodeImage, EightBitsAreSpreadOverSixteen) {
   const TempDir dir;
   write_test_png(dir.path / "a.png", 2, 1, 4, 8, {0, 1, 128, 7, 255, 254, 2, 0});
-  EXPECT_EQ(read_image(dir.path / "a.png").pixels,
+  const DecodedImage image = read_image(dir.path / "a.png");
+  EXPECT_EQ(image.bytes(), 8u);
+  EXPECT_EQ(pixels_of(image),
             (std::vector<std::uint16_t>{0, 257, 128 * 257, 7 * 257, 65535, 254 * 257, 514, 0}));
 }
 
 TEST(DecodeImage, GreyBecomesThreeChannelsAndAlphaIsFullWhereThereIsNone) {
   const TempDir dir;
   write_test_png(dir.path / "a.png", 2, 1, 1, 16, {1000, 50000});
-  const ImageRgba16 image = read_image(dir.path / "a.png");
-  EXPECT_FALSE(image.has_alpha);
-  EXPECT_EQ(image.pixels,
+  const DecodedImage image = read_image(dir.path / "a.png");
+  EXPECT_FALSE(image.has_alpha());
+  EXPECT_EQ(image.bytes(), 4u);
+  EXPECT_EQ(pixels_of(image),
             (std::vector<std::uint16_t>{1000, 1000, 1000, 65535, 50000, 50000, 50000, 65535}));
 }
 
@@ -67,7 +79,7 @@ TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
     std::vector<std::uint8_t> damaged(bytes.begin(), bytes.end());
     damaged[n] ^= 0x55;
     try {
-      EXPECT_FALSE(decode_image(damaged, "damaged").pixels.empty());
+      EXPECT_FALSE(decode_image(damaged, "damaged").is_empty());
     } catch (const Error& error) {
       EXPECT_EQ(error.file(), "damaged");
     }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "support/read_pictures.hpp"
 #include "temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -38,22 +39,12 @@ TEST(Exr, ChannelsComeBackSortedWithTheirValues) {
   EXPECT_EQ(back.image.pixels, (std::vector<float>{2.0f, 1.0f}));
 }
 
-TEST(Exr, TruncationAtEveryByteIsRefused) {
-  const TempDir dir;
-  write_exr(dir.path / "a.exr", pattern(), kNames);
-  const std::string bytes = slurp(dir.path / "a.exr");
-  for (std::size_t n = 0; n < bytes.size(); ++n) {
-    spill(dir.path / "cut.exr", bytes.substr(0, n));
-    EXPECT_THROW(read_exr(dir.path / "cut.exr"), Error) << n << " of " << bytes.size();
-  }
-}
-
 TEST(Exr, BadNamesAndEmptyImagesAreRefused) {
   const TempDir dir;
   EXPECT_THROW(write_exr(dir.path / "a.exr", pattern(), {"A", "B", "C"}), Error);
   EXPECT_THROW(write_exr(dir.path / "a.exr", pattern(), {"A", "B", "C", "A"}), Error);
   EXPECT_THROW(write_exr(dir.path / "a.exr", ImageF(), {}), Error);
-  EXPECT_THROW(read_exr(dir.path / "a.exr"), Error);
+  EXPECT_FALSE(std::filesystem::exists(dir.path / "a.exr"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 // jpeglib.h needs <cstdio> before it.
 #include <jpeglib.h>
 
+#include "support/read_pictures.hpp"
 #include "temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -55,7 +56,7 @@ TEST(Jpeg, SmoothPixelsComeBackNearly) {
   const TempDir dir;
   const ImageRgb8 image = smooth(40, 24);
   spill(dir.path / "a.jpg", encode(image));
-  const ImageRgb8 back = read_jpeg(dir.path / "a.jpg");
+  const ImageRgb8 back = read_rgb8(dir.path / "a.jpg");
   ASSERT_EQ(back.width, 40);
   ASSERT_EQ(back.height, 24);
   // Quality 98 quantises by one or two steps and halves the resolution of the colour.
@@ -68,15 +69,15 @@ TEST(Jpeg, TruncationAtEveryByteIsRefused) {
   const std::string bytes = encode(smooth(24, 16));
   for (std::size_t n = 0; n < bytes.size(); ++n) {
     spill(dir.path / "cut.jpg", bytes.substr(0, n));
-    EXPECT_THROW(read_jpeg(dir.path / "cut.jpg"), Error) << n << " of " << bytes.size();
+    EXPECT_THROW(read_rgb8(dir.path / "cut.jpg"), Error) << n << " of " << bytes.size();
   }
 }
 
 TEST(Jpeg, OtherFilesAreRefused) {
   const TempDir dir;
   spill(dir.path / "text.jpg", "hello, I am not a picture");
-  EXPECT_THROW(read_jpeg(dir.path / "text.jpg"), Error);
-  EXPECT_THROW(read_jpeg(dir.path / "missing.jpg"), Error);
+  EXPECT_THROW(read_rgb8(dir.path / "text.jpg"), Error);
+  EXPECT_THROW(read_rgb8(dir.path / "missing.jpg"), Error);
 }
 
 }  // namespace

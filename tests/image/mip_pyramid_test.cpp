@@ -14,8 +14,7 @@ using Grey = MipPyramid<1>;
 Grey random_texture(int width, int height, TextureWrap wrap = TextureWrap::kRepeat,
                     std::uint32_t seed = 1) {
   std::mt19937 rng(seed);
-  std::vector<Grey::Texel> texels(static_cast<std::size_t>(width) *
-                                  static_cast<std::size_t>(height));
+  Grey::Texels texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (Grey::Texel& texel : texels) texel[0] = static_cast<std::uint16_t>(rng() >> 16);
   return Grey(width, height, std::move(texels), wrap, wrap);
 }
@@ -125,7 +124,7 @@ TEST(MipPyramid, BoundsHoldEveryValueOfTheBox) {
 
 TEST(MipPyramid, BoundsOfSmallBoxesAreTight) {
   // Inside one texel's neighbourhood nothing but its four values counts.
-  std::vector<Grey::Texel> texels(64 * 64, {100});
+  Grey::Texels texels(64 * 64, {100});
   texels[40 * 64 + 40] = {60000};
   const Grey texture(64, 64, std::move(texels));
   const Grey::Bounds away = texture.bounds({0.1f, 0.1f}, {0.11f, 0.11f});

@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "voxdag/image/color.hpp"
-#include "voxdag/image/srgb_curve.hpp"
 
 namespace voxdag {
 namespace {
 
-ImageRgba16 image_of(int width, int height,
-                     const std::vector<std::array<std::uint16_t, 4>>& pixels) {
-  ImageRgba16 image(width, height);
+DecodedImage image_of(int width, int height,
+                      const std::vector<std::array<std::uint16_t, 4>>& pixels) {
+  DecodedImage image(width, height, 4, 2, nullptr);
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    std::copy(pixels[i].begin(), pixels[i].end(), image.pixels.begin() + 4 * static_cast<long>(i));
+    image.set_pixel(static_cast<int>(i) % width, static_cast<int>(i) / width, pixels[i]);
   return image;
 }
 
@@ -26,7 +25,7 @@ TEST(Texture, ColoursAverageInLinearLight) {
 }
 
 TEST(Texture, WhatIsCutAwayDoesNotBleed) {
-  const ImageRgba16 image = image_of(2, 1, {{kFull, 0, 0, 40000}, {0, kFull, 0, 20000}});
+  const DecodedImage image = image_of(2, 1, {{kFull, 0, 0, 40000}, {0, kFull, 0, 20000}});
   const Texture texture = make_color_texture(image, 0.5f);
   const Texture::Value mean = texture.sample(1, {0.5f, 0.5f});
   EXPECT_NEAR(mean[3], 32768, 1);    // half is visible
@@ -36,14 +35,14 @@ TEST(Texture, WhatIsCutAwayDoesNotBleed) {
 }
 
 TEST(Texture, AlphaAtTheThresholdIsVisible) {
-  const ImageRgba16 image = image_of(2, 1, {{0, 0, 0, 128 * 257}, {0, 0, 0, 127 * 257}});
+  const DecodedImage image = image_of(2, 1, {{0, 0, 0, 128 * 257}, {0, 0, 0, 127 * 257}});
   const Texture texture = make_color_texture(image, 128.0f / 255);
   EXPECT_EQ(texture.sample(0, {0.25f, 0.5f})[3], 65535);
   EXPECT_EQ(texture.sample(0, {0.75f, 0.5f})[3], 0);
 }
 
 TEST(Texture, NormalsAreUnitAndTheirMeansShorter) {
-  const ImageRgba16 image =
+  const DecodedImage image =
       image_of(2, 1, {{kFull, 32768, 32768, kFull}, {0, 32768, 32768, kFull}});
   const Texture texture = make_normal_texture(image, 1);
   EXPECT_NEAR(unpack_component(texture.sample(0, {0.25f, 0.5f})[0]), 1, 1e-3f);
@@ -52,7 +51,7 @@ TEST(Texture, NormalsAreUnitAndTheirMeansShorter) {
 }
 
 TEST(Texture, NormalScaleFlattensOrSteepens) {
-  const ImageRgba16 image = image_of(1, 1, {{49151, 32768, 65535, kFull}});  // x 0.5, z 1
+  const DecodedImage image = image_of(1, 1, {{49151, 32768, 65535, kFull}});  // x 0.5, z 1
   const Texture::Value flat = make_normal_texture(image, 0).sample(0, {0, 0});
   EXPECT_NEAR(unpack_component(flat[0]), 0, 1e-4f);
   const Texture::Value steep = make_normal_texture(image, 4).sample(0, {0, 0});
@@ -61,13 +60,14 @@ TEST(Texture, NormalScaleFlattensOrSteepens) {
 
 TEST(Texture, BumpsLeanAwayFromWhatIsHigh) {
   // A ramp up to the right: the normal leans to the left; up to the lower edge: to the upper.
-  ImageRgba16 right(8, 8), down(8, 8);
+  DecodedImage right(8, 8, 4, 2, nullptr), down(8, 8, 4, 2, nullptr);
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x)
-      for (int c = 0; c < 4; ++c) {
-        right.pixel(x, y)[c] = static_cast<std::uint16_t>(x * 8000);
-        down.pixel(x, y)[c] = static_cast<std::uint16_t>(y * 8000);
-      }
+    for (int x = 0; x < 8; ++x) {
+      const auto right_height = static_cast<std::uint16_t>(x * 8000);
+      const auto down_height = static_cast<std::uint16_t>(y * 8000);
+      right.set_pixel(x, y, {right_height, right_height, right_height, right_height});
+      down.set_pixel(x, y, {down_height, down_height, down_height, down_height});
+    }
   const TextureWraps clamp{TextureWrap::kClamp, TextureWrap::kClamp};
   const Texture::Value a = make_bump_texture(right, 1, clamp).sample(0, {0.5f, 0.5f});
   EXPECT_LT(unpack_component(a[0]), -0.005f);
@@ -84,10 +84,12 @@ TEST(Texture, NormalMapsAreToldFromHeights) {
 }
 
 TEST(Texture, AnAlphaMapOfAnotherSizeIsStretched) {
-  const ImageRgba16 color = image_of(1, 1, {{10, 20, 30, kFull}});
-  const ImageRgba16 grey = image_of(2, 1, {{0, 0, 0, kFull}, {kFull, kFull, kFull, kFull}});
-  const ImageRgba16 both = with_alpha_of(color, grey);
-  EXPECT_EQ(both.pixels, (std::vector<std::uint16_t>{10, 20, 30, 0, 10, 20, 30, kFull}));
+  const DecodedImage color = image_of(1, 1, {{10, 20, 30, kFull}});
+  DecodedImage grey(2, 1, 1, 1, nullptr);
+  grey.row(0)[1] = 255;
+  const DecodedImage both = with_alpha_of(color, grey);
+  EXPECT_EQ(both.pixel(0, 0), (DecodedImage::Rgba{10, 20, 30, 0}));
+  EXPECT_EQ(both.pixel(1, 0), (DecodedImage::Rgba{10, 20, 30, kFull}));
 }
 
 TEST(SrgbCurve, TheTableIsTheCurve) {

@@ -99,13 +99,15 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   Progress& progress = session.progress;
   Stopwatch watch;
   EsvoSeconds seconds;
-  MeshWithAppearance source =
-      read_mesh_file_with_appearance(session.subject, arguments.access, session);
+  MemoryBudget memory = command_budget(arguments.memory_limit);
+  MeshAccess access = arguments.access;
+  access.memory = &memory;
+  MeshWithAppearance source = read_mesh_file_with_appearance(session.subject, access, session);
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
-  const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress);
+  const SurfaceShading shading(source.mesh, source.appearance, &warnings, &progress, &memory);
   const std::optional<DisplacedTriangles> displaced =
-      open_displaced(esvo.displace, source.mesh, source.appearance, warnings, progress);
+      open_displaced(esvo.displace, source.mesh, source.appearance, warnings, progress, &memory);
   print_warnings(warnings, session);
   seconds.textures = watch.lap();
 

@@ -29,7 +29,8 @@ Option add_no_displacement_option(const Command& command, DisplaceArguments& arg
 std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& arguments,
                                                  const Mesh& mesh, const Appearance& appearance,
                                                  std::vector<std::string>& warnings,
-                                                 Progress& progress);
+                                                 Progress& progress,
+                                                 MemoryBudget* memory = nullptr);
 
 /// Returns the bounding box of the displaced surface.
 Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh);

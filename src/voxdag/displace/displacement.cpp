@@ -35,8 +35,9 @@ std::string absurd(double amount, double side) {
 }  // namespace
 
 std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
-                                             std::vector<std::string>& warnings,
-                                             Progress* progress) {
+                                             std::vector<std::string>& warnings, Progress* progress,
+                                             MemoryBudget* memory) {
+  const ImageOptions options = image_options(progress, memory);
   std::vector<Displacement> displacements(appearance.materials.size());
   if (appearance.uvs.empty()) return displacements;
   const double side = longest_side(mesh);
@@ -56,8 +57,12 @@ std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance&
     }
     const auto [place, is_new] = loaded.try_emplace({use.image, use.wrap_u, use.wrap_v});
     if (is_new) try {
-        place->second = std::make_shared<HeightTexture>(
-            make_height_texture(decode_texture_image(image), {use.wrap_u, use.wrap_v}));
+        place->second = std::make_shared<HeightTexture>(make_height_texture(
+            decode_texture_image(image, options), {use.wrap_u, use.wrap_v}, options));
+      } catch (const Cancelled&) {
+        throw;
+      } catch (const OverMemory&) {
+        throw;
       } catch (const Error& error) {
         warnings.push_back(std::string(error.what()) + ": the surface stays without displacement");
       }

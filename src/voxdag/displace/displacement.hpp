@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/image/texture.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -24,10 +25,12 @@ struct Displacement {
 
 /// By material: what displacement maps the materials have. What cannot be read, or moves points by
 /// more than 2^kMaxLevels times the mesh's longest side, is left out, with a line in `warnings`.
-/// Throws Cancelled.
+/// `memory`, if not null, counts the heights and must outlive them. Throws Cancelled and
+/// OverMemory.
 std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
                                              std::vector<std::string>& warnings,
-                                             Progress* progress = nullptr);
+                                             Progress* progress = nullptr,
+                                             MemoryBudget* memory = nullptr);
 
 /// By material: the same heights for all of them, up to `amount` world units (may be negative).
 /// With a positive `box_size` they are projected, as where the mesh has no texture coordinates:

@@ -1,19 +1,22 @@
 #pragma once
-/// Image files of any format that textures come in.
+/// Decodes image files of every format that textures use.
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 
-#include "voxdag/image/image.hpp"
+#include "voxdag/image/decoded_image.hpp"
 
 namespace voxdag {
 
-/// Decodes PNG (with alpha and 16 bits) or JPEG, told apart by content. `name` stands for the file
-/// in errors. Throws Error.
-ImageRgba16 decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
+/// Decodes a PNG or a JPEG; the first bytes tell which. `name` stands for the file in errors.
+/// Memory: the pixels, and for a progressive JPEG twice as many bytes again, all counted before it
+/// is taken. Throws Error for what is truncated, damaged or beyond the limits of image_limits.hpp,
+/// OverMemory, and what `options.poll` throws.
+DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& name,
+                          const ImageOptions& options = {});
 
-/// As above from a file.
-ImageRgba16 read_image(const std::filesystem::path& path);
+/// Decodes a file of at most 1 GiB, of which it reads only the first page if that is no image.
+DecodedImage read_image(const std::filesystem::path& path, const ImageOptions& options = {});
 
 }  // namespace voxdag

@@ -5,8 +5,8 @@
 
 namespace voxdag {
 
-/// Where between two codes a value of pixel (x, y) goes up, in [0,1). Over any few neighbours these
-/// are spread evenly.
+/// Returns the fraction between two codes from which on pixel (x, y) rounds up, in [0,1). Fractions
+/// of neighbouring pixels are spread evenly.
 ///
 /// Source: J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare",
 /// SIGGRAPH 2014 courses: interleaved gradient noise.
@@ -15,9 +15,8 @@ inline float dither_threshold(int x, int y) {
   return static_cast<float>(fraction(52.9829189 * fraction(0.06711056 * x + 0.00583715 * y)));
 }
 
-/// The code of a value in [0,1] at pixel (x, y): the one below or the one above, so that the mean
-/// over neighbours is the value. 0 and 1 are what they are; outside they are clamped, NaN becomes
-/// 0.
+/// Rounds a value in [0,1] at pixel (x, y) down or up to a code, so that the mean over neighbouring
+/// pixels is the value. 0 and 1 are exact; values outside are clamped, NaN becomes 0.
 inline std::uint8_t dithered_code(float value, int x, int y) {
   if (!(value > 0)) return 0;
   if (value >= 1) return 255;

@@ -7,81 +7,138 @@
 // jerror.h needs jpeglib.h before it.
 #include <jerror.h>
 
+#include <exception>
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/image/image_file.hpp"
+#include "voxdag/image/image_limits.hpp"
 
 namespace voxdag {
 namespace {
 
-/// libjpeg reports through callbacks that must not return: errors jump to where decoding began.
-struct JpegErrors : jpeg_error_mgr {
+/// Memory of libjpeg beside the coefficients: tables and rows.
+constexpr std::uint64_t kJpegWorkBytes = std::uint64_t{4} << 20;
+
+/// A decompressor and the callbacks through which libjpeg reports. Callbacks must not return an
+/// error and no exception may pass through libjpeg: both jump to where the decoder was called.
+struct JpegDecoder {
+  jpeg_decompress_struct info{};
+  jpeg_error_mgr errors{};
+  jpeg_progress_mgr monitor{};
   std::jmp_buf escape;
   char message[JMSG_LENGTH_MAX] = {};
+  const ImageOptions& options;
+  std::exception_ptr thrown;  ///< By options.poll, to be thrown again after the jump.
 
-  JpegErrors() {
-    jpeg_std_error(this);
-    error_exit = [](j_common_ptr info) { self(info).leave(info); };
-    output_message = [](j_common_ptr) {};
-    emit_message = [](j_common_ptr info, int level) {
-      // libjpeg fills what is missing of a truncated file with grey and only warns.
-      const int code = info->err->msg_code;
-      if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER)) self(info).leave(info);
+  explicit JpegDecoder(const ImageOptions& image_options) : options(image_options) {
+    info.err = jpeg_std_error(&errors);
+    info.client_data = this;
+    errors.error_exit = [](j_common_ptr common) { self(common).leave(); };
+    errors.output_message = [](j_common_ptr) {};
+    errors.emit_message = [](j_common_ptr common, int level) {
+      // libjpeg fills the missing part of a truncated file with grey and only warns.
+      const int code = common->err->msg_code;
+      if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER)) self(common).leave();
     };
+    monitor.progress_monitor = [](j_common_ptr common) { self(common).on_progress(); };
   }
+  JpegDecoder(const JpegDecoder&) = delete;
+  JpegDecoder& operator=(const JpegDecoder&) = delete;
+  ~JpegDecoder() { jpeg_destroy_decompress(&info); }
 
  private:
-  static JpegErrors& self(j_common_ptr info) { return *static_cast<JpegErrors*>(info->err); }
-  [[noreturn]] void leave(j_common_ptr info) {
-    format_message(info, message);
+  static JpegDecoder& self(j_common_ptr common) {
+    return *static_cast<JpegDecoder*>(common->client_data);
+  }
+  [[noreturn]] void leave() {
+    errors.format_message(reinterpret_cast<j_common_ptr>(&info), message);
     std::longjmp(escape, 1);
+  }
+
+  /// libjpeg calls this for each row of blocks of each scan.
+  void on_progress() {
+    const auto scans = static_cast<std::uint64_t>(info.input_scan_number);
+    if (scans > kMaxJpegScans ||
+        scans * info.image_width * info.image_height > kMaxJpegScanPixels) {
+      std::snprintf(message, sizeof message, "scan %d of %u x %u pixels is beyond the limit",
+                    info.input_scan_number, info.image_width, info.image_height);
+      std::longjmp(escape, 1);
+    }
+    try {
+      options.call_poll();
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    if (thrown) std::longjmp(escape, 1);
   }
 };
 
-/// Decodes into `image`. False: `errors.message` says why. Nothing with a destructor lives across
-/// the jump except what the caller owns.
-bool decode(std::span<const std::uint8_t> bytes, JpegErrors& errors, ImageRgb8& image) {
-  jpeg_decompress_struct info{};
-  info.err = &errors;
-  jpeg_create_decompress(&info);
-  if (setjmp(errors.escape)) {
-    jpeg_destroy_decompress(&info);
-    return false;
-  }
-  jpeg_mem_src(&info, bytes.data(), bytes.size());
-  jpeg_read_header(&info, TRUE);
-  if (std::uint64_t{info.image_width} * info.image_height > kMaxImagePixels) {
-    std::snprintf(errors.message, sizeof errors.message, "absurd size %u x %u", info.image_width,
-                  info.image_height);
-    jpeg_destroy_decompress(&info);
-    return false;
-  }
-  info.out_color_space = JCS_RGB;
-  jpeg_start_decompress(&info);
-  image = ImageRgb8(static_cast<int>(info.output_width), static_cast<int>(info.output_height));
-  while (info.output_scanline < info.output_height) {
-    JSAMPROW row = image.pixel(0, static_cast<int>(info.output_scanline));
-    jpeg_read_scanlines(&info, &row, 1);
-  }
-  jpeg_finish_decompress(&info);
-  jpeg_destroy_decompress(&info);
+// The two functions below are where libjpeg's errors jump to. No object with a destructor may live
+// in them. They return false if decoding failed.
+
+bool read_header(JpegDecoder& decoder, std::span<const std::uint8_t> bytes) {
+  if (setjmp(decoder.escape)) return false;
+  jpeg_create_decompress(&decoder.info);
+  decoder.info.progress = &decoder.monitor;
+  jpeg_mem_src(&decoder.info, bytes.data(), bytes.size());
+  jpeg_read_header(&decoder.info, TRUE);
+  decoder.info.out_color_space =
+      decoder.info.jpeg_color_space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_calc_output_dimensions(&decoder.info);
   return true;
+}
+
+bool read_rows(JpegDecoder& decoder, DecodedImage& image) {
+  if (setjmp(decoder.escape)) return false;
+  jpeg_start_decompress(&decoder.info);
+  while (decoder.info.output_scanline < decoder.info.output_height) {
+    JSAMPROW row = image.row(static_cast<int>(decoder.info.output_scanline));
+    jpeg_read_scanlines(&decoder.info, &row, 1);
+  }
+  jpeg_finish_decompress(&decoder.info);
+  return true;
+}
+
+/// Returns the bytes of the coefficients that libjpeg keeps of a file with several scans.
+std::uint64_t coefficient_bytes(jpeg_decompress_struct& info) {
+  if (!jpeg_has_multiple_scans(&info)) return 0;
+  const auto round_up = [](std::uint64_t value, int step) {
+    const auto unit = static_cast<std::uint64_t>(step);
+    return (value + unit - 1) / unit * unit;
+  };
+  std::uint64_t blocks = 0;
+  for (int i = 0; i < info.num_components; ++i) {
+    const jpeg_component_info& part = info.comp_info[i];
+    blocks += round_up(part.width_in_blocks, part.h_samp_factor) *
+              round_up(part.height_in_blocks, part.v_samp_factor);
+  }
+  return blocks * sizeof(JBLOCK);
+}
+
+[[noreturn]] void fail(const JpegDecoder& decoder, const std::string& name) {
+  if (decoder.thrown) std::rethrow_exception(decoder.thrown);
+  throw Error(name, "", std::string("damaged JPEG file: ") + decoder.message);
 }
 
 }  // namespace
 
-ImageRgb8 read_jpeg(const std::filesystem::path& path) {
-  return decode_jpeg(encoded_bytes(map_image(path)), path.string());
+bool is_jpeg(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= 3 && bytes[0] == 0xFF && bytes[1] == 0xD8 && bytes[2] == 0xFF;
 }
 
-ImageRgb8 decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name) {
-  if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8)
-    throw Error(name, "byte 0", "not a JPEG file");
-  JpegErrors errors;
-  ImageRgb8 image;
-  if (!decode(bytes, errors, image))
-    throw Error(name, "", std::string("damaged JPEG file: ") + errors.message);
+DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name,
+                         const ImageOptions& options) {
+  if (!is_jpeg(bytes)) throw Error(name, "byte 0", "not a JPEG file");
+  JpegDecoder decoder(options);
+  if (!read_header(decoder, bytes)) fail(decoder, name);
+  jpeg_decompress_struct& info = decoder.info;
+  check_image_size(name, info.output_width, info.output_height);
+  const std::uint64_t work_bytes = coefficient_bytes(info) + kJpegWorkBytes;
+  const MemoryReservation work(options.memory, work_bytes);
+  info.mem->max_memory_to_use = static_cast<long>(work_bytes + kJpegWorkBytes);
+  DecodedImage image(static_cast<int>(info.output_width), static_cast<int>(info.output_height),
+                     info.out_color_space == JCS_GRAYSCALE ? 1 : 3, 1, options.memory);
+  if (!read_rows(decoder, image)) fail(decoder, name);
   return image;
 }
 

@@ -1,19 +1,20 @@
 #pragma once
 /// JPEG files, by libjpeg-turbo. Read only.
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 
-#include "voxdag/image/image.hpp"
+#include "voxdag/image/decoded_image.hpp"
 
 namespace voxdag {
 
-/// Reads grey, YCbCr and RGB JPEGs, baseline or progressive, as 8-bit sRGB. Throws Error for what
-/// is unreadable, truncated, damaged, too large or in another colour space.
-ImageRgb8 read_jpeg(const std::filesystem::path& path);
+/// Returns whether the bytes begin as a JPEG does.
+bool is_jpeg(std::span<const std::uint8_t> bytes);
 
-/// As above from memory; `name` stands for the file in errors.
-ImageRgb8 decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name);
+/// Decodes a grey, YCbCr or RGB JPEG, baseline or progressive, to 1 or 3 channels of 8 bits. `name`
+/// stands for the file in errors. Throws Error for what is truncated, damaged, too large (see
+/// image_limits.hpp) or in another colour space, OverMemory, and what `options.poll` throws.
+DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name,
+                         const ImageOptions& options = {});
 
 }  // namespace voxdag

@@ -1,17 +1,19 @@
 #pragma once
 /// Images at all sizes: means and bounds of regions in constant time.
 ///
-/// Mip maps after L. Williams, "Pyramidal Parametrics" (1983); elongated regions take several taps
-/// along their long axis. The taps of a region match its centre and its covariance: what the
-/// filter of a mip level spreads by itself is taken off the spread of the taps.
+/// Mip maps after L. Williams, "Pyramidal Parametrics" (1983). Elongated regions take several taps
+/// along their long axis. The taps match the region's centre and covariance: the variance of the
+/// mip level's own filter is subtracted from that of the taps.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/texture_wrap.hpp"
 #include "voxdag/core/vec2.hpp"
 
@@ -23,39 +25,46 @@ struct UvRegion {
   float uu = 0, uv = 0, vv = 0;
 };
 
-/// `channels` values of 16 bits per texel. Level 0 is the image, between whose texels values are
-/// bilinear; each level after it has half the width and height, rounded down, to 1 x 1. Texture
-/// coordinates run over the image from its upper left to its lower right corner.
+/// `channels` values of 16 bits per texel. Level 0 is the image, sampled bilinearly; each level
+/// after it has half the width and height, rounded down, to 1 x 1. Texture coordinates run over the
+/// image from its upper left to its lower right corner.
 template <std::size_t channels>
 class MipPyramid {
  public:
   using Texel = std::array<std::uint16_t, channels>;
+  using Texels = CountedVector<Texel>;
   using Value = std::array<float, channels>;  ///< On the scale of texels, 0..65535.
   struct Bounds {
     Texel lo, hi;
   };
 
-  /// Of an image by rows. There is at least one texel.
-  MipPyramid(int width, int height, std::vector<Texel> texels,
-             TextureWrap wrap_u = TextureWrap::kRepeat, TextureWrap wrap_v = TextureWrap::kRepeat)
+  /// Makes the levels of an image, whose at least one texel come by rows. Memory: as much again as
+  /// `texels`, from the budget of `texels`; throws OverMemory. Calls poll() once per row.
+  template <class Poll>
+  MipPyramid(int width, int height, Texels texels, TextureWrap wrap_u, TextureWrap wrap_v,
+             const Poll& poll)
       : wrap_u_(wrap_u), wrap_v_(wrap_v) {
-    levels_.push_back({width, height, std::move(texels), {}});
+    MemoryBudget* const memory = texels.get_allocator().budget();
+    levels_.push_back({width, height, std::move(texels), CountedVector<Bounds>(memory)});
     while (levels_.back().width > 1 || levels_.back().height > 1)
-      levels_.push_back(halve(levels_.back()));
+      levels_.push_back(halve(levels_.back(), memory, poll));
   }
+  MipPyramid(int width, int height, Texels texels, TextureWrap wrap_u = TextureWrap::kRepeat,
+             TextureWrap wrap_v = TextureWrap::kRepeat)
+      : MipPyramid(width, height, std::move(texels), wrap_u, wrap_v, [] {}) {}
 
   int width() const { return levels_[0].width; }
   int height() const { return levels_[0].height; }
   int level_count() const { return static_cast<int>(levels_.size()); }
 
-  /// Bilinear value of a level.
+  /// Returns the bilinear value of a level.
   Value sample(int level, Vec2f uv) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
     return bilinear(l, reduced(uv.x, wrap_u_) * static_cast<float>(l.width) - 0.5f,
                     reduced(uv.y, wrap_v_) * static_cast<float>(l.height) - 0.5f);
   }
 
-  /// Value between the two levels about `level`, which may be any number.
+  /// Interpolates between the two levels around `level`, which may be any number.
   Value sample_between(float level, Vec2f uv) const {
     const float clamped =
         std::clamp(level, 0.0f, static_cast<float>(level_count() - 1));  // NaN fails both tests
@@ -68,7 +77,7 @@ class MipPyramid {
     return value;
   }
 
-  /// Mean over a region.
+  /// Returns the mean over a region.
   Value mean(const UvRegion& region) const {
     constexpr float kMaxTaps = 8, kTapDistance = 1.2f;  // in texels of the level that is read
     const auto w = static_cast<float>(width()), h = static_cast<float>(height());
@@ -76,15 +85,15 @@ class MipPyramid {
     const float middle = (a + c) / 2;
     const float spread = std::sqrt((a - c) * (a - c) / 4 + b * b);
     const float major = middle + spread, minor = std::max(middle - spread, 0.0f);
-    // A region of variance s^2 / 12 is s wide. The level's texels are s / 3.46 to s / 1.73, for
-    // then the filter alone is never wider than the region.
+    // A region of variance s^2 / 12 is s wide. The level's texels are s / 3.46 to s / 1.73 wide, so
+    // that the filter alone is never wider than the region.
     const float texel =
         std::max(std::sqrt(4 * minor), std::sqrt(12 * major) / (kMaxTaps * kTapDistance));
     if (major < 0.05f) return sample(0, region.center);
     if (!(major < 1e18f)) return sample(level_count() - 1, region.center);
     const int level = std::clamp(texel >= 1.0f ? exponent_of(texel) : 0, 0, level_count() - 1);
     const auto size = static_cast<float>(1 << level);
-    const float own = (size * size - 1) / 4;  // variance of the level's filter beyond level 0's
+    const float own = (size * size - 1) / 4;  // variance that the level's filter adds to level 0's
     const auto taps = [&](float variance, float& distance) {
       const float left = 12 * std::max(variance - own, 0.0f);
       const float count = std::sqrt(left / (kTapDistance * kTapDistance * size * size) + 1);
@@ -95,11 +104,12 @@ class MipPyramid {
     float step1 = 0, step2 = 0;
     const int n1 = taps(major, step1), n2 = taps(minor, step2);
     if (n1 * n2 == 1) return sample(level, region.center);
-    // The major axis, of the covariance's larger column: that of an axis-aligned one is exact.
+    // The major axis, from the larger column of the covariance: exact if the axis is a coordinate
+    // axis.
     Vec2f axis = a >= c ? Vec2f{major - c, b} : Vec2f{b, major - a};
     const float length = std::sqrt(axis.x * axis.x + axis.y * axis.y);
     axis = length > 0 ? axis * (1 / length) : Vec2f{1, 0};
-    // From here on in texels of the level.
+    // From here on, lengths are in texels of the level.
     const Level& l = levels_[static_cast<std::size_t>(level)];
     const auto lw = static_cast<float>(l.width), lh = static_cast<float>(l.height);
     const Vec2f along{axis.x * step1 * (lw / w), axis.y * step1 * (lh / h)};
@@ -120,11 +130,12 @@ class MipPyramid {
     return sum;
   }
 
-  /// Bounds of the values of level 0 at all points of a box, not tight. Not finite: of everything.
+  /// Returns bounds, not tight, of the values of level 0 at all points of a box. A box that is not
+  /// finite stands for the whole image.
   Bounds bounds(Vec2f lo, Vec2f hi) const {
     Range x = texels_between(lo.x, hi.x, width(), wrap_u_);
     Range y = texels_between(lo.y, hi.y, height(), wrap_v_);
-    // At most three texels a side at the level that is read.
+    // The level that is read has at most three texels per side of the box.
     const auto extent = static_cast<unsigned>(std::max(x.last - x.first, y.last - y.first));
     const int wanted = extent > 2 ? static_cast<int>(std::bit_width((extent - 1) / 2)) : 0;
     const int level = std::min(wanted, level_count() - 1);
@@ -153,8 +164,8 @@ class MipPyramid {
  private:
   struct Level {
     int width = 0, height = 0;
-    std::vector<Texel> texels;
-    std::vector<Bounds> bounds;  ///< Of what of level 0 each texel covers; none at level 0.
+    Texels texels;
+    CountedVector<Bounds> bounds;  ///< Of the texels of level 0 under each texel; empty at level 0.
 
     const Texel* row(int y) const {
       return texels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
@@ -176,7 +187,7 @@ class MipPyramid {
     return texel;
   }
 
-  /// Value at a place in texels from the centre of the first one; both are small enough for int.
+  /// Returns the value at (x, y), in texels from the centre of the first; both fit an int.
   Value bilinear(const Level& l, float x, float y) const {
     const int ix = floor_int(x), iy = floor_int(y);
     const int x0 = wrapped(ix, l.width, wrap_u_), x1 = wrapped(ix + 1, l.width, wrap_u_);
@@ -187,7 +198,7 @@ class MipPyramid {
     const Texel &t00 = row0[x0], &t10 = row0[x1], &t01 = row1[x0], &t11 = row1[x1];
     Value value;
     if constexpr (channels == 4) {
-      // Compilers do not find this by themselves.
+      // Compilers do not vectorise the loop below by themselves.
       const Lanes sum =
           lanes_of(t00) * w00 + lanes_of(t10) * w10 + lanes_of(t01) * w01 + lanes_of(t11) * w11;
       std::memcpy(value.data(), &sum, sizeof sum);
@@ -212,16 +223,17 @@ class MipPyramid {
     const int truncated = static_cast<int>(x);
     return truncated - (x < static_cast<float>(truncated));
   }
-  /// std::ilogb of a positive number that is not subnormal.
+  /// Computes std::ilogb of a positive, normal number.
   static int exponent_of(float x) {
     return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23) - 127;
   }
-  /// std::floor, which is a call on processors without SSE 4.1.
+  /// Computes std::floor, which is a function call on processors without SSE 4.1.
   static float floor_of(float x) {
     return std::abs(x) < 1e6f ? static_cast<float>(floor_int(x)) : std::floor(x);
   }
 
-  /// The same place within one period, small enough to become an index. Also of what is not finite.
+  /// Returns the same place within one period, small enough for an index, also if `u` is not
+  /// finite.
   static float reduced(float u, TextureWrap wrap) {
     if (wrap == TextureWrap::kClamp) return u > -1 ? std::min(u, 2.0f) : -1.0f;
     const float rest = wrap == TextureWrap::kRepeat ? u - floor_of(u) : u - 2 * floor_of(u / 2);
@@ -239,7 +251,7 @@ class MipPyramid {
     return rest < size ? rest : 2 * size - 1 - rest;
   }
 
-  /// The texels of level 0 that values between lo and hi depend on: all of a period at most.
+  /// Returns the texels of level 0 on which values between lo and hi depend: at most one period.
   static Range texels_between(float lo, float hi, int size, TextureWrap wrap) {
     const int period = wrap == TextureWrap::kMirror ? 2 * size : size;
     const float start = reduced(lo, wrap);
@@ -254,7 +266,7 @@ class MipPyramid {
             wrapped(static_cast<int>(last), size, wrap)};
   }
 
-  /// The texels of a level of `size` texels that cover those of level 0.
+  /// Returns the texels of a level of `size` texels that cover a range of level 0.
   static Range at_level(Range range, int size0, int size) {
     const auto floor_div = [](std::int64_t a, std::int64_t b) {
       return a >= 0 ? a / b : -((b - 1 - a) / b);
@@ -272,7 +284,8 @@ class MipPyramid {
     }
   }
 
-  /// An odd size does not halve evenly: texels then cover parts of those before.
+  /// Returns which texels of a finer level each texel covers. An odd size does not halve evenly:
+  /// texels then cover parts of texels.
   static std::vector<Cover> covers(int size, int half) {
     std::vector<Cover> covers(static_cast<std::size_t>(half));
     const double ratio = static_cast<double>(size) / half;
@@ -287,13 +300,16 @@ class MipPyramid {
     return covers;
   }
 
-  static Level halve(const Level& fine) {
-    Level level{std::max(fine.width / 2, 1), std::max(fine.height / 2, 1), {}, {}};
+  template <class Poll>
+  static Level halve(const Level& fine, MemoryBudget* memory, const Poll& poll) {
+    Level level{std::max(fine.width / 2, 1), std::max(fine.height / 2, 1), Texels(memory),
+                CountedVector<Bounds>(memory)};
     const std::vector<Cover> columns = covers(fine.width, level.width);
     const std::vector<Cover> rows = covers(fine.height, level.height);
     level.texels.reserve(columns.size() * rows.size());
     level.bounds.reserve(columns.size() * rows.size());
-    for (const Cover& row : rows)
+    for (const Cover& row : rows) {
+      poll();
       for (const Cover& column : columns) {
         Value sum{};
         Bounds bounds{filled(65535), filled(0)};
@@ -313,6 +329,7 @@ class MipPyramid {
         level.texels.push_back(mean);
         level.bounds.push_back(bounds);
       }
+    }
     return level;
   }
 

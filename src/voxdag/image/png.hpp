@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "voxdag/image/decoded_image.hpp"
 #include "voxdag/image/image.hpp"
 
 namespace voxdag {
@@ -13,12 +14,14 @@ namespace voxdag {
 /// Error if it cannot be written or the image has no pixels.
 void write_png(const std::filesystem::path& path, const ImageRgb8& image);
 
-/// Reads any PNG as 8-bit sRGB: grey and palette become RGB, 16 bits become 8, alpha is dropped
-/// without blending. Throws Error for what is unreadable, truncated, damaged or too large.
-ImageRgb8 read_png(const std::filesystem::path& path);
+/// Returns whether the bytes begin as a PNG does.
+bool is_png(std::span<const std::uint8_t> bytes);
 
-/// Decodes any PNG with its alpha and all its bits; gamma and colour profiles are ignored. `name`
-/// stands for the file in errors, which are those of read_png.
-ImageRgba16 decode_png_rgba16(std::span<const std::uint8_t> bytes, const std::string& name);
+/// Decodes any PNG with its alpha. Palettes become colours, values of less than 8 bits 8 bits;
+/// gamma and colour profiles are ignored. `name` stands for the file in errors. Throws Error for
+/// what is truncated, damaged or too large (see image_limits.hpp), OverMemory, and what
+/// `options.poll` throws.
+DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
+                        const ImageOptions& options = {});
 
 }  // namespace voxdag

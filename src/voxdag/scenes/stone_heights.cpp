@@ -73,7 +73,7 @@ double stone_height(std::uint32_t seed, double u, double v) {
 }  // namespace
 
 HeightTexture make_stone_heights(std::uint32_t seed, int size) {
-  std::vector<HeightTexture::Texel> texels;
+  HeightTexture::Texels texels;
   texels.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)

@@ -43,7 +43,8 @@ bool has_cut_texels(const Texture& texture) { return texture.bounds({0, 0}, {1, 
 
 class Loader {
  public:
-  Loader(const Appearance& appearance, bool has_uvs) : appearance_(appearance), has_uvs_(has_uvs) {}
+  Loader(const Appearance& appearance, bool has_uvs, ImageOptions options)
+      : appearance_(appearance), has_uvs_(has_uvs), options_(std::move(options)) {}
 
   std::vector<MaterialLook> load(std::vector<std::string>& warnings, Progress* progress) {
     for (const Material& material : appearance_.materials) {
@@ -107,49 +108,64 @@ class Loader {
   }
 
   void make(const Recipe& recipe, Dish& dish) const {
-    if (recipe.kind == Recipe::kColor) return make_color(recipe, dish);
-    const TextureWraps wraps{recipe.wrap_u, recipe.wrap_v};
+    const TextureImage& named = image(recipe.image >= 0 ? recipe.image : recipe.alpha_image);
     try {
-      const ImageRgba16 pixels = decode_texture_image(image(recipe.image));
-      const bool is_heights = recipe.kind == Recipe::kHeights ||
-                              (recipe.kind == Recipe::kEither && !looks_like_normal_map(pixels));
-      dish.texture =
-          std::make_shared<Texture>(is_heights ? make_bump_texture(pixels, recipe.number, wraps)
-                                               : make_normal_texture(pixels, recipe.number, wraps));
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const Error& error) {
-      dish.warnings.push_back(std::string(error.what()) +
-                              ": the mesh's own normals stand in for the normal map");
+      if (recipe.kind == Recipe::kColor)
+        make_color(recipe, dish);
+      else
+        make_normals(recipe, dish);
+    } catch (const OverMemory& error) {
+      if (!error.file().empty()) throw;
+      throw OverMemory(named.name, "", error.reason());
     }
   }
 
+  /// Decodes an image. One that cannot be read is a warning that ends with `stand_in`, and the
+  /// result is empty.
+  DecodedImage decode(int index, const char* stand_in, Dish& dish) const {
+    try {
+      return decode_texture_image(image(index), options_);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const OverMemory&) {
+      throw;
+    } catch (const Error& error) {
+      dish.warnings.push_back(std::string(error.what()) + stand_in);
+      return {};
+    }
+  }
+
+  void make_normals(const Recipe& recipe, Dish& dish) const {
+    const TextureWraps wraps{recipe.wrap_u, recipe.wrap_v};
+    const DecodedImage pixels =
+        decode(recipe.image, ": the mesh's own normals stand in for the normal map", dish);
+    if (pixels.is_empty()) return;
+    const bool is_heights =
+        recipe.kind == Recipe::kHeights ||
+        (recipe.kind == Recipe::kEither && !looks_like_normal_map(pixels, options_));
+    dish.texture = std::make_shared<Texture>(
+        is_heights ? make_bump_texture(pixels, recipe.number, wraps, options_)
+                   : make_normal_texture(pixels, recipe.number, wraps, options_));
+  }
+
   void make_color(const Recipe& recipe, Dish& dish) const {
-    ImageRgba16 pixels;
-    if (recipe.image >= 0) {
-      try {
-        pixels = decode_texture_image(image(recipe.image));
-      } catch (const Error& error) {
-        dish.warnings.push_back(std::string(error.what()) +
-                                ": the material's colour stands in for the texture");
-      }
-    }
+    DecodedImage pixels;
+    if (recipe.image >= 0)
+      pixels = decode(recipe.image, ": the material's colour stands in for the texture", dish);
     if (recipe.alpha_image >= 0) {
-      try {
-        const ImageRgba16 alpha = decode_texture_image(image(recipe.alpha_image));
-        if (pixels.width == 0) {
-          pixels = ImageRgba16(1, 1);
-          std::fill(pixels.pixels.begin(), pixels.pixels.end(), std::uint16_t{65535});
+      const DecodedImage alpha =
+          decode(recipe.alpha_image, ": the material is opaque without its alpha map", dish);
+      if (!alpha.is_empty()) {
+        if (pixels.is_empty()) {
+          pixels = DecodedImage(1, 1, 4, 2, options_.memory);
+          pixels.set_pixel(0, 0, {65535, 65535, 65535, 65535});
         }
-        pixels = with_alpha_of(pixels, alpha);
-      } catch (const Error& error) {
-        dish.warnings.push_back(std::string(error.what()) +
-                                ": the material is opaque without its alpha map");
+        pixels = with_alpha_of(pixels, alpha, options_);
       }
     }
-    if (pixels.width > 0)
+    if (!pixels.is_empty())
       dish.texture = std::make_shared<Texture>(
-          make_color_texture(pixels, recipe.number, {recipe.wrap_u, recipe.wrap_v}));
+          make_color_texture(pixels, recipe.number, {recipe.wrap_u, recipe.wrap_v}, options_));
   }
 
   MaterialLook look(const Material& material) const {
@@ -175,6 +191,7 @@ class Loader {
 
   const Appearance& appearance_;
   const bool has_uvs_;
+  const ImageOptions options_;
   bool asked_without_uvs_ = false;
   std::map<Recipe, Dish> dishes_;
 };
@@ -183,13 +200,19 @@ class Loader {
 
 std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
                                               std::vector<std::string>& warnings,
-                                              Progress* progress) {
-  return Loader(appearance, has_uvs).load(warnings, progress);
+                                              Progress* progress, MemoryBudget* memory) {
+  return Loader(appearance, has_uvs, image_options(progress, memory)).load(warnings, progress);
 }
 
-ImageRgba16 decode_texture_image(const TextureImage& image) {
-  if (!image.path.empty()) return read_image(image.path);
-  return decode_image(image.bytes, image.name);
+DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options) {
+  if (!image.path.empty()) return read_image(image.path, options);
+  return decode_image(image.bytes, image.name, options);
+}
+
+ImageOptions image_options(Progress* progress, MemoryBudget* memory) {
+  ImageOptions options{memory, {}};
+  if (progress != nullptr) options.poll = [progress] { progress->throw_if_cancelled(); };
+  return options;
 }
 
 }  // namespace voxdag

@@ -24,12 +24,18 @@ struct MaterialLook {
 
 /// Decodes what the materials use, each texture once, in parallel. What cannot be read is left out,
 /// with a line in `warnings` that names the file, the reason and what stands in. Without texture
-/// coordinates (`has_uvs`) textures are left out too. Throws Cancelled.
+/// coordinates (`has_uvs`) textures are left out too. Throws Cancelled, and OverMemory with the
+/// name of the image.
 std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
                                               std::vector<std::string>& warnings,
-                                              Progress* progress);
+                                              Progress* progress, MemoryBudget* memory);
 
-/// The encoded bytes of an image, decoded. Throws Error.
-ImageRgba16 decode_texture_image(const TextureImage& image);
+/// Decodes an image that a mesh names or contains. Throws Error, OverMemory, and what options.poll
+/// throws.
+DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options);
+
+/// The options to decode with: counts memory in `memory` and throws Cancelled when `progress` is
+/// cancelled. Both may be null.
+ImageOptions image_options(Progress* progress, MemoryBudget* memory);
 
 }  // namespace voxdag

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "voxdag/image/srgb_curve.hpp"
+#include "voxdag/image/color.hpp"
 #include "voxdag/surface/material_textures.hpp"
 #include "voxdag/surface/polygon_moments.hpp"
 #include "voxdag/surface/tangent_frames.hpp"
@@ -226,10 +226,12 @@ bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLo
 }
 
 SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
-                               std::vector<std::string>* warnings, Progress* progress) {
+                               std::vector<std::string>* warnings, Progress* progress,
+                               MemoryBudget* memory) {
   std::vector<std::string> unheard;
-  std::vector<MaterialLook> looks = load_material_looks(
-      appearance, !appearance.uvs.empty(), warnings == nullptr ? unheard : *warnings, progress);
+  std::vector<MaterialLook> looks =
+      load_material_looks(appearance, !appearance.uvs.empty(),
+                          warnings == nullptr ? unheard : *warnings, progress, memory);
   if (looks.empty()) looks.emplace_back();
   const bool has_normal_maps =
       std::any_of(looks.begin(), looks.end(),

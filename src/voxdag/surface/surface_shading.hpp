@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/mesh/appearance.hpp"
@@ -28,9 +29,11 @@ struct SurfaceSample {
 class SurfaceShading {
  public:
   /// Decodes the textures. What cannot be read is left out and named in `warnings`, one line each
-  /// with what stands in for it. Throws Cancelled.
+  /// with what stands in for it. `memory`, if not null, counts the textures and must outlive this.
+  /// Throws Cancelled and OverMemory.
   SurfaceShading(const Mesh& mesh, const Appearance& appearance,
-                 std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr);
+                 std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr,
+                 MemoryBudget* memory = nullptr);
   ~SurfaceShading();
   SurfaceShading(SurfaceShading&&) noexcept;
 

@@ -1,0 +1,33 @@
+#pragma once
+/// Limits on image files: what a hostile file may cost.
+#include <cstdint>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/open_input.hpp"
+
+namespace voxdag {
+
+/// Larger image files are refused.
+inline constexpr SizeLimit kMaxImageFile{std::uint64_t{1} << 30, "an image"};
+
+/// Images of more pixels are refused: 16,384 x 16,384.
+inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 28;
+inline constexpr std::uint32_t kMaxImageSide = 1'000'000;
+
+/// A progressive JPEG is decoded once per scan. Usual files have about 10.
+inline constexpr int kMaxJpegScans = 64;
+/// Scans times pixels: as much work as 16 scans of the largest image.
+inline constexpr std::uint64_t kMaxJpegScanPixels = std::uint64_t{1} << 32;
+
+/// Throws Error if an image has no pixels or too many.
+inline void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height) {
+  if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide ||
+      width * height > kMaxImagePixels)
+    throw Error(name, "header",
+                "size " + std::to_string(width) + " x " + std::to_string(height) +
+                    " is outside of the limits: 1 to " + std::to_string(kMaxImagePixels) +
+                    " pixels");
+}
+
+}  // namespace voxdag
