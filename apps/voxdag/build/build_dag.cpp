@@ -65,8 +65,9 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   StageSeconds seconds;
 
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  Mesh mesh = read_mesh_file(session.subject, arguments.access, session);
-  MemoryReservation mesh_memory(&memory, bytes_of(mesh));
+  MeshAccess access = arguments.access;
+  access.memory = &memory;
+  Mesh mesh = read_mesh_file(session.subject, access, session);
   seconds.read = watch.lap();
 
   DagReport report;
@@ -77,8 +78,8 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   report.metadata.build = grid_settings(arguments);
   const BuildResult result =
       build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
+  memory.release(memory_bytes(mesh));
   mesh = {};
-  mesh_memory.resize(0);
   seconds.build = watch.lap();
 
   progress.throw_if_cancelled();

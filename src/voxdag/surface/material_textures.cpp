@@ -10,15 +10,15 @@
 namespace voxdag {
 namespace {
 
-/// What a texture is made from: equal recipes share one.
+/// The inputs of a decoded texture. Materials with equal recipes share one texture.
 struct Recipe {
   enum Kind { kColor, kTangentNormals, kHeights, kEither };
   Kind kind = kColor;
   int image = -1, alpha_image = -1;
-  float number = 0;  ///< The least visible alpha, or the scale of normals.
+  float number = 0;  ///< The smallest visible alpha, or the scale of normals.
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 
-  // NOLINTNEXTLINE(modernize-use-nullptr): sees a null pointer in what the compiler writes here
+  // NOLINTNEXTLINE(modernize-use-nullptr): misfires on the defaulted operator
   friend auto operator<=>(const Recipe&, const Recipe&) = default;
 };
 
@@ -27,7 +27,7 @@ struct Dish {
   std::vector<std::string> warnings;
 };
 
-/// The alpha from which on a material is visible; 0 if it always is.
+/// Returns the smallest alpha at which a material is visible; 0: it is always visible.
 float least_alpha(const Material& material) {
   switch (material.alpha_mode) {
     case AlphaMode::kMask:
@@ -78,7 +78,7 @@ class Loader {
     Recipe recipe{Recipe::kColor, material.color_map.image, -1, 0, use.wrap_u, use.wrap_v};
     const float least = least_alpha(material);
     if (least > 0) {
-      // Where no texel passes, the threshold may be anything over 1.
+      // No texel passes a threshold over 1.
       recipe.number = material.alpha > 0 ? std::min(least / material.alpha, 2.0f) : 2.0f;
       if (material.alpha_map.image != material.color_map.image)
         recipe.alpha_image = material.alpha_map.image;
@@ -180,7 +180,8 @@ class Loader {
       look.color_uv = color.image >= 0 ? material.color_map.uv : material.alpha_map.uv;
       look.is_alpha_textured = has_cut_texels(*look.color_texture);
     }
-    // Texture and corners are tested one after the other, so that texels can be tested beforehand.
+    // Texture alpha and corner alpha are tested separately, so that texels can be tested in
+    // advance.
     if (least > 0) look.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
     if (const auto found = dishes_.find(normal_recipe(material)); found != dishes_.end()) {
       look.normal_texture = found->second.texture;

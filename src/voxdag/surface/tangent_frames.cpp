@@ -34,7 +34,7 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
   const Vec3f a = mesh.vertices[t[0]];
   const Vec3f normal = normalized_or(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a), {});
   if (normal != Vec3f{}) return normal;
-  // Tiny triangles: their areas are no float32.
+  // In double: the areas of tiny triangles underflow in float32.
   const Vec3d d(a);
   return static_cast<Vec3f>(
       normalized_or(cross(Vec3d(mesh.vertices[t[1]]) - d, Vec3d(mesh.vertices[t[2]]) - d), {}));
