@@ -9,16 +9,12 @@
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
-
-std::uint64_t bytes_of(const Mesh& mesh) {
-  return mesh.vertices.capacity() * sizeof(Vec3f) + mesh.triangles.capacity() * sizeof(Triangle) +
-         mesh.triangle_materials.capacity() * sizeof(std::uint32_t);
-}
 
 /// Wall-clock seconds of the steps of a build.
 struct StageSeconds {
