@@ -1,6 +1,6 @@
 #pragma once
-/// 64-bit masks of 4³ voxels. Linear order: bit x + 4y + 16z, in which rows and slices are easy to
-/// make. Morton order: what leaf blocks store.
+/// 64-bit masks of 4³ voxels. In linear order (bit x + 4y + 16z) rows and slices are easy to make.
+/// Leaf blocks store Morton order.
 #include <cstdint>
 
 #include "voxdag/core/host_device.hpp"
@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// Sixteen bits u + 4v over the projection's square to all voxels above and below them.
+/// Extends sixteen bits u + 4v of a projection's square to the voxels of their columns.
 VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t expand_square(int projection,
                                                                     std::uint64_t m) {
   if (projection == 2) return m * 0x0001000100010001ull;
@@ -20,7 +20,8 @@ VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t expand_square(int projecti
   return m * 0xF;
 }
 
-/// The voxels of the block at `block` that lie in the box lo..hi (both inclusive), linear order.
+/// Returns the voxels of the block at `block` that lie in the box lo..hi (both inclusive), in
+/// linear order.
 VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t box_mask(Vec3i block, Vec3i lo, Vec3i hi) {
   std::uint64_t bits[3] = {};
   for (int axis = 0; axis < 3; ++axis) {
@@ -37,7 +38,8 @@ VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t box_mask(Vec3i block, Vec3
 
 namespace detail {
 
-/// Exchanges the bits whose positions have index bits (i, j) = (0, 1) with those that have (1, 0).
+/// Exchanges the bits whose positions have the index bits (i, j) = (0, 1) with those that have (1,
+/// 0).
 template <int i, int j>
 VOXDAG_HD constexpr std::uint64_t swap_index_bits(std::uint64_t m) {
   constexpr int kShift = (1 << i) - (1 << j);
@@ -53,7 +55,7 @@ VOXDAG_HD constexpr std::uint64_t swap_index_bits(std::uint64_t m) {
 
 }  // namespace detail
 
-/// Linear to Morton order: index bits z1 z0 y1 y0 x1 x0 to z1 y1 x1 z0 y0 x0.
+/// Converts linear to Morton order: index bits z1 z0 y1 y0 x1 x0 become z1 y1 x1 z0 y0 x0.
 VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t linear_to_morton(std::uint64_t m) {
   m = detail::swap_index_bits<4, 3>(m);
   m = detail::swap_index_bits<3, 1>(m);

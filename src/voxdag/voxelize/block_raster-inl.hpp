@@ -1,7 +1,8 @@
-// Leaf blocks of 4³ voxels from triangles, vectorised; compiled once for each instruction set.
+// Rasterises triangles into leaf blocks of 4³ voxels, vectorised. Included once for each
+// instruction set.
 //
-// Every lane holds an integer that decides one voxel or column exactly, so the masks are the same
-// for any vector width.
+// Every lane holds an integer that decides one voxel or column exactly, so the masks are equal for
+// all vector widths.
 #if defined(VOXDAG_BLOCK_RASTER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_BLOCK_RASTER_INL
 #undef VOXDAG_BLOCK_RASTER_INL
@@ -23,14 +24,14 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The voxels of a slab in a block and how far its offset can move without changing them.
+/// The voxels of a slab in a block, and the interval of offsets in which they do not change.
 struct SlabBlock {
   std::uint64_t mask;  ///< Linear order.
   std::uint64_t down, up;
 };
 
-/// Bit i: lane i of the mask, of up to 16 lanes. Reads as many bytes as were stored, since a wider
-/// load would wait for the store.
+/// Returns lane i of the mask as bit i, for up to 16 lanes. Loads exactly the stored bytes, since a
+/// wider load would wait for the store.
 template <class D, class M>
 HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
   std::uint8_t bytes[8];
@@ -39,14 +40,14 @@ HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
   return bytes[0] | static_cast<std::uint64_t>(bytes[1]) << 8;
 }
 
-/// Lane u + 4v of a block's square.
+/// The coordinates of lane u + 4v of a block's square.
 struct SquareLanes {
   alignas(64) std::uint32_t u[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   alignas(64) std::uint32_t v[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 };
 inline constexpr SquareLanes kSquare;
 
-/// Sixteen bits u + 4v: is value + a*u + b*v >= 0? The sums fit in 32 bits.
+/// Returns sixteen bits u + 4v: whether value + a*u + b*v >= 0. The sums must fit in 32 bits.
 HWY_INLINE std::uint64_t edge_square(std::int32_t value, std::int32_t a, std::int32_t b) {
   const hn::CappedTag<std::int32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -69,8 +70,9 @@ inline std::uint64_t edge_square_wide(std::int64_t value, std::int64_t a, std::i
   return bits;
 }
 
-/// T is wide enough for 16 |n|1. As unsigned numbers negative distances are huge, so that least and
-/// greatest distance to the slab's two ends say how far it can move either way.
+/// Returns the voxels of a slab in a block. T must hold 16 |n|1. Negative distances are huge as
+/// unsigned numbers, so the least and the greatest distance to the slab's two ends tell how far the
+/// slab can move in both directions.
 template <class T>
 HWY_INLINE SlabBlock slab_block_in(const PlaneSlab& slab, std::int64_t lo) {
   using U = hwy::MakeUnsigned<T>;
@@ -109,13 +111,14 @@ HWY_INLINE SlabBlock slab_block_in(const PlaneSlab& slab, std::int64_t lo) {
   return {mask, static_cast<U>(~top), up};
 }
 
-/// The slab whose least value seen from the block is lo. |lo| <= 16 |n|1: it comes near the block.
+/// Returns the voxels of the slab whose least value relative to the block is `lo`. |lo| <= 16 |n|1:
+/// the slab is near the block.
 HWY_INLINE SlabBlock slab_block(const PlaneSlab& slab, std::int64_t lo) {
   return slab.width < (std::int64_t{1} << 26) ? slab_block_in<std::int32_t>(slab, lo)
                                               : slab_block_in<std::int64_t>(slab, lo);
 }
 
-/// A slab with its numbers shifted right until sums over a block fit in 32 bits.
+/// A slab whose numbers are shifted right so that sums over a block fit in 32 bits.
 struct ScaledSlab {
   PlaneSlab exact;
   int shift;
@@ -131,10 +134,10 @@ inline ScaledSlab scale_slab(const PlaneSlab& slab) {
   return {slab, shift, scaled(n.x), scaled(n.y), scaled(n.z), scaled(slab.width + 1)};
 }
 
-/// The voxels of a slab in a block, linear order; `lo` is its least value seen from the block,
-/// |lo| <= 60 |n|1. What the shift drops moves a voxel's distance from the slab's near end by less
-/// than 9 down or 1 up, from its far end by less than 9 down or 2 up: where none is that close to
-/// 0 the scaled numbers decide as the exact ones do.
+/// Returns the voxels of a slab in a block, in linear order. `lo` is the slab's least value
+/// relative to the block, |lo| <= 60 |n|1. The shift changes a voxel's distance from the slab's
+/// near end by -9 to +1, and from its far end by -9 to +2, exclusive. If no distance is that close
+/// to 0, the scaled numbers decide exactly; else the exact ones are used.
 HWY_INLINE std::uint64_t slab_mask(const ScaledSlab& slab, std::int64_t lo) {
   const hn::CappedTag<std::uint32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -146,7 +149,7 @@ HWY_INLINE std::uint64_t slab_mask(const ScaledSlab& slab, std::int64_t lo) {
   auto nearest = hn::Set(d, ~std::uint32_t{0});
   std::uint64_t mask = 0;
   for (std::size_t i = 0; i < 16; i += kLanes) {
-    // As unsigned numbers distances below -margin are huge.
+    // Distances below -margin are huge as unsigned numbers.
     auto distance = hn::Add(begin, hn::Add(hn::Mul(x, hn::Load(d, kSquare.u + i)),
                                            hn::Mul(y, hn::Load(d, kSquare.v + i))));
     for (std::size_t k = 0; k < 4; ++k) {
@@ -160,9 +163,8 @@ HWY_INLINE std::uint64_t slab_mask(const ScaledSlab& slab, std::int64_t lo) {
   return mask;
 }
 
-/// The children that a triangle meets, of those conditions, in a cell of 4³ children of
-/// 2^log2_child voxels a side each; linear order. With log2_child = 0: the voxels that it sets in a
-/// leaf block.
+/// Returns the children of a cell that pass `conditions`, in linear order. The cell has 4³ children
+/// of 2^log2_child voxels a side. With log2_child = 0 they are the voxels of a leaf block.
 HWY_INLINE std::uint64_t triangle_children(const TriangleSetup& t, std::uint32_t conditions,
                                            Vec3i cell, int log2_child) {
   using detail::absolute;
@@ -179,11 +181,11 @@ HWY_INLINE std::uint64_t triangle_children(const TriangleSetup& t, std::uint32_t
     const int edge = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
     const int projection = edge / 3;
     const std::int64_t a = t.a[edge], b = t.b[edge];
-    // The greatest value in the first child; it changes by a and b times the size to the others.
+    // The greatest value in the first child. It changes by a * size and b * size per child.
     const std::int64_t value = t.c[edge] + a * cell[kProjectionU[projection]] +
                                b * cell[kProjectionV[projection]] +
                                last * (positive(a) + positive(b));
-    // Where the value is out of reach of the cell's own range all children pass or fail.
+    // Beyond the reach, all children pass or all fail.
     const std::int64_t reach = 3 * size * (absolute(a) + absolute(b));
     if (value >= reach) continue;
     if (value < -reach) return 0;

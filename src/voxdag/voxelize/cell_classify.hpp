@@ -1,10 +1,10 @@
 #pragma once
-/// Which children of an octree cell a triangle meets, and which of its conditions still matter
-/// there.
+/// Finds the children of an octree cell that a triangle meets, and the conditions that still matter
+/// in them.
 ///
-/// The functions of triangle_setup.hpp take their least and greatest values over a cell's voxels at
-/// two of its corner voxels, so the answer is exact for a cell of any size; only where a cell is so
-/// large that the plane's sums need more than 64 bits is the plane left to the cells below.
+/// The functions of triangle_setup.hpp have their least and greatest values over a cell at two of
+/// its corner voxels, so the answer is exact for a cell of any size. If the plane's sums over a
+/// cell need more than 64 bits, the plane is tested in smaller cells only.
 #include <bit>
 #include <cstdint>
 
@@ -12,10 +12,9 @@
 
 namespace voxdag {
 
-/// For each child (x=1, y=2, z=4) of a cell: bit i of `alive` tells whether the triangle meets
-/// it; `conditions[i]` are the ones that some of its voxels fail. Dominant edges are kept until the
-/// child's whole column is inside the triangle, so without them the child holds a plane and no
-/// more.
+/// The result for the children (x=1, y=2, z=4) of a cell. Bit i of `alive` is set if the triangle
+/// meets child i; conditions(i) are those that some of its voxels may fail. Dominant edges stay
+/// until the child's whole column is inside the triangle: without them only the plane matters.
 struct ChildConditions {
   std::uint32_t alive = 0xFF;
   std::uint64_t lanes[2];  ///< Eight 16-bit sets.
@@ -30,8 +29,8 @@ namespace detail {
 inline constexpr std::uint32_t kLowChildren[3] = {0x55, 0x33, 0x0F};
 inline constexpr std::uint64_t kEveryLane = 0x0001000100010001ull;
 
-/// For projection p and a set of its four quadrants (u=1, v=2): the children over them, as a mask
-/// and as 16-bit lanes.
+/// The children over a set of the four quadrants (u=1, v=2) of projection p, as a mask and as
+/// 16-bit lanes.
 struct QuadrantChildren {
   std::uint32_t mask[3][16];
   std::uint64_t lanes[3][16][2];
@@ -55,8 +54,8 @@ inline constexpr QuadrantChildren kQuadrantChildren = make_quadrant_children();
 
 }  // namespace detail
 
-/// `cell` is the least voxel of a cell of (2*half)³ voxels, relative to the setup's origin;
-/// `conditions` what still matters in it.
+/// Classifies the children of a cell of (2*half)³ voxels. `cell` is its lowest voxel, relative to
+/// the setup's origin; `conditions` are those that its voxels may fail.
 VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
                                                       std::uint32_t conditions, Vec3i cell,
                                                       std::int32_t half) {

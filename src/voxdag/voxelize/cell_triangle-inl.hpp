@@ -1,9 +1,9 @@
-// A triangle in the 4³ leaf blocks of a cell of 16³ voxels, vectorised; compiled once for each
-// instruction set.
+// Rasterises a triangle into the 4³ leaf blocks of a cell of 16³ voxels, vectorised. Included once
+// for each instruction set.
 //
-// What the blocks have in common is worked out once: each edge's values over a block's square of
-// voxels, and over the cell's square of blocks. A block then adds one of these to the others and
-// tests all edges of a projection together, without a branch for each.
+// Values that the blocks share are computed once: those of each edge over a block's square of
+// voxels, and over the cell's square of blocks. A block adds one of the latter to the former, and
+// tests all edges of a projection together without a branch per edge.
 #if defined(VOXDAG_CELL_TRIANGLE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_CELL_TRIANGLE_INL
 #undef VOXDAG_CELL_TRIANGLE_INL
@@ -19,10 +19,10 @@ namespace HWY_NAMESPACE {
 
 struct alignas(64) CellTriangle {
   std::int32_t voxel[9][16];  ///< a*u + b*v of an edge, over a block's square: lane u + 4v.
-  std::int32_t block[9][16];  ///< Its value in the first voxel of each block; far ones clamped.
+  std::int32_t block[9][16];  ///< Its value in the first voxel of each block, clamped.
   ScaledSlab slab{};
-  std::int64_t slab_lo = 0;       ///< The slab's least value, seen from the cell.
-  std::uint32_t box[3] = {};      ///< By axis: bit i, does the bounding box reach layer i of 16?
+  std::int64_t slab_lo = 0;   ///< The slab's least value, relative to the cell.
+  std::uint32_t box[3] = {};  ///< By axis: bit i is set if the bounding box meets layer i of 16.
   std::uint32_t projections = 0;  ///< Bit p: edges of projection p can fail.
   bool has_plane = false;         ///< The plane can fail.
   bool wide = false;              ///< Too large for 32 bits: triangle_children() decides.
@@ -31,9 +31,9 @@ struct alignas(64) CellTriangle {
 inline constexpr int kLog2CellBlocks = 2;
 inline constexpr std::int64_t kCellLast = 15;
 
-/// The block columns that the edges of a projection meet, 16 bits u + 4v; if one of them can fail
-/// in the cell, puts the projection into c. Dominant edges can until the cell's whole column is
-/// inside the triangle.
+/// Returns the block columns that pass the edges of a projection: 16 bits u + 4v. If a voxel of the
+/// cell may fail one of the edges, adds the projection to `c`. Dominant edges count as such until
+/// the cell's whole column is inside the triangle.
 HWY_INLINE std::uint64_t enter_projection(const TriangleSetup& t, int projection, Vec3i cell,
                                           bool dominant, CellTriangle& c) {
   using detail::absolute;
@@ -52,7 +52,7 @@ HWY_INLINE std::uint64_t enter_projection(const TriangleSetup& t, int projection
     if (first + kCellLast * (positive(a) + positive(b)) < 0) return 0;
     const std::int64_t needed = dominant ? absolute(a) + absolute(b) : 0;
     open |= first + kCellLast * (negative(a) + negative(b)) < needed;
-    // Beyond kFar no other voxel of the cell has another sign.
+    // A value beyond kFar has one sign in the whole cell.
     value[e] = static_cast<std::int32_t>(std::clamp(first, -kFar, kFar));
     most[e] = static_cast<std::int32_t>(3 * (positive(a) + positive(b)));
   }
@@ -77,8 +77,8 @@ HWY_INLINE std::uint64_t enter_projection(const TriangleSetup& t, int projection
   return met;
 }
 
-/// The leaf blocks that the triangle meets, of those conditions, in the cell of 16³ voxels at
-/// `cell`: linear order. Fills `c` if there is one.
+/// Returns the leaf blocks of the cell of 16³ voxels at `cell` that pass `conditions`, in linear
+/// order. Fills `c` if there is one.
 HWY_INLINE std::uint64_t enter_cell(const TriangleSetup& t, std::uint32_t conditions, Vec3i cell,
                                     CellTriangle& c) {
   using detail::negative;
@@ -86,7 +86,7 @@ HWY_INLINE std::uint64_t enter_cell(const TriangleSetup& t, std::uint32_t condit
   constexpr std::int32_t kLast = static_cast<std::int32_t>(kCellLast);
   const int range = (conditions & kPlane) ? slab_range(t, cell, kLast + 1) : 1;
   if (range == 0) return 0;
-  // Edges shorter than this change by less than 2^28 over the cell.
+  // The values of edges shorter than this change by less than 2^28 over the cell.
   constexpr std::int32_t kLongestEdge = 1 << 15;
   const Vec3i size = t.box_hi - t.box_lo;
   c.wide = range == 2 || std::max({size.x, size.y, size.z}) >= kLongestEdge - 1;
@@ -131,8 +131,8 @@ HWY_INLINE std::uint64_t enter_cell(const TriangleSetup& t, std::uint32_t condit
   return met;
 }
 
-/// The voxels that the triangle sets in a leaf block of the cell; linear order. `block`: its place,
-/// 0 to 3 on each axis. The triangle must not be wide.
+/// Returns the voxels of a leaf block that the triangle sets, in linear order. `block` is the
+/// block's place in the cell, 0 to 3 on each axis. The triangle must not be wide.
 HWY_INLINE std::uint64_t block_voxels(const CellTriangle& c, Vec3i block) {
   const hn::CappedTag<std::int32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);

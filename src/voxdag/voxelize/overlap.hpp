@@ -1,10 +1,10 @@
 #pragma once
-/// The definition of the cover, as directly as it can be written: does a closed triangle meet a
-/// half-open cube? Slow; the builder's own tests (triangle_setup.hpp) are checked against it.
+/// The definition of the exact cover in its most direct form: whether a closed triangle meets a
+/// half-open cube. Slow: the reference for the builders' tests (triangle_setup.hpp).
 ///
 /// Source: the separating-axis test of Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing",
 /// 2001, in exact integers. The half-open cube [i, i+1) is the closed cube [i, i+1-e] for an
-/// infinitesimal e: where an axis has a component that makes the far end of the cube count, a tie
+/// infinitesimal e: if the extreme point of the cube along an axis lies on a far side, equality
 /// separates.
 #include "voxdag/core/host_device.hpp"
 #include "voxdag/core/int128.hpp"
@@ -16,7 +16,7 @@ namespace detail {
 
 using Wide = Int128;
 
-/// True if the axis (ax, ay, az) separates the triangle from the cube.
+/// Returns whether the axis (ax, ay, az) separates the triangle from the cube.
 VOXDAG_HD inline bool separates(Wide ax, Wide ay, Wide az, Vec3i a, Vec3i b, Vec3i c, Vec3l lo,
                                 std::int64_t size) {
   const Wide pa = ax * a.x + ay * a.y + az * a.z;
@@ -42,8 +42,9 @@ VOXDAG_HD inline bool separates(Wide ax, Wide ay, Wide az, Vec3i a, Vec3i b, Vec
 
 }  // namespace detail
 
-/// Whether the closed triangle abc contains a point of the half-open cube [lo, lo + size)³. All in
-/// one unit; |coordinates| <= 2^30. Degenerate triangles are the segment or point that they are.
+/// Returns whether the closed triangle abc contains a point of the half-open cube [lo, lo + size)³.
+/// All values are in one unit; |coordinates| <= 2^30. A degenerate triangle counts as a segment or
+/// a point.
 VOXDAG_HD inline bool triangle_overlaps_cube(Vec3i a, Vec3i b, Vec3i c, Vec3l lo,
                                              std::int64_t size) {
   using detail::separates;

@@ -1,5 +1,6 @@
 #pragma once
-/// A triangle as a set of voxels: the voxels v in a box for which some linear functions are >= 0.
+/// Represents a triangle as a set of voxels: the voxels v in a box for which linear functions are
+/// >= 0.
 ///
 /// Source: the overlap test of Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on
 /// GPUs", SIGGRAPH Asia 2010, made exact for half-open cubes.
@@ -12,8 +13,8 @@
 ///   edge    a*u + b*v + c >= 0         (u, v): the two coordinates of the projection
 ///   plane   lo <= n*v <= lo + width    a digital plane; n reduced by the common divisor
 ///
-/// The same functions decide for a cell of s³ voxels: its least and greatest value over the cell's
-/// voxels say whether none, some or all of them pass.
+/// The same functions decide for a cell of s³ voxels: the least and the greatest value over the
+/// cell's voxels say whether none, some or all of them pass.
 #include <cstdint>
 #include <numeric>
 
@@ -24,30 +25,31 @@
 
 namespace voxdag {
 
-/// The projection along axis p has the coordinates kProjectionU[p], kProjectionV[p].
+/// The coordinates of the projection along axis p are kProjectionU[p] and kProjectionV[p].
 inline constexpr int kProjectionU[3] = {1, 0, 0};
 inline constexpr int kProjectionV[3] = {2, 2, 1};
 
-/// Bits of a set of conditions: edge e of projection p is bit 3p + e, then the plane, then the box.
+/// Bits of a set of conditions. Edge e of projection p is bit 3p + e; plane and box follow.
 enum Condition : std::uint32_t {
   kAllEdges = 0x1FF,
   kPlane = 1u << 9,
   kBox = 1u << 10,
 };
 
-/// The voxels v with lo <= dot(n, v) <= lo + width: all that a plane meets.
+/// The voxels v that a plane meets: those with lo <= dot(n, v) <= lo + width.
 struct PlaneSlab {
-  Vec3l normal;        ///< Components without common divisor; the first that is not 0 is positive.
-  std::int64_t width;  ///< |n|1 - 1, or one less where the plane runs through voxel corners only.
+  Vec3l normal;        ///< Components without a common divisor; the first nonzero one is positive.
+  std::int64_t width;  ///< |n|1 - 1, or one less if the plane meets voxels in corners only.
 };
 
-/// Coordinates are voxels relative to an origin given to make_triangle_setup.
+/// The conditions of one triangle. Coordinates are voxels, relative to the origin of
+/// make_triangle_setup().
 struct alignas(64) TriangleSetup {
   std::int32_t a[9], b[9];
   std::int64_t c[9];
   PlaneSlab plane;
-  /// The slab's least value of dot(n, v), modulo 2^64; exact where `approximate_lo` says that the
-  /// true value is small, which holds for every cell that the plane comes near.
+  /// The slab's least dot(n, v), modulo 2^64. It is exact if `approximate_lo` says that the true
+  /// value is small, which holds in every cell near the plane.
   std::uint64_t lo;
   double approximate_lo;
   double normal_length1;         ///< |n|1
@@ -65,14 +67,14 @@ VOXDAG_HD constexpr std::int64_t negative(std::int64_t v) { return v < 0 ? v : 0
 VOXDAG_HD constexpr std::int64_t absolute(std::int64_t v) { return v < 0 ? -v : v; }
 
 /// Stores the condition that a voxel's square meets the half-plane left of the directed line p->q
-/// (right of it where flip is set). u, v are relative to the origin.
+/// (right of it if `flip` is set). Coordinates are relative to the origin.
 VOXDAG_HD inline void set_edge(TriangleSetup& s, int slot, std::int64_t pu, std::int64_t pv,
                                std::int64_t qu, std::int64_t qv, bool flip) {
   std::int64_t a = pv - qv, b = qu - pu;
   if (flip) a = -a, b = -b;
   const std::int64_t c = -(a * pu + b * pv);
-  // The greatest value over the half-open square is at its far corner, which does not belong to it:
-  // there a value of 0 is not enough.
+  // The greatest value over the half-open square is at its far corner. That corner is not part of
+  // the square, so the value there must be greater than 0.
   const std::int64_t strict = a > 0 || b > 0 ? 1 : 0;
   s.a[slot] = static_cast<std::int32_t>(a);
   s.b[slot] = static_cast<std::int32_t>(b);
@@ -82,7 +84,8 @@ VOXDAG_HD inline void set_edge(TriangleSetup& s, int slot, std::int64_t pu, std:
 
 }  // namespace detail
 
-/// `origin` is in voxels. Exact for coordinates within ±kMaxUnits and 0 <= origin < 2^kMaxLevels.
+/// Returns the conditions of a triangle relative to `origin`, which is in voxels. Exact for
+/// coordinates within ±kMaxUnits and 0 <= origin < 2^kMaxLevels.
 inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3i origin) {
   static_assert(kSubvoxels == 1 << 8);
   using namespace detail;
@@ -98,13 +101,13 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
     long_axes += s.box_lo[axis] != s.box_hi[axis] ? 1 : 0;
   }
   s.conditions = kBox;
-  // Connected: a triangle that spans one row of voxels meets each of them.
+  // A triangle is connected: if its box is one row of voxels, it meets each of them.
   if (long_axes <= 1) return s;
 
   Vec3l normal = cross(p[1] - p[0], p[2] - p[0]);
   for (int projection = 0; projection < 3; ++projection) {
     const int u = kProjectionU[projection], v = kProjectionV[projection];
-    // Twice the signed area of the projection; (x,z) is the mirrored one of the three.
+    // Twice the signed area of the projection. The projection (x,z) is mirrored.
     const std::int64_t area = projection == 1 ? -normal.y : normal[projection];
     if (area != 0) {
       for (int e = 0; e < 3; ++e) {
@@ -112,7 +115,7 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
         set_edge(s, 3 * projection + e, from[u], from[v], to[u], to[v], area < 0);
       }
     } else {
-      // Seen edge-on it is a segment: both sides of its line.
+      // The projection is a segment: test both sides of its line.
       for (int e = 0; e < 3; ++e) {
         const Vec3l &from = p[e], &to = p[(e + 1) % 3];
         if (from[u] == to[u] && from[v] == to[v]) continue;
@@ -128,9 +131,9 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
   if (divisor == 0) return s;
   Vec3l n{normal.x / divisor, normal.y / divisor, normal.z / divisor};
   if (n.x < 0 || (n.x == 0 && (n.y < 0 || (n.y == 0 && n.z < 0)))) n = -n;
-  // A voxel meets the plane dot(n, x) = d if the plane passes between its corners of least and
-  // greatest value; the corners at the far sides do not belong to it, so a tie with them does not
-  // count.
+  // A voxel meets the plane dot(n, x) = d if d lies between the values at its least and its
+  // greatest corner. Corners on far sides are not part of the voxel, so equality does not count
+  // there.
   const Int128 d = static_cast<Int128>(n.x) * p[0].x + static_cast<Int128>(n.y) * p[0].y +
                    static_cast<Int128>(n.z) * p[0].z;
   const int far_max = n.x > 0 || n.y > 0 || n.z > 0, far_min = n.x < 0 || n.y < 0 || n.z < 0;
@@ -149,8 +152,9 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
   return s;
 }
 
-/// Of `conditions`, those that some voxel of the cell of size³ voxels at v may fail. Dominant edges
-/// stay until the cell's whole column is inside the triangle; then the plane alone is left.
+/// Returns those of `conditions` that some voxel of the cell of size³ voxels at v may fail.
+/// Dominant edges stay until the cell's whole column is inside the triangle; then only the plane is
+/// left.
 VOXDAG_HD VOXDAG_FORCE_INLINE std::uint32_t open_conditions(const TriangleSetup& s,
                                                             std::uint32_t conditions, Vec3i v,
                                                             std::int32_t size) {
@@ -168,8 +172,7 @@ VOXDAG_HD VOXDAG_FORCE_INLINE std::uint32_t open_conditions(const TriangleSetup&
   return conditions;
 }
 
-/// dot(n, v) of the slab's least value, seen from the cell at v; meaningful where the plane is
-/// near.
+/// Returns the slab's least value relative to the cell at v. Exact if the plane is near the cell.
 VOXDAG_HD VOXDAG_FORCE_INLINE std::int64_t slab_lo_at(const TriangleSetup& s, Vec3i v) {
   const Vec3l& n = s.plane.normal;
   return static_cast<std::int64_t>(
@@ -178,15 +181,16 @@ VOXDAG_HD VOXDAG_FORCE_INLINE std::int64_t slab_lo_at(const TriangleSetup& s, Ve
       static_cast<std::uint64_t>(n.z) * static_cast<std::uint64_t>(std::int64_t{v.z}));
 }
 
-/// Whether 64-bit arithmetic holds in the cell of `size` voxels at v: 0 the plane is far from it,
-/// 1 slab_lo_at is exact and sums over the cell do not overflow, 2 the cell is too large to tell.
+/// Returns whether 64-bit arithmetic is exact in the cell of `size` voxels at v. 0: the plane is
+/// far from the cell; 1: slab_lo_at() is exact and sums over the cell do not overflow; 2: the cell
+/// is too large.
 VOXDAG_HD VOXDAG_FORCE_INLINE int slab_range(const TriangleSetup& s, Vec3i v, std::int32_t size) {
   const double reach = s.normal_length1 * size;
   if (reach > 0x1p60) return 2;
   const Vec3l& n = s.plane.normal;
   const double lo = s.approximate_lo - static_cast<double>(n.x) * v.x -
                     static_cast<double>(n.y) * v.y - static_cast<double>(n.z) * v.z;
-  // The sums err by less than 2^-49 of their largest term, |n|1 * 2^21: far less than |n|1.
+  // Rounding errs by less than 2^-49 of the largest term, |n|1 * 2^21: far less than |n|1.
   return lo > 2 * reach + 1 || lo < -3 * reach - 1 ? 0 : 1;
 }
 
