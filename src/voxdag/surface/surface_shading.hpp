@@ -64,6 +64,8 @@ class SurfaceShading {
   /// False if is_alpha_masked is false for every polygon of the triangle.
   bool may_be_alpha_masked(std::uint32_t triangle) const;
 
+  const Appearance& appearance() const;
+
   /// Bytes of the decoded textures and tables.
   std::uint64_t bytes() const;
 
