@@ -10,22 +10,22 @@
 
 namespace voxdag {
 
-/// What a material looks like, with its alpha test resolved.
+/// The appearance of a material, ready for look-up.
 struct MaterialLook {
   Vec3f color{1, 1, 1};  ///< Linear light; multiplies the texture if there is one.
   std::shared_ptr<const Texture> color_texture;
   UvTransform color_uv;
   std::shared_ptr<const Texture> normal_texture;
   UvTransform normal_uv;
-  /// Corners whose alpha is less are cut away, which is all of them if this is over 1.
+  /// Surface with less corner alpha is removed. Over 1: all of it.
   float least_corner_alpha = 0;
-  bool is_alpha_textured = false;  ///< Some texels of the colour texture are cut away.
+  bool is_alpha_textured = false;  ///< The alpha test removes some texels of the colour texture.
 };
 
-/// Decodes what the materials use, each texture once, in parallel. What cannot be read is left out,
-/// with a line in `warnings` that names the file, the reason and what stands in. Without texture
-/// coordinates (`has_uvs`) textures are left out too. Throws Cancelled, and OverMemory with the
-/// name of the image.
+/// Decodes the textures of the materials, each one once, in parallel. A texture that cannot be read
+/// is left out; `warnings` gets a line that names the file, the reason and the replacement. If the
+/// mesh has no texture coordinates (`has_uvs`), all textures are left out. Throws Cancelled, and
+/// OverMemory with the name of the image.
 std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
                                               std::vector<std::string>& warnings,
                                               Progress* progress, MemoryBudget* memory);
@@ -34,8 +34,8 @@ std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool
 /// throws.
 DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options);
 
-/// The options to decode with: counts memory in `memory` and throws Cancelled when `progress` is
-/// cancelled. Both may be null.
+/// Returns options that count memory in `memory` and throw Cancelled when `progress` is cancelled.
+/// Both may be null.
 ImageOptions image_options(Progress* progress, MemoryBudget* memory);
 
 }  // namespace voxdag

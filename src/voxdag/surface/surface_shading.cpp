@@ -73,7 +73,7 @@ Frame make_frame(Vec3f normal, Vec3f tangent, float handedness) {
   return {tangent, cross(normal, tangent) * handedness, normal};
 }
 
-/// Angle of the rotation from one frame to the other.
+/// Returns the angle of the rotation from one frame to the other, in radians.
 float angle_between(const Frame& a, const Frame& b) {
   const float trace =
       dot(a.tangent, b.tangent) + dot(a.bitangent, b.bitangent) + dot(a.normal, b.normal);
@@ -112,7 +112,7 @@ struct SurfaceShading::Tables {
     const Vec2f* const p = appearance.uvs.data() + 3 * std::size_t{t};
     return {p[0], p[1], p[2]};
   }
-  /// The corners' normals; null if the triangle has its plane's.
+  /// Returns the normals of the corners; null if the triangle has the normal of its plane.
   const Vec3f* normals(std::uint32_t t) const {
     if (appearance.normals.empty()) return nullptr;
     const Vec3f* const n = appearance.normals.data() + 3 * std::size_t{t};
@@ -122,7 +122,7 @@ struct SurfaceShading::Tables {
     const Rgba16* const c = appearance.colors.data() + 3 * std::size_t{t};
     return {c[0].color(), c[1].color(), c[2].color()};
   }
-  /// Least and greatest alpha of the corners.
+  /// Returns the least and the greatest alpha of the corners.
   std::pair<float, float> corner_alphas(std::uint32_t t) const {
     if (appearance.colors.empty()) return {1.0f, 1.0f};
     const Rgba16* const c = appearance.colors.data() + 3 * std::size_t{t};
@@ -202,7 +202,7 @@ bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLo
       const Vec3f normal = n == nullptr ? face_normal(mesh, t) : n[0];
       return normal == Vec3f{} || dot(normal, direction) >= least - 1e-6f;
     }
-    // Where corners lie in a cone of less than half of space, so does all between them.
+    // If the corners lie in a cone of less than half of space, so do all normals between them.
     if (least <= 0) return false;
     const Linear<Vec3f> normal(n[0], n[1], n[2]);
     return std::all_of(polygon.begin(), polygon.end(), [&](Vec2f b) {
@@ -213,7 +213,7 @@ bool SurfaceShading::Tables::is_direction_near(std::uint32_t t, const MaterialLo
   float turn = 0;
   for (const Vec2f b : polygon)
     turn = std::max(turn, angle_between(center, frame_at(t, frames, b)));
-  // Between the corners a frame may turn a little more than at them.
+  // Between the corners a frame can turn a little more than at the corners.
   const float left = error - 1.25f * turn;
   if (!(left > 0)) return false;
   const float least = std::cos(std::min(left, 1.5f));
@@ -271,7 +271,7 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
         look.color_texture->mean(region_of(moments, tables.uv(t), look.color_uv));
     float scale = kTexelScale;
     if (look.is_alpha_textured) {
-      // All and nothing are exact, whatever the filter's rounding.
+      // The coverages 0 and 1 are exact; the filter may round them.
       sample.coverage = value[3] > 65534.5f ? 1 : value[3] < 0.5f ? 0 : value[3] * kTexelScale;
       scale = sample.coverage > 0 ? 1 / value[3] : 0;
     }

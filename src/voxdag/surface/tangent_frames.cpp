@@ -14,7 +14,7 @@ Vec3f unit_or_zero(Vec3f v) {
   return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : Vec3f{};
 }
 
-/// What corners must agree in to share a tangent.
+/// Corners with equal keys share a tangent.
 struct Corner {
   Vec3f position, normal;
   Vec2f uv;
@@ -39,7 +39,7 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
   const Vec3f a = mesh.vertices[t[0]];
   const Vec3f normal = unit_or_zero(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a));
   if (normal != Vec3f{}) return normal;
-  // Tiny triangles: their areas are no float32.
+  // In double: the areas of tiny triangles underflow in float32.
   const Vec3d d(a);
   const Vec3d n = cross(Vec3d(mesh.vertices[t[1]]) - d, Vec3d(mesh.vertices[t[2]]) - d);
   const double length = std::sqrt(dot(n, n));

@@ -1,5 +1,5 @@
 #pragma once
-/// The directions in which the axes of tangent-space normal maps point.
+/// Computes the axes of tangent-space normal maps.
 ///
 /// After M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited" (2008): the tangents of the
 /// triangles around a vertex that agree in position, normal, texture coordinates and handedness are
@@ -14,16 +14,16 @@
 
 namespace voxdag {
 
-/// Of one triangle; false if its texture coordinates span no area.
+/// The frames of one triangle.
 struct TangentFrames {
-  const Vec3f* tangents = nullptr;  ///< Per corner, unit, along +u; null if there are none.
-  float handedness = 1;  ///< Times cross(normal, tangent): towards the image's upper edge.
+  const Vec3f* tangents = nullptr;  ///< Per corner, unit, along +u; null: no texture area.
+  float handedness = 1;  ///< handedness * cross(normal, tangent) points to the image's upper edge.
 };
 
 class TangentTable {
  public:
   TangentTable() = default;
-  /// For the triangles for which `uv_transform(triangle)` is not null.
+  /// Computes the frames of the triangles for which `uv_transform(triangle)` is not null.
   TangentTable(const Mesh& mesh, const Appearance& appearance,
                const std::function<const UvTransform*(std::size_t triangle)>& uv_transform);
 
@@ -40,11 +40,11 @@ class TangentTable {
  private:
   static constexpr std::uint32_t kNone = ~0u, kMirrored = 1u << 31;
 
-  std::vector<std::uint32_t> places_;  ///< Per triangle: into `tangents_`, with kMirrored.
+  std::vector<std::uint32_t> places_;  ///< Per triangle: index into `tangents_`, and kMirrored.
   std::vector<Vec3f> tangents_;
 };
 
-/// The unit normal of a triangle's plane; zero if it has no area.
+/// Returns the unit normal of a triangle's plane; zero if it has no area.
 Vec3f face_normal(const Mesh& mesh, std::size_t triangle);
 
 }  // namespace voxdag
