@@ -39,6 +39,8 @@ class DisplacedTriangles {
   /// Returns whether the inside of a triangle moves. If not, tessellate() emits it whole.
   bool is_displaced(std::uint32_t triangle) const { return mesh_.is_displaced(triangle); }
 
+  const Appearance& appearance() const { return mesh_.appearance; }
+
   /// Returns a box that holds everything that tessellate() emits for the triangle, whatever the
   /// region and limit.
   const Box3d& displaced_bounds(std::uint32_t triangle) const { return bounds_[triangle]; }

@@ -22,7 +22,7 @@ struct Recipe {
   friend auto operator<=>(const Recipe&, const Recipe&) = default;
 };
 
-struct Dish {
+struct DecodedTexture {
   std::shared_ptr<const Texture> texture;
   std::vector<std::string> warnings;
 };
@@ -51,19 +51,19 @@ class Loader {
       ask(color_recipe(material));
       ask(normal_recipe(material));
     }
-    std::vector<std::pair<const Recipe, Dish>*> orders;
-    for (auto& order : dishes_) orders.push_back(&order);
+    std::vector<std::pair<const Recipe, DecodedTexture>*> pending;
+    for (auto& entry : decoded_) pending.push_back(&entry);
     std::atomic<std::size_t> done{0};
-    parallel_for(orders.size(), [&](std::size_t i) {
+    parallel_for(pending.size(), [&](std::size_t i) {
       if (progress != nullptr) progress->throw_if_cancelled();
-      make(orders[i]->first, orders[i]->second);
+      make(pending[i]->first, pending[i]->second);
       const std::size_t count = ++done;
       if (progress != nullptr)
         progress->report("textures",
-                         static_cast<double>(count) / static_cast<double>(orders.size()), count);
+                         static_cast<double>(count) / static_cast<double>(pending.size()), count);
     });
-    for (const auto& [recipe, dish] : dishes_)
-      warnings.insert(warnings.end(), dish.warnings.begin(), dish.warnings.end());
+    for (const auto& [recipe, result] : decoded_)
+      warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
     std::vector<MaterialLook> looks;
     for (const Material& material : appearance_.materials) looks.push_back(look(material));
     if (!has_uvs_ && asked_without_uvs_)
@@ -98,7 +98,7 @@ class Loader {
   void ask(const Recipe& recipe) {
     if (recipe.image < 0 && recipe.alpha_image < 0) return;
     if (has_uvs_)
-      dishes_[recipe];
+      decoded_[recipe];
     else
       asked_without_uvs_ = true;
   }
@@ -107,22 +107,22 @@ class Loader {
     return appearance_.images[static_cast<std::size_t>(index)];
   }
 
-  void make(const Recipe& recipe, Dish& dish) const {
+  void make(const Recipe& recipe, DecodedTexture& result) const {
     const TextureImage& named = image(recipe.image >= 0 ? recipe.image : recipe.alpha_image);
     try {
       if (recipe.kind == Recipe::kColor)
-        make_color(recipe, dish);
+        make_color(recipe, result);
       else
-        make_normals(recipe, dish);
+        make_normals(recipe, result);
     } catch (const OverMemory& error) {
       if (!error.file().empty()) throw;
       throw OverMemory(named.name, "", error.reason());
     }
   }
 
-  /// Decodes an image. One that cannot be read is a warning that ends with `stand_in`, and the
-  /// result is empty.
-  DecodedImage decode(int index, const char* stand_in, Dish& dish) const {
+  /// Decodes an image. If it cannot be read, adds a warning that ends with `stand_in`, and returns
+  /// an empty image.
+  DecodedImage decode(int index, const char* stand_in, DecodedTexture& result) const {
     try {
       return decode_texture_image(image(index), options_);
     } catch (const Cancelled&) {
@@ -130,31 +130,31 @@ class Loader {
     } catch (const OverMemory&) {
       throw;
     } catch (const Error& error) {
-      dish.warnings.push_back(std::string(error.what()) + stand_in);
+      result.warnings.push_back(std::string(error.what()) + stand_in);
       return {};
     }
   }
 
-  void make_normals(const Recipe& recipe, Dish& dish) const {
+  void make_normals(const Recipe& recipe, DecodedTexture& result) const {
     const TextureWraps wraps{recipe.wrap_u, recipe.wrap_v};
     const DecodedImage pixels =
-        decode(recipe.image, ": the mesh's own normals stand in for the normal map", dish);
+        decode(recipe.image, ": the mesh's own normals stand in for the normal map", result);
     if (pixels.is_empty()) return;
     const bool is_heights =
         recipe.kind == Recipe::kHeights ||
         (recipe.kind == Recipe::kEither && !looks_like_normal_map(pixels, options_));
-    dish.texture = std::make_shared<Texture>(
+    result.texture = std::make_shared<Texture>(
         is_heights ? make_bump_texture(pixels, recipe.number, wraps, options_)
                    : make_normal_texture(pixels, recipe.number, wraps, options_));
   }
 
-  void make_color(const Recipe& recipe, Dish& dish) const {
+  void make_color(const Recipe& recipe, DecodedTexture& result) const {
     DecodedImage pixels;
     if (recipe.image >= 0)
-      pixels = decode(recipe.image, ": the material's colour stands in for the texture", dish);
+      pixels = decode(recipe.image, ": the material's colour stands in for the texture", result);
     if (recipe.alpha_image >= 0) {
       const DecodedImage alpha =
-          decode(recipe.alpha_image, ": the material is opaque without its alpha map", dish);
+          decode(recipe.alpha_image, ": the material is opaque without its alpha map", result);
       if (!alpha.is_empty()) {
         if (pixels.is_empty()) {
           pixels = DecodedImage(1, 1, 4, 2, options_.memory);
@@ -164,7 +164,7 @@ class Loader {
       }
     }
     if (!pixels.is_empty())
-      dish.texture = std::make_shared<Texture>(
+      result.texture = std::make_shared<Texture>(
           make_color_texture(pixels, recipe.number, {recipe.wrap_u, recipe.wrap_v}, options_));
   }
 
@@ -172,7 +172,7 @@ class Loader {
     MaterialLook look;
     look.color = material.base_color;
     const Recipe color = color_recipe(material);
-    if (const auto found = dishes_.find(color); found != dishes_.end())
+    if (const auto found = decoded_.find(color); found != decoded_.end())
       look.color_texture = found->second.texture;
     const float least = least_alpha(material);
     if (look.color_texture) {
@@ -183,7 +183,7 @@ class Loader {
     // Texture alpha and corner alpha are tested separately, so that texels can be tested in
     // advance.
     if (least > 0) look.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
-    if (const auto found = dishes_.find(normal_recipe(material)); found != dishes_.end()) {
+    if (const auto found = decoded_.find(normal_recipe(material)); found != decoded_.end()) {
       look.normal_texture = found->second.texture;
       look.normal_uv = material.normal_map.uv;
     }
@@ -194,7 +194,7 @@ class Loader {
   const bool has_uvs_;
   const ImageOptions options_;
   bool asked_without_uvs_ = false;
-  std::map<Recipe, Dish> dishes_;
+  std::map<Recipe, DecodedTexture> decoded_;
 };
 
 }  // namespace

@@ -23,8 +23,8 @@ struct MaterialLook {
 };
 
 /// Decodes the textures of the materials, each one once, in parallel. A texture that cannot be read
-/// is left out, with a line in `warnings` that names the file, the reason and the replacement.
-/// Without texture coordinates (`has_uvs`) textures are left out too. Throws Cancelled, and
+/// is left out; `warnings` gets a line that names the file, the reason and the replacement. If the
+/// mesh has no texture coordinates (`has_uvs`), all textures are left out. Throws Cancelled, and
 /// OverMemory with the name of the image.
 std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
                                               std::vector<std::string>& warnings,
@@ -34,8 +34,8 @@ std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool
 /// throws.
 DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options);
 
-/// The options to decode with: counts memory in `memory` and throws Cancelled when `progress` is
-/// cancelled. Both may be null.
+/// Returns options that count memory in `memory` and throw Cancelled when `progress` is cancelled.
+/// Both may be null.
 ImageOptions image_options(Progress* progress, MemoryBudget* memory);
 
 }  // namespace voxdag

@@ -354,6 +354,8 @@ bool SurfaceShading::may_be_alpha_masked(std::uint32_t t) const {
           (look.least_corner_alpha > 1 || !tables_->appearance.colors.empty()));
 }
 
+const Appearance& SurfaceShading::appearance() const { return tables_->appearance; }
+
 std::uint64_t SurfaceShading::bytes() const {
   std::vector<const Texture*> textures;
   for (const MaterialLook& look : tables_->looks) {

@@ -30,9 +30,9 @@ struct SurfaceSample {
 /// has one colour and one normal.
 class SurfaceShading {
  public:
-  /// Decodes the textures. What cannot be read is left out and named in `warnings`, one line each
-  /// with what stands in for it. `memory`, if not null, counts the textures and must outlive this.
-  /// Throws Cancelled and OverMemory.
+  /// Decodes the textures. A texture that cannot be read is left out; `warnings` gets a line that
+  /// names it and its replacement. `memory`, if not null, counts the textures and must outlive
+  /// this. Throws Cancelled and OverMemory.
   SurfaceShading(const Mesh& mesh, const Appearance& appearance,
                  std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr,
                  MemoryBudget* memory = nullptr);
@@ -67,6 +67,8 @@ class SurfaceShading {
 
   /// Returns false only if is_alpha_masked() is false for every polygon of the triangle.
   bool may_be_alpha_masked(std::uint32_t triangle) const;
+
+  const Appearance& appearance() const;
 
   /// Returns the bytes of the decoded textures and tables.
   std::uint64_t bytes() const;

@@ -9,7 +9,7 @@
 namespace voxdag {
 namespace {
 
-/// What corners must agree in to share a tangent.
+/// Corners with equal keys share a tangent.
 struct Corner {
   Vec3f position, normal;
   Vec2f uv;

@@ -8,6 +8,7 @@
 
 #include "voxdag/esvo/build/block_assembler.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
+#include "voxdag/esvo/build/duplicate_triangles.hpp"
 #include "voxdag/esvo/build/load_pieces.hpp"
 #include "voxdag/esvo/build/open_edges.hpp"
 #include "voxdag/esvo/build/subtree_builder.hpp"
@@ -66,8 +67,12 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
                       const SurfaceShading* shading, const DisplacedTriangles* displaced,
                       EsvoSink& sink, Progress* progress) {
   const QuantizedMesh quantized(mesh, grid);
-  const std::vector<std::uint8_t> open_edges = find_open_edges(quantized);
-  const TriangleSource source{grid, quantized, open_edges, displaced};
+  const Appearance* const appearance = shading != nullptr     ? &shading->appearance()
+                                       : displaced != nullptr ? &displaced->appearance()
+                                                              : nullptr;
+  const std::vector<std::uint8_t> duplicates = find_duplicate_triangles(mesh, appearance);
+  const std::vector<std::uint8_t> open_edges = find_open_edges(quantized, duplicates);
+  const TriangleSource source{grid, quantized, open_edges, displaced, duplicates};
   std::vector<TopCell> cells = find_top_cells(source, options.settings, shading, progress);
   const std::vector<std::size_t> tasks = task_order(cells);
   double total_weight = 0, weight_so_far = 0;

@@ -15,7 +15,7 @@ void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
   // A triangle that only touches the cell counts a little, so that every voxel has a colour. So
   // does a piece that is almost all transparent: the alpha test may leave some of it.
   const float area = static_cast<float>(cell.area(piece) + 1e-6) * std::max(sample.coverage, 1e-3f);
-  sum.add({sample.color * area, sample.normal * area, area});
+  sum.add(sample.color, sample.normal, area);
 }
 
 SurfaceSum unlit_sum(const Cell& cell, const PieceSampler& sampler) {
@@ -67,6 +67,7 @@ std::optional<SurfaceSum> CellAppearance::unlit_sum_if_uniform(const Cell& cell)
   };
   const SurfaceShading* const shading = sampler_.shading();
   PieceCorners corners[kMostNearPolygons];
+  if (cell.pieces.size() > std::size(corners)) return std::nullopt;
   // Most cells that are not uniform have a piece that is not: their mean need not be known.
   for (std::size_t i = 0; i < cell.pieces.size(); ++i) {
     const SurfaceTriangle& triangle = cell.triangle_of(cell.pieces[i]);
@@ -80,7 +81,7 @@ std::optional<SurfaceSum> CellAppearance::unlit_sum_if_uniform(const Cell& cell)
   for (std::size_t i = 0; i < cell.pieces.size(); ++i)
     add_piece(sum, cell, cell.pieces[i], sampler_.sample(cell, cell.pieces[i], corners[i]));
   if (!(sum.area > 0)) return std::nullopt;
-  const SurfaceSample mean{sum.color * (1 / sum.area), 1, sum.normal * (1 / sum.area)};
+  const SurfaceSample mean{sum.color * (1 / sum.area), 1, sum.direction() * (1 / sum.area)};
   const float least_cosine = std::cos(std::min(settings_.normal_error, std::numbers::pi_v<float>));
   const float least = least_cosine * std::sqrt(dot(mean.normal, mean.normal));
   for (std::size_t i = 0; i < cell.pieces.size(); ++i) {

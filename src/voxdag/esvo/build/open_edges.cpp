@@ -7,8 +7,8 @@
 namespace voxdag {
 namespace {
 
-/// Equal for equal edges, whatever their direction; of two others the upper halves may by chance be
-/// equal, too, which makes an open edge look closed.
+/// Returns a hash of an edge that does not depend on its direction. If the upper halves of two
+/// different edges' hashes are equal by chance, open edges look closed.
 std::uint64_t edge_key(Vec3i a, Vec3i b) {
   const auto point_key = [](Vec3i p) {
     std::uint64_t key = 0x9E3779B97F4A7C15ull;
@@ -25,12 +25,17 @@ std::uint64_t edge_key(Vec3i a, Vec3i b) {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh) {
+std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh,
+                                          std::span<const std::uint8_t> duplicates) {
   const std::size_t count = mesh.triangle_count();
-  // The upper half of an edge's key and its number, 3 * triangle + edge.
+  const auto counts = [&](std::size_t i) {
+    return mesh.in_range(i) && (duplicates.empty() || duplicates[mesh.source(i)] == 0);
+  };
+  // The upper half of an edge's key and its number, 3 * triangle + edge. The edges of triangles
+  // that do not count are all alike, so that none of them is open.
   std::vector<std::uint64_t> edges(3 * count);
   parallel_for(count, 1024, [&](std::size_t i) {
-    const QuantizedTriangle t = mesh.in_range(i) ? mesh.triangle(i) : QuantizedTriangle{};
+    const QuantizedTriangle t = counts(i) ? mesh.triangle(i) : QuantizedTriangle{};
     for (int e = 0; e < 3; ++e) {
       const std::size_t edge = 3 * i + static_cast<std::size_t>(e);
       edges[edge] = (edge_key(t[e], t[(e + 1) % 3]) & ~std::uint64_t{0xFFFFFFFF}) | edge;
@@ -44,7 +49,7 @@ std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if ((i > 0 && is_same(i, i - 1)) || (i + 1 < edges.size() && is_same(i, i + 1))) continue;
     const std::size_t edge = edges[i] & 0xFFFFFFFF, triangle = edge / 3;
-    if (mesh.in_range(triangle) && mesh.source(triangle) == triangle)
+    if (counts(triangle) && mesh.source(triangle) == triangle)
       open[triangle] |= static_cast<std::uint8_t>(1u << edge % 3);
   }
   return open;

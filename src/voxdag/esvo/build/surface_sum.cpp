@@ -29,13 +29,28 @@ class SrgbTable {
 
 }  // namespace
 
+Vec3f SurfaceSum::direction() const {
+  if (4 * dot(normal, normal) >= length * length) return normal;
+  const Vec3f axis = axes.principal_axis();
+  const float axis_length = std::sqrt(dot(axis, axis));
+  if (!(axis_length > 0)) return normal;
+  // Below this rounding decides which side is larger.
+  constexpr float kEqualSides = 1e-4f;
+  const float along = dot(normal, axis) / axis_length;
+  bool is_turned = along < 0;
+  if (std::abs(along) <= kEqualSides * length)
+    is_turned = axis.z != 0 ? axis.z < 0 : axis.y != 0 ? axis.y < 0 : axis.x < 0;
+  return axis * ((is_turned ? -1 : 1) * length / axis_length);
+}
+
 VoxelValue voxel_value(const SurfaceSum& sum) {
   static const SrgbTable encode;
   VoxelValue value;
   const float scale = sum.area > 0 ? 1 / sum.area : 0;
   for (int i = 0; i < 3; ++i) value.color[i] = encode(sum.color[i] * scale);
-  const float length2 = dot(sum.normal, sum.normal);
-  value.normal = length2 > 0 ? sum.normal * (1 / std::sqrt(length2)) : Vec3f{0, 1, 0};
+  const Vec3f normal = sum.direction();
+  const float length2 = dot(normal, normal);
+  value.normal = length2 > 0 ? normal * (1 / std::sqrt(length2)) : Vec3f{0, 1, 0};
   return value;
 }
 

@@ -1,28 +1,52 @@
 #pragma once
 /// Area-weighted sums over the surface in a voxel: the stored colour and normal are their means.
+///
+/// A voxel has one normal, even if it holds both sides of something thin or a crumpled surface.
+/// Rule: where the normals agree well enough, so that their mean is at least half as long as they
+/// are, the voxel stores the mean's direction. Otherwise it stores the axis along which the normals
+/// lie (the principal axis of their outer products), and the side with the larger area decides the
+/// sign. Where both sides have equal areas the normal points up: z, then y, then x is positive.
+/// So neither the order of the triangles nor a sliver among them decides the side.
+#include <cmath>
+
 #include "voxdag/core/vec.hpp"
 #include "voxdag/esvo/encode/esvo_tree.hpp"
+#include "voxdag/esvo/encode/principal_axis.hpp"
 
 namespace voxdag {
 
 struct SurfaceSum {
-  Vec3f color{};   ///< Linear light times area.
-  Vec3f normal{};  ///< Normals times area.
-  float area = 0;  ///< Visible area, in voxels² of the finest level.
+  Vec3f color{};         ///< Linear light times area.
+  Vec3f normal{};        ///< Normals times area; the two sides of something thin cancel.
+  float area = 0;        ///< Visible area, in voxels² of the finest level.
+  float length = 0;      ///< Lengths of the normals times area.
+  OuterProductSum axes;  ///< Outer products of the normals, divided by their lengths, times area.
 
-  /// Adds other surface. The normals of the two sides of something thin would cancel: one that
-  /// points the other way is negated first, because a viewer sees one side at a time.
-  void add(const SurfaceSum& other) {
-    const float along = dot(normal, other.normal);
-    const bool is_opposite =
-        along < 0 && 4 * along * along > dot(normal, normal) * dot(other.normal, other.normal);
-    color = color + other.color;
-    normal = is_opposite ? normal - other.normal : normal + other.normal;
-    area += other.area;
+  /// Adds surface of one colour and one mean normal, which may be shorter than 1.
+  void add(Vec3f surface_color, Vec3f surface_normal, float surface_area) {
+    color = color + surface_color * surface_area;
+    const Vec3f n = surface_normal * surface_area;
+    normal = normal + n;
+    area += surface_area;
+    const float n_length = std::sqrt(dot(n, n));
+    length += n_length;
+    if (n_length > 0) axes.add(n, 1 / n_length);
   }
+
+  void add(const SurfaceSum& other) {
+    color = color + other.color;
+    normal = normal + other.normal;
+    area += other.area;
+    length += other.length;
+    axes.add(other.axes);
+  }
+
+  /// Returns the vector along which the stored normal points, by the rule above: the sum of the
+  /// normals, or the axis, as long as all normals together; zero if no surface has a normal.
+  Vec3f direction() const;
 };
 
-/// Returns the means as a voxel stores them. A voxel whose normals cancel gets an arbitrary normal.
+/// Returns the means as a voxel stores them. A voxel without a normal gets (0, 1, 0).
 VoxelValue voxel_value(const SurfaceSum& sum);
 
 }  // namespace voxdag

@@ -40,6 +40,7 @@ bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
 std::vector<std::uint32_t> root_triangles(const TriangleSource& source) {
   std::vector<std::uint32_t> triangles;
   for (std::size_t i = 0; i < source.mesh.triangle_count(); ++i) {
+    if (source.is_duplicate(i)) continue;
     // Displaced triangles are clipped after they are displaced: not their pieces are built, but
     // they.
     const bool is_piece = i >= source.mesh.mesh_triangle_count();

@@ -1,7 +1,8 @@
 #pragma once
-/// Where the triangles of an ESVO in the making come from.
+/// The triangles that an ESVO is built from.
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "voxdag/core/box.hpp"
@@ -11,15 +12,23 @@
 
 namespace voxdag {
 
-/// The longest edge, before displacement, that a displaced triangle is left with: edges end up
-/// between half of it and all of it, a voxel long.
+/// Returns the longest edge, in world units before displacement, that tessellation leaves. Edges
+/// are between half of it and all of it: about a voxel long.
 inline double displaced_edge_limit(const Grid& grid) { return std::sqrt(2.0) * grid.voxel_size; }
 
 struct TriangleSource {
   const Grid& grid;
   const QuantizedMesh& mesh;
   const std::vector<std::uint8_t>& open_edges;  ///< By triangle of the quantised mesh.
-  const DisplacedTriangles* displaced;          ///< Null where nothing is.
+  const DisplacedTriangles* displaced;          ///< Null if nothing is displaced.
+  /// By triangle of the mesh: 1 for all but the first of equal triangles, which are not built.
+  /// Empty if there are none.
+  std::span<const std::uint8_t> duplicates = {};
+
+  /// Takes a triangle of the quantised mesh.
+  bool is_duplicate(std::size_t triangle) const {
+    return !duplicates.empty() && duplicates[mesh.source(triangle)] != 0;
+  }
 
   bool is_displaced(std::uint32_t triangle) const {
     return displaced != nullptr && triangle < mesh.mesh_triangle_count() &&
@@ -29,8 +38,8 @@ struct TriangleSource {
   double edge_limit() const { return displaced_edge_limit(grid); }
 };
 
-/// A cell of 2^log2_size voxels, in world units, with a little more around for rounding. `cell`
-/// counts cells of its size.
+/// Returns the box of a cell of 2^log2_size voxels in world units, with a margin for rounding.
+/// `cell` counts cells of that size.
 inline Box3d world_box(const Grid& grid, Vec3i cell, int log2_size) {
   const double size = static_cast<double>(std::int64_t{1} << log2_size), margin = 1.0 / kSubvoxels;
   const Vec3d lo = static_cast<Vec3d>(cell) * size;

@@ -135,7 +135,7 @@ struct Sorted {
 };
 
 void sort_along_axis(const Values& values, Sorted& sorted) {
-  SymmetricMatrix spread;
+  OuterProductSum spread;
   for (std::size_t i = 0; i < values.count; ++i)
     spread.add(vec_of(values.color[i] - values.mean), values.weight[i]);
   const Vec3f axis = spread.principal_axis();

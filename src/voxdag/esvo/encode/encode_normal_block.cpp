@@ -142,7 +142,7 @@ void consider_corners(const NormalValues& values, NormalFit& best) {
 /// Normals and their opposites, as of both sides of a thin wall. Three steps of u give base, of
 /// three lengths, and the fourth gives minus base.
 void consider_opposites(const NormalValues& values, NormalFit& best) {
-  SymmetricMatrix spread;
+  OuterProductSum spread;
   for (std::size_t i = 0; i < values.count; ++i) spread.add(values.normal[i], values.weight[i]);
   Vec3f axis = unit_vector(spread.principal_axis());
   float front = 0.0f, back = 0.0f;
@@ -165,7 +165,7 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
     back_sum = -other;
   }
   const Vec3f in_front = front_sum * (1.0f / front), behind = back_sum * (1.0f / back);
-  SymmetricMatrix across;
+  OuterProductSum across;
   float widest = 0.0f;
   for (std::size_t i = 0; i < values.count; ++i) {
     const float cosine = dot(values.normal[i], axis);

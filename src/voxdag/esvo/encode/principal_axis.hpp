@@ -1,24 +1,31 @@
 #pragma once
-/// The direction in which a set of vectors has most of its length.
+/// The axis along which a set of vectors has most of its length.
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
-/// A sum of squares: x xᵀ of weighted vectors x.
-struct SymmetricMatrix {
+/// The sum of the outer products w v vᵀ of vectors v with weights w: a symmetric 3×3 matrix.
+struct OuterProductSum {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
+  /// Adds a vector. Its sign does not matter.
   void add(Vec3f v, float weight) {
     const Vec3f w = v * weight;
     xx += w.x * v.x, xy += w.x * v.y, xz += w.x * v.z;
     yy += w.y * v.y, yz += w.y * v.z, zz += w.z * v.z;
   }
 
-  /// An eigenvector of the greatest eigenvalue, nearly, of any length; the matrix must not be zero.
+  void add(const OuterProductSum& other) {
+    xx += other.xx, xy += other.xy, xz += other.xz;
+    yy += other.yy, yz += other.yz, zz += other.zz;
+  }
+
+  /// Returns an eigenvector, of any length, of nearly the greatest eigenvalue. The matrix must not
+  /// be zero.
   Vec3f principal_axis() const {
-    // Squared three times, so that it is all but the projection onto the axis: its longest row lies
-    // along it.
-    SymmetricMatrix m = *this;
+    // Squaring the matrix three times almost makes it the projection onto the axis: its longest row
+    // then lies along the axis.
+    OuterProductSum m = *this;
     float norm = 1.0f / (xx + yy + zz);
     for (int i = 0; i < 3; ++i) {
       m.xx *= norm, m.xy *= norm, m.xz *= norm, m.yy *= norm, m.yz *= norm, m.zz *= norm;

@@ -1,0 +1,53 @@
+#include "voxdag/esvo/build/cell_appearance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "voxdag/esvo/build/piece_stack.hpp"
+#include "voxdag/esvo/shape/near_surface.hpp"
+
+namespace voxdag {
+namespace {
+
+/// A cell of 8 voxels a side with `count` triangles, all of one colour that is given by corner.
+struct ColoredCell {
+  Mesh mesh;
+  Appearance appearance;
+  PieceStack pieces;
+
+  explicit ColoredCell(int count) {
+    appearance.materials.resize(1);
+    for (int i = 0; i < count; ++i) {
+      const auto z = static_cast<float>(i) * 0.1f;
+      for (const Vec3f p : {Vec3f{1, 1, z}, Vec3f{6, 1, z}, Vec3f{1, 6, z}}) {
+        mesh.vertices.push_back(p);
+        appearance.colors.push_back({30000, 20000, 10000, 65535});
+      }
+      const auto first = static_cast<std::uint32_t>(3 * i);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    const QuantizedMesh quantized(mesh, {3, {0, 0, 0}, 1.0, kSubvoxels});
+    pieces.start(3, {});
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+      pieces.add(SurfaceTriangle::make(quantized.triangle(i), {}, i, 0), i);
+  }
+};
+
+TEST(CellAppearance, FewPiecesOfOneColorAreUniform) {
+  const ColoredCell cell(static_cast<int>(kMostNearPolygons));
+  const SurfaceShading shading(cell.mesh, cell.appearance);
+  const EsvoSettings settings;
+  const CellAppearance appearance(settings, &shading);
+  EXPECT_TRUE(appearance.sum_if_uniform(cell.pieces.view(cell.pieces.root())).has_value());
+}
+
+TEST(CellAppearance, MorePiecesThanTheTestHoldsAreNotUniform) {
+  // An empty shape is near the surface, however many polygons there are: so this may be asked.
+  const ColoredCell cell(200);
+  const SurfaceShading shading(cell.mesh, cell.appearance);
+  const EsvoSettings settings;
+  const CellAppearance appearance(settings, &shading);
+  EXPECT_FALSE(appearance.sum_if_uniform(cell.pieces.view(cell.pieces.root())).has_value());
+}
+
+}  // namespace
+}  // namespace voxdag
