@@ -276,5 +276,26 @@ TEST_F(ReadAppearance, TheMeshIsTheOneThatReadMeshGives) {
   }
 }
 
+/// Makes a folder the current one while it lives.
+class CurrentFolder {
+ public:
+  explicit CurrentFolder(const std::filesystem::path& folder) {
+    std::filesystem::current_path(folder);
+  }
+  ~CurrentFolder() { std::filesystem::current_path(before_); }
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+};
+
+TEST_F(ReadAppearance, AMissingTextureOfAMeshInTheCurrentFolderIsAWarning) {
+  write("a.obj", "mtllib m.mtl\n" + kSquare + "vt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+  write("m.mtl", "newmtl m\nmap_Kd missing.png\n");
+  const CurrentFolder folder(directory_.path());
+  const MeshWithAppearance result = read_mesh_with_appearance("a.obj");
+  ASSERT_EQ(result.appearance.images.size(), 1u);
+  EXPECT_EQ(result.appearance.images[0].path, "missing.png");
+}
+
 }  // namespace
 }  // namespace voxdag
