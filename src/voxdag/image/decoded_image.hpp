@@ -66,7 +66,7 @@ class DecodedImage {
   Rgba pixel(int x, int y) const {
     const auto count = static_cast<std::size_t>(channels_);
     const std::size_t first = static_cast<std::size_t>(x) * count;
-    std::uint16_t samples[4];
+    std::uint16_t samples[4] = {};
     if (bytes_per_sample_ == 1) {
       const std::uint8_t* from = row(y) + first;
       for (std::size_t c = 0; c < count; ++c)
