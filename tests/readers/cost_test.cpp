@@ -58,7 +58,8 @@ TEST_F(ReaderCost, NamesOfMaterials) {
   expect_no_square(3000, [this](int n) {
     std::string mtl, statements;
     for (int i = 0; i < n; ++i) {
-      const std::string name = "a_long_common_prefix_" + std::to_string(i) + "\n";
+      const std::string name =
+          std::string("a_long_common_prefix_").append(std::to_string(i)) + "\n";
       mtl += "newmtl " + name;
       statements += "usemtl " + name;
     }
@@ -71,8 +72,7 @@ TEST_F(ReaderCost, OneMtlFileUnderManyNames) {
     std::string mtl = "newmtl m\n", libraries;
     for (int i = 0; i < n; ++i) {
       mtl += "Kd 1 1 1\n";
-      libraries += "mtllib ./a.mtl" + std::string(static_cast<std::size_t>(i % 90), ' ') + "x" +
-                   std::to_string(i) + "\n";
+      libraries.append("mtllib ./a.mtl x").append(std::to_string(i)).append("\n");
     }
     return obj_with(mtl, libraries + "usemtl m\n");
   });
@@ -82,11 +82,14 @@ TEST_F(ReaderCost, PolygonsThatAreCutWithAttributes) {
   expect_no_square(2000, [this](int n) {
     std::string obj, face = "f";
     for (int i = 0; i < n; ++i) {  // A comb.
-      const std::string x = std::to_string(i);
-      obj += "v " + x + " 0 0\nv " + x + ".5 " + (i % 2 ? "5" : "9") + " 0\nvt 0." + x + " 0\n";
-      face += " " + std::to_string(2 * i + 1) + "/1 " + std::to_string(2 * i + 2) + "/2";
+      const std::string x = std::to_string(i), odd = std::to_string(2 * i + 1),
+                        even = std::to_string(2 * i + 2);
+      obj.append("v ").append(x).append(" 0 0\nv ").append(x).append(i % 2 ? ".5 5" : ".5 9");
+      obj.append(" 0\nvt 0.").append(x).append(" 0\n");
+      face.append(" ").append(odd).append("/1 ").append(even).append("/2");
     }
-    return write("a.obj", obj + "v 0 -5 0\n" + face + " " + std::to_string(2 * n + 1) + "/3\n");
+    obj.append("v 0 -5 0\n").append(face).append(" ").append(std::to_string(2 * n + 1));
+    return write("a.obj", obj + "/3\n");
   });
 }
 
@@ -122,7 +125,7 @@ TEST_F(ReaderCost, InstancesOfManyPrimitivesThatShowNothing) {
     for (int i = 0; i < n; ++i) {
       primitives += R"(,{"mode":0,"attributes":{"POSITION":0}},{"attributes":{}})";
       nodes += std::string(i ? "," : "") + R"({"mesh":0})";
-      roots += (i ? "," : "") + std::to_string(i);
+      roots.append(i ? "," : "").append(std::to_string(i));
     }
     return write("a.gltf", kGltfStart + R"("scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" +
                                nodes + R"(],"meshes":[{"primitives":[)" + primitives +
@@ -151,7 +154,7 @@ TEST_F(ReaderCost, MembersOfOneObject) {
     std::string primitives, members;
     for (int i = 0; i < n; ++i) {
       primitives += std::string(i ? "," : "") + R"({"attributes":{"POSITION":0},"material":0})";
-      members += "\"m" + std::to_string(i) + "\":1,";
+      members.append("\"m").append(std::to_string(i)).append("\":1,");
     }
     return write("a.gltf", kGltfStart + R"("meshes":[{"primitives":[)" + primitives +
                                R"(]}],"materials":[{)" + members + R"("name":"x"}],"accessors":[)" +

@@ -121,7 +121,7 @@ TEST(JsonDocument, AgreesOnRandomTexts) {
                                "true", "null",  " ",     "\"\\u0062\"", "\"\\\\\""};
   for (int i = 0; i < 30'000; ++i) {
     std::string text = rng() % 2 ? "{\"a\":" : "[";
-    for (unsigned n = rng() % 12; n > 0; --n) text += parts[rng() % std::size(parts)];
+    for (auto n = rng() % 12; n > 0; --n) text += parts[rng() % std::size(parts)];
     expect_same(text);
     expect_same(text + (text[0] == '{' ? "}" : "]"));
   }

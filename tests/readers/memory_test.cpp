@@ -239,11 +239,12 @@ std::string numbers(int count) {
 TEST_F(ReaderBudget, ObjArraysAttributesAndNamesCount) {
   std::string grid, names, colors;
   for (int i = 0; i < 60'000; ++i) {
-    const std::string n = std::to_string(i % 977);
-    grid += "v " + n + " " + std::to_string(i) + " 0\nvt 0." + n + " 0\nvn 0 0 1\n";
+    const std::string n = std::to_string(i % 977), number = std::to_string(i);
+    grid.append("v ").append(n).append(" ").append(number).append(" 0\nvt 0.").append(n);
+    grid += " 0\nvn 0 0 1\n";
     if (i > 4) grid += "f -1/-1/-1 -2/-2/-2 -3/-3/-3 -4/-4/-4\n";
-    names += "usemtl material_of_some_length_" + std::to_string(i) + "\n";
-    colors += "v " + n + " " + std::to_string(i) + " 0 0.5 0.5 0.5\nf 1 2 -1\n";
+    names.append("usemtl material_of_some_length_").append(number).append("\n");
+    colors.append("v ").append(n).append(" ").append(number).append(" 0 0.5 0.5 0.5\nf 1 2 -1\n");
   }
   expect_bounded(write("grid.obj", grid));
   expect_bounded(write("names.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + names + "f 1 2 3\n"));
@@ -255,13 +256,13 @@ TEST_F(ReaderBudget, PlyArraysAndAttributesCount) {
     std::string rows, faces;
     for (int i = 0; i < 60'000; ++i) {
       rows += numbers(has_attributes ? 11 : 3) + "\n";
-      faces += "3 " + std::to_string(i) + " 1 2\n";
+      faces.append("3 ").append(std::to_string(i)).append(" 1 2\n");
     }
     std::string header = "ply\nformat ascii 1.0\nelement vertex 60000\n";
     for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "s", "t", "red", "green", "blue"})
       if (has_attributes || name[1] == '\0')
         if (has_attributes || (name[0] != 's' && name[0] != 't'))
-          header += std::string("property float ") + name + "\n";
+          header.append("property float ").append(name).append("\n");
     expect_bounded(write("a.ply", header + "element face 60000\nproperty list uchar int " +
                                       "vertex_index\nend_header\n" + rows + faces));
   }
@@ -275,9 +276,10 @@ TEST_F(ReaderBudget, StlAndOffArraysCount) {
     std::array<float, 13> facet{};
     for (std::size_t k = 3; k < 12; ++k) facet[k] = static_cast<float>(12 * i + k);
     stl.append(reinterpret_cast<const char*>(facet.data()), 50);
-    off += "1 2 3\n4 5 " + std::to_string(i) + "\n7 8 9\n";
+    off.append("1 2 3\n4 5 ").append(std::to_string(i)).append("\n7 8 9\n");
   }
-  for (std::uint32_t i = 0; i < facets; ++i) off += "3 0 1 " + std::to_string(i) + "\n";
+  for (std::uint32_t i = 0; i < facets; ++i)
+    off.append("3 0 1 ").append(std::to_string(i)).append("\n");
   expect_bounded(write("a.stl", stl));
   expect_bounded(write("a.off", off));
 }
@@ -289,7 +291,7 @@ TEST_F(ReaderBudget, GltfInstancesJsonAndDataUrisCount) {
   std::string nodes = "{\"mesh\":0}", roots = "0";
   for (int i = 1; i < 20; ++i) {
     nodes += ",{\"mesh\":0}";
-    roots += "," + std::to_string(i);
+    roots.append(",").append(std::to_string(i));
   }
   const auto bomb = [&](const std::string& count) {
     return kGltfStart + R"("scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +

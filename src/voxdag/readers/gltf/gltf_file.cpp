@@ -51,7 +51,10 @@ GltfFile::GltfFile(const MeshSource& source)
     throw source.error_at_byte(12, "the first chunk is not JSON inside the file");
   parse(chunks.substr(20, json_bytes));
   const std::size_t second = 20 + json_bytes;
-  if (chunks.size() - second < 8) return open_buffers(std::nullopt);
+  if (chunks.size() - second < 8) {
+    open_buffers(std::nullopt);
+    return;
+  }
   const std::size_t binary_bytes = load_u32(chunks, second);
   if (binary_bytes > chunks.size() - second - 8)
     throw source.error_at_byte(second, "the binary chunk goes beyond the file");

@@ -100,8 +100,10 @@ double GltfValue::number(double absent) const {
 
 std::string GltfValue::path() const {
   std::string path = document_->path(node_);
-  for (std::uint32_t i = 0; i < absent_count_; ++i)
-    path += (path.empty() ? "" : ".") + std::string(absent_[i]);
+  for (std::uint32_t i = 0; i < absent_count_; ++i) {
+    if (!path.empty()) path += '.';
+    path += absent_[i];
+  }
   return path;
 }
 
