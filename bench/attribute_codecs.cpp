@@ -1,5 +1,5 @@
-/// How well and how fast the attribute blocks of an ESVO are encoded: angles between normals and
-/// their decoded values, signal to noise of colours, microseconds for each block.
+/// Measures quality and speed of the encoders of attribute blocks: angles between normals and their
+/// decoded values, signal-to-noise ratio of colours, microseconds per block.
 ///
 ///   attribute_codecs [TEXTURE.png|.jpg ...]
 ///
@@ -42,8 +42,8 @@ Vec3f direction(std::mt19937& random) {
   }
 }
 
-/// Of a shape given by its signed distance in voxels, which is negative inside: the voxels of 4x2x2
-/// around the origin that it passes through, each with the distance's gradient at its centre.
+/// Returns the voxels of 4x2x2 around the origin that the surface of a shape meets, each with the
+/// normal at its centre. The shape is given by its signed distance in voxels, negative inside.
 Block voxels_of(const std::function<float(Vec3f)>& distance) {
   Block block;
   for (int i = 0; i < kValuesPerBlock; ++i) {
@@ -75,7 +75,7 @@ Blocks make(const std::function<Block(std::mt19937&)>& one) {
 
 Blocks spheres(float radius) {
   return make([radius](std::mt19937& random) {
-    // In double precision: the gradient of a large sphere is a difference of like numbers.
+    // In double: the gradient of a large sphere is a difference of nearly equal numbers.
     const Vec3d center = Vec3d(direction(random)) * static_cast<double>(radius);
     Block block = voxels_of([center, radius](Vec3f p) {
       const Vec3d d = Vec3d(p) - center;
@@ -100,7 +100,7 @@ Blocks cylinders(float radius) {
   });
 }
 
-/// Where `planes` planes of random directions meet.
+/// The corner where `planes` planes of random directions meet.
 Blocks corners(int planes) {
   return make([planes](std::mt19937& random) {
     std::vector<Vec3f> normals(static_cast<std::size_t>(planes));
@@ -136,7 +136,7 @@ Blocks random_directions() {
   });
 }
 
-/// Of the processor's time.
+/// Returns the CPU time in seconds.
 double microseconds_per_block(const Blocks& blocks, const std::function<void(const Block&)>& work) {
   double least = 1e30;
   for (int repeat = 0; repeat < 3; ++repeat) {

@@ -1,4 +1,4 @@
-/// `voxdag bench build --json`.
+/// Writes the JSON of `voxdag bench build --json`.
 #include <cmath>
 
 #include "bench/build/bench_published.hpp"

@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "hairball:100" into name and size; the size is empty where none is given.
+/// Splits "hairball:100" into name and size; without a size that is empty.
 std::array<std::string, 2> split_scene(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return {text, ""};
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-/// Reads all of a file, so that the next reader finds it in memory.
+/// Reads a whole file, so that the next reader finds it in the disk cache.
 void warm_up(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> part(1 << 20);

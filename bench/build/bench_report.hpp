@@ -1,5 +1,5 @@
 #pragma once
-/// What `voxdag bench build` found, for people, for programs, and as a picture.
+/// Reports the results of `voxdag bench build` as tables, JSON and a plot.
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -7,22 +7,22 @@
 
 namespace voxdag {
 
-/// Factors from one resolution to the next greater one that was measured, per level between them.
+/// Factors from one measured resolution to the next higher one, per level.
 struct Growth {
   double wall = 0, cpu = 0, voxels = 0, dag_bytes = 0;
 };
 
-/// Growth that led to `builds[index]`; zeros where no lesser resolution of the same was measured.
+/// Returns the growth to `builds[index]`; zeros if no lower resolution of its series was measured.
 Growth growth_to(const std::vector<BuildRun>& builds, std::size_t index);
 
-/// The keys are listed in bench/README.md.
+/// Returns the JSON; bench/README.md lists the keys.
 nlohmann::ordered_json bench_json(const BenchResults& results,
                                   const nlohmann::ordered_json& machine);
 
-/// Tables: builds of each scene, their stages, sorting beside the paper's, rivals beside ours.
+/// Returns tables: builds of each scene, their stages, sorting with the paper's figures, rivals.
 std::string bench_table(const BenchResults& results);
 
-/// An SVG of seconds and bytes against the resolution, with the growth of each DAG as dashes.
+/// Returns an SVG of seconds and bytes over the resolution; the growth of each DAG is dashed.
 std::string bench_svg(const BenchResults& results);
 
 }  // namespace voxdag

@@ -1,4 +1,4 @@
-/// The picture that `voxdag bench build --plot` writes: two log-log diagrams.
+/// Draws the plot of `voxdag bench build --plot`: two log-log diagrams.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ std::string bench_svg(const BenchResults& results) {
       growth.points.push_back({x, size});
     }
     if (seconds.points.empty()) continue;
-    // The DAG's growth as a slope to compare with: through the greatest resolution's time.
+    // The growth of the DAG as a reference slope, through the time at the highest resolution.
     const double seconds_per_byte = seconds.points.back()[1] / dag.points.back()[1];
     for (auto& point : growth.points) point[1] *= seconds_per_byte;
     time.lines.insert(time.lines.end(), {seconds, growth});

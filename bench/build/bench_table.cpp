@@ -1,4 +1,4 @@
-/// The tables that `voxdag bench build` prints.
+/// Prints the tables of `voxdag bench build`.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string failed(int levels, const std::string& reason) {
   return fmt::format("  {:>9}  failed: {}\n", resolution(levels), reason);
 }
 
-/// A row of `columns` right-aligned cells, each as wide as `widths` says.
+/// Returns a row of right-aligned cells of these widths.
 std::string row(const std::vector<std::string>& cells, const std::vector<int>& widths) {
   std::string line = " ";
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -71,7 +71,7 @@ std::string stage_rows(const Builds& builds, std::size_t begin, std::size_t end)
   return text + "\n";
 }
 
-/// Reduction by sorting, beside the paper's Table 1; empty for other methods.
+/// Returns the table of reduction and sorting with the paper's Table 1; empty for other methods.
 std::string sorting_rows(const Builds& builds, std::size_t begin, std::size_t end) {
   if (builds[begin].method != "sort") return "";
   const std::vector<int> widths{9, 11, 11, 11, 11, 14};

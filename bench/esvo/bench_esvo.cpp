@@ -24,7 +24,7 @@ class Bench {
         plan.threads > 0 ? plan.threads : static_cast<int>(std::thread::hardware_concurrency());
   }
 
-  /// All builds first: a child's peak memory counts what this program was when it made it.
+  /// Runs all builds first: a child's peak memory includes the size of this program at the fork.
   EsvoBenchResults run() {
     std::vector<fs::path> meshes;
     for (const EsvoBenchScene& scene : plan_.scenes) {

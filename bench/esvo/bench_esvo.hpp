@@ -1,6 +1,6 @@
 #pragma once
-/// `voxdag bench esvo`: the tables of Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010,
-/// and the error at silhouettes, of cubes and of contours.
+/// Implements `voxdag bench esvo`: the tables of Laine and Karras, "Efficient Sparse Voxel
+/// Octrees", I3D 2010, and the silhouette errors of cubes and contours.
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -15,27 +15,27 @@ namespace voxdag {
 
 /// A scene of the command line.
 struct EsvoBenchScene {
-  std::string name;                  ///< That of the paper's, where it is the same scene.
+  std::string name;                  ///< The paper's name if it is the same scene.
   std::string mesh;                  ///< A file, or a procedural scene as NAME or NAME:SIZE.
   std::vector<std::string> options;  ///< More options of `build`.
 
-  /// Whether triangles of the mesh itself are what is built.
+  /// Returns whether the built surface is the mesh itself, without displacement.
   bool is_plain() const;
 };
 
 struct EsvoBenchPlan {
   std::vector<EsvoBenchScene> scenes;
   std::vector<int> levels;       ///< Ascending.
-  std::vector<ImageSize> sizes;  ///< Of pictures whose rays are measured.
+  std::vector<ImageSize> sizes;  ///< Sizes of the pictures whose rays are measured.
   int views = 4;
-  int repeat = 3;  ///< The fastest of so many casts counts.
+  int repeat = 3;  ///< Number of casts; the fastest counts.
   int threads = 0;
   float lod_pixels = 1;
   bool silhouettes = true;
 };
 
-/// What is compared, in the order of the paper's Table 2; then contours on a coarser grid whose
-/// silhouettes are as good as those of the cubes.
+/// The compared forms, in the order of the paper's Table 2; then contours on the coarsest grid
+/// whose silhouettes are as good as those of the cubes.
 enum class EsvoForm {
   kTriangles,
   kCubes,
@@ -49,7 +49,7 @@ inline constexpr std::array kEsvoForms{EsvoForm::kTriangles,      EsvoForm::kCub
                                        EsvoForm::kCoarseContours, EsvoForm::kCoarseContoursBeams};
 std::string name_of(EsvoForm form);  ///< "contours_beams".
 
-/// One build, from the mesh's file to the octree's.
+/// One build, from the mesh file to the octree file.
 struct EsvoBuildRun {
   std::string scene;
   int levels = 0;
@@ -66,7 +66,7 @@ struct EsvoBuildRun {
     return voxels == 0 ? 0 : static_cast<double>(bytes) / static_cast<double>(voxels);
   }
   double voxels_per_second() const { return static_cast<double>(voxels) / build_seconds; }
-  /// Parsing and writing included.
+  /// Includes parsing and writing.
   double voxels_per_cpu_second() const { return static_cast<double>(voxels) / cost.cpu_seconds(); }
 };
 
@@ -77,11 +77,11 @@ struct EsvoRateRow {
   ImageSize size;
   std::uint64_t rays = 0;
   std::array<double, kEsvoForms.size()> mrays_per_second{};
-  std::array<double, kEsvoForms.size()> agreement{};  ///< With triangles: part of the rays.
+  std::array<double, kEsvoForms.size()> agreement{};  ///< With the triangles: fraction of the rays.
 };
 
-/// At one resolution: for which part of the rays to the finest voxels a form meets something where
-/// the triangles are not, or nothing where they are.
+/// The silhouette errors at one resolution: the fraction of the rays to the finest voxels for which
+/// a form and the triangles disagree on whether there is a hit.
 struct SilhouetteRow {
   std::string scene;
   int levels = 0;
@@ -91,42 +91,42 @@ struct SilhouetteRow {
 struct EsvoBenchResults {
   int threads = 0;
   std::vector<EsvoBuildRun> builds;  ///< By scene, then levels; contours before cubes.
-  std::vector<EsvoRateRow> rates;    ///< By scene, then size: of the finest that was built.
+  std::vector<EsvoRateRow> rates;    ///< By scene, then size; at the finest grid that was built.
   std::vector<SilhouetteRow> silhouettes;
 };
 
 /// "NAME=MESH", and options of `build` after it, each as a word. Throws std::invalid_argument.
 EsvoBenchScene parse_esvo_scene(const std::string& text);
 
-/// Builds both forms of every scene in child processes, then casts rays in this one. A build that
-/// fails is recorded and greater resolutions of the scene are left out. Throws Error, Cancelled.
+/// Builds both forms of every scene in child processes, then casts rays in this process. Records a
+/// build that fails, and leaves higher resolutions of its scene out. Throws Error, Cancelled.
 EsvoBenchResults bench_esvo(const EsvoBenchPlan& plan, Progress& progress);
 
-/// Casts at what was built of a scene, and appends the rows. `mesh` is its file.
+/// Casts rays at the octrees of a scene, and appends the rows. `mesh` is its file.
 void bench_esvo_rays(const EsvoBenchPlan& plan, const EsvoBenchScene& scene,
                      const std::filesystem::path& mesh, Progress& progress,
                      EsvoBenchResults& results);
 
-/// The coarsest grid of the scene on which the silhouettes of contours are as good as those of
-/// cubes on the finest; 0 where none but the finest is.
+/// Returns the levels of the coarsest grid on which the silhouettes of contours are as good as
+/// those of cubes on the finest grid; 0: only the finest grid.
 int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& scene);
 
-/// How many levels of cubes the contours of a row are worth.
+/// The number of levels by which cubes must be finer to be as good as the contours of a row.
 struct LevelsSaved {
   double levels = 0;
-  bool at_least = false;  ///< No cubes that were measured are as good.
+  bool at_least = false;  ///< No measured cubes are as good.
 };
 
-/// By the silhouettes of the same scene.
+/// Returns the saved levels, from the silhouettes of the scene.
 LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row);
 
-/// bench/README.md lists the keys.
+/// Returns the results as JSON; bench/README.md lists the keys.
 nlohmann::ordered_json esvo_bench_json(const EsvoBenchResults& results,
                                        const nlohmann::ordered_json& machine);
 std::string esvo_bench_table(const EsvoBenchResults& results);
-/// Megabytes, seconds and silhouettes over the levels, the paper's as dashes.
+/// Draws megabytes, seconds and silhouettes over the levels; the paper's figures are dashed.
 std::string esvo_bench_svg(const EsvoBenchResults& results);
-/// Bars of rays per second, a diagram for each scene.
+/// Draws bars of rays per second, one diagram per scene.
 std::string esvo_rays_svg(const EsvoBenchResults& results);
 
 }  // namespace voxdag

@@ -1,6 +1,6 @@
 #pragma once
-/// Published figures, to stand beside measured ones. Samuli Laine, Tero Karras, Efficient Sparse
-/// Voxel Octrees, I3D 2010, Tables 1 and 2: megabytes and seconds of builds on four cores of a
+/// Published figures for comparison. Samuli Laine, Tero Karras, Efficient Sparse Voxel Octrees, I3D
+/// 2010, Tables 1 and 2: megabytes and seconds of builds on four cores of a
 /// Core2 Quad Q9300, and million primary rays per second on a Quadro FX 5800.
 #include <algorithm>
 #include <array>
@@ -20,10 +20,10 @@ inline constexpr std::size_t kEsvoRates = 4;
 inline constexpr std::array<std::array<int, 2>, 3> kEsvoSizes{
     {{512, 384}, {1024, 768}, {2048, 1536}}};
 
-/// What the paper does not have is NaN.
+/// Figures of one scene. NaN: not in the paper.
 struct EsvoScene {
   std::string_view name;
-  std::array<double, 7> megabytes, seconds;  ///< Of 10 levels and more.
+  std::array<double, 7> megabytes, seconds;  ///< From 10 levels on.
   double bytes_per_voxel;
   std::array<std::array<double, kEsvoRates>, 3> mrays;  ///< Million rays per second, by size.
 };
@@ -62,7 +62,7 @@ inline constexpr std::array<EsvoScene, 6> kEsvoScenes{{
      {{{69.1, 35.8, 97.9, 104.4}, {111.9, 43.8, 110.3, 124.3}, {134.0, 52.3, 120.2, 140.8}}}},
 }};
 
-/// The paper's scene of that name, or null. Case does not matter.
+/// Returns the paper's scene of this name, in any case, or null.
 inline const EsvoScene* esvo_scene(std::string_view name) {
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) ==
@@ -74,7 +74,7 @@ inline const EsvoScene* esvo_scene(std::string_view name) {
   return nullptr;
 }
 
-/// Of kEsvoSizes, the rates of that size; NaN where the paper has none.
+/// Returns the rates at a size of kEsvoSizes; NaN: not in the paper.
 inline std::array<double, kEsvoRates> esvo_mrays(const EsvoScene* scene, int width, int height) {
   for (std::size_t i = 0; scene != nullptr && i < kEsvoSizes.size(); ++i)
     if (kEsvoSizes[i] == std::array<int, 2>{width, height}) return scene->mrays[i];
@@ -86,8 +86,8 @@ inline double esvo_of_levels(const std::array<double, 7>& values, int levels) {
   return column < 0 || column >= 7 ? kNone : values[static_cast<std::size_t>(column)];
 }
 
-/// How many voxels a core built in a second; NaN where the paper has no such octree. Its megabytes
-/// are taken for 2^20 bytes, and its bytes per voxel, of the largest octree, for those of all.
+/// Returns the voxels per core and second; NaN if the paper has no such octree. Assumes megabytes
+/// of 2^20 bytes, and the bytes per voxel of the largest octree for all.
 inline double esvo_voxels_per_core_second(const EsvoScene* scene, int levels) {
   constexpr double kCores = 4;
   if (scene == nullptr) return kNone;

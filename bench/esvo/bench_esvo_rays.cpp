@@ -1,4 +1,4 @@
-/// The rays of `voxdag bench esvo`: Table 2, and silhouettes beside the mesh's own.
+/// Measures the rays of `voxdag bench esvo`: Table 2, and silhouettes against the mesh.
 #include <tbb/task_arena.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ std::vector<BuiltPair> pairs_of(const EsvoBenchResults& results, const std::stri
   return complete;
 }
 
-/// The primary rays of a view, with beams and without.
+/// The primary rays of a view, with and without beams.
 struct PrimaryRays {
   PrimaryRays(const EsvoView& esvo, const Grid& grid, const View& view, ImageSize size,
               float lod_pixels)
@@ -62,7 +62,7 @@ struct PrimaryRays {
     options.width = size.width;
     options.height = size.height;
     options.lod_pixels = lod_pixels;
-    options.most_rays = 1;  // of the sets of other rays, which are not used
+    options.most_rays = 1;  // shadow and occlusion rays are not used
     return options;
   }
 
@@ -79,7 +79,7 @@ struct FormSums {
   double seconds = 0, agreeing = 0;
 };
 
-/// What is cast at; all on the same cube.
+/// The targets of the rays, all in the same grid cube.
 struct Octrees {
   EsvoFile contours, cubes;
   std::optional<EsvoFile> coarse;  ///< Contours whose silhouettes are as good as the cubes'.
@@ -98,7 +98,7 @@ class SceneRays {
     views_ = bench_views(finest.view(), finest.grid(), 4.0 / 3, plan.views);
   }
 
-  /// Takes the coarse grid by the silhouettes that are known.
+  /// Chooses the coarse grid by the measured silhouettes.
   void rates() {
     if (pairs_.empty()) return;
     const BuiltPair& pair = pairs_.back();
@@ -153,7 +153,7 @@ class SceneRays {
   }
 
  private:
-  /// Returns how many rays there are: the same for all octrees, but for where beams let them start.
+  /// Returns the number of rays. All octrees get equal rays, except for the starts from beams.
   std::size_t add_view(const Octrees& octrees, const View& view, ImageSize size,
                        std::array<FormSums, kEsvoForms.size()>& sums) {
     const auto& [contours, cubes, coarse] = octrees;

@@ -1,4 +1,4 @@
-/// What `voxdag bench esvo` prints and draws.
+/// Prints and draws the results of `voxdag bench esvo`.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ std::string size_of(const EsvoRateRow& row) {
   return fmt::format("{}x{}", row.size.width, row.size.height);
 }
 
-/// NaN where the paper has none.
+/// Returns the paper's rate, or NaN.
 double paper_mrays(const EsvoRateRow& row, std::size_t form) {
   if (form >= published::kEsvoRates) return NAN;
   return published::esvo_mrays(published::esvo_scene(row.scene), row.size.width,
@@ -94,7 +94,7 @@ std::string rates_table(const std::vector<EsvoRateRow>& rates) {
   return text;
 }
 
-/// The coarse forms, as multiples of the cubes' rate.
+/// Prints the coarse forms, as multiples of the cubes' rate.
 std::string coarse_table(const EsvoBenchResults& results) {
   const auto coarse_of = [&](const EsvoRateRow& row) {
     return coarse_levels(results.silhouettes, row.scene);
@@ -137,7 +137,7 @@ std::string silhouettes_table(const std::vector<SilhouetteRow>& rows) {
   return text;
 }
 
-/// Lines over the levels, one for each scene and form.
+/// Returns lines over the levels, one per scene and form.
 template <class Value>
 void add_lines(const Builds& builds, const Value& value, LineDiagram& diagram) {
   std::size_t series = 0;
@@ -153,7 +153,7 @@ void add_lines(const Builds& builds, const Value& value, LineDiagram& diagram) {
   }
 }
 
-/// The paper's line of each scene that is among `builds`.
+/// Returns the paper's lines of the scenes in `builds`.
 void add_paper_lines(const Builds& builds, std::array<double, 7> published::EsvoScene::*values,
                      LineDiagram& diagram) {
   std::size_t series = 0;

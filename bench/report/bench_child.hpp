@@ -1,5 +1,5 @@
 #pragma once
-/// Runs another program and says what it took: how every figure of `voxdag bench` is measured.
+/// Runs a program and measures its time and memory: the source of the figures of `voxdag bench`.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace voxdag {
 
-/// What a process and the children that it waited for took.
+/// The cost of a process and of the children that it waited for.
 struct ProcessCost {
-  double wall_seconds = 0;       ///< From before it was started until it had ended.
+  double wall_seconds = 0;       ///< From before it starts until it has ended.
   double user_seconds = 0;       ///< CPU time in the program, all threads together.
   double system_seconds = 0;     ///< CPU time in the kernel.
   std::uint64_t peak_bytes = 0;  ///< Largest resident set, of the largest process.
@@ -21,16 +21,15 @@ struct ProcessCost {
 
 struct ChildResult {
   int status = 0;          ///< Exit status, or 128 + the signal that ended it.
-  bool timed_out = false;  ///< It was ended for taking longer than was allowed.
+  bool timed_out = false;  ///< It was killed at its time limit.
   ProcessCost cost;
   std::string out, err;
 };
 
-/// Runs `command` (command[0] is searched in PATH) in `directory` and waits for it, at most
-/// `seconds_limit` where that is above zero. It is a process of its own, so that the peak memory is
-/// its own; keep the caller small, because Linux counts what a process was before exec as well.
-/// Throws Error if no process can be made, and Cancelled, after ending the child, if `progress` was
-/// cancelled.
+/// Runs `command` (command[0] is searched in PATH) in `directory` and waits for it, for at most
+/// `seconds_limit` if that is above zero. Keep the caller small: Linux includes the size of a
+/// process before exec in its peak memory. Throws Error if no process can be created, and
+/// Cancelled, after killing the child, if `progress` is cancelled.
 ChildResult run_child(const std::vector<std::string>& command,
                       const std::filesystem::path& directory, double seconds_limit,
                       const Progress& progress);

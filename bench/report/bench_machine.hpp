@@ -1,18 +1,18 @@
 #pragma once
-/// The machine that figures were measured on.
+/// Describes the machine of the measurements.
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace voxdag {
 
-/// This program, its version and, where the build knew it, its commit: "voxdag 0.1.0 (fb94950)".
+/// Returns program, version and, if the build knew it, commit: "voxdag 0.1.0 (fb94950)".
 std::string program_name();
 
-/// Processor, cores, memory, system, time and load: a figure says little without them.
+/// Returns processor, cores, memory, system, time and load as JSON.
 nlohmann::ordered_json machine_json();
 
-/// Processes that wanted to run in the last minute, in the mean; above 0 before a measurement
-/// means that others were using the machine.
+/// Returns the load average of the last minute. Above 0 before a measurement, other processes use
+/// the machine.
 double load_average();
 
 }  // namespace voxdag

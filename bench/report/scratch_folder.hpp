@@ -1,5 +1,5 @@
 #pragma once
-/// A folder for files that nobody keeps.
+/// A folder for temporary files.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// A new folder in TMPDIR that goes with its owner, with all that is in it.
+/// Creates a folder in TMPDIR, and removes it with its contents when it is destroyed.
 class ScratchFolder {
  public:
   ScratchFolder() {

@@ -20,7 +20,7 @@ struct RivalTask {
   double seconds_limit = 0;    ///< The rival is ended after this time.
 };
 
-/// What a rival's build took.
+/// The result of a rival's build.
 struct RivalBuild {
   std::string command;  ///< The command line that ran.
   std::string failure;  ///< Why there is no result, or empty.
@@ -35,7 +35,7 @@ struct RaySet {
   std::span<const CastRay> casts;
 };
 
-/// What a rival took for a set that it cast by itself.
+/// The time of a rival for a set that it cast by itself.
 struct RivalTime {
   RayClass rays_class;
   double seconds = 0;   ///< For the whole set.

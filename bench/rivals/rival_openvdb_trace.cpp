@@ -29,7 +29,7 @@ namespace {
 using MaskTree = openvdb::MaskTree;
 using VdbRay = openvdb::math::Ray<double>;
 
-/// What LevelSetHDDA asks, answered for occupancy: the walk ends at the first active voxel.
+/// The tester of LevelSetHDDA for occupancy: the walk ends at the first active voxel.
 class FirstActiveVoxel {
  public:
   using RayT = VdbRay;

@@ -32,7 +32,7 @@ struct RowSums {
   std::map<std::string, Sums> rivals;  ///< Sorted by name, for a fixed order.
 };
 
-/// Measures a set with our casts and those of rivals, and adds up the times.
+/// Measures a set with the casts of voxdag and of the rivals, and adds up the times.
 void measure_set(const TraceLayout& layout, const TraceRunner& ours,
                  const std::vector<CastRay>& casts, std::vector<TraceRunner> runners, int repeat,
                  RowSums& sums) {
@@ -138,7 +138,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
           device_beams.emplace(*device_scenes[i], beams.setup());
           device_casts = primary_rays(beams.setup(), device_beams->starts().data());
         }
-        // The CPU's beams are not the device's.
+        // The beams of the CPU and of the device differ.
         const std::vector<CastRay>& set = device_beams ? device_casts : casts;
         TraceRunner ours = layouts[i]->runner(rays, set);
         if (with_beams) ours.before = [&beams] { beams.run(); };

@@ -1,4 +1,4 @@
-/// What `voxdag bench trace` prints and draws.
+/// Prints and draws the results of `voxdag bench trace`.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -18,12 +18,12 @@ std::string resolution_of(const TraceRow& row) {
   return with_commas(std::uint64_t{1} << row.levels) + "³";
 }
 
-/// Whether `row` goes on with what `before` is about.
+/// Returns whether `row` belongs to the same table as `before`.
 bool is_same_dag(const TraceRow& row, const TraceRow& before) {
   return row.scene == before.scene && row.levels == before.levels && row.layout == before.layout;
 }
 
-/// The names of all rivals, each once.
+/// Returns the names of all rivals, each once.
 std::vector<std::string> rivals_of(const TraceResults& results) {
   std::vector<std::string> names;
   for (const TraceRow& row : results.rows)

@@ -30,7 +30,7 @@ class ByteCountingNodes : public SvdagNodes {
   std::uint64_t *steps_, *bytes_;
 };
 
-/// The mean of what `nodes` counts in `steps` and `read` while the rays are cast.
+/// Casts the rays and returns the means of the counts `steps` and `read` of `nodes`.
 template <class Nodes>
 WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::uint64_t& steps,
                  const std::uint64_t& read) {
@@ -42,7 +42,7 @@ WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::
   return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
 }
 
-/// The layout of files, ray by ray.
+/// Casts one ray at a time at the layout of files.
 class PaperScalarLayout : public TraceLayout {
  public:
   explicit PaperScalarLayout(const SvdagView& dag) : dag_(dag) {}
@@ -62,7 +62,7 @@ class PaperScalarLayout : public TraceLayout {
   SvdagView dag_;
 };
 
-/// The same layout and what packets need beside it, by packets of rays.
+/// Casts packets of rays at the layout of files and its boxes.
 class PaperLayout : public PaperScalarLayout {
  public:
   explicit PaperLayout(const SvdagView& dag) : PaperScalarLayout(dag), dag_(SvdagNodes(dag)) {}
@@ -97,7 +97,7 @@ class ByteCountingWideNodes : public WideNodes {
   std::uint64_t *steps_, *bytes_;
 };
 
-/// 4³ cells to a node, ray by ray.
+/// Casts one ray at a time at nodes of 4³ cells.
 class Wide : public TraceLayout {
  public:
   explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}
@@ -131,7 +131,7 @@ class ByteCountingEsvoNodes : public Nodes {
   std::uint64_t *steps_, *bytes_;
 };
 
-/// An ESVO, with its contours or as cubes.
+/// Casts packets at an ESVO, with its contours or as cubes.
 template <class Nodes>
 class EsvoTraceLayout : public TraceLayout {
  public:
@@ -156,7 +156,7 @@ class EsvoTraceLayout : public TraceLayout {
 };
 
 const std::vector<std::string> kDagLayouts{"paper", "paper_scalar", "wide"};
-/// The same ray by ray.
+/// Casts one ray at a time at an ESVO, with its contours or as cubes.
 template <class Nodes>
 class EsvoScalarLayout : public EsvoTraceLayout<Nodes> {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-/// Our own casts, by layout.
+/// Casts rays with voxdag, by layout.
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,19 +13,19 @@
 
 namespace voxdag {
 
-/// What walks through the nodes take, in the mean over rays.
+/// The mean cost of a ray.
 struct WalkCost {
-  double cells = 0;  ///< Steps: cells looked at.
+  double cells = 0;  ///< Visited cells.
   double bytes = 0;  ///< Read from nodes.
 };
 
-/// Voxels in one of the layouts that can be cast at.
+/// Voxels in one layout, ready for casts.
 class TraceLayout {
  public:
   virtual ~TraceLayout() = default;
 
   virtual std::uint64_t bytes() const = 0;
-  /// The same on a CUDA device, where there is one, and what it takes there.
+  /// Returns the runner on a CUDA device, if there is one.
   virtual std::optional<DeviceLayout> device_layout() const = 0;
   virtual std::uint64_t device_bytes() const { return bytes(); }
   /// Casts with the fastest caster of the layout. `casts` must outlive the runner.

@@ -34,7 +34,7 @@ class RecordingCaster {
   std::vector<CastRay>& rays_;
 };
 
-/// A lamp in free space ahead of the camera, above and to the right.
+/// Returns a lamp in free space ahead of the camera, above and to the right.
 template <class Nodes>
 LightSpec lamp_near(const Nodes& nodes, const Grid& grid, const Camera& camera) {
   const Vec3d way =
@@ -108,7 +108,7 @@ RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const Vie
   options.lod_pixels = ray_options.lod_pixels;
   options.occlusion_cone = ray_options.occlusion_cone;
   options.sun_degrees = 0;
-  options.beams = false;  // those towards lamps, which rivals do not have
+  options.beams = false;  // rivals have no beams towards lamps
   const Camera camera = make_camera(view, options.width, options.height);
   options.lights = {
       visit_nodes(scene, [&](const auto& nodes) { return lamp_near(nodes, grid, camera); })};
@@ -117,7 +117,7 @@ RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const Vie
 
 namespace {
 
-/// Of the tiles those whose rays are taken where there may be `most_rays`, evenly spread.
+/// Returns a part of the tiles, evenly spread, with about `most_rays` rays.
 std::vector<ViewTile> some_tiles(const Camera& camera, int rays_per_pixel, std::size_t most_rays) {
   constexpr std::size_t kGroup = 4;  // tiles that make 8×8 pixels
   const std::vector<ViewTile> tiles = tiles_in_order(camera);
@@ -130,7 +130,7 @@ std::vector<ViewTile> some_tiles(const Camera& camera, int rays_per_pixel, std::
   return some;
 }
 
-/// The rays that add(tile, rays) makes of each tile, in the tiles' order.
+/// Returns the rays that add(tile, rays) appends for each tile, in the order of the tiles.
 template <class AddRays>
 std::vector<CastRay> rays_of(const std::vector<ViewTile>& tiles, const AddRays& add) {
   constexpr std::size_t kRun = 256;
@@ -147,7 +147,7 @@ std::vector<CastRay> rays_of(const std::vector<ViewTile>& tiles, const AddRays& 
   return rays;
 }
 
-/// The rays of one kind, to light or of occlusion, of the surface that a tile shows.
+/// Returns the shadow or occlusion rays of the surface in a tile.
 template <class Nodes>
 void record_tile(const Nodes& nodes, const RenderSetup& plain, const RenderSetup& with_beams,
                  RayClass c, const ViewTile& tile, std::vector<CastRay>& rays) {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "support/temp_dir.hpp"
 #include "support/test_png.hpp"
-#include "temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
@@ -32,8 +32,8 @@ TEST(DecodeImage, SixteenBitsAndAlphaAreKept) {
   const TempDir dir;
   for (const bool interlaced : {false, true}) {
     const auto samples = ramp(7 * 5 * 4, 997);
-    write_test_png(dir.path / "a.png", 7, 5, 4, 16, samples, interlaced);
-    const DecodedImage image = read_image(dir.path / "a.png");
+    write_test_png(dir / "a.png", 7, 5, 4, 16, samples, interlaced);
+    const DecodedImage image = read_image(dir / "a.png");
     EXPECT_EQ(image.width(), 7);
     EXPECT_EQ(image.height(), 5);
     EXPECT_TRUE(image.has_alpha());
@@ -43,8 +43,8 @@ TEST(DecodeImage, SixteenBitsAndAlphaAreKept) {
 
 TEST(DecodeImage, EightBitsAreSpreadOverSixteen) {
   const TempDir dir;
-  write_test_png(dir.path / "a.png", 2, 1, 4, 8, {0, 1, 128, 7, 255, 254, 2, 0});
-  const DecodedImage image = read_image(dir.path / "a.png");
+  write_test_png(dir / "a.png", 2, 1, 4, 8, {0, 1, 128, 7, 255, 254, 2, 0});
+  const DecodedImage image = read_image(dir / "a.png");
   EXPECT_EQ(image.bytes(), 8u);
   EXPECT_EQ(pixels_of(image),
             (std::vector<std::uint16_t>{0, 257, 128 * 257, 7 * 257, 65535, 254 * 257, 514, 0}));
@@ -52,8 +52,8 @@ TEST(DecodeImage, EightBitsAreSpreadOverSixteen) {
 
 TEST(DecodeImage, GreyBecomesThreeChannelsAndAlphaIsFullWhereThereIsNone) {
   const TempDir dir;
-  write_test_png(dir.path / "a.png", 2, 1, 1, 16, {1000, 50000});
-  const DecodedImage image = read_image(dir.path / "a.png");
+  write_test_png(dir / "a.png", 2, 1, 1, 16, {1000, 50000});
+  const DecodedImage image = read_image(dir / "a.png");
   EXPECT_FALSE(image.has_alpha());
   EXPECT_EQ(image.bytes(), 4u);
   EXPECT_EQ(pixels_of(image),
@@ -62,8 +62,8 @@ TEST(DecodeImage, GreyBecomesThreeChannelsAndAlphaIsFullWhereThereIsNone) {
 
 TEST(DecodeImage, TruncationAtEveryByteIsRefused) {
   const TempDir dir;
-  write_test_png(dir.path / "a.png", 9, 5, 2, 16, ramp(90, 601));
-  const std::string bytes = slurp(dir.path / "a.png");
+  write_test_png(dir / "a.png", 9, 5, 2, 16, ramp(90, 601));
+  const std::string bytes = read_text(dir / "a.png");
   for (std::size_t n = 0; n < bytes.size(); ++n) {
     const std::vector<std::uint8_t> cut(bytes.begin(),
                                         bytes.begin() + static_cast<std::ptrdiff_t>(n));
@@ -73,8 +73,8 @@ TEST(DecodeImage, TruncationAtEveryByteIsRefused) {
 
 TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
   const TempDir dir;
-  write_test_png(dir.path / "a.png", 9, 5, 4, 8, ramp(180, 1));
-  const std::string bytes = slurp(dir.path / "a.png");
+  write_test_png(dir / "a.png", 9, 5, 4, 8, ramp(180, 1));
+  const std::string bytes = read_text(dir / "a.png");
   for (std::size_t n = 0; n < bytes.size(); ++n) {
     std::vector<std::uint8_t> damaged(bytes.begin(), bytes.end());
     damaged[n] ^= 0x55;
@@ -88,9 +88,9 @@ TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
 
 TEST(DecodeImage, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
   const TempDir dir;
-  ASSERT_EQ(::mkfifo((dir.path / "pipe.png").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((dir / "pipe.png").c_str(), 0600), 0);
   for (const auto& [path, reason] :
-       {std::pair(dir.path / "pipe.png", "is not a regular file"), {dir.path, "is a directory"}}) {
+       {std::pair(dir / "pipe.png", "is not a regular file"), {dir.path(), "is a directory"}}) {
     try {
       read_image(path);
       ADD_FAILURE() << "no error";
@@ -102,12 +102,12 @@ TEST(DecodeImage, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
 
 TEST(DecodeImage, OtherFormatsAreRefusedByName) {
   const TempDir dir;
-  spill(dir.path / "a.tga", "no picture");
+  write_text(dir / "a.tga", "no picture");
   try {
-    read_image(dir.path / "a.tga");
+    read_image(dir / "a.tga");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.file(), (dir.path / "a.tga").string());
+    EXPECT_EQ(error.file(), (dir / "a.tga").string());
     EXPECT_EQ(error.reason(), "neither a PNG nor a JPEG image");
   }
 }

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "support/read_pictures.hpp"
-#include "temp_dir.hpp"
+#include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
@@ -23,8 +23,8 @@ const std::vector<std::string> kNames = {"N.X", "N.Y", "N.Z", "Z"};  // sorted, 
 
 TEST(Exr, ChannelsSurviveTheRoundTripBitForBit) {
   const TempDir dir;
-  write_exr(dir.path / "a.exr", pattern(), kNames);
-  const ExrImage back = read_exr(dir.path / "a.exr");
+  write_exr(dir / "a.exr", pattern(), kNames);
+  const ExrImage back = read_exr(dir / "a.exr");
   EXPECT_EQ(back.channel_names, kNames);
   EXPECT_EQ(back.image, pattern());
 }
@@ -33,18 +33,18 @@ TEST(Exr, ChannelsComeBackSortedWithTheirValues) {
   const TempDir dir;
   ImageF image(1, 1, 2);
   image.pixels = {1.0f, 2.0f};
-  write_exr(dir.path / "a.exr", image, {"Z", "A"});
-  const ExrImage back = read_exr(dir.path / "a.exr");
+  write_exr(dir / "a.exr", image, {"Z", "A"});
+  const ExrImage back = read_exr(dir / "a.exr");
   EXPECT_EQ(back.channel_names, (std::vector<std::string>{"A", "Z"}));
   EXPECT_EQ(back.image.pixels, (std::vector<float>{2.0f, 1.0f}));
 }
 
 TEST(Exr, BadNamesAndEmptyImagesAreRefused) {
   const TempDir dir;
-  EXPECT_THROW(write_exr(dir.path / "a.exr", pattern(), {"A", "B", "C"}), Error);
-  EXPECT_THROW(write_exr(dir.path / "a.exr", pattern(), {"A", "B", "C", "A"}), Error);
-  EXPECT_THROW(write_exr(dir.path / "a.exr", ImageF(), {}), Error);
-  EXPECT_FALSE(std::filesystem::exists(dir.path / "a.exr"));
+  EXPECT_THROW(write_exr(dir / "a.exr", pattern(), {"A", "B", "C"}), Error);
+  EXPECT_THROW(write_exr(dir / "a.exr", pattern(), {"A", "B", "C", "A"}), Error);
+  EXPECT_THROW(write_exr(dir / "a.exr", ImageF(), {}), Error);
+  EXPECT_FALSE(std::filesystem::exists(dir / "a.exr"));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <jpeglib.h>
 
 #include "support/read_pictures.hpp"
-#include "temp_dir.hpp"
+#include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
@@ -55,8 +55,8 @@ std::string encode(const ImageRgb8& image) {
 TEST(Jpeg, SmoothPixelsComeBackNearly) {
   const TempDir dir;
   const ImageRgb8 image = smooth(40, 24);
-  spill(dir.path / "a.jpg", encode(image));
-  const ImageRgb8 back = read_rgb8(dir.path / "a.jpg");
+  write_text(dir / "a.jpg", encode(image));
+  const ImageRgb8 back = read_rgb8(dir / "a.jpg");
   ASSERT_EQ(back.width, 40);
   ASSERT_EQ(back.height, 24);
   // Quality 98 quantises by one or two steps and halves the resolution of the colour.
@@ -68,16 +68,16 @@ TEST(Jpeg, TruncationAtEveryByteIsRefused) {
   const TempDir dir;
   const std::string bytes = encode(smooth(24, 16));
   for (std::size_t n = 0; n < bytes.size(); ++n) {
-    spill(dir.path / "cut.jpg", bytes.substr(0, n));
-    EXPECT_THROW(read_rgb8(dir.path / "cut.jpg"), Error) << n << " of " << bytes.size();
+    write_text(dir / "cut.jpg", bytes.substr(0, n));
+    EXPECT_THROW(read_rgb8(dir / "cut.jpg"), Error) << n << " of " << bytes.size();
   }
 }
 
 TEST(Jpeg, OtherFilesAreRefused) {
   const TempDir dir;
-  spill(dir.path / "text.jpg", "hello, I am not a picture");
-  EXPECT_THROW(read_rgb8(dir.path / "text.jpg"), Error);
-  EXPECT_THROW(read_rgb8(dir.path / "missing.jpg"), Error);
+  write_text(dir / "text.jpg", "hello, I am not a picture");
+  EXPECT_THROW(read_rgb8(dir / "text.jpg"), Error);
+  EXPECT_THROW(read_rgb8(dir / "missing.jpg"), Error);
 }
 
 }  // namespace

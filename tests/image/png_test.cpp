@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/read_pictures.hpp"
-#include "temp_dir.hpp"
+#include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
@@ -21,24 +21,24 @@ ImageRgb8 pattern(int width, int height) {
 TEST(Png, PixelsSurviveTheRoundTrip) {
   const TempDir dir;
   const ImageRgb8 image = pattern(37, 19);
-  write_png(dir.path / "a.png", image);
-  EXPECT_EQ(read_rgb8(dir.path / "a.png"), image);
+  write_png(dir / "a.png", image);
+  EXPECT_EQ(read_rgb8(dir / "a.png"), image);
 }
 
 TEST(Png, NothingButTheFileIsLeftBehind) {
   const TempDir dir;
-  write_png(dir.path / "a.png", pattern(4, 4));
-  const std::filesystem::directory_iterator files(dir.path);
+  write_png(dir / "a.png", pattern(4, 4));
+  const std::filesystem::directory_iterator files(dir.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }
 
 TEST(Png, TruncationAtEveryByteIsRefused) {
   const TempDir dir;
-  write_png(dir.path / "a.png", pattern(9, 5));
-  const std::string bytes = slurp(dir.path / "a.png");
+  write_png(dir / "a.png", pattern(9, 5));
+  const std::string bytes = read_text(dir / "a.png");
   for (std::size_t n = 0; n < bytes.size(); ++n) {
-    spill(dir.path / "cut.png", bytes.substr(0, n));
-    EXPECT_THROW(read_rgb8(dir.path / "cut.png"), Error) << n << " of " << bytes.size();
+    write_text(dir / "cut.png", bytes.substr(0, n));
+    EXPECT_THROW(read_rgb8(dir / "cut.png"), Error) << n << " of " << bytes.size();
   }
 }
 
@@ -50,9 +50,9 @@ TEST(Png, AbsurdSizeInTheHeaderIsRefused) {
       'R',  0x00, 0x0F, 0x42, 0x3F, 0x00, 0x0F, 0x42, 0x3F, 8,    2,    0,    0,    0,    0x2E,
       0x39, 0xCE, 0x2B, 0,    0,    0,    0,    'I',  'D',  'A',  'T',  0x35, 0xAF, 0x06, 0x1E,
       0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xAE, 0x42, 0x60, 0x82};
-  spill(dir.path / "big.png", {reinterpret_cast<const char*>(bytes), sizeof bytes});
+  write_text(dir / "big.png", {reinterpret_cast<const char*>(bytes), sizeof bytes});
   try {
-    read_rgb8(dir.path / "big.png");
+    read_rgb8(dir / "big.png");
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.reason(), "size 999999 x 999999 is outside of the limits: 1 to 268435456 pixels");
@@ -61,17 +61,17 @@ TEST(Png, AbsurdSizeInTheHeaderIsRefused) {
 
 TEST(Png, ErrorsNameTheFile) {
   const TempDir dir;
-  spill(dir.path / "text.png", "hello, I am not a picture");
+  write_text(dir / "text.png", "hello, I am not a picture");
   for (const char* name : {"text.png", "missing.png"}) {
     try {
-      read_rgb8(dir.path / name);
+      read_rgb8(dir / name);
       FAIL() << name;
     } catch (const Error& e) {
-      EXPECT_EQ(e.file(), (dir.path / name).string());
+      EXPECT_EQ(e.file(), (dir / name).string());
     }
   }
-  EXPECT_THROW(write_png(dir.path / "no" / "such.png", pattern(2, 2)), Error);
-  EXPECT_THROW(write_png(dir.path / "empty.png", ImageRgb8()), Error);
+  EXPECT_THROW(write_png(dir / "no" / "such.png", pattern(2, 2)), Error);
+  EXPECT_THROW(write_png(dir / "empty.png", ImageRgb8()), Error);
 }
 
 }  // namespace

@@ -15,10 +15,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
-#include <functional>
 #include <iterator>
 #include <string>
 
+#include "support/error_text.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/nameless_file.hpp"
@@ -26,15 +26,6 @@
 
 namespace voxdag {
 namespace {
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const TempDir dir;

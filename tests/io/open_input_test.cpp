@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "support/error_text.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/mapped_file.hpp"
@@ -16,15 +17,6 @@ namespace voxdag {
 namespace {
 
 constexpr SizeLimit kSmall{1 << 20, "a camera path"};
-
-std::string reason_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.reason();
-  }
-  return "no error";
-}
 
 TEST(ReadInput, ReturnsEveryByteOfAFileUpToTheLimit) {
   const TempDir dir;

@@ -1,4 +1,4 @@
-/// What files say of the look of their surface.
+/// The appearance that mesh files describe.
 #include "voxdag/mesh/appearance.hpp"
 
 #include <gtest/gtest.h>
@@ -131,6 +131,29 @@ TEST_F(ReadAppearance, PlyFacesMayHaveColoursAndCoordinates) {
   EXPECT_EQ(result.appearance.colors, (std::vector<Rgba16>(3, {65535, 0, 0, 65535})));
 }
 
+TEST_F(ReadAppearance, PlyPolygonsKeepTheirCoordinatesHoweverTheyAreCut) {
+  // An arrow head, whose fan would leave it, from each of its corners; corner i has (i / 10, 0).
+  for (int first = 0; first < 4; ++first) {
+    std::string corners, uvs;
+    for (int i = 0; i < 4; ++i) {
+      const std::string corner = std::to_string((first + i) % 4);
+      corners += " " + corner;
+      uvs += " 0." + corner + " 0";
+    }
+    const auto result =
+        read("a.ply",
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+             "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+             "property list uchar float texcoord\nend_header\n"
+             "0 0 0\n2 1 0\n0 2 0\n0.5 1 0\n4" +
+                 corners + " 8" + uvs + "\n");
+    ASSERT_EQ(result.appearance.uvs.size(), 6u);
+    for (std::size_t c = 0; c < 6; ++c)
+      EXPECT_FLOAT_EQ(result.appearance.uvs[c].x,
+                      static_cast<float>(result.mesh.triangles[c / 3][c % 3]) / 10);
+  }
+}
+
 TEST_F(ReadAppearance, PlyAlphaThatWouldHideAllIsIgnored) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -237,11 +260,11 @@ TEST_F(ReadAppearance, GltfPartsThatAreMalformedAreLeftOut) {
   EXPECT_EQ(result.warnings[0],
             path("a.gltf") +
                 ": materials[0].pbrMetallicRoughness.baseColorTexture: textures[7] does not exist: "
-                "the material's colour stands in");
+                "the material's colour replaces it");
   EXPECT_EQ(result.appearance.materials[0].base_color, (Vec3f{1, 0, 0}));
 }
 
-TEST_F(ReadAppearance, FormatsWithoutLooksAreGrey) {
+TEST_F(ReadAppearance, FormatsWithoutAppearanceAreGrey) {
   const auto result = read("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   EXPECT_TRUE(result.appearance.normals.empty());
   ASSERT_EQ(result.appearance.materials.size(), 1u);
@@ -274,6 +297,27 @@ TEST_F(ReadAppearance, TheMeshIsTheOneThatReadMeshGives) {
     }
     EXPECT_LE(against, corners / 50) << name;
   }
+}
+
+/// Makes a folder the current one while it lives.
+class CurrentFolder {
+ public:
+  explicit CurrentFolder(const std::filesystem::path& folder) {
+    std::filesystem::current_path(folder);
+  }
+  ~CurrentFolder() { std::filesystem::current_path(before_); }
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+};
+
+TEST_F(ReadAppearance, AMissingTextureOfAMeshInTheCurrentFolderIsAWarning) {
+  write("a.obj", "mtllib m.mtl\n" + kSquare + "vt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+  write("m.mtl", "newmtl m\nmap_Kd missing.png\n");
+  const CurrentFolder folder(directory_.path());
+  const MeshWithAppearance result = read_mesh_with_appearance("a.obj");
+  ASSERT_EQ(result.appearance.images.size(), 1u);
+  EXPECT_EQ(result.appearance.images[0].path, "missing.png");
 }
 
 }  // namespace

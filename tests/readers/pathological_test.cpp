@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Expectation {
-  std::string outcome;  ///< accept, refuse, or either where a library behind us is not certain.
+  std::string outcome;  ///< "accept" or "refuse".
   std::string reason;   ///< Part of the message of a refusal.
 };
 
@@ -92,10 +92,8 @@ TEST(PathologicalMeshes, EachIsReadOrRefusedAsExpected) {
       continue;
     }
     seen.insert(name);
-    if (found->second.outcome != "either") {
-      EXPECT_EQ(outcome, found->second.outcome) << message;
-      EXPECT_NE(message.find(found->second.reason), message.npos) << message;
-    }
+    EXPECT_EQ(outcome, found->second.outcome) << message;
+    EXPECT_NE(message.find(found->second.reason), message.npos) << message;
   }
   for (const auto& [name, expectation] : expectations)
     EXPECT_TRUE(seen.contains(name)) << name << " is not there";

@@ -64,20 +64,19 @@ class DecodedImage {
   /// Returns a pixel: 8-bit values times 257, grey in all three colours, alpha 65535 if there is
   /// none.
   Rgba pixel(int x, int y) const {
-    const auto channels = static_cast<std::size_t>(channels_);
-    const std::size_t first = static_cast<std::size_t>(x) * channels;
-    const auto sample = [&](std::size_t channel) -> std::uint16_t {
-      if (bytes_per_sample_ == 1) return static_cast<std::uint16_t>(row(y)[first + channel] * 257);
-      std::uint16_t value;
-      std::memcpy(&value, row(y) + 2 * (first + channel), sizeof value);
-      return value;
-    };
-    Rgba rgba;
-    rgba[0] = sample(0);
-    rgba[1] = channels >= 3 ? sample(1) : rgba[0];
-    rgba[2] = channels >= 3 ? sample(2) : rgba[0];
-    rgba[3] = has_alpha() ? sample(channels - 1) : std::uint16_t{65535};
-    return rgba;
+    const auto count = static_cast<std::size_t>(channels_);
+    const std::size_t first = static_cast<std::size_t>(x) * count;
+    std::uint16_t samples[4] = {};
+    if (bytes_per_sample_ == 1) {
+      const std::uint8_t* from = row(y) + first;
+      for (std::size_t c = 0; c < count; ++c)
+        samples[c] = static_cast<std::uint16_t>(from[c] * 257);
+    } else {
+      std::memcpy(samples, row(y) + 2 * first, 2 * count);
+    }
+    const std::uint16_t alpha = has_alpha() ? samples[count - 1] : std::uint16_t{65535};
+    if (count < 3) return {samples[0], samples[0], samples[0], alpha};
+    return {samples[0], samples[1], samples[2], alpha};
   }
 
   /// Sets a pixel of an image with 4 channels of 16 bits.

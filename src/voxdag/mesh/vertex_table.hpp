@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -10,14 +11,16 @@
 
 namespace voxdag {
 
-inline std::uint64_t hash_bits(Vec3f position) {
+inline std::uint64_t hash_bits(Vec3f position, std::uint64_t seed = 0) {
   const auto key = std::bit_cast<std::array<std::uint32_t, 3>>(position);
-  std::uint64_t h = (key[0] | std::uint64_t{key[1]} << 32) * 0x9E3779B97F4A7C15ull;
-  h = (h ^ h >> 32 ^ key[2]) * 0xD6E8FEB86659FD93ull;
+  std::uint64_t h = ((key[0] | std::uint64_t{key[1]} << 32) ^ seed) * 0x9E3779B97F4A7C15ull;
+  h = (h ^ h >> 32 ^ key[2] ^ seed >> 32) * 0xD6E8FEB86659FD93ull;
   return (h ^ h >> 29) * 0x9E3779B97F4A7C15ull;
 }
 
-/// Vertices with distinct bits, numbered in the order in which they were added.
+/// Vertices with distinct bits, numbered in the order in which they were added. The seed of the
+/// hash is random, so that no file can be made of vertices that collide; the numbers do not depend
+/// on it.
 class VertexTable {
  public:
   /// Makes room for `vertices` in a table of `slots`; both grow where they must.
@@ -39,6 +42,15 @@ class VertexTable {
   const std::vector<Vec3f>& vertices() const { return vertices_; }
   std::vector<Vec3f> take_vertices() { return std::move(vertices_); }
 
+  /// Returns the most bytes that the table holds while up to `more` vertices are added.
+  std::uint64_t bytes_with(std::size_t more) const {
+    const std::uint64_t count = vertices_.size() + more;
+    const std::uint64_t vertices = vertices_.capacity(), slots = slots_.size();
+    // Arrays that grow double, and are copied from the old ones.
+    return sizeof(Vec3f) * (count <= vertices ? vertices : vertices + 2 * count) +
+           sizeof(std::uint32_t) * (count <= slots / 16 * 15 ? slots : slots + 4 * count);
+  }
+
  private:
   static constexpr std::uint32_t kFree = ~0u;
 
@@ -47,7 +59,12 @@ class VertexTable {
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
   }
   std::size_t home(Vec3f position) const {
-    return static_cast<std::size_t>((hash_bits(position) >> 32) * slots_.size() >> 32);
+    return static_cast<std::size_t>((hash_bits(position, seed()) >> 32) * slots_.size() >> 32);
+  }
+  static std::uint64_t seed() {
+    static const std::uint64_t value =
+        std::random_device()() | std::uint64_t{std::random_device()()} << 32;
+    return value;
   }
 
   void grow() {

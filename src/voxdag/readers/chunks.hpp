@@ -1,6 +1,6 @@
 #pragma once
-/// A file cut into chunks that threads parse on their own, and how their faults are told: the first
-/// one in the file, whatever thread met it first.
+/// A file split into chunks that threads parse independently. The error is the first one in the
+/// file, whichever thread finds it first.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -16,25 +16,25 @@ namespace voxdag {
 
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
-/// Cuts `text` into runs of whole lines of about `chunk_bytes`. No cut follows a backslash at the
-/// end of a line. The cuts depend on the text alone.
+/// Splits `text` into runs of whole lines of about `chunk_bytes`, but not after a backslash at the
+/// end of a line. The chunks depend on the text alone.
 std::vector<std::string_view> split_lines(std::string_view text, char line_end,
                                           std::size_t chunk_bytes = kChunkBytes);
 
-/// In place of a line end: the file is binary, and faults are told by their byte.
+/// Instead of a line end: the file is binary, and errors name the byte.
 inline constexpr char kBinary = '\0';
 
-/// Something wrong at `position`, which points into the file's bytes.
+/// What is wrong at `position`, which points into the file's bytes.
 struct Fault {
   const char* position;
   std::string reason;
 };
 
-/// Throws the fault as an Error that names its line (or byte) from the start of `source.bytes`.
+/// Throws the fault as an Error that names its line or byte in `source.bytes`.
 [[noreturn]] void throw_fault(const MeshSource& source, const Fault& fault, char line_end);
 
-/// Runs body(i) for every chunk in parallel and lets the chunk's pages go. A body reports bad input
-/// by throwing Fault; the fault of the earliest chunk is then thrown as an Error.
+/// Runs body(i) for every chunk in parallel and releases the chunk's pages. A body reports bad
+/// input by throwing Fault; throws the fault of the earliest chunk as an Error. Throws Cancelled.
 template <class Body>
 void for_each_chunk(const MeshSource& source, const std::vector<std::string_view>& chunks,
                     char line_end, std::string_view stage, const Body& body) {

@@ -2,26 +2,40 @@
 /// Polygons cut into triangles, together with the attributes of their corners.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/mesh/polygon.hpp"
+#include "voxdag/readers/mesh_source.hpp"
 
 namespace voxdag {
 
 /// Cuts one polygon after the other; keeps its scratch memory between them.
 class FaceCutter {
  public:
-  /// A null budget counts nothing.
-  explicit FaceCutter(MemoryBudget* memory) : memory_(memory), old_fan_(memory), corners_(memory) {}
+  explicit FaceCutter(const MeshSource& source)
+      : source_(source),
+        memory_(source.options.memory),
+        old_fan_(memory_),
+        corners_(memory_),
+        poll_([progress = source.options.progress] {
+          if (progress != nullptr) progress->throw_if_cancelled();
+        }) {}
 
-  /// Cuts the polygon with the given fan, as cut_polygon() does.
+  /// Cuts the polygon with the given fan, as cut_polygon() does. Throws Error with the file's name
+  /// if it would cost too much, OverMemory, Cancelled.
   void cut(std::span<Triangle> fan, std::span<const Vec3f> vertices) {
     if (fan.size() < 2) return;
     const MemoryReservation scratch(memory_, scratch_bytes(fan.size()));
-    cut_polygon(fan, vertices);
+    try {
+      cut_polygon(fan, vertices, poll_);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      throw source_.error(error.reason());
+    }
   }
 
   /// Cuts the polygon and finds out which of its corners the corners of the triangles are.
@@ -76,10 +90,12 @@ class FaceCutter {
       }
   }
 
+  const MeshSource& source_;
   MemoryBudget* memory_;
   CountedVector<Triangle> old_fan_;
   CountedVector<std::uint32_t> corners_;  ///< Of each triangle's corners, that of the polygon.
   bool is_cut_ = false;
+  std::function<void()> poll_;
 };
 
 }  // namespace voxdag

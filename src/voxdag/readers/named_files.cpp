@@ -9,10 +9,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Resolves symbolic links as far as the path exists.
+/// Returns the absolute path, with symbolic links resolved as far as it exists.
 fs::path resolved(const fs::path& path) {
   std::error_code failed;
-  fs::path result = fs::weakly_canonical(path, failed);
+  // weakly_canonical() leaves a relative path relative if no part of it exists.
+  fs::path result = fs::weakly_canonical(fs::absolute(path), failed);
   // What cannot be resolved (a loop of links, a name too long) cannot be opened either.
   return failed ? fs::absolute(path, failed).lexically_normal() : result;
 }

@@ -2,11 +2,11 @@
 /// Welding of a triangle soup: corners with equal bits become one vertex, in the order in which the
 /// soup first has them.
 ///
-/// The soup is read twice: once to count its triangles and, from a sample, its vertices, so that
-/// what is made has the right size from the start; and once to make it, a batch of parts at a time.
-/// Threads weld each part on its own; then the vertices of the parts, far fewer than their corners,
-/// are welded in order. Beside the finished mesh there is a table of vertices, of at most 0.27
-/// times its size.
+/// A first pass over the soup counts its triangles and estimates its vertices from a sample, so
+/// that the arrays have their final size from the start. A second pass reads a batch of parts at a
+/// time: threads weld each part on its own; then the vertices of the parts, far fewer than their
+/// corners, are welded in order. A hash table takes at most 0.27 times the size of the finished
+/// mesh.
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -22,20 +22,21 @@
 
 namespace voxdag {
 
-/// What a first reading of a soup tells.
+/// What the first pass over a soup finds.
 struct SoupSize {
-  std::vector<std::size_t> first_triangles;  ///< Of each part and, last, their number.
-  std::size_t vertices = 0;                  ///< Distinct ones; may be exceeded by a few.
+  std::vector<std::size_t> first_triangles;  ///< By part and, last, the number of all.
+  std::size_t vertices = 0;                  ///< Estimated number of distinct vertices.
 };
 
-/// Reads a soup in parts: `visit(part, body)` calls body(Vec3f) for the corners of one part in
-/// order, three for each triangle, and throws Fault at bad input, which is thrown as an Error.
+/// Counts a soup. `visit(part, body)` calls body(Vec3f) for the corners of one part in order, three
+/// per triangle, and throws Fault at bad input. Throws Error, OverMemory, Cancelled.
 template <class Visit>
 SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_view>& parts,
                       char line_end, const Visit& visit) {
   constexpr unsigned kOneIn = 16;  // vertices in the sample, by hash
   SoupSize size{std::vector<std::size_t>(parts.size() + 1), 0};
-  std::vector<std::vector<Vec3f>> samples(parts.size());
+  MemoryBudget* const memory = source.options.memory;
+  std::vector<CountedVector<Vec3f>> samples(parts.size(), CountedVector<Vec3f>(memory));
   for_each_chunk(source, parts, line_end, "scan", [&](std::size_t part) {
     VertexTable sample;
     std::size_t corners = 0;
@@ -44,11 +45,13 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
       if (hash_bits(position) % kOneIn == 0) sample.find_or_add(position);
     });
     size.first_triangles[part + 1] = corners / 3;
-    samples[part] = sample.take_vertices();
+    samples[part].assign(sample.vertices().begin(), sample.vertices().end());
   });
   VertexTable sample;
+  MemoryReservation counted(memory, 0);
   for (std::size_t part = 0; part < parts.size(); ++part) {
     size.first_triangles[part + 1] += size.first_triangles[part];
+    counted.resize(sample.bytes_with(samples[part].size()));
     for (const Vec3f position : samples[part]) sample.find_or_add(position);
   }
   // Four standard deviations above the estimate are hardly ever exceeded.
@@ -58,17 +61,22 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
   return size;
 }
 
-/// Welds a soup as measure_soup takes it, which has fewer than 2^32 / 3 triangles.
+/// Welds a soup of fewer than 2^32 / 3 triangles, which measure_soup() has counted. Throws Error,
+/// OverMemory, Cancelled.
 template <class Visit>
 Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, char line_end,
           const Visit& visit, const SoupSize& size) {
   Mesh mesh;
   const std::vector<std::size_t>& starts = size.first_triangles;
   const std::size_t triangles = starts.back();
-  mesh.triangles.resize(triangles);
   // A full table is slow, so it is full only where nearly no corners are shared.
-  VertexTable table(size.vertices,
-                    64 + std::min(size.vertices * 8 / 5, (triangles + size.vertices) / 5 * 4));
+  const std::size_t slots =
+      64 + std::min(size.vertices * 8 / 5, (triangles + size.vertices) / 5 * 4);
+  const std::uint64_t triangle_bytes = triangles * sizeof(Triangle);
+  MemoryReservation memory(source.options.memory, triangle_bytes + size.vertices * sizeof(Vec3f) +
+                                                      slots * sizeof(std::uint32_t));
+  mesh.triangles.resize(triangles);
+  VertexTable table(size.vertices, slots);
 
   const auto threads =
       static_cast<std::size_t>(std::max(tbb::this_task_arena::max_concurrency(), 1));
@@ -78,6 +86,10 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
     const auto at = [&](std::size_t part) {
       return parts.begin() + static_cast<std::ptrdiff_t>(part);
     };
+    // For each corner: the vertex and its slot in a table of the part, which both may double.
+    const MemoryReservation scratch(
+        source.options.memory,
+        3 * (starts[last] - starts[first]) * (2 * sizeof(Vec3f) + 5 * sizeof(std::uint32_t)));
     std::vector<std::vector<Vec3f>> vertices(last - first);
     for_each_chunk(source, {at(first), at(last)}, line_end, "weld", [&](std::size_t i) {
       VertexTable own;
@@ -95,6 +107,7 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
     });
     std::vector<std::vector<std::uint32_t>> numbers(last - first);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
+      memory.resize(triangle_bytes + table.bytes_with(vertices[i].size()));
       numbers[i].reserve(vertices[i].size());
       for (const Vec3f position : vertices[i]) numbers[i].push_back(table.find_or_add(position));
     }

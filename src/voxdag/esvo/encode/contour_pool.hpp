@@ -1,5 +1,5 @@
 #pragma once
-/// The contours of a block: lists of those of siblings, each run of equal ones stored once.
+/// Stores the contours of a block: one list per group of siblings, equal lists once.
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -9,19 +9,18 @@
 
 namespace voxdag {
 
-/// Walls along an axis have the same contours again and again, voxel after voxel, so lists are kept
-/// once, and a list that is a part of another one needs no place of its own. For most sharing add
-/// long lists first.
+/// Walls along an axis repeat their contours voxel after voxel. A list that equals a list, or a
+/// part of a list, that was added before takes no room. Add long lists first for most sharing.
 class ContourPool {
  public:
-  /// Where `list` (1 to 8 contours) stands among contours().
+  /// Returns the index of `list` (1 to 8 contours) in contours().
   std::uint32_t add(std::span<const Contour> list);
 
   const std::vector<Contour>& contours() const { return contours_; }
 
  private:
   std::vector<Contour> contours_;
-  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // by hash of a run: where it stands
+  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // hash of a run to its index
 };
 
 }  // namespace voxdag

@@ -1,8 +1,8 @@
-/// The idea of the cluster fit of Simon Brown's libsquish: along the principal axis of the colours
-/// an optimal block gives them selectors in order, so that the blocks to consider are the ways to
-/// cut the sorted list into four. For each the best ends, as real numbers, and the error that they
-/// leave come in closed form from prefix sums. The best cuts then get ends of whole steps and
-/// selectors by distance, and the best block of them ends and selectors in turn while that helps.
+/// Source: the cluster fit of Simon Brown's libsquish. Along the principal axis of the colours, an
+/// optimal block assigns the selectors in order. So the candidates are the ways to cut the sorted
+/// colours into four runs. For each of them prefix sums give the best real-valued ends and their
+/// error in closed form. The best cuts get integer ends and the nearest selectors. The best block
+/// of these then improves ends and selectors in turn while that helps.
 #include "voxdag/esvo/encode/encode_color_block.hpp"
 
 #include <algorithm>
@@ -18,13 +18,12 @@ namespace {
 constexpr std::size_t kPadded = kValuesPerBlock + kLanes;
 constexpr FloatLanes kSteps = {31.0f, 63.0f, 31.0f, 1.0f};
 
-/// The distinct ones of the used values. What lies past `count` up to the next multiple of kLanes
-/// has no weight.
+/// The distinct used values. Entries from `count` to the next multiple of kLanes have weight 0.
 struct Values {
   std::size_t count = 0;
   float total_weight = 0.0f;
   FloatLanes mean = {}, low = all_lanes(1.0f), high = all_lanes(0.0f);
-  std::size_t of_slot[kValuesPerBlock];  ///< which of them a used slot has
+  std::size_t of_slot[kValuesPerBlock];  ///< index of a used slot's value
   float weight[kValuesPerBlock] = {};
   FloatLanes color[kValuesPerBlock];
   float channel[3][kValuesPerBlock] = {};
@@ -55,14 +54,14 @@ void gather(std::span<const Vec3f, kValuesPerBlock> colors, std::uint32_t used,
   values.mean = sum / values.total_weight;
 }
 
-/// A block in the making: ends in steps, and how many thirds of c0 each value takes.
+/// A block under construction: its ends in steps, and the thirds of c0 in each value.
 struct Fit {
   FloatLanes c0, c1;
   float thirds[kValuesPerBlock];
   float error;
 };
 
-/// The ends that serve the values best with the selectors as they are, in whole steps.
+/// Fits integer ends to the values, with the current selectors.
 void fit_ends(const Values& values, Fit& fit) {
   float aa = 0, ab = 0, bb = 0;
   FloatLanes a_sum = {};
@@ -78,7 +77,8 @@ void fit_ends(const Values& values, Fit& fit) {
   const FloatLanes b = values.mean * (3.0f * values.total_weight) * scale - a;
   // A channel's error is aa p² + 2 ab p q + bb q² - 2 a p - 2 b q and a constant.
   const float det = aa * bb - ab * ab;
-  // With one selector only any p and q with the right mix do, and equal ones come nearest to it.
+  // With a single selector many p and q give the same mix; equal ones are the nearest after
+  // rounding.
   const bool line = det <= 1e-5f * (aa + bb) * (aa + bb);
   const FloatLanes real_p = line ? mean : (a * bb - b * ab) / det;
   const FloatLanes real_q = line ? mean : (b * aa - a * ab) / det;
@@ -101,7 +101,7 @@ void fit_ends(const Values& values, Fit& fit) {
   consider(p_for(next_q), next_q);
 }
 
-/// The nearest of the four colours for each value, and the error.
+/// Assigns the nearest of the four colours to each value, and sets the error.
 void fit_selectors(const Values& values, Fit& fit) {
   FloatLanes palette[4];
   for (int thirds = 0; thirds < 4; ++thirds) {
@@ -127,8 +127,8 @@ void fit_selectors(const Values& values, Fit& fit) {
   fit.error = error[0] + error[1] + error[2] + error[3];
 }
 
-/// The values in order along their axis, and the sums of the first 0, 1, ... of them: weights, and
-/// weighted differences from the mean. Past the last the sums repeat.
+/// The values sorted along their axis, and prefix sums over them: weights, and weighted differences
+/// from the mean. The sums after the last value repeat.
 struct Sorted {
   std::size_t order[kValuesPerBlock];
   float weight[kPadded + 1], x[kPadded + 1], y[kPadded + 1], z[kPadded + 1];
@@ -161,7 +161,8 @@ void sort_along_axis(const Values& values, Sorted& sorted) {
   }
 }
 
-/// Where the sorted values are cut: those before `a` take c0, before `b` 2/3 of it, before `c` 1/3.
+/// Cuts of the sorted values: those before `a` are c0, those before `b` 2/3 c0, those before `c`
+/// 1/3 c0.
 struct Cuts {
   int a = 0, b = 0, c = 0;
   float gain = 0.0f;  ///< by how much the best ends reduce the sum of squared differences
@@ -181,9 +182,9 @@ class CutSearch {
         nine_weight_(9.0f * sorted.weight[count]),
         least_det_(1e-5f * sorted.weight[count] * sorted.weight[count]) {}
 
-  /// Eight cuts, the best of disjoint sets that together are all but those of a single selector.
-  /// The first four use both ends. The last four leave one unused: it may lie so far out that its
-  /// colour is none, which the gain does not know.
+  /// Returns eight cuts, each the best of one of eight disjoint sets, which together are all cuts
+  /// but those with a single selector. The first four use both ends. The last four leave one end
+  /// unused; that end may be no valid colour, which the gain does not consider.
   std::array<Cuts, 2 * kLanes> run() const {
     BestCuts inner, outer;
     for (int a = 1; a < count_; ++a)
@@ -191,7 +192,7 @@ class CutSearch {
         for (int c = b; c < count_; c += kLanes) consider(a, b, c, count_, inner);
     for (int b = 0; b < count_; ++b)
       for (int c = b; c <= count_; c += kLanes) consider(0, b, c, count_ + 1, outer);
-    // With all values before the last cut `b` runs over the lanes.
+    // All values lie before the last cut: here `b` runs over the lanes.
     for (int a = 1; a < count_; ++a)
       for (int b = a; b <= count_; b += kLanes) consider_whole(a, b, outer);
     std::array<Cuts, 2 * kLanes> cuts;
@@ -210,7 +211,7 @@ class CutSearch {
     return {code >> 16, code >> 8 & 255, code & 255, best.gain[lane]};
   }
 
-  /// `c` and the lanes' next below `end`.
+  /// Tries the cuts `c`, `c` + 1, ... below `end`, one per lane.
   void consider(int a, int b, int c, int end, BestCuts& best) const {
     const Sorted& s = sorted_;
     const FloatLanes w3 = load_lanes(&s.weight[c]);
@@ -229,9 +230,9 @@ class CutSearch {
            (kOffsets << 8) + (a << 16 | b << 8 | count_), kOffsets <= count_ - b, best);
   }
 
-  /// With W the weight of all values, S = (x, y, z) the sum of the three prefixes of differences
-  /// from the mean, and aa, ab, bb the selectors' sums of products in thirds, the best ends reduce
-  /// the error by 9 W |S|² / (aa bb - ab²).
+  /// Let W be the weight of all values, S = (x, y, z) the sum of the three prefix sums of
+  /// differences from the mean, and aa, ab, bb the sums of products of the selectors in thirds. The
+  /// best ends then reduce the error by 9 W |S|² / (aa bb - ab²).
   void update(FloatLanes aa, FloatLanes ab, FloatLanes x, FloatLanes y, FloatLanes z, IntLanes code,
               IntLanes valid, BestCuts& best) const {
     const FloatLanes bb = nine_weight_ - aa - ab * 2.0f;
@@ -247,7 +248,7 @@ class CutSearch {
   float nine_weight_, least_det_;
 };
 
-/// Gives each sorted value the thirds of c0 that the cuts say, and takes the fit if it is better.
+/// Fits a block to the cuts, and replaces `best` if the block is better.
 void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, Fit& best) {
   Fit fit;
   for (int i = 0; i < static_cast<int>(values.count); ++i)
@@ -257,7 +258,7 @@ void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, F
   if (fit.error < best.error) best = fit;
 }
 
-/// All values 2/3 c0 + 1/3 c1: between them the ends reach every third of a step.
+/// Returns a block whose values are all 2/3 c0 + 1/3 c1, which can be any third of a step.
 Fit one_color(const Values& values) {
   Fit fit;
   std::fill_n(fit.thirds, kValuesPerBlock, 2.0f);
@@ -267,7 +268,7 @@ Fit one_color(const Values& values) {
   return fit;
 }
 
-/// The block of the best cuts.
+/// Returns the block of the best cuts.
 Fit fit_cuts(const Values& values) {
   Sorted sorted;
   sort_along_axis(values, sorted);
@@ -275,13 +276,13 @@ Fit fit_cuts(const Values& values) {
   fit_selectors(values, best);
   const int count = static_cast<int>(values.count);
   if (count <= 3) {
-    // Few values fit so many cuts exactly that only the whole steps decide.
+    // Many cuts fit few values exactly; only the rounding of the ends decides between them.
     for (int a = 0; a <= count; ++a)
       for (int b = a; b <= count; ++b)
         for (int c = b; c <= count; ++c) try_cuts(values, sorted, a, b, c, best);
   } else {
-    // Whole steps cost about a twelfth of a squared step for each value and channel: cuts that are
-    // worse by more than that are not worth trying.
+    // Rounding to integer steps costs about a twelfth of a squared step per value and channel. Cuts
+    // that are worse by more than that cannot win.
     constexpr float kStepError = (2.0f / (31.0f * 31.0f) + 1.0f / (63.0f * 63.0f)) / 12.0f;
     const std::array<Cuts, 2 * kLanes> cuts = CutSearch(sorted, values.count).run();
     float enough = 0.0f;

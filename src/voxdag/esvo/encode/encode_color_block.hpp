@@ -1,5 +1,5 @@
 #pragma once
-/// Sixteen colours to a colour block.
+/// Encodes sixteen colours as a colour block.
 #include <cstdint>
 #include <span>
 
@@ -7,14 +7,14 @@
 
 namespace voxdag {
 
-/// The block whose decoded values have the least sum of squared differences, over red, green and
-/// blue, from the used ones of `colors`, or nearly so: on blocks of up to five values its error is
-/// within a few percent of the optimum.
+/// Returns a block whose decoded values are close to the used ones of `colors`, by the sum of
+/// squared differences over red, green and blue. With up to five values its error is within a few
+/// percent of the optimum.
 ///
-/// `colors` are sRGB-encoded, in [0,1] (what lies outside is clamped, NaN is 0). Bit i of `used`
-/// tells if value i counts; the selectors of the others are 0 and their colours are not read.
-/// `weights`, where given, are positive and finite: how much a value's squared difference counts.
-/// The bits depend on the arguments alone, on any machine. Thread-safe.
+/// `colors` are sRGB-encoded, in [0,1] (other values are clamped, NaN is 0). Bit i of `used` is set
+/// if value i counts; unused values get selector 0, and their colours are not read. `weights`, if
+/// given, are positive and finite factors on the squared differences. The bits depend on the
+/// arguments alone, on any machine. Thread-safe.
 ColorBlock encode_color_block(std::span<const Vec3f, kValuesPerBlock> colors, std::uint32_t used,
                               const float* weights = nullptr);
 

@@ -1,15 +1,15 @@
 #pragma once
-/// The values of a pair of descriptors as their compression blocks.
+/// Encodes the values of a pair of descriptors as compression blocks.
 #include <cstdint>
 
 #include "voxdag/esvo/encode/esvo_tree.hpp"
 
 namespace voxdag {
 
-/// The 16 values of a pair of slots; those that no voxel has are not in the mask.
+/// The 16 values of a pair of slots.
 struct PairValues {
-  std::uint32_t mask = 0;
-  std::uint32_t leaves = 0;  ///< Bit i: value i is of a leaf.
+  std::uint32_t mask = 0;    ///< Bit i: a voxel has value i.
+  std::uint32_t leaves = 0;  ///< Bit i: a leaf has value i.
   VoxelValue values[16];
 
   void set(std::uint32_t at, const VoxelValue& value, bool is_leaf) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A part of an ESVO while it is being built: nodes, not yet in blocks.
+/// A part of an ESVO under construction: nodes that are not yet in blocks.
 #include <cstdint>
 #include <vector>
 
@@ -9,19 +9,19 @@
 
 namespace voxdag {
 
-/// What is seen of a voxel.
+/// The attributes of a voxel.
 struct VoxelValue {
   std::uint8_t color[3] = {};  ///< sRGB encoded.
   Vec3f normal{};              ///< Unit length.
 };
 
-/// A non-leaf voxel: what its child descriptor will say. Lists are in the order of the children.
+/// An inner voxel: the contents of its child descriptor. Lists are in the order of the children.
 struct EsvoNode {
-  /// The inner children are the nodes from here on, all greater than the node's own index; or, if
-  /// `is_packed`, they are in a block already: an index into EsvoTree::packed.
+  /// Index of the first inner child among the nodes; greater than this node's index. If
+  /// `is_packed`, the children are in a block already: an index into EsvoTree::packed.
   std::uint32_t first_child = 0;
-  std::uint32_t first_contour = 0;  ///< In EsvoTree::contours, one for each of contour_mask.
-  std::uint32_t first_value = 0;    ///< In EsvoTree::values, one for each of valid_mask.
+  std::uint32_t first_contour = 0;  ///< In EsvoTree::contours; one per bit of contour_mask.
+  std::uint32_t first_value = 0;    ///< In EsvoTree::values; one per bit of valid_mask.
   std::uint8_t valid_mask = 0, leaf_mask = 0, contour_mask = 0;
   bool is_packed = false;
 
@@ -29,7 +29,7 @@ struct EsvoNode {
   std::uint32_t inner_count() const { return static_cast<std::uint32_t>(popcount8(inner_mask())); }
 };
 
-/// Node 0 is the voxel that the part belongs to. Every other node is a child of exactly one.
+/// Node 0 is the root of the part. Every other node is the child of exactly one node.
 struct EsvoTree {
   std::vector<EsvoNode> nodes;
   std::vector<Contour> contours;

@@ -6,7 +6,7 @@
 namespace voxdag {
 namespace {
 
-/// Normals whose components differ by less are one: about 0.0003 degrees.
+/// Normals whose components differ by less are equal: about 0.0003 degrees.
 constexpr float kSame = 4e-6f;
 constexpr float kThird = 1.0f / 3.0f;
 constexpr float kCoefficients[4] = {-1.0f, -kThird, kThird, 1.0f};
@@ -17,13 +17,13 @@ FloatLanes square_root(FloatLanes v) {
   return v;
 }
 
-/// To the nearest integer, within [-8, 7].
+/// Rounds to the nearest integer in [-8, 7].
 FloatLanes nearest_component(FloatLanes v) {
   return truncated(min(max(v, all_lanes(-8.0f)), all_lanes(7.0f)) + 8.5f) - 8.0f;
 }
 
-/// The directions of a grid's points relative to that of its base, four of a u step at once, and
-/// half their squares.
+/// The directions of a grid's points relative to the direction of its base, four per u step, and
+/// half of their squares.
 struct GridDirections {
   FloatLanes x[4], y[4], z[4], half_square[4];
   Vec3f base;
@@ -35,7 +35,7 @@ struct GridDirections {
       const Vec3f start = grid.base + grid.u * kCoefficients[row];
       const FloatLanes px = vx + start.x, py = vy + start.y, pz = vz + start.z;
       const FloatLanes squared = px * px + py * py + pz * pz;
-      // A point without a direction is too far away to be taken.
+      // A point without a direction gets a distance at which no normal takes it.
       const IntLanes directed = squared > 1e-6f;
       const FloatLanes scale = 1.0f / square_root(directed ? squared : all_lanes(1.0f));
       x[row] = px * scale - base.x, y[row] = py * scale - base.y, z[row] = pz * scale - base.z;
@@ -45,7 +45,7 @@ struct GridDirections {
   }
 };
 
-/// For 4 `Groups` normals: squared chords without what does not depend on the point decide.
+/// Assigns points to 4 `Groups` normals, by squared chords without the terms that all points share.
 template <int Groups>
 void fit_groups(const NormalValues& values, const GridDirections& points, NormalFit& fit) {
   FloatLanes x[Groups], y[Groups], z[Groups], least[Groups], nearest[Groups];
@@ -138,8 +138,8 @@ GridAxis nearest_axis(Vec3f target, Vec3f base, float bend) {
   const int exponent = std::min(std::max(ceiling + GridAxis::kBias, 0), 15);
   const Vec3f t = target * (1.0f / GridAxis::scale(exponent));
 
-  // One component runs over its sixteen values; what of the base takes it there is added to the
-  // others before they are rounded.
+  // One component tries its sixteen values. The multiple of the base that leads to each value is
+  // added to the other components before they are rounded.
   const Vec3f size{std::fabs(base.x), std::fabs(base.y), std::fabs(base.z)};
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   FloatLanes least = all_lanes(INFINITY), best_x = {}, best_y = {}, best_z = {};

@@ -1,6 +1,6 @@
 #pragma once
-/// A grid of normals in the making: which normals it is for, how near it comes to them, and the
-/// nearest stored forms of its parts.
+/// A grid of normals under construction: its normals, its error, and the nearest stored forms of
+/// its parts.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,19 +11,18 @@
 
 namespace voxdag {
 
-/// A block's used normals, those that differ by next to nothing as one. What lies past `count` has
-/// no weight.
+/// The used normals of a block; nearly equal ones are one. Entries after `count` have weight 0.
 struct NormalValues {
   std::size_t count = 0;
   float total_weight = 0.0f;
   std::uint32_t used = 0;                ///< slots with a direction
-  std::size_t of_slot[kValuesPerBlock];  ///< which of the normals a used slot has
+  std::size_t of_slot[kValuesPerBlock];  ///< index of a used slot's normal
   Vec3f normal[kValuesPerBlock];         ///< of unit length
   float weight[kValuesPerBlock] = {};
   float x[kValuesPerBlock] = {}, y[kValuesPerBlock] = {}, z[kValuesPerBlock] = {};
 };
 
-/// Fills `values`, which must be new.
+/// Collects the used normals in `values`, which must be new.
 void gather_normals(std::span<const Vec3f, kValuesPerBlock> normals, std::uint32_t used,
                     const float* weights, NormalValues& values);
 
@@ -32,7 +31,7 @@ struct RealGrid {
   Vec3f base, u, v;
 };
 
-/// A grid, the point of it that each normal takes, and what that costs.
+/// A grid in its stored form, the grid point of each normal, and the error.
 struct NormalFit {
   CubePoint base;
   GridAxis u, v;
@@ -42,19 +41,20 @@ struct NormalFit {
   RealGrid grid() const { return {base.position(), u.vector(), v.vector()}; }
 };
 
-/// Gives each normal the nearest point of the grid, and the fit its error.
+/// Assigns the nearest grid point to each normal, and sets the error.
 void fit_points(const NormalValues& values, NormalFit& fit);
 
 inline Vec3f unit_vector(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
-/// The greatest of the components' sizes.
+/// Returns the largest absolute value of a component.
 float longest_side(Vec3f v);
 
-/// The point of the cube nearest to a direction of any length but zero.
+/// Returns the point of the cube nearest to a direction, which may have any length but zero.
 CubePoint nearest_cube_point(Vec3f direction);
 
-/// The stored axis nearest to `target` as seen along `base`, a unit vector: components along the
-/// base only lengthen a grid's normals, and to let them be anything makes the others finer.
-/// `bend` is what a squared unit of them costs in squared units of the error across.
+/// Returns the stored axis nearest to `target` as seen along `base`, a unit vector. Components
+/// along the base only change the length of a grid's normals, so they are nearly free, which makes
+/// the others finer. `bend` is the cost of a squared unit along the base, in squared units across
+/// it.
 GridAxis nearest_axis(Vec3f target, Vec3f base, float bend);
 
 }  // namespace voxdag

@@ -1,9 +1,9 @@
 #pragma once
-/// The contour that takes away most of what a voxel's shape has beyond its surface.
+/// Finds the contour that cuts most from the part of a voxel's shape that lies beyond its surface.
 ///
-/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.4: of some
-/// candidate directions, the one in which the shape's extent exceeds the surface's most; planes
-/// across it as near to the surface as they can be stored, never nearer.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.4. Of some
+/// candidate directions, takes the one in which the shape's extent exceeds the surface's most. The
+/// planes across it are rounded outwards to positions that can be stored.
 #include <array>
 #include <cmath>
 #include <optional>
@@ -25,19 +25,20 @@ struct ContourDirection {
   explicit ContourDirection(Vec3i n)
       : normal(n), length(std::sqrt(static_cast<float>(dot(n, n)))) {}
 
-  /// The one nearest to `direction` or its opposite, whichever points up; none for zero.
+  /// Returns the direction nearest to `direction` or its opposite, whichever points up; none for
+  /// zero.
   static ContourDirection nearest(Vec3d direction);
 
   bool exists() const { return length > 0; }
 };
 
-/// Directions to choose from, a few that differ well.
+/// A few candidate directions that differ well from each other.
 class ContourCandidates {
  public:
   static constexpr int kMost = 8;
 
-  /// Adds a direction unless one like it (or its opposite) is there, or adds to that one's weight.
-  /// Where there is no room the lightest goes.
+  /// Adds a direction. If a similar one (or its opposite) exists, adds to its weight instead. If
+  /// there is no room, replaces the direction of least weight.
   void add(const ContourDirection& direction, double weight);
 
   std::span<const ContourDirection> directions() const { return {directions_.data(), count_}; }
@@ -50,33 +51,33 @@ class ContourCandidates {
 
 struct FittedContour {
   Contour contour;
-  /// By how much the shape becomes thinner across it, in the voxel's coordinates: its side is 2.
+  /// Thickness that it cuts from the shape, in the voxel's coordinates: the side is 2.
   double gain = 0;
 
-  /// A contour that saves less does not pay for its four bytes, unless it lets the subdivision end
-  /// here, where each child would have to have one of its own.
+  /// A contour with less gain is not worth its four bytes, unless it makes the voxel a leaf: else
+  /// each child would need a contour.
   static constexpr double kLeastGain = 0.15;
   bool pays() const { return gain > kLeastGain; }
 };
 
-/// The least and the greatest dot(normal, p) of the shape's points p.
+/// Returns the least and the greatest dot(normal, p) of the shape's points p.
 Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal);
 
-/// The least and the greatest dot(normal, p) of some points p, by direction.
+/// The least and the greatest dot(normal, p) of a surface's points p, by candidate direction.
 using ContourExtents = std::array<Interval, ContourCandidates::kMost>;
 
-/// Those of a surface of one polygon at least.
+/// Returns the extents of a surface of at least one polygon.
 ContourExtents extents_of(std::span<const PlanarPolygon> surface,
                           const ContourCandidates& candidates);
 
-/// The best contour, or none if the shape nowhere exceeds the surface, whose extents along the
-/// candidates are given. The surface lies between the planes by a margin that exceeds all rounding
-/// here and in the ray casts.
+/// Returns the best contour for a surface with these extents along the candidates, or none if the
+/// shape nowhere exceeds the surface. The surface lies between the planes with a margin that
+/// exceeds all rounding here and in the ray casts.
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
                                          const ContourCandidates& candidates,
                                          const ContourExtents& extents);
 
-/// Of the shape what is between the contour's planes. `result` is another one.
+/// Sets `result`, another polyhedron, to the part of the shape between the contour's planes.
 void clip_to_contour(const ConvexPolyhedron& shape, Contour contour, ConvexPolyhedron& result);
 
 }  // namespace voxdag

@@ -14,7 +14,7 @@ struct PlanarPolygon {
   Vec3f normal;
 };
 
-/// The most polygons that is_near_surface() looks at.
+/// Largest number of polygons that is_near_surface() tests.
 inline constexpr std::size_t kMostNearPolygons = 24;
 
 /// Returns whether the shape's vertices and their mean are each within `distance` of one of the

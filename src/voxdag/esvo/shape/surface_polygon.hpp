@@ -3,9 +3,9 @@
 /// [-1,1]³.
 ///
 /// Each level cuts the polygons of the level above (Sutherland and Hodgman, "Reentrant Polygon
-/// Clipping", 1974) and doubles their coordinates, which is exact. What is cut by mistake at one
-/// level would leave a hole below it, so a corner may lie 1e-9 outside of the plane that cuts, and
-/// is moved onto it.
+/// Clipping", 1974) and doubles their coordinates, which is exact. A point lost by rounding at one
+/// level would leave a hole in the levels below. So a corner within 1e-9 outside of the cutting
+/// plane counts as inside, and is moved onto the plane.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -21,7 +21,7 @@ struct SurfacePolygon {
   static constexpr std::uint8_t kCutEdge = 3;
   static constexpr double kSlack = 1e-9;  ///< Corners nearer to a plane than this lie on it.
 
-  // Most have a few of the corners that there is room for: copies leave out the rest.
+  // Copies only the corners in use.
   SurfacePolygon() {}
   SurfacePolygon(const SurfacePolygon& other) { *this = other; }
   SurfacePolygon& operator=(const SurfacePolygon& other) {
@@ -38,8 +38,8 @@ struct SurfacePolygon {
   union {
     Vec3d corners[kMaxCorners];  // uninitialised
   };
-  /// What the edge from corner i to the next is: 0, 1, 2 the triangle's edge that begins at that
-  /// corner of it, or kCutEdge.
+  /// The origin of the edge from corner i to the next: 0, 1 or 2 for the triangle's edge that
+  /// begins at that corner of the triangle, or kCutEdge.
   std::uint8_t edges[kMaxCorners];
 
   static SurfacePolygon triangle(Vec3d a, Vec3d b, Vec3d c) {
@@ -80,7 +80,8 @@ struct SurfacePolygon {
     };
     count = 0;
     if (inside == 0) return;
-    // Corners whose predecessors are outside. A convex polygon has one at most, but for rounding.
+    // Corners whose predecessors are outside. A convex polygon has at most one, except for
+    // rounding.
     const unsigned after = (inside << 1 | inside >> (n - 1)) & ((1u << n) - 1);
     unsigned entries = inside & ~after;
     if (entries == 0)
@@ -102,8 +103,8 @@ struct SurfacePolygon {
   }
 
   /// Becomes the part of `whole`, another polygon, in octant `child` (x=1, y=2, z=4), enlarged to
-  /// [-1,1]³. It is in both halves along `axes` at most, a mask likewise. Where rounding lost all
-  /// that is known to be there a point is left.
+  /// [-1,1]³. `axes` (x=1, y=2, z=4) are those along which `whole` may be in both halves. If
+  /// rounding loses the whole part, a point remains.
   void become_octant(const SurfacePolygon& whole, int child, std::uint32_t axes) {
     SurfacePolygon parts[2];
     const SurfacePolygon* from = &whole;
@@ -121,7 +122,7 @@ struct SurfacePolygon {
     become_enlarged(*from, child);
   }
 
-  /// The same of a polygon that is known to lie in that octant.
+  /// Becomes `whole`, another polygon that lies in octant `child`, enlarged to [-1,1]³.
   void become_enlarged(const SurfacePolygon& whole, int child) {
     const auto shift = [&](int axis) { return (child >> axis & 1) != 0 ? -1.0 : 1.0; };
     const Vec3d shifts{shift(0), shift(1), shift(2)};
@@ -132,7 +133,7 @@ struct SurfacePolygon {
     }
   }
 
-  /// Keeps the part in [-1,1]³, or a point there if rounding lost it.
+  /// Keeps the part in [-1,1]³, or a point there if rounding loses the part.
   void clip_to_cell() {
     bool is_inside = true;
     for (int i = 0; i < count; ++i)
@@ -159,13 +160,14 @@ struct SurfacePolygon {
     edges[0] = kCutEdge;
   }
 
-  /// Octants (x=1, y=2, z=4): one, or two side by side.
+  /// One octant (x=1, y=2, z=4), or two that share a side.
   struct Octants {
     std::uint32_t first, last;
   };
-  /// Those that it lies in, unless they are more, or rounding leaves a doubt.
+  /// Returns the octants that contain the polygon; nothing if there are more than two, or if
+  /// rounding leaves a doubt.
   std::optional<Octants> octants() const {
-    // Corners are moved by kSlack at most, which each of twenty levels of cells doubles.
+    // A corner moves by at most kSlack, and each of twenty levels doubles that.
     constexpr double kDoubt = kSlack * (1 << 20);
     if (count < 3) return std::nullopt;
     Vec3d least = corners[0], most = corners[0];
@@ -183,15 +185,15 @@ struct SurfacePolygon {
     return octants;
   }
 
-  /// Whether all corners are on this side of 0 along an axis, and none as near as to lie on it;
-  /// `sign` is the side's, 1 or -1.
+  /// Returns whether all corners lie on the side `sign` (1 or -1) of 0 along an axis, by more than
+  /// kSlack.
   bool is_inside(int axis, double sign) const {
     bool is_inside = true;
     for (int i = 0; i < count; ++i) is_inside &= sign * corners[i][axis] >= kSlack;
     return is_inside;
   }
 
-  /// The vector area: its length is the area, its direction the normal.
+  /// Returns the vector area: its length is the area, its direction the normal.
   Vec3d area() const {
     Vec3d sum{};
     for (int i = 2; i < count; ++i)

@@ -1,30 +1,86 @@
 #pragma once
-/// The arrays of a glTF asset.
+/// The elements of a glTF accessor.
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <map>
+#include <string>
+#include <utility>
 
-#include "voxdag/core/vec.hpp"
-#include "voxdag/core/vec2.hpp"
 #include "voxdag/readers/gltf/gltf_file.hpp"
 
 namespace voxdag {
 
-/// Number of elements that an accessor declares; throws Error if it is 0 or over 2^32 - 2.
+/// Decodes elements one at a time from the file's bytes, so that no array of them is in memory and
+/// the number of accessors that primitives use costs nothing. Refers to the file.
+class GltfAccessor {
+ public:
+  /// Checks that every element is inside its buffer. Throws Error, OverMemory.
+  GltfAccessor(const GltfFile& file, const GltfValue& value);
+
+  std::size_t size() const { return count_; }
+  int components() const { return components_; }  ///< 1 for SCALAR, 2 to 4 for VEC2 to VEC4.
+  std::uint64_t component_type() const { return type_; }
+
+  /// Returns `n` components of element `i` as floats; n <= components().
+  template <std::size_t n>
+  std::array<float, n> floats(std::size_t i) const {
+    std::array<float, n> values{};
+    if (const char* const p = find(i))
+      for (std::size_t c = 0; c < n; ++c) values[c] = load_component(p + c * component_bytes_);
+    return values;
+  }
+  /// Returns element `i` of an accessor of unsigned integers.
+  std::uint32_t index(std::size_t i) const;
+
+ private:
+  /// A sparse value and the element that it replaces.
+  using Change = std::pair<std::uint32_t, const char*>;
+
+  void read_sparse(const GltfFile& file, const GltfValue& sparse);
+  /// Returns the bytes of an element; null: it is zero.
+  const char* find(std::size_t i) const;
+  float load_component(const char* p) const;
+
+  std::size_t count_ = 0;
+  int components_ = 0;
+  std::uint64_t type_ = 0;
+  std::size_t component_bytes_ = 0;
+  bool is_normalized_ = false;
+  const char* dense_ = nullptr;  ///< The first dense element, if there are any.
+  std::size_t stride_ = 0;
+  CountedVector<Change> changes_;  ///< Sorted by element.
+};
+
+/// The accessors of a file, each checked once.
+class GltfAccessors {
+ public:
+  explicit GltfAccessors(const GltfFile& file)
+      : file_(file), accessors_(file.source().options.memory) {}
+
+  /// Return the accessor that `user` refers to, for one purpose. The references stay valid. Throw
+  /// Error, OverMemory.
+  ///
+  /// Positions: VEC3 of float, or of 8- or 16-bit integers if the asset uses KHR_mesh_quantization.
+  const GltfAccessor& positions(std::uint64_t index, const GltfValue& user);
+  /// Indices: SCALAR of unsigned 8, 16 or 32 bits, whose values are not checked.
+  const GltfAccessor& indices(std::uint64_t index, const GltfValue& user);
+  /// Attributes with a number of components: VEC2 texture coordinates, VEC3 normals, VEC3 or VEC4
+  /// colours. `what` names them in errors.
+  const GltfAccessor& attributes(std::uint64_t index, const GltfValue& user, int components,
+                                 int or_components, const char* what);
+
+ private:
+  const GltfAccessor& find(std::uint64_t index, const GltfValue& user);
+  bool is_quantized();
+
+  using Entry = std::pair<const std::uint64_t, GltfAccessor>;
+  const GltfFile& file_;
+  std::map<std::uint64_t, GltfAccessor, std::less<>, CountedAllocator<Entry>> accessors_;
+  std::optional<bool> is_quantized_;
+};
+
+/// Returns the number of elements that an accessor declares. Throws Error if it is 0 or over 2^32
+/// - 2.
 std::uint32_t gltf_count(const GltfValue& accessor);
-
-/// Positions: VEC3 of float, or of 8- or 16-bit integers where the asset uses
-/// KHR_mesh_quantization. Sparse values are put in place. Every range is checked against its
-/// buffer. Throws Error.
-std::vector<Vec3f> read_gltf_positions(const GltfFile& file, const GltfValue& accessor);
-
-/// Texture coordinates (VEC2), normals (VEC3) and colours (VEC3 or VEC4; linear light), of any
-/// component type; as above.
-std::vector<Vec2f> read_gltf_uvs(const GltfFile& file, const GltfValue& accessor);
-std::vector<Vec3f> read_gltf_normals(const GltfFile& file, const GltfValue& accessor);
-std::vector<std::array<float, 4>> read_gltf_colors(const GltfFile& file, const GltfValue& accessor);
-
-/// Indices: SCALAR of unsigned 8, 16 or 32 bits; as above. The indices themselves are not checked.
-std::vector<std::uint32_t> read_gltf_indices(const GltfFile& file, const GltfValue& accessor);
 
 }  // namespace voxdag

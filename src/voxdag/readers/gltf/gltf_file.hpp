@@ -1,83 +1,74 @@
 #pragma once
 /// The container of a glTF 2.0 asset: its JSON, and the bytes of its buffers.
+#include <array>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "voxdag/readers/mesh_source.hpp"
+#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/readers/gltf/gltf_uri.hpp"
+#include "voxdag/readers/gltf/gltf_value.hpp"
+#include "voxdag/readers/named_files.hpp"
 
 namespace voxdag {
 
-/// A JSON value and its path in the asset, for error messages: "accessors[3].sparse".
-/// Members that are absent have a null value.
-class GltfValue {
- public:
-  GltfValue(const MeshSource& source, const nlohmann::json& value, std::string path)
-      : source_(&source), value_(&value), path_(std::move(path)) {}
-
-  /// The member of an object; throws Error if this is there but is no object.
-  GltfValue operator[](const char* key) const;
-  /// The items of an array, none if absent; throws Error if this is there but is no array.
-  std::vector<GltfValue> items() const;
-  bool exists() const { return !value_->is_null(); }
-
-  /// A whole number from 0 to 2^53, the default if absent; throws Error for anything else.
-  std::uint64_t whole(std::uint64_t absent) const;
-  std::uint64_t whole() const;  ///< As above; throws Error if absent.
-  bool boolean(bool absent) const;
-  std::string text(const std::string& absent = "") const;
-  /// `count` finite numbers, or nothing if absent; throws Error for anything else.
-  std::vector<double> numbers(std::size_t count) const;
-  /// A finite number, or the default if absent; throws Error for anything else.
-  double number(double absent) const;
-
-  Error error(const std::string& reason) const { return {source_->name, path_, reason}; }
-
- private:
-  const MeshSource* source_;
-  const nlohmann::json* value_;
-  std::string path_;
-};
-
-/// The bytes of a buffer, and what owns them.
-struct GltfBuffer {
-  std::string_view bytes;
-  std::unique_ptr<MappedFile> file;
-  std::string decoded;
+/// The arrays of the asset that this library reads.
+enum class GltfArray {
+  kBuffers,
+  kBufferViews,
+  kAccessors,
+  kMeshes,
+  kNodes,
+  kScenes,
+  kMaterials,
+  kImages,
+  kTextures,
+  kSamplers
 };
 
 class GltfFile {
  public:
-  /// Parses the container (JSON text or GLB) and checks version and required extensions. Buffers
-  /// are opened too: files beside the asset are mapped, `data:` URIs are decoded. Images are not.
+  /// Parses the container (JSON text or GLB) and checks version and required extensions. Maps
+  /// buffers in other files and decodes those in `data:` URIs; opens no images. Throws Error,
+  /// OverMemory, Cancelled.
   explicit GltfFile(const MeshSource& source);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
-  GltfValue root() const { return {source_, json_, ""}; }
-  /// Item `index` of a top-level array; throws Error, on behalf of `user`, if there is none.
-  const GltfValue& item(const char* array, std::uint64_t index, const GltfValue& user) const;
-  /// All items of a top-level array.
-  const std::vector<GltfValue>& array(const char* name) const;
-  /// The bytes of a `data:` URI; nothing if the URI is another or malformed.
-  static std::optional<std::string> decode_data_uri(std::string_view uri);
-  /// A relative URI as the path of a file.
-  static std::string decode_uri(std::string_view uri);
+  const MeshSource& source() const { return source_; }
+  const NamedFiles& named_files() const { return named_files_; }
+  GltfValue root() const { return {source_, *json_, json_->root()}; }
+  const GltfItems& array(GltfArray array) const { return arrays_[static_cast<std::size_t>(array)]; }
+  /// Returns item `index` of an array. If there is none, throws Error with the place of `user`.
+  GltfValue item(GltfArray array, std::uint64_t index, const GltfValue& user) const;
 
-  const GltfBuffer& buffer(std::uint64_t index) const { return buffers_[index]; }
+  /// Returns the bytes of the buffer view that `user` refers to, which lie inside their buffer.
+  /// `view` receives the view, for its stride. Throws Error.
+  std::string_view view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const;
+
+  /// Returns the size of all buffers together, in bytes.
+  std::uint64_t buffer_bytes() const { return buffer_bytes_; }
+  /// Drops the pages of mapped buffers from memory.
+  void release_pages() const;
 
  private:
-  void parse_json(std::string_view text);
+  struct Buffer {
+    std::string_view bytes;
+    std::optional<MappedFile> file;
+    std::optional<DecodedUri> decoded;
+  };
+
+  void parse(std::string_view text);
   void check_version() const;
-  void open_buffers(std::string_view binary_chunk, bool has_chunk);
+  void open_buffers(std::optional<std::string_view> binary_chunk);
+  void open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const;
 
   const MeshSource& source_;
-  nlohmann::json json_;
-  std::vector<std::pair<std::string, std::vector<GltfValue>>> arrays_;
-  std::vector<GltfBuffer> buffers_;
+  const NamedFiles named_files_;
+  std::unique_ptr<JsonDocument> json_;
+  std::array<GltfItems, 10> arrays_;
+  CountedVector<Buffer> buffers_;
+  std::uint64_t buffer_bytes_ = 0;
 };
 
 }  // namespace voxdag

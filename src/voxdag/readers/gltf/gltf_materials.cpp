@@ -23,7 +23,7 @@ std::uint64_t uv_set_of_material(const GltfValue& material) {
   return uv_set_of(color.exists() ? color : material["normalTexture"]);
 }
 
-/// T * R * S of the extension's specification.
+/// Returns T * R * S of the extension's specification.
 UvTransform uv_transform(const GltfValue& texture_info) {
   const GltfValue transform = transform_of(texture_info);
   const std::vector<double> offset = transform["offset"].numbers(2);
@@ -48,60 +48,101 @@ TextureWrap wrap_of(const GltfValue& mode) {
                                     : TextureWrap::kRepeat;
 }
 
+/// Returns the name of an image's file; empty if the image is inside of the glTF file. Throws
+/// Error.
+std::string file_name_of(const GltfValue& image) {
+  std::string unescaped;
+  const std::string_view uri = image["uri"].text_view(unescaped);
+  if (uri.empty() || uri.starts_with("data:")) return "";
+  if (uri.find("://") != uri.npos) throw image.error("image in another place than a file");
+  std::string name = decode_percent(uri);
+  if (name.find('\0') != name.npos) throw image.error("malformed URI");
+  return name;
+}
+
 class MaterialReader {
  public:
-  MaterialReader(const MeshSource& source, const GltfFile& file, Appearance& appearance,
-                 std::vector<std::string>& warnings)
-      : source_(source), file_(file), appearance_(appearance), warnings_(warnings) {}
+  MaterialReader(const GltfFile& file, Appearance& appearance, Warnings& warnings)
+      : file_(file),
+        appearance_(appearance),
+        warnings_(warnings),
+        memory_(file.source().options.memory, 0),
+        poll_(file.source().options.progress) {}
 
   void read(const Mesh& mesh) {
-    const auto& materials = file_.array("materials");
-    appearance_.materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
+    const GltfItems& materials = file_.array(GltfArray::kMaterials);
+    const std::size_t count = std::max<std::size_t>(mesh.materials.size(), 1);
+    std::uint64_t bytes = count * sizeof(Material);
+    for (const std::string& name : mesh.materials) bytes += name.size() + 1;
+    add_memory(bytes);
+    appearance_.materials.resize(count);
     read_images();
-    for (std::size_t i = 0; i < materials.size(); ++i)
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      poll_.step();
       attempt([&] { read_material(materials[i], appearance_.materials[i]); }, "is left out");
+    }
   }
 
  private:
+  void add_memory(std::uint64_t bytes) { memory_.resize(memory_.bytes() + bytes); }
+
+  /// Runs body(). If that finds something malformed, warns that `replacement` holds.
   template <class Body>
-  void attempt(const Body& body, const char* otherwise) {
+  void attempt(const Body& body, const char* replacement) {
     try {
       body();
+    } catch (const OverMemory&) {
+      throw;
     } catch (const Error& error) {
-      warnings_.push_back(std::string(error.what()) + ": " + otherwise);
+      warnings_.add(std::string(error.what()) + ": " + replacement);
     }
   }
 
   void read_images() {
-    for (const GltfValue& image : file_.array("images")) {
+    const GltfItems& images = file_.array(GltfArray::kImages);
+    add_memory(images.size() * sizeof(TextureImage));
+    appearance_.images.reserve(images.size());
+    for (const GltfValue image : images) {
+      poll_.step();
       TextureImage& out = appearance_.images.emplace_back();
-      attempt([&] { read_image(image, out); }, "the image is left out");
+      out.name = file_.source().name + ": " + image.path();
+      std::string file_name;
+      attempt([&] { file_name = file_name_of(image); }, "the image is left out");
+      if (!file_name.empty()) {
+        const std::filesystem::path& folder = file_.source().folder;
+        out.path = file_.named_files().find(folder, file_name, {file_.source().name, image.path()});
+        out.name = printable_path(folder, file_name);
+      } else {
+        attempt([&] { copy_image(image, out); }, "the image is left out");
+      }
+      add_memory(out.name.size() + 3 * out.path.native().size());
     }
   }
 
-  void read_image(const GltfValue& image, TextureImage& out) {
-    out.name = image.error("").what();
-    out.name.resize(out.name.find_last_not_of(": ") + 1);
-    const std::string uri = image["uri"].text();
-    if (uri.empty()) {
-      const GltfValue& view = file_.item("bufferViews", image["bufferView"].whole(), image);
-      const std::uint64_t index = view["buffer"].whole();
-      file_.item("buffers", index, view);
-      const std::string_view bytes = file_.buffer(index).bytes;
-      const std::uint64_t offset = view["byteOffset"].whole(0), size = view["byteLength"].whole();
-      if (offset > bytes.size() || size > bytes.size() - offset)
-        throw view.error("buffer view goes beyond its buffer");
-      const std::string_view part = bytes.substr(offset, size);
-      out.bytes.assign(part.begin(), part.end());
-    } else if (uri.starts_with("data:")) {
-      const auto decoded = GltfFile::decode_data_uri(uri);
+  /// Copies the bytes of an image inside of the file.
+  void copy_image(const GltfValue& image, TextureImage& out) {
+    std::string unescaped;
+    const std::string_view uri = image["uri"].text_view(unescaped);
+    if (uri.starts_with("data:")) {
+      const auto decoded = decode_data_uri(uri, file_.source().options.memory);
       if (!decoded) throw image.error("malformed data URI");
-      out.bytes.assign(decoded->begin(), decoded->end());
-    } else {
-      if (uri.find("://") != uri.npos) throw image.error("image in another place than a file");
-      out.path = source_.folder / GltfFile::decode_uri(uri);
-      out.name = out.path.string();
+      set_bytes(decoded->bytes, out);
+    } else if (uri.empty()) {
+      std::optional<GltfValue> view;
+      const std::string_view bytes = file_.view_bytes(image, view);
+      // Images may share a buffer view, but a small file must not ask for many copies of a large
+      // one.
+      copied_bytes_ += bytes.size();
+      if (copied_bytes_ / kMostCopies > file_.buffer_bytes())
+        throw image.error("the images in buffer views have " + std::to_string(copied_bytes_) +
+                          " bytes, but all buffers " + std::to_string(file_.buffer_bytes()));
+      set_bytes(bytes, out);
     }
+  }
+
+  void set_bytes(std::string_view bytes, TextureImage& out) {
+    add_memory(bytes.size());
+    out.bytes.assign(bytes.begin(), bytes.end());
   }
 
   void read_material(const GltfValue& value, Material& material) {
@@ -119,9 +160,9 @@ class MaterialReader {
                                             : AlphaMode::kOpaque;
     material.alpha_cutoff = static_cast<float>(value["alphaCutoff"].number(0.5));
     attempt([&] { material.color_map = use(color_texture(value), value); },
-            "the material's colour stands in");
+            "the material's colour replaces it");
     const GltfValue normal = value["normalTexture"];
-    attempt([&] { material.normal_map = use(normal, value); }, "normals go without it");
+    attempt([&] { material.normal_map = use(normal, value); }, "it is ignored");
     material.normal_scale = static_cast<float>(normal["scale"].number(1));
   }
 
@@ -130,22 +171,26 @@ class MaterialReader {
     if (!info.exists()) return use;
     if (uv_set_of(info) != uv_set_of_material(material))
       throw info.error("uses other texture coordinates than the colour texture");
-    const GltfValue& texture = file_.item("textures", info["index"].whole(), info);
+    const GltfValue texture = file_.item(GltfArray::kTextures, info["index"].whole(), info);
     const std::uint64_t image = texture["source"].whole();
-    file_.item("images", image, texture);
+    file_.item(GltfArray::kImages, image, texture);
     use.image = static_cast<int>(image);
     use.uv = uv_transform(info);
     if (!texture["sampler"].exists()) return use;
-    const GltfValue& sampler = file_.item("samplers", texture["sampler"].whole(), texture);
+    const GltfValue sampler = file_.item(GltfArray::kSamplers, texture["sampler"].whole(), texture);
     use.wrap_u = wrap_of(sampler["wrapS"]);
     use.wrap_v = wrap_of(sampler["wrapT"]);
     return use;
   }
 
-  const MeshSource& source_;
+  static constexpr std::uint64_t kMostCopies = 4;  ///< Of all buffers.
+
   const GltfFile& file_;
   Appearance& appearance_;
-  std::vector<std::string>& warnings_;
+  Warnings& warnings_;
+  MemoryReservation memory_;
+  CancelPoll poll_;
+  std::uint64_t copied_bytes_ = 0;
 };
 
 }  // namespace
@@ -154,15 +199,24 @@ std::uint64_t gltf_uv_set(const GltfFile& file, const GltfValue& primitive) {
   const GltfValue index = primitive["material"];
   if (!index.exists()) return 0;
   try {
-    return uv_set_of_material(file.item("materials", index.whole(), primitive));
+    return uv_set_of_material(file.item(GltfArray::kMaterials, index.whole(), primitive));
   } catch (const Error&) {
-    return 0;  // read_gltf_materials says what is wrong.
+    return 0;  // read_gltf_materials() warns of it.
   }
 }
 
-void read_gltf_materials(const MeshSource& source, const GltfFile& file, const Mesh& mesh,
-                         Appearance& appearance, std::vector<std::string>& warnings) {
-  MaterialReader(source, file, appearance, warnings).read(mesh);
+void read_gltf_materials(const GltfFile& file, const Mesh& mesh, Appearance& appearance,
+                         Warnings& warnings) {
+  MaterialReader(file, appearance, warnings).read(mesh);
+}
+
+void report_gltf_images(const GltfFile& file) {
+  if (file.source().options.named_files == nullptr) return;
+  for (const GltfValue image : file.array(GltfArray::kImages)) try {
+      const std::string name = file_name_of(image);
+      if (!name.empty()) file.named_files().report(file.source().folder / name);
+    } catch (const Error&) {  // It names no file.
+    }
 }
 
 }  // namespace voxdag

@@ -1,274 +1,200 @@
+/// Meshes are checked and counted first, once each; then every instance is written into arrays of
+/// their final size, straight from the bytes of the buffers.
 #include "voxdag/readers/gltf/gltf_reader.hpp"
-
-#include <unistd.h>
 
 #include <cmath>
 #include <limits>
-#include <map>
 
-#include "voxdag/readers/gltf/gltf_accessor.hpp"
-#include "voxdag/readers/gltf/gltf_corners.hpp"
-#include "voxdag/readers/gltf/gltf_file.hpp"
+#include "voxdag/readers/gltf/gltf_instances.hpp"
 #include "voxdag/readers/gltf/gltf_materials.hpp"
+#include "voxdag/readers/gltf/gltf_mesh.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Rotation by a quaternion (x, y, z, w) of any length but zero.
-GltfTransform rotation(const std::vector<double>& q, const GltfValue& user) {
-  const double length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!(length2 > 0) || !std::isfinite(length2)) throw user.error("rotation is not a quaternion");
-  const double s = 2 / length2;
-  const double x = q[0], y = q[1], z = q[2], w = q[3];
-  return {{{{1 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)},
-            {s * (x * y - z * w), 1 - s * (x * x + z * z), s * (y * z + x * w)},
-            {s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y)},
-            {0, 0, 0}}}};
-}
+Vec3f to_vec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-GltfTransform node_transform(const GltfValue& node) {
-  const std::vector<double> m = node["matrix"].numbers(16);
-  GltfTransform transform;
-  if (!m.empty()) {
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-      throw node.error("matrix whose last row is not 0 0 0 1");
-    for (std::size_t c = 0; c < 4; ++c)
-      transform.columns[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
-    return transform;
-  }
-  const std::vector<double> r = node["rotation"].numbers(4);
-  if (!r.empty()) transform = rotation(r, node);
-  const std::vector<double> s = node["scale"].numbers(3);
-  for (std::size_t axis = 0; axis < s.size(); ++axis)
-    transform.columns[axis] = transform.columns[axis] * s[axis];
-  const std::vector<double> t = node["translation"].numbers(3);
-  if (!t.empty()) transform.columns[3] = {t[0], t[1], t[2]};
-  return transform;
-}
-
-enum Mode : std::uint64_t { kTriangles = 4, kStrip = 5, kFan = 6 };
-
-std::uint64_t triangle_count(std::uint64_t mode, std::uint64_t corners) {
-  if (mode == kTriangles) return corners / 3;
-  return corners < 3 ? 0 : corners - 2;
-}
-
-/// The corners of triangle `i`, in the order of the glTF specification (3.7.2.1).
-std::array<std::size_t, 3> triangle_corners(std::uint64_t mode, std::size_t i) {
-  if (mode == kTriangles) return {3 * i, 3 * i + 1, 3 * i + 2};
-  if (mode == kStrip) return {i, i + 1 + i % 2, i + 2 - i % 2};
-  return {i + 1, i + 2, 0};
+/// Returns a unit normal, or zero for one without a direction.
+Vec3f transformed_normal(const GltfTransform& transform, Vec3f normal) {
+  return static_cast<Vec3f>(normalized_or(transform.normal(static_cast<Vec3d>(normal)), {}));
 }
 
 class GltfReader {
  public:
-  explicit GltfReader(const MeshSource& source) : source_(source), file_(source) {}
+  GltfReader(const MeshSource& source, ReadParts parts)
+      : source_(source),
+        has_appearance_(parts == ReadParts::kMeshAndAppearance),
+        file_(source),
+        accessors_(file_),
+        meshes_(source.options.memory),
+        memory_(source.options.memory, 0) {}
 
-  /// Lets `corners` gather the attributes while the mesh is read.
-  void gather(GltfCorners& corners) { corners_ = &corners; }
-  const GltfFile& file() const { return file_; }
-
-  Mesh read() {
-    find_instances();
-    reserve();
-    for (const auto& [mesh, transform] : instances_) {
-      if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
-      vertex_starts_.clear();
-      for (const GltfValue& primitive : (*mesh)["primitives"].items())
-        add_primitive(primitive, transform);
+  MeshWithAppearance read() {
+    const CountedVector<GltfInstance> instances = find_gltf_instances(file_);
+    compile(instances);
+    make_room(instances);
+    for (const GltfInstance& instance : instances) add_instance(instance);
+    file_.release_pages();
+    MeshWithAppearance result;
+    if (has_appearance_) {
+      read_gltf_materials(file_, mesh_, appearance_, warnings_);
+      result.appearance = std::move(appearance_);
+      result.warnings = warnings_.take(source_.name);
+    } else {
+      report_gltf_images(file_);
     }
-    if (mesh_.triangles.empty())
-      throw source_.error("the scene shows no triangles: there is no surface to read");
-    name_materials();
-    return std::move(mesh_);
+    result.mesh = std::move(mesh_);
+    return result;
   }
 
  private:
-  struct Instance {
-    const GltfValue* mesh;
-    GltfTransform transform;
-  };
-
-  void find_instances() {
-    const auto& scenes = file_.array("scenes");
-    const auto& nodes = file_.array("nodes");
-    const GltfValue default_scene = file_.root()["scene"];
-    std::vector<std::uint64_t> roots;
-    if (default_scene.exists() || !scenes.empty()) {
-      const GltfValue& scene = file_.item("scenes", default_scene.whole(0), default_scene);
-      for (const GltfValue& node : scene["nodes"].items()) roots.push_back(node.whole());
-    } else {
-      std::vector<char> is_child(nodes.size(), 0);
-      for (const GltfValue& node : nodes)
-        for (const GltfValue& child : node["children"].items())
-          if (child.whole() < nodes.size()) is_child[child.whole()] = 1;
-      for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (!is_child[i]) roots.push_back(i);
-      if (nodes.empty())
-        for (const GltfValue& mesh : file_.array("meshes")) instances_.push_back({&mesh, {}});
-      else if (roots.empty())
-        throw source_.error("nodes form a cycle");
-    }
-    std::vector<std::pair<std::uint64_t, GltfTransform>> stack;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
-    std::vector<char> seen(nodes.size(), 0);
-    while (!stack.empty()) {
-      const auto [index, parent] = stack.back();
-      stack.pop_back();
-      const GltfValue& node = file_.item("nodes", index, file_.root());
-      if (seen[index]) throw node.error("node is reached twice: nodes must form trees");
-      seen[index] = 1;
-      const GltfTransform transform = parent * node_transform(node);
-      if (node["mesh"].exists())
-        instances_.push_back({&file_.item("meshes", node["mesh"].whole(), node), transform});
-      const auto children = node["children"].items();
-      for (auto child = children.rbegin(); child != children.rend(); ++child)
-        stack.push_back({child->whole(), transform});
+  /// Checks each mesh that is shown.
+  void compile(const CountedVector<GltfInstance>& instances) {
+    const GltfItems& meshes = file_.array(GltfArray::kMeshes);
+    meshes_.reserve(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) meshes_.emplace_back(source_.options.memory);
+    CountedVector<char> is_compiled(meshes.size(), 0,
+                                    CountedAllocator<char>(source_.options.memory));
+    for (const GltfInstance& instance : instances) {
+      if (is_compiled[instance.mesh]) continue;
+      is_compiled[instance.mesh] = 1;
+      GltfMesh& mesh = meshes_[instance.mesh];
+      mesh = compile_gltf_mesh(file_, meshes[instance.mesh], accessors_,
+                               has_appearance_ ? &warnings_ : nullptr);
+      for (const GltfPrimitive& primitive : mesh.primitives) {
+        has_normals_ |= primitive.normals != nullptr;
+        has_uvs_ |= primitive.uvs != nullptr;
+        has_colors_ |= primitive.colors != nullptr;
+      }
+      has_default_material_ |= mesh.has_default_material;
     }
   }
 
-  /// Adds up what the instances make before making any of it: a small file can ask for a lot.
-  void reserve() {
+  /// Adds up what the instances make before memory is taken: a small file can ask for a lot.
+  void make_room(const CountedVector<GltfInstance>& instances) {
     std::uint64_t vertices = 0, triangles = 0;
-    std::map<const GltfValue*, std::pair<std::uint64_t, std::uint64_t>> counted;
-    for (const Instance& instance : instances_) {
-      const auto [known, is_new] = counted.try_emplace(instance.mesh);
-      if (is_new) known->second = count_mesh(*instance.mesh);
-      vertices += known->second.first;
-      triangles += known->second.second;
-      if (vertices >= std::numeric_limits<std::uint32_t>::max())
-        throw source_.error("more than 4,294,967,294 vertices");
+    for (const GltfInstance& instance : instances) {
+      vertices += meshes_[instance.mesh].vertices;
+      triangles += meshes_[instance.mesh].triangles;
     }
-    const auto memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
-                        static_cast<double>(::sysconf(_SC_PAGESIZE));
-    if (static_cast<double>(vertices + triangles) * 12 > memory)
+    if (triangles == 0)
+      throw source_.error("the scene shows no triangles: there is no surface to read");
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (vertices >= kMost)
+      throw source_.error(std::to_string(vertices) +
+                          " vertices are too many: at most 4,294,967,294 are read");
+    if (3 * triangles > kMost)
       throw source_.error(std::to_string(triangles) +
-                          " triangles are too many for this machine's memory");
+                          " triangles are too many: at most 1,431,655,765 are read");
+    const GltfItems& materials = file_.array(GltfArray::kMaterials);
+    std::uint64_t names = 0;
+    for (const GltfValue material : materials)
+      names += sizeof(std::string) + material["name"].text().size() + 1;
+    const std::uint64_t per_corner = (has_normals_ ? sizeof(Vec3f) : 0) +
+                                     (has_uvs_ ? sizeof(Vec2f) : 0) +
+                                     (has_colors_ ? sizeof(Rgba16) : 0);
+    const std::uint64_t per_triangle =
+        sizeof(Triangle) + 3 * per_corner + (materials.empty() ? 0 : sizeof(std::uint32_t));
+    memory_.resize(vertices * sizeof(Vec3f) + triangles * per_triangle + names);
     mesh_.vertices.reserve(vertices);
     mesh_.triangles.reserve(triangles);
-    if (!file_.array("materials").empty()) mesh_.triangle_materials.reserve(triangles);
+    if (!materials.empty()) mesh_.triangle_materials.reserve(triangles);
+    mesh_.materials.reserve(materials.size() + 1);
+    for (const GltfValue material : materials) mesh_.materials.push_back(material["name"].text());
+    if (has_default_material_ && !materials.empty()) mesh_.materials.emplace_back();
+    if (has_normals_) appearance_.normals.resize(3 * triangles);
+    if (has_uvs_) appearance_.uvs.resize(3 * triangles);
+    if (has_colors_) appearance_.colors.resize(3 * triangles);
   }
 
-  /// Vertices and triangles of a mesh as declared, once the accessors are known to hold them.
-  std::pair<std::uint64_t, std::uint64_t> count_mesh(const GltfValue& mesh) {
-    std::uint64_t vertices = 0, triangles = 0;
-    vertex_starts_.clear();
-    for (const GltfValue& primitive : mesh["primitives"].items()) {
-      const std::uint64_t mode = checked_mode(primitive);
-      const GltfValue position = primitive["attributes"]["POSITION"];
-      if (mode < kTriangles || !position.exists()) continue;
-      const std::uint64_t index = position.whole();
-      const std::uint64_t count = load_positions(index, primitive).size();
-      if (vertex_starts_.try_emplace(index, 0).second) vertices += count;
-      const GltfValue indices = primitive["indices"];
-      triangles += triangle_count(
-          mode, indices.exists() ? load_indices(indices.whole(), primitive).size() : count);
-    }
-    return {vertices, triangles};
-  }
-
-  static std::uint64_t checked_mode(const GltfValue& primitive) {
-    const std::uint64_t mode = primitive["mode"].whole(kTriangles);
-    if (mode > kFan) throw primitive.error("mode " + std::to_string(mode) + " is unknown");
-    return mode;
-  }
-
-  const std::vector<Vec3f>& load_positions(std::uint64_t index, const GltfValue& primitive) {
-    if (index == positions_index_) return positions_;
-    const GltfValue& accessor = file_.item("accessors", index, primitive);
-    if (!accessor["bufferView"].exists() &&
-        primitive["extensions"]["KHR_draco_mesh_compression"].exists())
-      throw primitive.error("compressed with Draco, which is not supported");
-    positions_ = read_gltf_positions(file_, accessor);
-    positions_index_ = index;
-    return positions_;
-  }
-
-  const std::vector<std::uint32_t>& load_indices(std::uint64_t index, const GltfValue& primitive) {
-    if (index == indices_index_) return indices_;
-    indices_ = read_gltf_indices(file_, file_.item("accessors", index, primitive));
-    indices_index_ = index;
-    return indices_;
-  }
-
-  void add_primitive(const GltfValue& primitive, const GltfTransform& transform) {
-    const std::uint64_t mode = checked_mode(primitive);
-    const GltfValue position = primitive["attributes"]["POSITION"];
-    if (mode < kTriangles || !position.exists()) return;
-    const std::vector<Vec3f>& positions = load_positions(position.whole(), primitive);
-    const auto [start, is_new] = vertex_starts_.try_emplace(
-        position.whole(), static_cast<std::uint32_t>(mesh_.vertices.size()));
-    if (is_new)
-      for (const Vec3f& p : positions)
-        mesh_.vertices.push_back(static_cast<Vec3f>(transform.point(static_cast<Vec3d>(p))));
-
-    const bool is_indexed = primitive["indices"].exists();
-    if (is_indexed) load_indices(primitive["indices"].whole(), primitive);
-    const std::size_t corners = is_indexed ? indices_.size() : positions.size();
-    const std::uint32_t material = material_of(primitive);
-    if (corners_ != nullptr) corners_->start(file_, primitive, transform, positions.size());
-    for (std::size_t i = 0; i < triangle_count(mode, corners); ++i) {
-      Triangle triangle{};
-      const auto triangle_corner = triangle_corners(mode, i);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t corner = triangle_corner[c];
-        const std::size_t index = is_indexed ? indices_[corner] : corner;
-        if (index >= positions.size())
-          throw primitive.error("vertex index " + std::to_string(index) + " is out of range: " +
-                                std::to_string(positions.size()) + " vertices");
-        triangle[c] = start->second + static_cast<std::uint32_t>(index);
-        if (!is_finite(mesh_.vertices[triangle[c]]))
-          throw primitive.error("vertex " + std::to_string(index) +
-                                " is not finite and a triangle uses it");
-      }
-      mesh_.triangles.push_back(triangle);
-      if (corners_ != nullptr) corners_->add(triangle, start->second);
-      if (!file_.array("materials").empty()) mesh_.triangle_materials.push_back(material);
+  void add_instance(const GltfInstance& instance) {
+    const auto first_vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
+    for (const GltfPrimitive& primitive : meshes_[instance.mesh].primitives) {
+      if (primitive.adds_vertices)
+        for (std::size_t i = 0; i < primitive.positions->size(); ++i) {
+          step();
+          const Vec3d p(to_vec3(primitive.positions->floats<3>(i)));
+          mesh_.vertices.push_back(static_cast<Vec3f>(instance.transform.point(p)));
+        }
+      for (std::size_t i = 0; i < primitive.triangles; ++i)
+        add_triangle(primitive, i, first_vertex + primitive.first_vertex, instance.transform);
     }
   }
 
-  std::uint32_t material_of(const GltfValue& primitive) {
-    const std::size_t count = file_.array("materials").size();
-    if (!primitive["material"].exists()) {
-      uses_default_material_ |= count > 0;
-      return static_cast<std::uint32_t>(count);
+  void add_triangle(const GltfPrimitive& primitive, std::size_t i, std::uint32_t first_vertex,
+                    const GltfTransform& transform) {
+    step();
+    const std::size_t t = mesh_.triangles.size();
+    Triangle triangle{};
+    const auto corners = gltf_triangle_corners(primitive.mode, i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t index =
+          primitive.indices != nullptr ? primitive.indices->index(corners[c]) : corners[c];
+      if (index >= primitive.positions->size())
+        throw primitive.value.error("vertex index " + std::to_string(index) + " is out of range: " +
+                                    std::to_string(primitive.positions->size()) + " vertices");
+      triangle[c] = first_vertex + static_cast<std::uint32_t>(index);
+      if (!is_finite(mesh_.vertices[triangle[c]]))
+        throw primitive.value.error("vertex " + std::to_string(index) +
+                                    " is not finite and a triangle uses it");
+      if (has_appearance_) set_attributes(primitive, index, 3 * t + c, transform);
     }
-    file_.item("materials", primitive["material"].whole(), primitive);
-    return static_cast<std::uint32_t>(primitive["material"].whole());
+    mesh_.triangles.push_back(triangle);
+    if (mesh_.triangle_materials.capacity() > 0)
+      mesh_.triangle_materials.push_back(primitive.material);
   }
 
-  void name_materials() {
-    for (const GltfValue& material : file_.array("materials"))
-      mesh_.materials.push_back(material["name"].text());
-    if (uses_default_material_) mesh_.materials.emplace_back();
+  /// Sets the attributes of a corner of the mesh to those of a vertex of a primitive.
+  void set_attributes(const GltfPrimitive& primitive, std::size_t vertex, std::size_t corner,
+                      const GltfTransform& transform) {
+    if (primitive.normals != nullptr)
+      appearance_.normals[corner] =
+          transformed_normal(transform, to_vec3(primitive.normals->floats<3>(vertex)));
+    if (primitive.uvs != nullptr) {
+      const auto [u, v] = primitive.uvs->floats<2>(vertex);
+      if (std::isfinite(u) && std::isfinite(v)) appearance_.uvs[corner] = {u, v};
+    }
+    if (primitive.colors != nullptr) {
+      const bool has_alpha = primitive.colors->components() == 4;
+      const auto c = has_alpha ? primitive.colors->floats<4>(vertex) : std::array<float, 4>{};
+      const auto rgb =
+          has_alpha ? std::array{c[0], c[1], c[2]} : primitive.colors->floats<3>(vertex);
+      appearance_.colors[corner] = to_rgba16(to_vec3(rgb), has_alpha ? c[3] : 1);
+    }
+  }
+
+  /// Once in 65,536 vertices and triangles: reports, polls cancellation, and drops the buffers'
+  /// pages from memory.
+  void step() {
+    if ((++steps_ & 0xFFFF) != 0) return;
+    file_.release_pages();
+    Progress* const progress = source_.options.progress;
+    if (progress == nullptr) return;
+    progress->throw_if_cancelled();
+    const std::size_t items = mesh_.vertices.size() + mesh_.triangles.size();
+    const std::size_t all = mesh_.vertices.capacity() + mesh_.triangles.capacity();
+    progress->report("read", static_cast<double>(items) / static_cast<double>(all), items);
   }
 
   const MeshSource& source_;
+  const bool has_appearance_;
   const GltfFile file_;
-  std::vector<Instance> instances_;
-  /// Where the vertices of a position accessor start, in the instance at hand.
-  std::map<std::uint64_t, std::uint32_t> vertex_starts_;
-  std::uint64_t positions_index_ = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t indices_index_ = std::numeric_limits<std::uint64_t>::max();
-  std::vector<Vec3f> positions_;  ///< Of the accessor read last.
-  std::vector<std::uint32_t> indices_;
-  bool uses_default_material_ = false;
-  GltfCorners* corners_ = nullptr;
+  GltfAccessors accessors_;
+  CountedVector<GltfMesh> meshes_;  ///< By index; empty unless an instance shows it.
+  bool has_normals_ = false, has_uvs_ = false, has_colors_ = false;
+  bool has_default_material_ = false;
+  std::uint32_t steps_ = 0;
+  MemoryReservation memory_;  ///< The arrays of mesh and appearance.
+  Warnings warnings_;
   Mesh mesh_;
+  Appearance appearance_;
 };
 
 }  // namespace
 
 MeshWithAppearance read_gltf(const MeshSource& source, ReadParts parts) {
   if (source.bytes.empty()) throw source.error("the file is empty");
-  MeshWithAppearance result;
-  GltfReader reader(source);
-  GltfCorners corners(result.appearance, result.warnings);
-  if (parts == ReadParts::kMeshAndAppearance) reader.gather(corners);
-  result.mesh = reader.read();
-  if (parts == ReadParts::kMeshAndAppearance)
-    read_gltf_materials(source, reader.file(), result.mesh, result.appearance, result.warnings);
-  return result;
+  return GltfReader(source, parts).read();
 }
 
 }  // namespace voxdag

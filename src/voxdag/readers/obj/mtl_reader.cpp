@@ -63,11 +63,10 @@ class MtlReader::Impl {
     is_described_[*found] = true;
   }
 
-  std::string place() const { return "line " + std::to_string(line_number_); }
-
   /// Adds what is wrong with the statement at hand, and what replaces it.
   void warn(const std::string& what) {
-    warnings_.add(file_ + ": " + place() + ": " + in_quotes(statement_) + ": " + what);
+    warnings_.add(file_ + ": " + ErrorPlace::line(line_number_).text() + ": " +
+                  in_quotes(statement_) + ": " + what);
   }
 
   /// Runs body(), which parses a statement. If that is malformed, warns that `replacement` holds:
@@ -166,7 +165,8 @@ class MtlReader::Impl {
     std::vector<TextureImage>& images = appearance_.images;
     const std::string key = (folder_ / name).string();
     if (const auto known = images_.find(key)) return static_cast<int>(*known);
-    const std::filesystem::path path = files_.find(folder_, name, {file_, place()});
+    const std::filesystem::path path =
+        files_.find(folder_, name, {file_, ErrorPlace::line(line_number_)});
     if (images.size() == images.capacity())
       images.reserve(grown(images.size(), sizeof(TextureImage)));
     image_memory_.resize(image_memory_.bytes() + 3 * key.size());  // Name, path, its components.

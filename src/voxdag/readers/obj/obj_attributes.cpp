@@ -59,9 +59,7 @@ void ObjAttributes::set_uv(std::size_t index, std::string_view numbers) {
 void ObjAttributes::set_normal(std::size_t index, std::string_view numbers) {
   std::array<float, 3> n{};
   if (parse_numbers(numbers, n) < 3) return;
-  const Vec3f normal{n[0], n[1], n[2]};
-  const float length = std::sqrt(dot(normal, normal));
-  if (length > 0 && std::isfinite(length)) normals_[index] = normal * (1 / length);
+  normals_[index] = normalized_or(Vec3f{n[0], n[1], n[2]}, {});
 }
 
 void ObjAttributes::set_color(std::size_t vertex, std::string_view numbers) {

@@ -221,7 +221,7 @@ class ObjReader {
 
   void cut_faces(const PlacedChunk& chunk) {
     if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
-    FaceCutter cutter(source_.options.memory);
+    FaceCutter cutter(source_);
     const auto& is_same_face = chunk.is_same_face;
     const auto triangles = std::span(mesh_.triangles).subspan(chunk.first.triangles);
     for (std::size_t first = 0; first < is_same_face.size();) {

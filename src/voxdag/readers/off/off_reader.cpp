@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "voxdag/mesh/polygon.hpp"
 #include "voxdag/readers/chunks.hpp"
+#include "voxdag/readers/face_cutter.hpp"
 
 namespace voxdag {
 namespace {
@@ -13,6 +13,9 @@ class OffReader {
   explicit OffReader(const MeshSource& source)
       : source_(source),
         line_end_(line_end_of(source.bytes)),
+        poll_(source.options.progress),
+        memory_(source.options.memory, 0),
+        cutter_(source),
         rest_(without_byte_order_mark(source.bytes)) {}
 
   Mesh read() {
@@ -20,7 +23,9 @@ class OffReader {
       std::string_view line = read_header();
       read_vertices(count(line, "vertices", kLeastVertexBytes));
       const std::size_t faces = count(line, "faces", kLeastFaceBytes);
-      mesh_.triangles.resize(count_triangles(faces));
+      const std::size_t triangles = count_triangles(faces);
+      memory_.resize(memory_.bytes() + triangles * sizeof(Triangle));
+      mesh_.triangles.resize(triangles);
       if (mesh_.triangles.empty())
         throw source_.error("no face has three corners or more: there is no surface to read");
       read_faces(faces);
@@ -33,7 +38,7 @@ class OffReader {
  private:
   static constexpr std::size_t kLeastVertexBytes = 6, kLeastFaceBytes = 2;
 
-  /// The next line that holds anything, without its comment.
+  /// Returns the next line that is not blank, without its comment.
   std::string_view next_row() {
     while (!rest_.empty()) {
       std::string_view line = next_line(rest_, line_end_);
@@ -43,7 +48,7 @@ class OffReader {
     throw Fault{source_.bytes.data() + source_.bytes.size(), "the file ends before its last face"};
   }
 
-  /// Passes over the magic word; returns the line of counts, which may follow it at once.
+  /// Skips the magic word and returns the line of counts, which may be the same line.
   std::string_view read_header() {
     std::string_view line = next_row();
     const std::string_view magic = next_token(line);
@@ -67,6 +72,7 @@ class OffReader {
   }
 
   void read_vertices(std::size_t vertices) {
+    memory_.resize(vertices * sizeof(Vec3f));
     mesh_.vertices.resize(vertices);
     for (Vec3f& vertex : mesh_.vertices) {
       std::string_view row = next_row();
@@ -110,12 +116,13 @@ class OffReader {
       const std::size_t first_triangle = triangle;
       std::uint32_t first = 0, previous = 0;
       for (std::size_t corner = 0; corner < corners; ++corner) {
+        poll_.step();
         const std::uint32_t index = vertex_index(row);
         if (corner == 0) first = index;
         if (corner >= 2) mesh_.triangles[triangle++] = {first, previous, index};
         previous = index;
       }
-      cut_polygon(std::span(mesh_.triangles).subspan(first_triangle, triangle - first_triangle),
+      cutter_.cut(std::span(mesh_.triangles).subspan(first_triangle, triangle - first_triangle),
                   mesh_.vertices);
       release();
     }
@@ -135,7 +142,7 @@ class OffReader {
     return static_cast<std::uint32_t>(index);
   }
 
-  /// Lets go what has been read, a chunk at a time.
+  /// Releases the pages that have been read, a chunk at a time.
   void release() {
     const auto here = static_cast<std::size_t>(rest_.data() - source_.bytes.data());
     if (here < released_) released_ = here;  // The faces are read twice.
@@ -146,6 +153,9 @@ class OffReader {
 
   const MeshSource& source_;
   const char line_end_;
+  CancelPoll poll_;
+  MemoryReservation memory_;
+  FaceCutter cutter_;
   std::string_view rest_;
   std::size_t released_ = 0;
   Mesh mesh_;

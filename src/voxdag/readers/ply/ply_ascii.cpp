@@ -52,11 +52,13 @@ class AsciiReader {
   Mesh read() {
     count_rows();
     resize_ply_vertices(body_, memory_, mesh_);
-    for_each_row("scan", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
+    std::vector<std::size_t> triangles(texts_.size(), 0);
+    for_each_row("scan", face_rows_, [&](Chunk& chunk, std::size_t, std::string_view row) {
       const std::size_t corners = count_corners(row, chunk.poll);
-      if (corners > 2) first_triangles_[chunk.index + 1] += corners - 2;
+      if (corners > 2) triangles[chunk.index] += corners - 2;
     });
-    for (std::size_t i = 0; i < texts_.size(); ++i) first_triangles_[i + 1] += first_triangles_[i];
+    for (std::size_t i = 0; i < texts_.size(); ++i)
+      first_triangles_[i + 1] = first_triangles_[i] + triangles[i];
     resize_ply_triangles(body_, first_triangles_.back(), memory_, mesh_);
     for_each_row("read", vertex_rows_, [this](Chunk& chunk, std::size_t i, std::string_view row) {
       parse_vertex(chunk, i, row);
@@ -76,12 +78,12 @@ class AsciiReader {
 
   /// The state of a thread that parses a chunk.
   struct Chunk {
-    Chunk(const ReadOptions& options, std::size_t i, std::size_t first_triangle)
+    Chunk(const MeshSource& source, std::size_t i, std::size_t first_triangle)
         : index(i),
           triangle(first_triangle),
-          poll(options.progress),
-          values(options.memory),
-          cutter(options.memory) {}
+          poll(source.options.progress),
+          values(source.options.memory),
+          cutter(source) {}
 
     std::size_t index;
     std::size_t triangle;  ///< The next one to write.
@@ -120,7 +122,7 @@ class AsciiReader {
     for_each_chunk(source_, texts_, header_.line_end, stage, [&](std::size_t i) {
       if (first_rows_[i + 1] <= rows.first || first_rows_[i] >= rows.last) return;
       std::string_view text = texts_[i];
-      Chunk chunk(source_.options, i, first_triangles_[i]);
+      Chunk chunk(source_, i, first_triangles_[i]);
       for (std::size_t row = first_rows_[i]; row < rows.last && !text.empty();) {
         const std::string_view line = next_line(text, header_.line_end);
         if (trim(line).empty()) continue;

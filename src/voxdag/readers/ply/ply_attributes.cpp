@@ -142,8 +142,7 @@ void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {
   if (vertex_.has_normals) {
     const Vec3f n{row.scalars[Slot::kNormalX], row.scalars[Slot::kNormalY],
                   row.scalars[Slot::kNormalZ]};
-    const float length = std::sqrt(dot(n, n));
-    if (length > 0 && std::isfinite(length)) vertex_normals_[index] = n * (1 / length);
+    vertex_normals_[index] = normalized_or(n, {});
   }
   if (vertex_.has_uvs) vertex_uvs_[index] = to_uv(row.scalars[Slot::kU], row.scalars[Slot::kV]);
 }

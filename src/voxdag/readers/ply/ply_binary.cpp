@@ -193,7 +193,7 @@ class BinaryReader {
       const char* const end = p + faces_.parts[i].size();
       std::size_t triangle = faces_.blocks[i].first_triangle;
       PlyRowValues values(source_.options.memory);
-      FaceCutter cutter(source_.options.memory);
+      FaceCutter cutter(source_);
       CancelPoll poll(source_.options.progress);
       for (std::size_t row = 0; row < faces_.blocks[i].rows; ++row) {
         const std::size_t first_triangle = triangle;

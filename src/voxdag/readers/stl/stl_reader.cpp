@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 constexpr std::size_t kMaxFacets = 0xFFFFFFFF / 3;
-constexpr std::size_t kFacetsPerPart = 2048;  ///< About what a part of an ascii file has.
+constexpr std::size_t kFacetsPerPart = 2048;  ///< About as many as a part of an ascii file has.
 
-/// Number of facets that a binary file says it has; `bytes` hold a header.
+/// Returns the number of facets in the header of a binary file.
 std::uint32_t binary_facet_count(std::string_view bytes) {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < 4; ++i)
@@ -26,7 +26,7 @@ float load_float(const char* p) {
   return std::bit_cast<float>(bits);
 }
 
-/// The facets of a binary file, in parts.
+/// Returns the facets of a binary file in parts.
 std::vector<std::string_view> split_binary(const MeshSource& source) {
   if (source.bytes.size() < kHeaderBytes)
     throw source.error("neither an ascii STL file nor long enough for a binary one");

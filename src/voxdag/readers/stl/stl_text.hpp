@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// Equal but for the case of ASCII letters; `word` is in lower case.
+/// Compares without regard to the case of ASCII letters; `word` is in lower case.
 inline bool same_word(std::string_view token, std::string_view word) {
   return std::equal(token.begin(), token.end(), word.begin(), word.end(), [](char a, char b) {
     return (a >= 'A' && a <= 'Z' ? static_cast<char>(a + 32) : a) == b;
@@ -20,14 +20,14 @@ class StlTokens {
  public:
   explicit StlTokens(std::string_view text) : p_(text.data()), end_(p_ + text.size()) {}
 
-  /// Empty at the end.
+  /// Returns the next word; empty at the end.
   std::string_view next() {
     skip_space();
     const char* const first = p_;
     while (p_ != end_ && !is_space(*p_)) ++p_;
     return {first, static_cast<std::size_t>(p_ - first)};
   }
-  /// Passes over the next word if it is `word`, which is in lower case. Returns whether it is.
+  /// Skips the next word if it is `word`, which is in lower case. Returns whether it is.
   bool take(std::string_view word) {
     skip_space();
     if (static_cast<std::size_t>(end_ - p_) < word.size() || !same_word({p_, word.size()}, word) ||
@@ -36,8 +36,8 @@ class StlTokens {
     p_ += word.size();
     return true;
   }
-  /// Passes over the next word if it is a number, which is then the nearest float32 of it. Returns
-  /// whether it is.
+  /// Skips the next word if it is a number and sets `value` to the nearest float32. Returns whether
+  /// it is.
   bool take_number(float& value) {
     skip_space();
     const auto result = parse_float_prefix(p_, end_, value);
@@ -45,7 +45,7 @@ class StlTokens {
     p_ = result;
     return true;
   }
-  /// Passes over the rest of the line: the name of a solid.
+  /// Skips the rest of the line: the name of a solid.
   void skip_line() {
     while (p_ != end_ && *p_ != '\n' && *p_ != '\r') ++p_;
   }
@@ -60,12 +60,12 @@ class StlTokens {
   const char* end_;
 };
 
-/// Cuts a file after words "endfacet" into parts of about `chunk_bytes`.
+/// Splits a file after words "endfacet" into parts of about `chunk_bytes`.
 std::vector<std::string_view> split_facets(std::string_view text,
                                            std::size_t chunk_bytes = kChunkBytes);
 
-/// Calls body(Vec3f) for each corner of a part from split_facets. Throws Fault for anything that is
-/// not the grammar, for vertices that are not finite, and if the last part does not end its solid.
+/// Calls body(Vec3f) for each corner of a part from split_facets(). Throws Fault for text outside
+/// of the grammar, for vertices that are not finite, and if the last part does not end its solid.
 template <class Body>
 void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Body& body) {
   StlTokens tokens(is_first ? without_byte_order_mark(part) : part);

@@ -1,0 +1,20 @@
+#pragma once
+/// Which meshes a glTF scene shows, and where.
+#include <cstdint>
+
+#include "voxdag/readers/gltf/gltf_file.hpp"
+#include "voxdag/readers/gltf/gltf_transform.hpp"
+
+namespace voxdag {
+
+struct GltfInstance {
+  std::uint32_t mesh;  ///< Index into the array `meshes`.
+  GltfTransform transform;
+};
+
+/// Returns the instances of the default scene; without one, of the first scene; without scenes, of
+/// all root nodes; without nodes, every mesh once. Throws Error if nodes do not form trees,
+/// OverMemory, Cancelled.
+CountedVector<GltfInstance> find_gltf_instances(const GltfFile& file);
+
+}  // namespace voxdag
