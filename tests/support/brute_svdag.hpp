@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
