@@ -34,6 +34,19 @@ class Files : public Sponge {
   }
 };
 
+TEST_F(Files, FilesThatTheMeshNamesAreNotOverwritten) {
+  write_text(path("a.obj"), "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+  write_text(path("a.mtl"), "newmtl m\nmap_Kd a.png\n");
+  write_text(path("a.png"), "no picture");
+  for (const char* named : {"a.mtl", "a.png"}) {
+    const std::string before = read_text(path(named));
+    expect_failure(
+        run_voxdag({"build", path("a.obj"), "-r", "16", "--as", "esvo", "-o", path(named)}), 1,
+        "--output would overwrite this file, which " + path("a.obj") + " names");
+    EXPECT_EQ(read_text(path(named)), before);
+  }
+}
+
 TEST_F(Files, WhatIsReadIsNotOverwritten) {
   const std::string mesh = copy("sponge.ply", "a.ply"), dag = copy("in.vdag", "a.png");
   write_text(path("rays.npy"), rays_npy({{0, 9, 0, 0, 0, -1, 0, 1}}));
@@ -45,16 +58,16 @@ TEST_F(Files, WhatIsReadIsNotOverwritten) {
   std::filesystem::create_symlink("a.ply", path("soft.ply"));
   for (const char* output : {"a.ply", "hard.ply", "soft.ply"})
     expect_failure(run_voxdag({"build", path("a.ply"), "-r", "16", "-o", path(output)}), 2,
-                   "which is read");
-  expect_failure(run_voxdag({"render", path("a.png"), "-o", path("a.png")}), 2, "which is read");
+                   "an input file");
+  expect_failure(run_voxdag({"render", path("a.png"), "-o", path("a.png")}), 2, "an input file");
   expect_failure(
       run_voxdag({"trace", path("in.vdag"), "--rays", path("rays.npy"), "-o", path("rays.npy")}), 2,
-      "which is read");
+      "an input file");
   expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("k1.svg"), "-o",
                              path("f%d.png"), "--timings", path("k1.csv")}),
-                 2, "which is read");
+                 2, "an input file");
   expect_failure(run_voxdag({"export", path("b.npy.json"), "-o", path("b.npy")}), 2,
-                 "which is read");
+                 "an input file");
   copy("in.vdag", "f0.png");
   expect_failure(run_voxdag({"render", path("f0.png"), "--path", path("k1.svg"), "-o",
                              path("f%d.png"), "--size", "16x9"}),

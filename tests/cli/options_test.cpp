@@ -53,7 +53,7 @@ TEST_F(Options, NumbersAreFiniteAndInTheirRange) {
   expect_refused({{"--max-error", "nan"}, {"--color-error", "nan"}, {"--normal-error", "nan"}},
                  [](const Words& words) { return build(words, "bad.esvo"); });
   expect_failure(render({"--exposure", "0"}), 2,
-                 "--exposure: \"0\" is not a number greater than 0 and finite");
+                 "--exposure: \"0\" is not a number above 0 and finite");
   expect_failure(render({"--spp", "1.5"}), 2, "\"1.5\" is not a whole number from 1 to 4096");
   expect_failure(run_voxdag({"scene", "sponge", "-o", path("bad.ply"), "--seed", "-1"}), 2,
                  "--seed: \"-1\" is not a whole number");
@@ -72,7 +72,7 @@ TEST_F(Options, ViewsAndLightsAreCheckedAtOnce) {
                  [](const Words& words) { return render(words); });
   Words lamps;
   for (int i = 0; i < 16; ++i) lamps.insert(lamps.end(), {"--light", "point:1,2,3"});
-  expect_failure(render(lamps), 2, "--light: there are 16, the most are 15");
+  expect_failure(render(lamps), 2, "--light: there are 16; at most 15 are allowed");
 }
 
 TEST_F(Options, FilesThatAreTheSameAreRefused) {
@@ -109,7 +109,7 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
                   {"--eye", "1,2,3", "--path", "keys.json"},
                   {"--target", "1,2,3", "--path", "keys.json"}},
                  [](const Words& words) { return render(words); });
-  expect_failure(render({}, "bad%d.png"), 2, "needs --path");
+  expect_failure(render({}, "bad%d.png"), 2, "without --path");
   for (const Words& option : std::vector<Words>{{"--displace", "stone:1"},
                                                 {"--no-displacement"},
                                                 {"--max-error", "1"},
@@ -120,7 +120,8 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
                                                 {"--no-attributes"}})
     expect_failure(build(option, "bad.vdag"), 2, option[0] + ": is for an ESVO");
   expect_failure(build({"--method", "sort"}, "bad.esvo"), 2, "--method: is for a DAG");
-  expect_failure(build({"--ao-distance", "1"}, "bad.esvo"), 2, "--ao-distance requires --bake-ao");
+  expect_failure(build({"--ao-distance", "1"}, "bad.esvo"), 2,
+                 "--ao-distance: has no effect without --bake-ao");
   expect_failure(build({"--bake-ao", "8", "--no-attributes"}, "bad.esvo"), 2, "--no-attributes");
   expect_failure(run_voxdag({"scene", "sponge", "--view", "-o", path("bad.ply")}), 2, "--view");
   expect_failure(run_voxdag({"scene", "sponge", "--view", "--json"}), 2, "--json");
@@ -130,6 +131,66 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
                  "--faces");
   expect_failure(run_voxdag({"bench", "trace", path("in.vdag"), "-r", "64"}), 2, "--resolution");
   EXPECT_EQ(files_like("bad"), 0);
+}
+
+TEST_F(Options, ThatAnotherOptionSwitchesOffAreRefused) {
+  const auto expect_no_effect = [](const ProcessResult& result, const std::string& text) {
+    expect_failure(result, 2, text);
+  };
+  const struct {
+    Words words;
+    const char* text;
+  } pictures[] = {
+      {{"--sun", "1,1,1", "--no-sun"}, "--sun: has no effect with --no-sun"},
+      {{"--sun-angle", "1", "--no-sun"}, "--sun-angle: has no effect with --no-sun"},
+      {{"--shadow-samples", "4", "--no-shadows"}, "--shadow-samples: has no effect with --no-sh"},
+      {{"--shadow-samples", "4", "--sun-angle", "0"}, "without a light with soft edges"},
+      {{"--shadow-samples", "4", "--no-sun", "--light", "point:1,2,3"}, "with soft edges"},
+      {{"--no-shadows", "--no-sun"}, "--no-shadows: has no effect without sun and lights"},
+      {{"--ao-distance", "1", "--ao", "0"}, "--ao-distance: has no effect with --ao 0"},
+      {{"--ao-cone", "0.07", "--ao", "0"}, "--ao-cone: has no effect with --ao 0"},
+      {{"--allow-outside"}, "--allow-outside: has no effect without --mesh"},
+      {{"--assimp", "any"}, "--assimp: has no effect without --mesh"},
+      {{"--mesh", "a.ply", "--grey", "--primary", "voxels"}, "with --primary voxels"}};
+  for (const auto& [words, text] : pictures) expect_no_effect(render(words), text);
+  for (const Words& error : std::vector<Words>{{"--color-error", "0.1"}, {"--normal-error", "5"}})
+    for (const char* off : {"--no-contours", "--no-attributes"})
+      expect_no_effect(build({error[0], error[1], off}, "bad.esvo"),
+                       error[0] + ": has no effect with " + off);
+  expect_no_effect(build({"--max-error", "1", "--no-contours"}, "bad.esvo"), "with --no-contours");
+  expect_no_effect(build({"--stats", "--json"}, "bad.vdag"), "--stats: has no effect with --json");
+  expect_no_effect(build({"--stats", "--quiet"}, "bad.vdag"), "--stats: has no effect with --qui");
+  for (const Words& words :
+       std::vector<Words>{{"--seed", "2"}, {"--size", "2"}, {"--quiet", "--json"}})
+    expect_no_effect(run_voxdag({"scene", "--list", words[0], words[1]}), "with --list");
+  expect_no_effect(run_voxdag({"scene", "hairball", "--path", "--seed", "2"}), "with --path");
+  expect_no_effect(run_voxdag({"scene", "sponge", "--seed", "2", "-o", path("bad.ply")}),
+                   "--seed: has no effect on this scene");
+  expect_no_effect(
+      run_voxdag({"verify", path("in.vdag"), "--mesh", "a", "--samples", "0", "--seed", "2"}),
+      "--seed: has no effect with --samples 0");
+  expect_no_effect(run_voxdag({"bench", "build", "--rival-seconds", "5"}), "without --rival");
+  EXPECT_EQ(files_like("bad"), 0);
+}
+
+TEST_F(Options, AnEmptyValueAfterAnEqualsSignIsRefused) {
+  expect_failure(build({"--bake-ao="}, "bad.esvo"), 2, "--bake-ao: is empty");
+  expect_failure(build({"--method=", "sort"}, "bad.vdag"), 2, "--method: is empty");
+}
+
+TEST_F(Options, WorkOfDaysIsRefusedWithTheMaximum) {
+  expect_failure(film({"--fps", "1000000"}), 2,
+                 "--fps: \"1000000\" is not a number above 0, at most 1000");
+  expect_failure(run_voxdag({"verify", path("in.vdag"), "--mesh", path("sponge.ply"), "--samples",
+                             "4294967296"}),
+                 2, "is not a whole number from 0 to 1000000000");
+}
+
+TEST_F(Options, AViewIsRefusedForTheRightReason) {
+  EXPECT_EQ(render({"--eye", "1e38,1e38,1e38"}, "far.png").status, 0);
+  EXPECT_EQ(render({"--eye", "2,1,2", "--up", "0.6,0.5,0.4"}, "up.png").status, 0);
+  expect_failure(render({"--fov", "1e-320"}), 2, "--fov: \"1e-320\" is not a number from 1e-06");
+  expect_failure(render({"--eye", "1e-200,0,0", "--target", "0,0,0"}), 2, "is too close to --eye");
 }
 
 TEST_F(Options, AreNotEmpty) {
@@ -154,7 +215,7 @@ TEST_F(Options, AFilmsUpIsThatOfItsPath) {
              R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0], "up": [0,1,0]}]})");
   expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("up.json"), "-o",
                              path("bad%d.png"), "--up", "0,0,1"}),
-                 1, "up.json: key 0: it has its own \"up\"");
+                 1, "up.json: key 0: has \"up\": --up has no effect");
 }
 
 TEST_F(Options, MemoryIsForEsvos) {

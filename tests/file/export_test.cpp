@@ -13,6 +13,7 @@
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/export_count.hpp"
 #include "voxdag/file/npy.hpp"
 
 namespace voxdag {
@@ -310,11 +311,57 @@ TEST(Export, AnEmptyDagMakesEmptyFiles) {
   EXPECT_TRUE(Ply(read_text(dir / "v.ply")).vertices.empty());
 }
 
+TEST(Export, VoxelsAreCountedAsTheyAreEnumerated) {
+  const Scene scene(8, 3000);
+  const std::uint64_t most = 1 << 30;
+  for (const Box3i& window : {Box3i{{0, 0, 0}, {256, 256, 256}}, Box3i{{3, 0, 17}, {200, 256, 18}},
+                              Box3i{{1, 2, 3}, {255, 254, 253}}, Box3i{{5, 5, 5}, {6, 6, 6}}}) {
+    std::uint64_t enumerated = 0;
+    VoxelSet(scene.view()).for_each_voxel(window, [&](Vec3i) { ++enumerated; });
+    EXPECT_EQ(count_voxels(scene.view(), window, most, [] {}), enumerated);
+  }
+  EXPECT_EQ(count_voxels(scene.view(), whole_grid(8), 10, [] {}), 11u);
+}
+
+/// A full cube of 2^levels voxels per side: one node per level.
+struct FullCube {
+  explicit FullCube(int levels) {
+    nodes.clear();
+    for (int level = 0; level < levels - 2; ++level) {
+      const auto next = static_cast<std::uint32_t>(9 * (level + 1));
+      nodes.push_back(0xff);
+      nodes.insert(nodes.end(), 8, level + 1 == levels - 2 ? 0 : next);
+    }
+  }
+  std::vector<std::uint32_t> nodes;
+  std::uint64_t block = ~std::uint64_t{0};
+};
+
+TEST(Export, OfMoreThanADiskHoldsIsRefusedAtOnce) {
+  FullCube cube(20);
+  SvdagView view;
+  view.levels = 20;
+  view.nodes = cube.nodes.data();
+  view.leaf_blocks = &cube.block;
+  view.leaf_block_count = 1;
+  EXPECT_EQ(count_voxels(view, whole_grid(20), ~std::uint64_t{0} - 1, [] {}),
+            std::uint64_t{1} << 60);
+  Grid grid;
+  grid.levels = 20;
+  const TempDir dir;
+  for (const char* name : {"v.npy", "v.ply"})
+    EXPECT_NE(error_of([&] {
+                export_voxels(dir / name, view, grid, PlyContent::kPoints);
+              }).find("bytes that are free on its disk"),
+              std::string::npos);
+  EXPECT_EQ(dir.count(), 0);
+}
+
 TEST(Export, CancellingLeavesNothing) {
   const TempDir dir;
   const Scene scene(5, 100);
   ExportOptions options;
-  options.progress = [](std::uint64_t) { throw Cancelled(); };
+  options.progress = [](double, std::uint64_t) { throw Cancelled(); };
   EXPECT_THROW(export_raw(dir / "v.raw", scene.view(), scene.grid, options), Cancelled);
   EXPECT_EQ(dir.count(), 0);
 }

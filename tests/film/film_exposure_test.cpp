@@ -34,7 +34,8 @@ std::vector<float> over_all(const std::vector<double>& times, const std::vector<
 TEST(FilmExposure, IsTheWeightedMeanOverAllFrames) {
   const std::vector<double> times = frames(600, 30);
   std::vector<double> logs;
-  for (std::size_t i = 0; i < times.size(); ++i) logs.push_back(i < 250 ? -3.0 : std::sin(i * 0.1));
+  for (std::size_t i = 0; i < times.size(); ++i)
+    logs.push_back(i < 250 ? -3.0 : std::sin(static_cast<double>(i) * 0.1));
   EXPECT_EQ(smoothed_exposures(times, logs), over_all(times, logs));
 }
 

@@ -67,11 +67,14 @@ Option Command::text(const std::string& names, std::string& value, const std::st
 
 Option Command::texts(const std::string& name, std::vector<std::string>& values,
                       const std::string& shape, const std::string& help) const {
-  const auto store = [&values](const std::vector<std::string>& texts) {
+  const auto store = [&values, name](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts)
+      if (text.empty()) throw UsageError(name, "is empty");
     values = texts;
-    return true;
   };
-  return {app_->add_option(name, store, help)->type_name(shape)->expected(1, 1 << 20), rules_};
+  CLI::Option* const option =
+      app_->add_option_function<std::vector<std::string>>(name, store, help)->type_name(shape);
+  return {option, rules_};
 }
 
 Option Command::flag(const std::string& names, bool& value, const std::string& help) const {

@@ -20,15 +20,9 @@ struct ExportArguments {
 void export_file(ExportArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
   const VoxelSet voxels = file.voxels();
-  // Of an ESVO's leaves nobody knows before how many voxels they stand for.
-  std::uint64_t count = 0;
-  const Box3i window = arguments.options.window.value_or(whole_grid(voxels.levels()));
-  voxels.for_each_leaf_block(window, [&](Vec3i, std::uint64_t mask) {
-    count += static_cast<std::uint64_t>(popcount64(mask));
-  });
-  arguments.options.progress = [&session, count](std::uint64_t done) {
+  arguments.options.progress = [&session](double fraction, std::uint64_t done) {
     session.progress.throw_if_cancelled();
-    session.progress.report("export", static_cast<double>(done) / static_cast<double>(count), done);
+    session.progress.report("export", fraction, done);
   };
   export_voxels(arguments.output, voxels, file.grid(),
                 arguments.faces ? PlyContent::kFaces : PlyContent::kPoints, arguments.options);

@@ -8,6 +8,8 @@
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
+#include "cli/stopwatch.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
 #include "voxdag/file/esvo_file.hpp"
@@ -35,13 +37,30 @@ const char* result_name(Result result) {
   return result == Result::kPassed ? "passed" : result == Result::kFailed ? "FAILED" : "skipped";
 }
 
+/// Announces the cost of check(samples), which is measured with fewer samples, if there are many.
+template <class Check>
+void announce_samples(std::uint64_t samples, const Check& check, Session& session) {
+  constexpr std::uint64_t kFew = 100'000, kProbe = 10'000;
+  if (samples <= kFew) return;
+  Stopwatch watch;
+  check(1);  // the constant part
+  const double constant = watch.lap();
+  check(kProbe);
+  const double probe = watch.lap() - constant;
+  announce_cost(fmt::format("the check of {} samples", with_commas(samples)),
+                probe / static_cast<double>(kProbe) * static_cast<double>(samples), session);
+}
+
 VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for an ESVO, and this is a DAG");
   const VdagFile file(session.subject);
   const Mesh mesh = read_mesh_file(arguments.mesh, arguments.access, session);
-  const CoverCheck cover = check_cover(file.view(), file.grid(), mesh, arguments.samples,
-                                       arguments.seed, &session.progress);
+  const auto check_samples = [&](std::uint64_t samples) {
+    return check_cover(file.view(), file.grid(), mesh, samples, arguments.seed, &session.progress);
+  };
+  announce_samples(arguments.samples, check_samples, session);
+  const CoverCheck cover = check_samples(arguments.samples);
   VerifyCheck check{"cover", Result::kPassed, {}};
   if (cover.mismatches > 0) {
     check.result = Result::kFailed;
@@ -76,8 +95,8 @@ void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
   fmt::print("{}", json_text(nlohmann::ordered_json{{"passed", passed}, {"checks", list}}));
 }
 
-/// What the surface was displaced by, of the options or as the file says; nothing where the file
-/// names a texture that may be anywhere.
+/// Returns the displacement of the surface, from the options or as the file says; nothing if the
+/// file names a texture, which may be anywhere.
 std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
                                                  const DisplaceArguments& asked) {
   if (!asked.texture.empty()) return asked;
@@ -90,13 +109,13 @@ std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
   return arguments;
 }
 
-/// Points of the mesh, looked for in the octree.
+/// Looks for points of the mesh in the octree.
 VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
   const EsvoFile file(session.subject);
   const std::optional<DisplaceArguments> displace = displacement_of(file, arguments.displace);
   if (!displace)
     return {"enclosure", Result::kSkipped,
-            fmt::format("the surface is displaced: needs --displace, which was {}",
+            fmt::format("the surface is displaced: give --displace, which was {}",
                         file.metadata().build.at("displace"))};
   const MeshWithAppearance source =
       read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
@@ -104,9 +123,14 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
   std::vector<std::string> warnings;
   const std::optional<DisplacedTriangles> displaced =
       open_displaced(*displace, source.mesh, source.appearance, warnings, session.progress);
-  const EnclosureCheck enclosure = check_enclosure(
-      file.view(), QuantizedMesh(source.mesh, file.grid()), file.grid(), &shading,
-      displaced ? &*displaced : nullptr, arguments.samples, arguments.seed, &session.progress);
+  const QuantizedMesh quantized(source.mesh, file.grid());
+  const auto check_samples = [&](std::uint64_t samples) {
+    return check_enclosure(file.view(), quantized, file.grid(), &shading,
+                           displaced ? &*displaced : nullptr, samples, arguments.seed,
+                           &session.progress);
+  };
+  announce_samples(arguments.samples, check_samples, session);
+  const EnclosureCheck enclosure = check_samples(arguments.samples);
   VerifyCheck check{"enclosure", Result::kPassed,
                     fmt::format("{} points of the surface", with_commas(enclosure.points))};
   if (enclosure.points == 0 && arguments.samples > 0 && !file.view().is_empty()) {

@@ -16,11 +16,13 @@ struct ExportOptions {
   /// The greatest size of a dense array, in bytes; larger ones are refused before anything is
   /// written.
   std::uint64_t most_dense_bytes = std::uint64_t{16} << 30;
-  /// Called from time to time with the number of voxels done; may throw (Cancelled) to stop.
-  std::function<void(std::uint64_t voxels)> progress;
+  /// Called from time to time with the part of the work and the number of voxels that are done; may
+  /// throw (Cancelled) to stop. Counting calls it, too, with zeros.
+  std::function<void(double fraction, std::uint64_t voxels)> progress;
 };
 
-/// All functions below need less than 100 MiB of memory, whatever the size of the output. Outputs
+/// All functions below need less than 100 MiB of memory, whatever the size of the output. A file
+/// that is larger than the free space of its disk is refused before anything is written. Outputs
 /// appear when complete and depend on the voxels alone. On failure the functions throw
 /// Error(path, place, reason). `grid` places the voxels in the world; grid.levels must equal
 /// voxels.levels(). If the format cannot hold the placement, the functions write it beside the

@@ -29,6 +29,7 @@ void refuse_too_large(const std::filesystem::path& path, const Box3i& window,
                     " x " + std::to_string(size.z) + " voxels has " + std::to_string(bytes) +
                     " bytes, more than the limit of " + std::to_string(options.most_dense_bytes) +
                     ": choose a smaller window");
+  check_disk_space(path, bytes);
 }
 
 /// Calls write(bytes) with one part of the dense array after the other. A part is a strip of the
@@ -62,7 +63,11 @@ void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std
         ++done;
       });
       write(bytes);
-      if (options.progress) options.progress(done);
+      const auto strips_done = static_cast<double>((a - window.lo[slow]) * size[mid] +
+                                                   (b - window.lo[mid] + 1) * layers);
+      if (options.progress)
+        options.progress(std::min(1.0, strips_done / static_cast<double>(size[slow] * size[mid])),
+                         done);
     }
 }
 
@@ -71,14 +76,11 @@ void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std
 void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& voxels,
                             const Grid& grid, const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  std::uint64_t count = 0;
-  voxels.for_each_leaf_block(window, [&](Vec3i, std::uint64_t mask) {
-    count += static_cast<std::uint64_t>(popcount64(mask));
-  });
+  const std::uint64_t count = count_for_export(path, voxels, window, sizeof(Vec3i), options);
   NpyWriter writer(path, "<i4", {3}, sizeof(std::int32_t), count);
   std::vector<Vec3i> rows;
   static_assert(sizeof(Vec3i) == 12);
-  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t mask) {
+  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1)
       rows.push_back(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
     if (rows.size() < kRowsAtOnce) return;

@@ -1,9 +1,13 @@
 #include "voxdag/file/export_common.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/export_count.hpp"
 #include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/resolved_output.hpp"
 
 namespace voxdag {
 
@@ -20,6 +24,50 @@ Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
                   "extends beyond the grid of " + std::to_string(grid.hi.x) + " voxels a side");
   }
   return window;
+}
+
+namespace {
+
+/// The free bytes on the disk of a file, or no limit for a pipe or device, or where the system
+/// reports none.
+std::uint64_t free_bytes(const std::filesystem::path& path) {
+  constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+  std::error_code unknown;
+  const ResolvedOutput output = resolve_output(path);
+  const auto kind = std::filesystem::status(output.file, unknown).type();
+  if (output.descriptor >= 0 || (kind != std::filesystem::file_type::not_found &&
+                                 kind != std::filesystem::file_type::regular))
+    return kUnlimited;
+  const std::filesystem::space_info space = std::filesystem::space(
+      std::filesystem::absolute(output.file, unknown).parent_path(), unknown);
+  return unknown ? kUnlimited : space.available;
+}
+
+[[noreturn]] void refuse_size(const std::filesystem::path& path, const std::string& need,
+                              std::uint64_t space) {
+  throw Error(path.string(), "",
+              "needs " + need + " bytes, more than the " + std::to_string(space) +
+                  " bytes that are free on its disk: choose a smaller window");
+}
+
+}  // namespace
+
+void check_disk_space(const std::filesystem::path& path, std::uint64_t bytes) {
+  if (const std::uint64_t space = free_bytes(path); bytes > space)
+    refuse_size(path, std::to_string(bytes), space);
+}
+
+std::uint64_t count_for_export(const std::filesystem::path& path, const VoxelSet& voxels,
+                               const Box3i& window, std::uint64_t bytes_per_voxel,
+                               const ExportOptions& options) {
+  const std::uint64_t space = free_bytes(path);
+  const std::uint64_t most = bytes_per_voxel == 0 ? std::numeric_limits<std::uint64_t>::max() - 1
+                                                  : space / bytes_per_voxel;
+  const std::uint64_t count =
+      count_voxels(voxels, window, std::min(most, std::numeric_limits<std::uint64_t>::max() - 1),
+                   [&] { report_export(options, 0, 1); });
+  if (count > most) refuse_size(path, "at least " + std::to_string(count * bytes_per_voxel), space);
+  return count;
 }
 
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,

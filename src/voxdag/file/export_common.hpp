@@ -11,15 +11,31 @@ namespace voxdag {
 Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
                     const ExportOptions& options);
 
-/// Runs for_each_leaf_block and reports the number of voxels done to options.progress.
+/// Returns the number of voxels in the window. Throws Error(path, ...) if `bytes_per_voxel` for
+/// each of them do not fit on the disk that `path` is on.
+std::uint64_t count_for_export(const std::filesystem::path& path, const VoxelSet& voxels,
+                               const Box3i& window, std::uint64_t bytes_per_voxel,
+                               const ExportOptions& options);
+
+/// Throws Error(path, ...) if a file of so many bytes does not fit on the disk that `path` is on.
+/// Pipes and devices have no limit.
+void check_disk_space(const std::filesystem::path& path, std::uint64_t bytes);
+
+/// Reports to options.progress, if there is any, that `done` of `count` voxels are done.
+inline void report_export(const ExportOptions& options, std::uint64_t done, std::uint64_t count) {
+  if (options.progress)
+    options.progress(count == 0 ? 1 : static_cast<double>(done) / static_cast<double>(count), done);
+}
+
+/// Runs for_each_leaf_block and reports the number of voxels done, of `count`, to options.progress.
 template <class Fn>
-void export_leaf_blocks(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options,
-                        const Fn& fn) {
+void export_leaf_blocks(const VoxelSet& voxels, const Box3i& window, std::uint64_t count,
+                        const ExportOptions& options, const Fn& fn) {
   std::uint64_t done = 0, blocks = 0;
   voxels.for_each_leaf_block(window, [&](Vec3i origin, std::uint64_t mask) {
     fn(origin, mask);
     done += static_cast<std::uint64_t>(popcount64(mask));
-    if (++blocks % 16384 == 0 && options.progress) options.progress(done);
+    if (++blocks % 16384 == 0) report_export(options, done, count);
   });
 }
 

@@ -180,6 +180,7 @@ BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i or
 void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                        const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
+  const std::uint64_t count = count_for_export(path, voxels, window, sizeof(Vec3f), options);
   const auto write_voxels = [](PlyFile& file, Vec3i origin, std::uint64_t mask, const auto& look) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
@@ -195,13 +196,13 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
     std::uint64_t parts = 0;
     for_each_leaf_part(*esvo, window, [&](Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) {
       write_voxels(file, origin, mask, [&] { file.write_look(*esvo, leaf); });
-      if (++parts % 16384 == 0 && options.progress) options.progress(file.vertices());
+      if (++parts % 16384 == 0) report_export(options, file.vertices(), count);
     });
     file.commit();
     return;
   }
   PlyFile file(path, grid, {});
-  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t mask) {
+  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
     write_voxels(file, origin, mask, [] {});
   });
   file.commit();
@@ -210,9 +211,10 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
 void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
+  const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   PlyFile file(path, grid, {.faces = true});
   // In PLY all vertices come before all faces: two walks make the same surfaces.
-  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t block) {
+  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
     const BlockSurface surface = block_surface(voxels, window, origin, block);
     for (int i = 0; i < kCorners; ++i)
       if (surface.corners[i]) file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}));
@@ -220,7 +222,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
       throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
   });
   std::uint32_t first_vertex = 0;
-  export_leaf_blocks(voxels, window, options, [&](Vec3i origin, std::uint64_t block) {
+  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
     const BlockSurface surface = block_surface(voxels, window, origin, block);
     std::array<std::uint32_t, kCorners> vertex_of_corner;
     std::uint32_t next = first_vertex;
