@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-TEST(LargeArray, HoldsWhatIsWrittenWhateverItsSize) {
+TEST(LargeArray, KeepsItsValuesAtAnySize) {
   for (const std::size_t count : {0, 1, 1000, (1 << 19) - 1, 1 << 19, 1'500'000}) {
     const std::shared_ptr<std::uint32_t[]> array = make_large_array<std::uint32_t>(count);
     ASSERT_NE(array, nullptr);
@@ -18,7 +18,7 @@ TEST(LargeArray, HoldsWhatIsWrittenWhateverItsSize) {
   }
 }
 
-TEST(LargeArray, WhatNoMachineHasIsRefused) {
+TEST(LargeArray, RefusesSizesThatNoMachineHas) {
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
   for (const std::size_t count : {kMost, kMost / 2, kMost / 4})
     EXPECT_THROW(make_large_array<std::uint32_t>(count), std::bad_alloc);

@@ -50,7 +50,7 @@ int wrong_boxes(const BoundedDag& dag, const std::vector<Vec3i>& voxels, std::ui
   return wrong;
 }
 
-TEST(BoundedDag, BoxesAreThoseOfTheVoxels) {
+TEST(BoundedDag, BoxesBoundTheVoxels) {
   for (const int levels : {2, 3, 4, 5})
     for (const NamedVoxels& set : voxel_sets(levels, 5)) {
       if (set.voxels.empty()) continue;

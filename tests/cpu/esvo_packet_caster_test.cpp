@@ -71,7 +71,7 @@ TEST(EsvoPacketCaster, EndsAtTheSameLevelOfDetail) {
 }
 
 // Narrow ones are taken for one wide ray at coarse voxels.
-TEST(EsvoPacketCaster, BundlesMeetTheSame) {
+TEST(EsvoPacketCaster, CoherentRaysMeetTheSame) {
   int through_contours = 0;
   for (const double width : {0.0005, 0.01, 0.1})
     for (unsigned seed = 1; seed <= 4; ++seed) {

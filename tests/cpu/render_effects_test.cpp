@@ -90,7 +90,7 @@ RenderOptions small_picture() {
   return options;
 }
 
-TEST(RenderBeams, ThePictureIsTheSameWithout) {
+TEST(RenderBeams, ChangeNoPixel) {
   constexpr int kLevels = 6;
   std::mt19937 rng(11);
   const auto number = [&](double lo, double hi) {
@@ -121,7 +121,7 @@ TEST(RenderBeams, ThePictureIsTheSameWithout) {
   EXPECT_GT(shorter, 5);  // at 64³ there is little to skip
 }
 
-TEST(RenderBeams, SoftShadowsAreTheSameWithoutForEveryLight) {
+TEST(RenderBeams, ChangeNoSoftShadowOfAnyLight) {
   constexpr int kLevels = 6;
   const Svdag dag = mixed_scene(kLevels, 2);
   const LightSpec lights[] = {sphere_light({0.3, 0.8, 0.2}, 0.1),
@@ -216,7 +216,7 @@ TEST(AmbientOcclusion, AnOpenPlaneHasNone) {
   for (const float open : image.occlusion) EXPECT_EQ(open, 1);
 }
 
-TEST(AmbientOcclusion, BesideAWallIsWhatQuadratureGives) {
+TEST(AmbientOcclusion, BesideAWallItEqualsQuadrature) {
   constexpr int kLevels = 7, kWall = 40;
   constexpr double kReach = 0.5;
   const Svdag dag =
@@ -292,7 +292,7 @@ TEST(AmbientOcclusion, AConeOnlyDarkens) {
   EXPECT_LT(darker / static_cast<double>(exact.occlusion.size()), 0.2);
 }
 
-TEST(SoftShadow, APlaneUnderASphereReceivesWhatItShould) {
+TEST(SoftShadow, APlaneUnderASphereReceivesTheAnalyticIrradiance) {
   constexpr double kHeight = 1.5, kRadius = 0.2;
   const Svdag dag = voxels_where(6, [](int, int y, int) { return y == 8; });
   const Grid grid = test_grid(6);
@@ -351,7 +351,7 @@ TEST(SoftShadow, ThePenumbraOfAStraightEdgeIsACircularSegment) {
   EXPECT_GE(half_lit, 3);
 }
 
-TEST(RenderEffects, RefusesWhatIsOutOfRange) {
+TEST(RenderEffects, RefusesOptionsOutOfRange) {
   const Svdag dag = mixed_scene(4, 0);
   const auto refuses = [&](auto change) {
     RenderOptions options = small_picture();

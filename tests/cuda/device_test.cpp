@@ -18,7 +18,7 @@ std::string refusal(int index) {
   return {};
 }
 
-TEST(CudaDevices, WithoutOneThereIsAReason) {
+TEST(CudaDevices, WithoutADeviceThereIsAReason) {
   const CudaDevices found = cuda_devices();
   EXPECT_EQ(found.devices.empty(), !found.why_none.empty());
   if (found.devices.empty()) {
@@ -26,7 +26,7 @@ TEST(CudaDevices, WithoutOneThereIsAReason) {
   }
 }
 
-TEST(CudaDevices, ANumberThatIsNotThereIsRefused) {
+TEST(CudaDevices, AnUnknownDeviceNumberIsRefused) {
   EXPECT_EQ(refusal(1000).rfind("no CUDA device: ", 0), 0u);
 }
 

@@ -36,7 +36,7 @@ TEST(LaunchPlan, EverySampleOfEveryBlockComesOnceAndInOrder) {
   }
 }
 
-TEST(LaunchPlan, PiecesFollowTheSpeedTheyRunAt) {
+TEST(LaunchPlan, LaunchesFollowTheMeasuredSpeed) {
   // A device that does 1000 units of work a second, with pieces planned one ahead.
   LaunchPlan plan(1'000'000, 1, 1, 16, 1'000'000, 1);
   auto range = plan.next();
@@ -48,7 +48,7 @@ TEST(LaunchPlan, PiecesFollowTheSpeedTheyRunAt) {
   EXPECT_NEAR(range->last_block - range->first_block, 200, 1);
 }
 
-TEST(LaunchPlan, OneSampleOfOneBlockIsTheSmallestPiece) {
+TEST(LaunchPlan, OneSampleOfOneBlockIsTheSmallestLaunch) {
   LaunchPlan plan(3, 2, 100, 1, 100, 100);
   int pieces = 0;
   while (const auto range = plan.next()) {

@@ -129,7 +129,7 @@ void for_all_work(const Body& body) {
   }
 }
 
-TEST_F(CudaOnHost, QueuesMayBeDoneAtOnce) {
+TEST_F(CudaOnHost, StreamsMayRunAtOnce) {
   host_device().is_eager = true;
   for_all_work([](const auto& work) { work(); });
 }

@@ -74,7 +74,7 @@ TEST(ExportNpy, CoordinatesKeepToTheWindow) {
   EXPECT_EQ(reader.rows(), expected);
 }
 
-TEST(ExportNpy, ThePlacementStandsBesideIt) {
+TEST(ExportNpy, ThePlacementIsWrittenBesideIt) {
   const TempDir dir;
   const Scene scene(5);
   export_npy_dense(dir / "v.npy", scene.view(), scene.grid, windowed({1, 2, 3}, {9, 21, 30}));

@@ -122,7 +122,7 @@ TEST(Npy, EveryTruncationIsRefused) {
   EXPECT_EQ(error_of(bytes + "x"), "byte 192: trailing bytes: 2 rows need 192 bytes");
 }
 
-TEST(Npy, SaysWhatIsWrong) {
+TEST(Npy, NamesTheFault) {
   const auto header_error = [](const std::string& dictionary) {
     return error_of(npy_bytes(dictionary, ""));
   };

@@ -59,7 +59,7 @@ TEST(VdagCorruption, EveryBitFlipIsRefused) {
 }
 
 /// Behind right checksums a flip may make another sound file; what counts is that nothing breaks.
-TEST(VdagCorruption, EveryBitFlipBehindRightChecksumsIsSurvived) {
+TEST(VdagCorruption, EveryBitFlipWithRightChecksumsIsSurvived) {
   const std::string bytes = small_file();
   int refused = 0;
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
@@ -77,7 +77,7 @@ TEST(VdagCorruption, EveryBitFlipBehindRightChecksumsIsSurvived) {
   EXPECT_GT(refused, 4 * static_cast<int>(bytes.size()));
 }
 
-TEST(VdagCorruption, BytesBehindTheEndAreRefused) {
+TEST(VdagCorruption, TrailingBytesAreRefused) {
   EXPECT_EQ(error_of(small_file() + "x"),
             "byte " + std::to_string(small_file().size()) + ": has 1 trailing bytes");
   std::string bytes = small_file() + std::string(64, '\0');
@@ -110,7 +110,7 @@ TEST(VdagCorruption, DamageIsNamedByItsPlace) {
   EXPECT_EQ(error_of(bytes.substr(0, 20)), "byte 20: truncated: the file ends inside its header");
 }
 
-TEST(VdagCorruption, AbsurdSizesAreRefusedBehindRightChecksums) {
+TEST(VdagCorruption, AbsurdSizesWithRightChecksumsAreRefused) {
   EXPECT_EQ(error_of(repaired_with(12, std::uint32_t{0xFFFFFFFF})),
             "header: 4294967295 chunks do not fit into the file");
   const std::size_t length = entry_offset(2) + offsetof(VdagChunkEntry, length);
@@ -120,7 +120,7 @@ TEST(VdagCorruption, AbsurdSizesAreRefusedBehindRightChecksums) {
               "chunk table, chunk NODE: extends past the end of the file");
 }
 
-TEST(VdagCorruption, ChunksMustStandInOrderWithoutGapsOrOverlap) {
+TEST(VdagCorruption, ChunksMustBeInOrderWithoutGapsOrOverlap) {
   const std::size_t offset = entry_offset(2) + offsetof(VdagChunkEntry, offset);
   const auto right = peek<std::uint64_t>(small_file(), offset);
   for (const std::uint64_t wrong : {right + 64, right - 64, right + 8, std::uint64_t{0}})
@@ -129,7 +129,7 @@ TEST(VdagCorruption, ChunksMustStandInOrderWithoutGapsOrOverlap) {
                   ", expected byte " + std::to_string(right));
 }
 
-TEST(VdagCorruption, AChunkTwiceOrMissingIsRefused) {
+TEST(VdagCorruption, DuplicateAndMissingChunksAreRefused) {
   EXPECT_EQ(error_of(repaired_with(entry_offset(3), kChunkNodes)),
             "chunk table, chunk NODE: duplicate chunk");
   std::string bytes = repaired_with(entry_offset(3), vdag_chunk_id("ATTR"));
@@ -141,7 +141,7 @@ TEST(VdagCorruption, AChunkTwiceOrMissingIsRefused) {
   EXPECT_EQ(error_of(bytes), "chunk table: chunk LEAF is missing");
 }
 
-TEST(VdagCorruption, AnUnknownChunkThatIsNotRequiredIsPassedOver) {
+TEST(VdagCorruption, AnUnknownChunkThatIsNotRequiredIsSkipped) {
   // Header and four entries end on a multiple of 64: the fifth needs another 64 bytes of table.
   std::string bytes = small_file();
   ASSERT_EQ(chunk_offset(bytes, 0), entry_offset(4));

@@ -73,11 +73,11 @@ TEST(VdagMetadata, ANameThatIsNoUtf8IsStillWritten) {
             "cher.obj");
 }
 
-TEST(VdagMetadata, UnknownKeysArePassedOver) {
+TEST(VdagMetadata, UnknownKeysAreIgnored) {
   EXPECT_EQ(parse_vdag_metadata(with("\"program\"", "\"later\":[1,{}],\"program\"")), example());
 }
 
-TEST(VdagMetadata, SaysWhatIsWrong) {
+TEST(VdagMetadata, NamesTheFault) {
   EXPECT_EQ(error_of(""), "byte 1: not valid JSON");
   EXPECT_EQ(error_of("{\"grid\":"), "byte 9: not valid JSON");
   EXPECT_EQ(

@@ -32,7 +32,7 @@ TEST(PackedNormal, GivesBackEveryDirection) {
   EXPECT_EQ(PackedNormal().unpack(), (Vec3f{0, 0, 1}));
 }
 
-TEST(CornerNormals, OfACubeAreItsFaces) {
+TEST(CornerNormals, AreTheFacesOfACube) {
   const Mesh mesh = cube_mesh();
   const auto normals = corner_normals(mesh, 40);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -40,7 +40,7 @@ TEST(CornerNormals, OfACubeAreItsFaces) {
       EXPECT_EQ(normal.unpack(), winding_normal(mesh, mesh.triangles[t]));
 }
 
-TEST(CornerNormals, OfACubeWithoutCreasesAreItsDiagonals) {
+TEST(CornerNormals, AreTheDiagonalsOfACubeWithoutCreases) {
   const Mesh mesh = cube_mesh();
   const auto normals = corner_normals(mesh, 90);
   // Weights by angle do not see that faces are cut into triangles.
@@ -51,7 +51,7 @@ TEST(CornerNormals, OfACubeWithoutCreasesAreItsDiagonals) {
                 1e-4f);
 }
 
-TEST(CornerNormals, OfASpherePointOutwardsOnWhicheverSideATriangleWinds) {
+TEST(CornerNormals, PointOutwardsOnASphereWhicheverWayItsTrianglesWind) {
   const Mesh mesh = disordered_sphere_mesh(24);
   const auto normals = corner_normals(mesh, 40);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -122,7 +122,7 @@ TEST_F(MeshViewSourceTest, IsAsExactForADistantViewer) {
   expect_brute_force(random_mesh(800, 4), camera_at({3000, 4000, 2000}, {}, 0.014), 1);
 }
 
-TEST_F(MeshViewSourceTest, SizesAreOfNoConsequence) {
+TEST_F(MeshViewSourceTest, HitsDoNotDependOnTheScale) {
   const Camera near = camera_at({0.1, 0.4, 2.5}, {});
   const auto expected = samples_of(MeshViewSource(random_mesh(800, 5)), near);
   for (const int exponent : {-90, -60, 61, 120}) {

@@ -109,7 +109,7 @@ TEST(SceneViews, AreAroundAnObject) {
       EXPECT_TRUE(is_in_picture(view, 1.5, grid_of(6).to_world(static_cast<Vec3d>(v))));
 }
 
-TEST(SceneViews, OfAnEmptySceneAreViews) {
+TEST(SceneViews, AnEmptySceneHasViews) {
   for (const View& view : scene_views(Svdag{}.view(), Grid{}, 1, 3))
     EXPECT_NE(view.eye, view.target);
 }
@@ -153,7 +153,7 @@ TEST(FrameScene, AnEmptySceneHasAView) {
   EXPECT_TRUE(std::isfinite(view.eye.x) && std::isfinite(view.target.x));
 }
 
-TEST(FrameScene, RefusesWhatIsNoView) {
+TEST(FrameScene, RefusesRequestsThatDefineNoView) {
   const Svdag dag = brute_svdag(3, {{1, 2, 3}});
   const auto frame = [&](auto&& change) {
     ViewRequest request;

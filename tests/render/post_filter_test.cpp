@@ -59,7 +59,7 @@ TEST(CellPixels, EveryCodeIsASizeOfItsOwn) {
   EXPECT_NEAR(unpack_cell_pixels(255), 250.5f, 0.1f);
 }
 
-TEST(CellPixels, WhatIsOutsideTheRangeIsClamped) {
+TEST(CellPixels, SizesOutOfRangeAreClamped) {
   EXPECT_EQ(pack_cell_pixels(0.0f), 0);
   EXPECT_EQ(pack_cell_pixels(-3.0f), 0);
   EXPECT_EQ(pack_cell_pixels(NAN), 0);
@@ -261,7 +261,7 @@ TEST(FilteredColor, OtherSurfacesAndOtherLightAreLeftOut) {
   }
 }
 
-TEST(FilteredColor, APixelLikeNoneBesideItIsMixedWithAll) {
+TEST(FilteredColor, APixelWithoutSimilarNeighboursIsMixedWithAll) {
   GuidedPicture picture;
   picture.occlusion[picture.at(30, 30)] = 0;
   picture.color[picture.at(30, 30)] = {};

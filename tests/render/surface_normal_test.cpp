@@ -29,7 +29,7 @@ double degrees_between(Vec3f a, Vec3d b) {
   return std::acos(std::min(1.0, dot(static_cast<Vec3d>(a), normalized(b)))) * kDegrees;
 }
 
-TEST(SurfaceNormal, OfPlanesIsWithinAFewDegrees) {
+TEST(SurfaceNormal, IsWithinAFewDegreesOnPlanes) {
   for (const Vec3d normal :
        {Vec3d{0, 0, 1}, Vec3d{0.3, -0.2, 1}, Vec3d{1, 1, 1}, Vec3d{-1, 0.05, 0.4}}) {
     const Vec3d unit = normalized(normal);
@@ -49,7 +49,7 @@ TEST(SurfaceNormal, OfPlanesIsWithinAFewDegrees) {
   }
 }
 
-TEST(SurfaceNormal, OfASphereFollowsItsRadius) {
+TEST(SurfaceNormal, FollowsTheRadiusOfASphere) {
   const Vec3d centre{32.2, 31.7, 32.4};
   const auto voxels =
       surface_voxels([&](Vec3d p) { return std::sqrt(dot(p - centre, p - centre)) - 25; });
@@ -77,7 +77,7 @@ TEST(SurfaceNormal, FacesTheViewerFromBothSides) {
   }
 }
 
-TEST(SurfaceNormal, OfALoneVoxelIsTheViewDirection) {
+TEST(SurfaceNormal, IsTheViewDirectionAtALoneVoxel) {
   const Svdag dag = brute_svdag(kLevels, {{5, 6, 7}});
   const Vec3f view = normalized(Vec3f{1, 2, -3});
   const Vec3f n = surface_normal(SvdagNodes(dag.view()), kLevels, {5, 6, 7}, view, view);

@@ -73,7 +73,7 @@ TEST_F(StreamImage, IsThePictureOfTheWholeOctree) {
   EXPECT_LT(blocks.stream().counts().bytes_loaded, bytes) << "what nobody sees is not loaded";
 }
 
-TEST_F(StreamImage, IsTheSameWithLessMemoryThanItsBlocksTake) {
+TEST_F(StreamImage, IsTheSameInLessMemoryThanItsBlocksNeed) {
   StreamBlocks all(path(), bytes);
   render_streamed(all, all.stream().grid(), options);
   const std::uint64_t needed = all.stream().counts().bytes_loaded;
@@ -94,7 +94,7 @@ std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,
   return blocks.stream().counts().bytes_loaded;
 }
 
-TEST_F(StreamImage, APictureKeepsTheBlocksOfTheOneBefore) {
+TEST_F(StreamImage, APictureUsesTheBlocksOfTheOneBefore) {
   StreamBlocks blocks(path(), bytes);
   render_streamed(blocks, blocks.stream().grid(), options);
   const std::uint64_t read = blocks.stream().counts().blocks_read;
@@ -107,7 +107,7 @@ TEST_F(StreamImage, APictureKeepsTheBlocksOfTheOneBefore) {
   EXPECT_EQ(counts.blocks_read, counts.blocks_used) << "none is read twice";
 }
 
-TEST_F(StreamImage, APictureTakesTheRoomOfThoseBefore) {
+TEST_F(StreamImage, APictureReplacesTheBlocksOfEarlierOnes) {
   // Near the surface, so that either view needs few of the other's blocks.
   options.occlusion_samples = 0;
   options.shadows = false;

@@ -126,7 +126,7 @@ TEST(Beam, ItsBoundsHoldForShapesAndCoarseLeaves) {
   EXPECT_GT(counts.hits, 5000);
 }
 
-TEST(Beam, OfOneRayEndsWhereTheRayDoes) {
+TEST(Beam, ABeamOfOneRayEndsWhereTheRayDoes) {
   const Grid grid = unit_grid();
   RandomBeams random(7);
   for (const NamedVoxels& set : voxel_sets(kLevels, 3)) {

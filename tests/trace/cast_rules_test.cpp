@@ -117,7 +117,7 @@ TEST(CastRules, NegativeTIsBehindTheOrigin) {
   EXPECT_FALSE(scene.cast({6, 4.5f, 4.5f}, {1, 0, 0}, -2).hit);
 }
 
-TEST(CastRules, RaysThatAreNoRaysMeetNothing) {
+TEST(CastRules, InvalidRaysMeetNothing) {
   const Scene scene(voxels_where(3, [](Vec3i) { return true; }));
   const Vec3f in{4.5f, 4.5f, 4.5f};
   EXPECT_TRUE(scene.cast(in, {1, 0, 0}).hit);
@@ -177,7 +177,7 @@ TEST(CastRules, StopEndsTheCastAtTheFirstCellOfThatLevel) {
   }
 }
 
-TEST(CastRules, StopLearnsTheRangeOfTInTheCell) {
+TEST(CastRules, StopReceivesTheRangeOfTInTheCell) {
   const Svdag dag = brute_svdag(3, {{4, 4, 4}});
   Grid grid;
   grid.levels = 3;

@@ -91,7 +91,7 @@ TEST(Cast, EqualsTheDdaOnLargerGrids) {
   EXPECT_GT(hits, 100'000) << "too few of the rays met anything to prove much";
 }
 
-TEST(Cast, VisitsExactlyWhatTheDefinitionNames) {
+TEST(Cast, VisitsExactlyTheVoxelsOfTheDefinition) {
   for (int levels = 2; levels <= 4; ++levels)
     for (const NamedVoxels& set : voxel_sets(levels, 3))
       expect_same_hits<DenseSet>(test_grid(levels, true), set.voxels, 100, 17,

@@ -36,7 +36,7 @@ TEST(CellBlocks, HoldTheCellsOfEveryLevelAndNothingOutsideOfTheGrid) {
   }
 }
 
-TEST(CellBlocks, OfAnEmptyDagAreEmpty) {
+TEST(CellBlocks, AreEmptyForAnEmptyDag) {
   const CellBlocks blocks = cell_blocks(SvdagNodes(Svdag{}.view()), 2, {0, 0, 0});
   for (const std::uint64_t mask : blocks.masks) EXPECT_EQ(mask, 0u);
 }

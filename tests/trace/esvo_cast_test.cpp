@@ -163,7 +163,7 @@ bool expect_sound_hit(const ContourScene& scene, const Ray& ray, int last_level)
   return true;
 }
 
-TEST(EsvoCast, ShapesAreMetWhereTheyAre) {
+TEST(EsvoCast, RaysMeetShapesWhereTheyAre) {
   int hits = 0, rays = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const ContourScene scene(2 + static_cast<int>(seed % 4), seed);

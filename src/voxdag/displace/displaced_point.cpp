@@ -6,11 +6,6 @@
 namespace voxdag {
 namespace {
 
-Vec3f unit_or_zero(Vec3f v) {
-  const float length2 = dot(v, v);
-  return length2 > 0 ? v * (1 / std::sqrt(length2)) : Vec3f{};
-}
-
 /// Returns the weights of the textures that are projected along each axis, for a unit normal. Their
 /// sum is 1.
 Vec3f projection_weights(Vec3f n) {
@@ -77,7 +72,7 @@ float height_level(double texel_density, double edge_limit) {
 Vec3d triangle_offset(const DisplacedMesh& mesh, std::uint32_t triangle, Vec3d position,
                       Vec3f normal, Vec2f uv, float level) {
   const Displacement& d = mesh.displacement(triangle);
-  const Vec3f n = unit_or_zero(normal);
+  const Vec3f n = normalized_or(normal, {});
   if (n == Vec3f{}) return {};
   return Vec3d(n) * (d.base + d.gain * static_cast<double>(height(d, position, n, uv, level)));
 }

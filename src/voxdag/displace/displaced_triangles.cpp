@@ -10,11 +10,6 @@
 namespace voxdag {
 namespace {
 
-Vec3f unit_or_zero(Vec3f v) {
-  const float length2 = dot(v, v);
-  return length2 > 0 ? v * (1 / std::sqrt(length2)) : Vec3f{};
-}
-
 /// Returns the corner of a triangle that lies on two of its edges, given as bits.
 std::uint32_t corner_on(std::uint8_t edges) { return edges == 0b101 ? 0 : edges == 0b011 ? 1 : 2; }
 
@@ -114,11 +109,12 @@ DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const PieceCorner& 
   for (std::size_t i = 0; i < 3; ++i) {
     const PieceCorner& v = *corners[i];
     piece.corners[i] = v.position;
-    piece.normals[i] = i > 0 && v.normal == a.normal ? piece.normals[0] : unit_or_zero(v.normal);
+    piece.normals[i] =
+        i > 0 && v.normal == a.normal ? piece.normals[0] : normalized_or(v.normal, {});
     if (is_seam(pass.triangle, v.edges)) piece.reach[i] = radius_;
   }
   const std::array<Vec3f, 3>& n = piece.normals;
-  const Vec3f middle = unit_or_zero(n[0] + n[1] + n[2]);
+  const Vec3f middle = normalized_or(n[0] + n[1] + n[2], {});
   const float shortest = std::min({dot(n[0], middle), dot(n[1], middle), dot(n[2], middle)});
   if (!(shortest > 0.3f)) {
     // Normals that differ so much may point anywhere between.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "voxdag/core/morton.hpp"
+
 namespace voxdag {
 
 void PieceStack::start(int log2_size, Vec3i origin) {
@@ -81,9 +83,8 @@ PieceStack::Split PieceStack::begin_split(const StackedCell& cell) {
 
 StackedCell PieceStack::push_child(const StackedCell& cell, const Split& split, int child) {
   const int log2_half = cell.log2_size - 1;
-  StackedCell part{log2_half,
-                   cell.origin + Vec3i{child & 1, child >> 1 & 1, child >> 2} * (1 << log2_half),
-                   pieces_.size(), 0};
+  StackedCell part{log2_half, cell.origin + child_offset(child) * (1 << log2_half), pieces_.size(),
+                   0};
   for (std::size_t i = cell.begin; i < cell.end; ++i) {
     const ChildConditions& classified = classified_[split.first + (i - cell.begin)];
     if ((classified.alive >> child & 1u) != 0) push_part(i, classified, child);

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 
@@ -16,8 +17,8 @@ class Splitter {
         log2_half_(source.grid.levels - level - 1),
         origin_(cell * (2 << log2_half_)) {
     for (int child = 0; child < 8; ++child)
-      regions_[static_cast<std::size_t>(child)] = world_box(
-          source.grid, cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2}, log2_half_);
+      regions_[static_cast<std::size_t>(child)] =
+          world_box(source.grid, cell * 2 + child_offset(child), log2_half_);
   }
 
   /// Returns a bit mask of the children.

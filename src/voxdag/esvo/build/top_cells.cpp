@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
 #include "voxdag/esvo/build/enclose_cell.hpp"
 #include "voxdag/esvo/build/load_pieces.hpp"
@@ -129,7 +130,7 @@ class TopCells {
       ++cells_[parent].children_left;
       TopCell& cell = cells_.emplace_back();
       cell.level = cells_[parent].level + 1;
-      cell.cell = cells_[parent].cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2};
+      cell.cell = cells_[parent].cell * 2 + child_offset(child);
       cell.parent = static_cast<std::uint32_t>(parent);
       cell.child = child;
       cell.triangles = std::move(triangles);
