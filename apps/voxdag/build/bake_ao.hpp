@@ -12,7 +12,7 @@
 namespace voxdag {
 
 struct BakeArguments {
-  int rays = 0;  ///< Of each point; 0: nothing is baked.
+  int rays = 0;  ///< Per point; 0: no light is baked.
   /// How far occlusion reaches, in world units; 0: kDefaultDistance grid sides.
   double distance = 0;
   static constexpr double kDefaultDistance = 0.15;  ///< As `render --ao`.
@@ -25,25 +25,26 @@ struct BakeArguments {
 
 void add_bake_options(CLI::App& command, BakeArguments& arguments);
 
-/// Adds what was baked, for the metadata.
+/// Adds the settings of the baked light to those in the metadata.
 void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
                        std::map<std::string, std::string>& settings);
 
-/// What hides the sky from the points of a surface: an ESVO of the same surface, cut-outs,
-/// displacement and all, without colours and no finer than 1024³.
+/// The surface that hides the sky from a mesh's points: an ESVO of the mesh, with alpha masks and
+/// displacement, without colours and no finer than 1024³.
 class Occluders {
  public:
   Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
-            const EsvoSettings& settings, const SurfaceShading& shading,
+            const EsvoOptions& options, const SurfaceShading& shading,
             const DisplacedTriangles* displaced, Progress& progress);
   Occluders(const Occluders&) = delete;
   Occluders& operator=(const Occluders&) = delete;
 
-  /// For EsvoSettings of an ESVO in the grid; valid while this lives.
+  /// Returns the light for EsvoSettings of an ESVO in the grid; valid while this lives.
   SurfaceLight light() const;
 
  private:
   Grid grid_;
+  MemoryReservation memory_;
   Esvo esvo_;
   std::optional<SurfaceOpenness> openness_;
 };

@@ -93,7 +93,7 @@ void check_none_of(const CLI::App& command, const std::string& group) {
                     group == kOfDags ? "an ESVO" : "a DAG (see --as)"));
 }
 
-/// An ESVO is written piece by piece, its beginning last, and read again. Throws Error.
+/// Throws Error if the output cannot seek: an ESVO is written piece by piece, its beginning last.
 void check_regular(const std::string& path) {
   std::error_code unknown;
   if (resolve_output(path).descriptor >= 0 ||

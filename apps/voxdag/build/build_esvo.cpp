@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 
 #include "cli/human.hpp"
 #include "cli/memory_option.hpp"
@@ -17,23 +18,32 @@
 namespace voxdag {
 namespace {
 
-/// Blocks to the file as they come, as long as there is memory.
+/// Writes blocks to the file as they come, and counts their bytes.
 class FileSink : public EsvoSink {
  public:
-  FileSink(EsvoFileWriter& writer, std::uint64_t memory_limit)
-      : writer_(writer), memory_limit_(memory_limit) {}
+  explicit FileSink(EsvoFileWriter& writer) : writer_(writer) {}
 
   void append(std::span<const std::uint64_t> slots) override {
     writer_.append(slots);
-    if (memory_limit_ != 0 && peak_memory_bytes() > memory_limit_)
-      throw Error(
-          fmt::format("this takes more than the {} of --memory", human_bytes(memory_limit_)));
+    bytes_ += esvo_bytes(slots);
   }
+  const EsvoBytes& bytes() const { return bytes_; }
 
  private:
   EsvoFileWriter& writer_;
-  std::uint64_t memory_limit_;
+  EsvoBytes bytes_;
 };
+
+/// Bytes of a mesh and its appearance in memory.
+std::uint64_t bytes_of(const MeshWithAppearance& source) {
+  const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
+  const Appearance& appearance = source.appearance;
+  std::uint64_t sum = bytes(source.mesh.vertices) + bytes(source.mesh.triangles) +
+                      bytes(source.mesh.triangle_materials) + bytes(appearance.normals) +
+                      bytes(appearance.uvs) + bytes(appearance.colors);
+  for (const TextureImage& image : appearance.images) sum += image.bytes.capacity();
+  return sum;
+}
 
 std::map<std::string, std::string> settings_of(const EsvoArguments& arguments,
                                                const EsvoBuild& build) {
@@ -121,6 +131,7 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   EsvoSeconds seconds;
   MemoryBudget memory = command_budget(build.memory_limit);
   MeshWithAppearance source = read_mesh_with_appearance(session.subject, &progress);
+  const MemoryReservation source_memory(&memory, bytes_of(source));
   print_warnings(source.warnings, session);
   seconds.read = watch.lap();
   std::vector<std::string> warnings;
@@ -131,8 +142,9 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   seconds.textures = watch.lap();
 
   EsvoOptions options = arguments.options;
+  options.memory = &memory;
   options.settings.normal_error =
-      static_cast<float>(arguments.normal_degrees * 3.14159265358979 / 180);
+      static_cast<float>(arguments.normal_degrees * std::numbers::pi / 180);
   const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
   EsvoMetadata metadata;
   const std::optional<Box3d> bounds =
@@ -146,24 +158,26 @@ void build_esvo_file(const EsvoArguments& arguments, const EsvoBuild& build, Ses
   std::optional<Occluders> occluders;
   if (arguments.bake.rays > 0 && options.settings.attributes) {
     add_bake_settings(arguments.bake, metadata.grid, metadata.build);
-    occluders.emplace(source.mesh, metadata.grid, arguments.bake, options.settings, shading, moved,
+    occluders.emplace(source.mesh, metadata.grid, arguments.bake, options, shading, moved,
                       progress);
     options.settings.light = occluders->light();
   }
+  EsvoReport report;
   {
     EsvoFileWriter writer(build.output);
-    FileSink sink(writer, build.memory_limit);
+    FileSink sink(writer);
     EsvoResult result =
         build_esvo(source.mesh, metadata.grid, options, &shading, moved, sink, &progress);
     metadata.root = result.root;
     metadata.counts = result.counts;
     progress.throw_if_cancelled();
-    writer.finish(std::move(result.directory), metadata);
+    // Not read back: by now the name may be another file's.
+    report = {metadata, sink.bytes(), writer.finish(std::move(result.directory), metadata)};
   }
   seconds.build = watch.lap();
   warn_if_empty(metadata.counts.voxels(), build.output, session);
   session.bar.clear();
-  print_summary(report_of(EsvoFile(build.output)), seconds, build, session);
+  print_summary(report, seconds, build, session);
 }
 
 }  // namespace voxdag

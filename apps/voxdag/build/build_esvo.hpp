@@ -15,18 +15,17 @@ namespace voxdag {
 
 struct EsvoArguments {
   EsvoOptions options;
-  double normal_degrees = 3;  ///< EsvoSettings::normal_error as people say it.
+  double normal_degrees = 3;  ///< EsvoSettings::normal_error in degrees.
   DisplaceArguments displace;
   BakeArguments bake;
 };
 
 void add_esvo_options(CLI::App& command, EsvoArguments& arguments);
 
-/// What all kinds of builds share.
+/// The arguments that all kinds of builds share.
 struct EsvoBuild {
   std::string output;
-  /// The second is what the grid has to hold: the bounds of the mesh, or of what it is displaced
-  /// to.
+  /// Returns the grid for a mesh, or for the bounds of its displaced surface if they are given.
   std::function<Grid(const Mesh&, const std::optional<Box3d>&)> choose_grid;
   std::map<std::string, std::string> settings;  ///< Of the grid, for the metadata.
   std::uint64_t memory_limit = 0;               ///< Bytes; 0: none.

@@ -5,7 +5,7 @@
 namespace voxdag {
 namespace {
 
-/// The hash of a run from that of the run without its last contour: a multiply, folded.
+/// Returns the hash of a run from the hash of the run without its last contour.
 std::uint64_t hash_next(std::uint64_t hash, Contour contour) {
   hash = (hash ^ contour.bits) * 0x9E3779B97F4A7C15u;
   return hash ^ hash >> 32;
@@ -18,7 +18,7 @@ std::uint32_t ContourPool::add(std::span<const Contour> list) {
   for (const Contour contour : list) whole = hash_next(whole, contour);
   if (const auto found = places_.find(whole); found != places_.end()) {
     const std::size_t place = found->second;
-    // Hashes of different lists may be equal: then the later one is simply not shared.
+    // If the hashes of different lists are equal, the later list is not shared.
     if (place + list.size() <= contours_.size() &&
         std::equal(list.begin(), list.end(), contours_.begin() + found->second))
       return found->second;

@@ -1,5 +1,5 @@
 #pragma once
-/// The contours of a block: lists of those of siblings, each run of equal ones stored once.
+/// The contours of a block: one list for each set of siblings, equal runs stored once.
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -9,19 +9,19 @@
 
 namespace voxdag {
 
-/// Walls along an axis have the same contours again and again, voxel after voxel, so lists are kept
-/// once, and a list that is a part of another one needs no place of its own. For most sharing add
-/// long lists first.
+/// Walls along an axis repeat the same contours voxel after voxel. So equal lists are stored once,
+/// and a list that is part of another one takes no place of its own. Long lists must be added first
+/// to share the most.
 class ContourPool {
  public:
-  /// Where `list` (1 to 8 contours) stands among contours().
+  /// Returns the index in contours() at which `list` (1 to 8 contours) begins.
   std::uint32_t add(std::span<const Contour> list);
 
   const std::vector<Contour>& contours() const { return contours_; }
 
  private:
   std::vector<Contour> contours_;
-  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // by hash of a run: where it stands
+  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // by hash of a run: its index
 };
 
 }  // namespace voxdag

@@ -1,8 +1,8 @@
-/// The idea of the cluster fit of Simon Brown's libsquish: along the principal axis of the colours
-/// an optimal block gives them selectors in order, so that the blocks to consider are the ways to
-/// cut the sorted list into four. For each the best ends, as real numbers, and the error that they
-/// leave come in closed form from prefix sums. The best cuts then get ends of whole steps and
-/// selectors by distance, and the best block of them ends and selectors in turn while that helps.
+/// Source: the cluster fit of Simon Brown's libsquish. An optimal block gives the colours selectors
+/// in their order along the principal axis, so the candidates are the ways to cut the sorted list
+/// into four. Prefix sums give each cut's best ends, as real numbers, and the remaining error in
+/// closed form. The best cuts then get ends in whole steps and selectors by distance; the best of
+/// these blocks gets new ends and selectors in turn while that helps.
 #include "voxdag/esvo/encode/encode_color_block.hpp"
 
 #include <algorithm>
@@ -18,13 +18,13 @@ namespace {
 constexpr std::size_t kPadded = kValuesPerBlock + kLanes;
 constexpr FloatLanes kSteps = {31.0f, 63.0f, 31.0f, 1.0f};
 
-/// The distinct ones of the used values. What lies past `count` up to the next multiple of kLanes
-/// has no weight.
+/// The distinct used values. Entries past `count`, up to the next multiple of kLanes, have
+/// weight 0.
 struct Values {
   std::size_t count = 0;
   float total_weight = 0.0f;
   FloatLanes mean = {}, low = all_lanes(1.0f), high = all_lanes(0.0f);
-  std::size_t of_slot[kValuesPerBlock];  ///< which of them a used slot has
+  std::size_t of_slot[kValuesPerBlock];  ///< index of a used slot's value
   float weight[kValuesPerBlock] = {};
   FloatLanes color[kValuesPerBlock];
   float channel[3][kValuesPerBlock] = {};
@@ -55,14 +55,14 @@ void gather(std::span<const Vec3f, kValuesPerBlock> colors, std::uint32_t used,
   values.mean = sum / values.total_weight;
 }
 
-/// A block in the making: ends in steps, and how many thirds of c0 each value takes.
+/// A block while it is fitted: its ends in steps, and how many thirds of c0 each value takes.
 struct Fit {
   FloatLanes c0, c1;
   float thirds[kValuesPerBlock];
   float error;
 };
 
-/// The ends that serve the values best with the selectors as they are, in whole steps.
+/// Returns the ends, in whole steps, that fit the values best with the given selectors.
 void fit_ends(const Values& values, Fit& fit) {
   float aa = 0, ab = 0, bb = 0;
   FloatLanes a_sum = {};
@@ -78,7 +78,7 @@ void fit_ends(const Values& values, Fit& fit) {
   const FloatLanes b = values.mean * (3.0f * values.total_weight) * scale - a;
   // A channel's error is aa p² + 2 ab p q + bb q² - 2 a p - 2 b q and a constant.
   const float det = aa * bb - ab * ab;
-  // With one selector only any p and q with the right mix do, and equal ones come nearest to it.
+  // With a single selector any p and q of the right mix would do; equal ones come nearest to it.
   const bool line = det <= 1e-5f * (aa + bb) * (aa + bb);
   const FloatLanes real_p = line ? mean : (a * bb - b * ab) / det;
   const FloatLanes real_q = line ? mean : (b * aa - a * ab) / det;
@@ -101,7 +101,7 @@ void fit_ends(const Values& values, Fit& fit) {
   consider(p_for(next_q), next_q);
 }
 
-/// The nearest of the four colours for each value, and the error.
+/// Assigns the nearest of the four colours to each value and sets the error.
 void fit_selectors(const Values& values, Fit& fit) {
   FloatLanes palette[4];
   for (int thirds = 0; thirds < 4; ++thirds) {
@@ -127,8 +127,8 @@ void fit_selectors(const Values& values, Fit& fit) {
   fit.error = error[0] + error[1] + error[2] + error[3];
 }
 
-/// The values in order along their axis, and the sums of the first 0, 1, ... of them: weights, and
-/// weighted differences from the mean. Past the last the sums repeat.
+/// The values sorted along their axis, and prefix sums of their weights and of their weighted
+/// differences from the mean. The last sum repeats past the end.
 struct Sorted {
   std::size_t order[kValuesPerBlock];
   float weight[kPadded + 1], x[kPadded + 1], y[kPadded + 1], z[kPadded + 1];
@@ -161,7 +161,7 @@ void sort_along_axis(const Values& values, Sorted& sorted) {
   }
 }
 
-/// Where the sorted values are cut: those before `a` take c0, before `b` 2/3 of it, before `c` 1/3.
+/// Cuts of the sorted values: those before `a` take c0, before `b` 2/3 of it, before `c` 1/3.
 struct Cuts {
   int a = 0, b = 0, c = 0;
   float gain = 0.0f;  ///< by how much the best ends reduce the sum of squared differences
@@ -181,9 +181,9 @@ class CutSearch {
         nine_weight_(9.0f * sorted.weight[count]),
         least_det_(1e-5f * sorted.weight[count] * sorted.weight[count]) {}
 
-  /// Eight cuts, the best of disjoint sets that together are all but those of a single selector.
-  /// The first four use both ends. The last four leave one unused: it may lie so far out that its
-  /// colour is none, which the gain does not know.
+  /// The best cut of each of eight disjoint sets, which hold all cuts but those of a single
+  /// selector. The first four use both ends. The last four leave one end unused, which may then lie
+  /// outside of the colours; the gain does not account for that.
   std::array<Cuts, 2 * kLanes> run() const {
     BestCuts inner, outer;
     for (int a = 1; a < count_; ++a)
@@ -247,7 +247,7 @@ class CutSearch {
   float nine_weight_, least_det_;
 };
 
-/// Gives each sorted value the thirds of c0 that the cuts say, and takes the fit if it is better.
+/// Assigns the thirds of c0 by the cuts, and keeps the fit if it is better.
 void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, Fit& best) {
   Fit fit;
   for (int i = 0; i < static_cast<int>(values.count); ++i)
@@ -257,7 +257,7 @@ void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, F
   if (fit.error < best.error) best = fit;
 }
 
-/// All values 2/3 c0 + 1/3 c1: between them the ends reach every third of a step.
+/// Gives all values 2/3 c0 + 1/3 c1, which reaches every third of a step.
 Fit one_color(const Values& values) {
   Fit fit;
   std::fill_n(fit.thirds, kValuesPerBlock, 2.0f);
@@ -267,7 +267,7 @@ Fit one_color(const Values& values) {
   return fit;
 }
 
-/// The block of the best cuts.
+/// Returns the block of the best cuts.
 Fit fit_cuts(const Values& values) {
   Sorted sorted;
   sort_along_axis(values, sorted);
@@ -275,13 +275,13 @@ Fit fit_cuts(const Values& values) {
   fit_selectors(values, best);
   const int count = static_cast<int>(values.count);
   if (count <= 3) {
-    // Few values fit so many cuts exactly that only the whole steps decide.
+    // Many cuts fit few values exactly; then only the rounding to whole steps decides.
     for (int a = 0; a <= count; ++a)
       for (int b = a; b <= count; ++b)
         for (int c = b; c <= count; ++c) try_cuts(values, sorted, a, b, c, best);
   } else {
-    // Whole steps cost about a twelfth of a squared step for each value and channel: cuts that are
-    // worse by more than that are not worth trying.
+    // Rounding to whole steps costs about a twelfth of a squared step for each value and channel:
+    // cuts that are worse by more than that are not tried.
     constexpr float kStepError = (2.0f / (31.0f * 31.0f) + 1.0f / (63.0f * 63.0f)) / 12.0f;
     const std::array<Cuts, 2 * kLanes> cuts = CutSearch(sorted, values.count).run();
     float enough = 0.0f;

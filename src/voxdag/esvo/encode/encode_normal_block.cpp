@@ -1,9 +1,9 @@
 /// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 3.5, whose last
 /// paragraph names the three kinds of grids tried here: across the normals' mean, along one line
-/// with axes of like direction, and through entirely different directions. A grid of real numbers
-/// is first laid by the kind, then alternately stored, given to the normals and fitted to those
-/// that each of its points has got, by least squares. Where the normals differ much the integers of
-/// the axes are then moved one by one while that helps.
+/// with parallel axes, and through entirely different directions. Each kind starts with a grid of
+/// real numbers. The grid is then, in turn, rounded to its stored form, assigned to the normals and
+/// fitted by least squares to the normals at each point. If the normals differ much, the integers
+/// of the axes are finally changed one by one while that helps.
 #include "voxdag/esvo/encode/encode_normal_block.hpp"
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace {
 
 /// Mean squared chords above which more than one kind of grid is tried: two degrees.
 constexpr float kHard = 1.2e-3f;
-/// And below which no other is: half a degree.
+/// Mean squared chords below which no other kind is tried: half a degree.
 constexpr float kGood = kHard / 16;
 
-/// The normals on a plane across their mean, where their rays meet it, along the two principal
-/// directions of the points.
+/// The normals projected onto a plane across their mean, in the coordinates of the two principal
+/// directions of the projected points.
 struct PlaneView {
   Vec3f middle, along, across;
   float p[kValuesPerBlock], q[kValuesPerBlock];
@@ -47,7 +47,7 @@ struct PlaneView {
       pp += values.weight[i] * dp * dp, pq += values.weight[i] * dp * dq;
       qq += values.weight[i] * dq * dq;
     }
-    // An eigenvector of the covariance matrix, by the sum that does not cancel.
+    // An eigenvector of the covariance matrix, from the sum that does not cancel.
     const float half = 0.5f * (pp - qq), root = std::sqrt(half * half + pq * pq);
     float c = half >= 0.0f ? half + root : pq, s = half >= 0.0f ? pq : root - half;
     const float length = std::sqrt(c * c + s * s);
@@ -70,14 +70,14 @@ struct PlaneView {
   }
 };
 
-/// Which of `steps` + 1 even steps from `low` to `high` a value is nearest to.
+/// Returns which of the `steps` + 1 even steps from `low` to `high` is nearest to a value.
 int step_of(float value, float low, float high, float steps) {
   return static_cast<int>((value - low) * (steps / std::max(high - low, 1e-20f)) + 0.5f);
 }
 
 float coefficient(int step) { return static_cast<float>(step) * (2.0f / 3.0f) - 1.0f; }
 
-/// The first kind: four by four points over the ranges of the plane view.
+/// The first kind: 4x4 points over the ranges of the plane view.
 void consider_across(const NormalValues& values, const PlaneView& view, NormalFit& best) {
   NormalFit start{};
   for (std::size_t i = 0; i < values.count; ++i) {
@@ -101,8 +101,8 @@ void consider_line(const NormalValues& values, const PlaneView& view, NormalFit&
   consider_grid(values, grid, start, 3, best);
 }
 
-/// Of the first two kinds the better one, by how much wider than high the view is: of a width p and
-/// a height q, squared errors of (p² + q²) / 27 and q² / 3 are to be expected.
+/// Returns the better of the first two kinds. A view of width p and height q makes one expect
+/// squared errors of (p² + q²) / 27 and of q² / 3.
 void consider_plane(const NormalValues& values, Vec3f mean, NormalFit& best) {
   const PlaneView view(values, mean);
   const float p = view.half_p(), q = view.half_q();
@@ -110,7 +110,7 @@ void consider_plane(const NormalValues& values, Vec3f mean, NormalFit& best) {
   if (q < 0.42f * p) consider_line(values, view, best);
 }
 
-/// Three of the normals, each far from those before it.
+/// Returns three of the normals, each far from those before it.
 struct FarNormals {
   Vec3f normal[3];
 
@@ -128,7 +128,7 @@ struct FarNormals {
   }
 };
 
-/// The third kind: a grid with three of its corners at three far directions, in each of the ways.
+/// The third kind: three corners of the grid are at three far directions. Tries each assignment.
 void consider_corners(const NormalValues& values, NormalFit& best) {
   const FarNormals far(values);
   for (int shared = 0; shared < 3; ++shared) {
@@ -139,8 +139,8 @@ void consider_corners(const NormalValues& values, NormalFit& best) {
   }
 }
 
-/// Normals and their opposites, as of both sides of a thin wall. Three steps of u give base, of
-/// three lengths, and the fourth gives minus base.
+/// For normals and their opposites, as on both sides of a thin wall: three steps of u give
+/// multiples of the base, and the fourth gives minus the base.
 void consider_opposites(const NormalValues& values, NormalFit& best) {
   OuterProductSum spread;
   for (std::size_t i = 0; i < values.count; ++i) spread.add(values.normal[i], values.weight[i]);
@@ -156,7 +156,7 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
     sum = sum + across * values.weight[i];
   }
   if (!(front > 0.0f && back > 0.0f)) return;
-  // The side of more weight gets the steps of one sign.
+  // The side with more weight gets the three steps of one sign.
   if (front < back) {
     axis = -axis;
     std::swap(front, back);
@@ -174,11 +174,11 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
     across.add(from, values.weight[i]);
     widest = std::max(widest, dot(from, from));
   }
-  // The steps -1/3 of u, in front, and 1, behind, then have the means of the two sides.
+  // The steps -1/3 (front) and 1 (back) of u then have the means of the two sides.
   const Vec3f base = axis + (in_front * 5.0f - behind) * 0.25f;
   const Vec3f u = axis * -2.0f - (behind + in_front * (5.0f / 3.0f)) * 0.75f;
   if (!(longest_side(base) > 0.25f)) return;
-  // Without a spread v is free to correct u; with one it takes its direction.
+  // Without a spread v is free to correct u; otherwise v takes the direction of the spread.
   NormalFit start{};
   for (std::size_t i = 0; i < values.count; ++i) {
     const bool is_front = dot(values.normal[i], axis) > 0.0f;
@@ -192,7 +192,7 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
   }
 }
 
-/// Moves the integers of the axes by one while that helps.
+/// Changes the integers of the axes by one while that helps.
 void move_integers(const NormalValues& values, NormalFit& fit) {
   for (int round = 0; round < 3; ++round) {
     const float before = fit.error;
@@ -212,7 +212,7 @@ void move_integers(const NormalValues& values, NormalFit& fit) {
   }
 }
 
-/// One normal: the base, and an axis from it to the normal itself.
+/// For a single normal: stores the base, and an axis from the base to the normal.
 NormalFit fit_one_normal(Vec3f normal) {
   NormalValues values;
   values.count = 1;
@@ -223,19 +223,19 @@ NormalFit fit_one_normal(Vec3f normal) {
   plain.base = nearest_cube_point(normal);
   fit_points(values, plain);
   NormalFit fit = plain;
-  // At the point that both axes are added to: one is zero.
+  // The point to which both axes are added; one of them is zero.
   const Vec3f base = plain.base.position();
   fit.u = nearest_axis(normal * dot(normal, base) - base, normal, 0.0f);
   fit_points(values, fit);
   return fit.error < plain.error ? fit : plain;
 }
 
-/// The same, and kept: flat surfaces have one normal block after block, and not many of them.
+/// Returns the block of a single normal from a cache: flat surfaces repeat few normals.
 const NormalFit& one_normal(Vec3f normal) {
-  // By their bits: 0 and -0 must not be taken for each other, lest what a thread did before shows.
+  // Compares bits: if 0 and -0 were equal, results would depend on what the thread did before.
   using Bits = std::array<std::uint32_t, 3>;
   struct Known {
-    Bits normal{};  // no unit vector
+    Bits normal{};  // Zero is no unit vector.
     NormalFit fit;
   };
   constexpr int kLog2Known = 6;

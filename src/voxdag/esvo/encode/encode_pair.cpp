@@ -9,9 +9,9 @@
 namespace voxdag {
 namespace {
 
-/// What a leaf weighs beside an inner voxel: leaves may be large and seen from near, inner voxels
-/// are seen from where they are smaller than a pixel. A normal that is off by a degree shows on a
-/// flat wall of one leaf, beside others that are not.
+/// The weight of a leaf relative to an inner voxel. Leaves may be large and near to the viewer;
+/// inner voxels are seen only where they are smaller than a pixel. On a flat wall a leaf whose
+/// normal is off by a degree stands out from the leaves beside it.
 constexpr float kColorOfLeaf = 16, kNormalOfLeaf = 256;
 
 std::array<float, kValuesPerBlock> weights_of(const PairValues& values, float leaf) {

@@ -1,6 +1,6 @@
 #pragma once
-/// A grid of normals in the making: which normals it is for, how near it comes to them, and the
-/// nearest stored forms of its parts.
+/// A grid of normals while it is fitted: its normals, its error, and the stored forms nearest to
+/// its parts.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace voxdag {
 
-/// A block's used normals, those that differ by next to nothing as one. What lies past `count` has
-/// no weight.
+/// The used normals of a block; nearly equal ones are merged. Entries past `count` have weight 0.
+///
 struct NormalValues {
   std::size_t count = 0;
   float total_weight = 0.0f;
   std::uint32_t used = 0;                ///< slots with a direction
-  std::size_t of_slot[kValuesPerBlock];  ///< which of the normals a used slot has
+  std::size_t of_slot[kValuesPerBlock];  ///< index of a used slot's normal
   Vec3f normal[kValuesPerBlock];         ///< of unit length
   float weight[kValuesPerBlock] = {};
   float x[kValuesPerBlock] = {}, y[kValuesPerBlock] = {}, z[kValuesPerBlock] = {};
@@ -32,7 +32,7 @@ struct RealGrid {
   Vec3f base, u, v;
 };
 
-/// A grid, the point of it that each normal takes, and what that costs.
+/// A grid, the grid point assigned to each normal, and the error.
 struct NormalFit {
   CubePoint base;
   GridAxis u, v;
@@ -42,19 +42,19 @@ struct NormalFit {
   RealGrid grid() const { return {base.position(), u.vector(), v.vector()}; }
 };
 
-/// Gives each normal the nearest point of the grid, and the fit its error.
+/// Assigns the nearest grid point to each normal and sets the error of the fit.
 void fit_points(const NormalValues& values, NormalFit& fit);
 
 inline Vec3f unit_vector(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
-/// The greatest of the components' sizes.
+/// Returns the greatest absolute value of the components.
 float longest_side(Vec3f v);
 
-/// The point of the cube nearest to a direction of any length but zero.
+/// Returns the stored cube point nearest to a direction, which is not zero.
 CubePoint nearest_cube_point(Vec3f direction);
 
-/// The stored axis nearest to `target` as seen along `base`, a unit vector: components along the
-/// base only lengthen a grid's normals, and to let them be anything makes the others finer.
-/// `bend` is what a squared unit of them costs in squared units of the error across.
+/// Returns the stored axis nearest to `target` as seen along `base`, a unit vector. Components
+/// along the base only lengthen the grid's normals; leaving them free makes the other components
+/// finer. `bend` is the cost of their square relative to the square of the error across.
 GridAxis nearest_axis(Vec3f target, Vec3f base, float bend);
 
 }  // namespace voxdag

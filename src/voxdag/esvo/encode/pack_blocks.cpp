@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// What the cutting decides for each node: whether its children begin a block of their own.
+/// The decision for each node whether its children begin a block of their own.
 struct Cut {
-  std::vector<std::uint32_t> slots;  ///< Of all below the node that stays in the node's own block.
+  std::vector<std::uint32_t> slots;  ///< Of everything below the node in the node's own block.
   std::vector<bool> is_cut;          ///< The node's children are in another block than the node.
 };
 
@@ -27,7 +27,7 @@ void for_each_child(const EsvoTree& tree, std::uint32_t node, const Body& body) 
   for (std::uint32_t i = 0; i < n.inner_count(); ++i) body(n.first_child + i);
 }
 
-/// Slots of the siblings below a node by themselves: descriptors, their far pointers, a gap.
+/// Returns the slots of the children of a node alone: descriptors, their far pointers, a gap.
 std::uint32_t group_slots(std::uint32_t descriptors, std::uint32_t far_pointers) {
   return (descriptors + far_pointers + 1) & ~1u;
 }
@@ -61,20 +61,20 @@ Cut cut_blocks(const EsvoTree& tree, std::uint32_t max_slots) {
   return cut;
 }
 
-/// Where each node stands in its block; slots count from the block's begin. 0: nowhere.
+/// The slots of each node in its block, counted from the block's begin. 0: none.
 struct Placement {
   explicit Placement(std::size_t nodes) : children(nodes), far_pointer(nodes) {}
   std::vector<std::uint32_t> children;     ///< The first of the node's children.
-  std::vector<std::uint32_t> far_pointer;  ///< The far pointer to them.
+  std::vector<std::uint32_t> far_pointer;  ///< The far pointer to the children.
 };
 
-/// One block in the making.
+/// Writes one block.
 class BlockWriter {
  public:
   BlockWriter(const EsvoTree& tree, const Cut& cut, Placement& placement)
       : tree_(tree), cut_(cut), placement_(placement) {}
 
-  /// Gives slots to the children of `node` and all below them in this block, depth first.
+  /// Assigns slots to the children of `node` and to all below them in this block, depth first.
   void place(std::uint32_t node) {
     std::vector<std::uint32_t> stack{node};
     while (!stack.empty()) {
@@ -90,8 +90,8 @@ class BlockWriter {
     resize((slots_.size() + 1) / 2 * 2);
   }
 
-  /// Fills in the descriptors and what stands behind them. `target(node)` gives the slot, counted
-  /// from this block's begin, of the first child of a node whose children are in another block.
+  /// Fills in the descriptors and everything after them. For a node whose children are in another
+  /// block, `target(node)` returns the slot of the first child, counted from this block's begin.
   template <class Target>
   std::vector<std::uint64_t> finish(const PackOptions& options, const Target& target) {
     EsvoBlockInfo info{};
@@ -139,7 +139,8 @@ class BlockWriter {
     const EsvoNode& n = tree_.nodes[node];
     const std::uint32_t count = n.inner_count();
     auto at = static_cast<std::uint32_t>(slots_.size());
-    // A pair is of one parent; far pointers and page headers share theirs with anyone.
+    // Both descriptors of a pair have the same parent; far pointers and page headers may be beside
+    // any.
     if (at % 2 == 1 && node_at_.back() != kNone) ++at;
     if (at % kEsvoPageSlots == 0 || at / kEsvoPageSlots != (at + count - 1) / kEsvoPageSlots)
       at = (at + kEsvoPageSlots - 1) / kEsvoPageSlots * kEsvoPageSlots + 1;
@@ -167,7 +168,7 @@ class BlockWriter {
 
   struct PlacedContours {
     ContourPool pool;
-    std::vector<std::uint32_t> first;  ///< By slot: where the list of its descriptor stands.
+    std::vector<std::uint32_t> first;  ///< By slot: index of the descriptor's list.
   };
 
   PlacedContours place_contours() const {
@@ -237,11 +238,11 @@ class BlockWriter {
   const Cut& cut_;
   Placement& placement_;
   std::vector<std::uint64_t> slots_;
-  std::vector<std::uint32_t> node_at_;  // by slot: the node whose descriptor it is, or kNone
+  std::vector<std::uint32_t> node_at_;  // by slot: the node of its descriptor, or kNone
   std::uint32_t first_ = 0;
 };
 
-/// The cell of each node that begins a block, found by its way up.
+/// The cell of a node that begins a block, found from the path up to the root.
 struct NodeCell {
   int level;
   Vec3i cell;
@@ -308,7 +309,7 @@ PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint6
   PackedBlocks result;
   result.counts = count_voxels(tree, parents, level);
   Placement placement(tree.nodes.size());
-  // By node: where its children begin, among result.slots; and the block they begin.
+  // By node: the index of its first child in result.slots, and the block that begins there.
   std::vector<std::uint64_t> first_child(tree.nodes.size());
   std::vector<std::uint32_t> block_of(tree.nodes.size(), kNone);
   for (auto node = static_cast<std::uint32_t>(tree.nodes.size()); node-- > 0;) {
@@ -354,7 +355,7 @@ void add_super_root(EsvoTree& tree) {
   EsvoNode top;
   top.valid_mask = 1;
   top.first_child = 1;
-  // Its value, if there are any, is that of a voxel that no descriptor stores.
+  // If there are values, the new node needs one, which no descriptor stores.
   if (tree.has_values()) {
     top.first_value = static_cast<std::uint32_t>(tree.values.size());
     tree.values.emplace_back();
