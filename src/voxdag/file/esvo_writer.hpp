@@ -22,8 +22,9 @@ class EsvoFileWriter {
   /// Appends whole blocks.
   void append(std::span<const std::uint64_t> slots);
 
-  /// Completes the file. `directory` lists all blocks, in order; finish() sets their checksums.
-  void finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata);
+  /// Completes the file and returns its size in bytes. `directory` names all blocks, in order; its
+  /// checksums are filled in here.
+  std::uint64_t finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata);
 
  private:
   AtomicFile file_;

@@ -10,24 +10,25 @@
 namespace voxdag {
 namespace {
 
-/// The inputs of a decoded texture. Materials with equal recipes share one texture.
-struct Recipe {
+/// The images and settings that a texture is made from. Equal keys share a texture.
+struct TextureKey {
   enum Kind { kColor, kTangentNormals, kHeights, kEither };
   Kind kind = kColor;
   int image = -1, alpha_image = -1;
-  float number = 0;  ///< The smallest visible alpha, or the scale of normals.
+  float number = 0;  ///< The least visible alpha of a colour texture; the scale of normals.
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 
-  // NOLINTNEXTLINE(modernize-use-nullptr): misfires on the defaulted operator
-  friend auto operator<=>(const Recipe&, const Recipe&) = default;
+  // NOLINTNEXTLINE(modernize-use-nullptr): sees a null pointer in what the compiler writes here
+  friend auto operator<=>(const TextureKey&, const TextureKey&) = default;
 };
 
-struct DecodedTexture {
+struct LoadedTexture {
   std::shared_ptr<const Texture> texture;
   std::vector<std::string> warnings;
+  bool is_over_memory = false;  ///< Did not fit beside the images that were decoded with it.
 };
 
-/// Returns the smallest alpha at which a material is visible; 0: it is always visible.
+/// Returns the alpha from which on a material is visible; 0 if it always is.
 float least_alpha(const Material& material) {
   switch (material.alpha_mode) {
     case AlphaMode::kMask:
@@ -39,90 +40,105 @@ float least_alpha(const Material& material) {
   }
 }
 
-bool has_cut_texels(const Texture& texture) { return texture.bounds({0, 0}, {1, 1}).lo[3] < 65535; }
+bool has_masked_texels(const Texture& texture) {
+  return texture.bounds({0, 0}, {1, 1}).lo[3] < 65535;
+}
 
 class Loader {
  public:
   Loader(const Appearance& appearance, bool has_uvs, ImageOptions options)
       : appearance_(appearance), has_uvs_(has_uvs), options_(std::move(options)) {}
 
-  std::vector<MaterialLook> load(std::vector<std::string>& warnings, Progress* progress) {
+  std::vector<ResolvedMaterial> load(std::vector<std::string>& warnings, Progress* progress) {
     for (const Material& material : appearance_.materials) {
-      ask(color_recipe(material));
-      ask(normal_recipe(material));
+      request(color_key(material));
+      request(normal_key(material));
     }
-    std::vector<std::pair<const Recipe, DecodedTexture>*> pending;
-    for (auto& entry : decoded_) pending.push_back(&entry);
+    std::vector<std::pair<const TextureKey, LoadedTexture>*> entries;
+    for (auto& entry : textures_) entries.push_back(&entry);
     std::atomic<std::size_t> done{0};
-    parallel_for(pending.size(), [&](std::size_t i) {
+    const auto make_entry = [&](std::size_t i) {
       if (progress != nullptr) progress->throw_if_cancelled();
-      make(pending[i]->first, pending[i]->second);
+      make(entries[i]->first, entries[i]->second);
       const std::size_t count = ++done;
       if (progress != nullptr)
         progress->report("textures",
-                         static_cast<double>(count) / static_cast<double>(pending.size()), count);
+                         static_cast<double>(count) / static_cast<double>(entries.size()), count);
+    };
+    parallel_for(entries.size(), [&](std::size_t i) {
+      try {
+        make_entry(i);
+      } catch (const OverMemory&) {
+        entries[i]->second.is_over_memory = true;
+      }
     });
-    for (const auto& [recipe, result] : decoded_)
-      warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
-    std::vector<MaterialLook> looks;
-    for (const Material& material : appearance_.materials) looks.push_back(look(material));
-    if (!has_uvs_ && asked_without_uvs_)
+    // Alone, an image may fit.
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      if (entries[i]->second.is_over_memory) {
+        entries[i]->second = {};
+        make_entry(i);
+      }
+    for (const auto& [key, loaded] : textures_)
+      warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+    std::vector<ResolvedMaterial> resolved;
+    for (const Material& material : appearance_.materials) resolved.push_back(resolve(material));
+    if (!has_uvs_ && has_unused_textures_)
       warnings.emplace_back(
           "the mesh has textures but no texture coordinates: its materials' colours stand in");
-    return looks;
+    return resolved;
   }
 
  private:
-  static Recipe color_recipe(const Material& material) {
+  static TextureKey color_key(const Material& material) {
     const TextureUse& use = material.color_map.exists() ? material.color_map : material.alpha_map;
-    Recipe recipe{Recipe::kColor, material.color_map.image, -1, 0, use.wrap_u, use.wrap_v};
+    TextureKey key{TextureKey::kColor, material.color_map.image, -1, 0, use.wrap_u, use.wrap_v};
     const float least = least_alpha(material);
     if (least > 0) {
-      // No texel passes a threshold over 1.
-      recipe.number = material.alpha > 0 ? std::min(least / material.alpha, 2.0f) : 2.0f;
+      // If no texel passes, the threshold may be any number above 1.
+      key.number = material.alpha > 0 ? std::min(least / material.alpha, 2.0f) : 2.0f;
       if (material.alpha_map.image != material.color_map.image)
-        recipe.alpha_image = material.alpha_map.image;
+        key.alpha_image = material.alpha_map.image;
     }
-    return recipe;
+    return key;
   }
 
-  static Recipe normal_recipe(const Material& material) {
+  static TextureKey normal_key(const Material& material) {
     const TextureUse& use = material.normal_map;
-    const Recipe::Kind kind = material.normal_kind == NormalMapKind::kTangentSpace
-                                  ? Recipe::kTangentNormals
-                              : material.normal_kind == NormalMapKind::kHeights ? Recipe::kHeights
-                                                                                : Recipe::kEither;
+    const TextureKey::Kind kind =
+        material.normal_kind == NormalMapKind::kTangentSpace ? TextureKey::kTangentNormals
+        : material.normal_kind == NormalMapKind::kHeights    ? TextureKey::kHeights
+                                                             : TextureKey::kEither;
     return {kind, use.image, -1, material.normal_scale, use.wrap_u, use.wrap_v};
   }
 
-  void ask(const Recipe& recipe) {
-    if (recipe.image < 0 && recipe.alpha_image < 0) return;
+  void request(const TextureKey& key) {
+    if (key.image < 0 && key.alpha_image < 0) return;
     if (has_uvs_)
-      decoded_[recipe];
+      textures_[key];
     else
-      asked_without_uvs_ = true;
+      has_unused_textures_ = true;
   }
 
   const TextureImage& image(int index) const {
     return appearance_.images[static_cast<std::size_t>(index)];
   }
 
-  void make(const Recipe& recipe, DecodedTexture& result) const {
-    const TextureImage& named = image(recipe.image >= 0 ? recipe.image : recipe.alpha_image);
+  void make(const TextureKey& key, LoadedTexture& loaded) const {
+    const TextureImage& named = image(key.image >= 0 ? key.image : key.alpha_image);
     try {
-      if (recipe.kind == Recipe::kColor)
-        make_color(recipe, result);
+      if (key.kind == TextureKey::kColor)
+        make_color(key, loaded);
       else
-        make_normals(recipe, result);
+        make_normals(key, loaded);
     } catch (const OverMemory& error) {
       if (!error.file().empty()) throw;
       throw OverMemory(named.name, "", error.reason());
     }
   }
 
-  /// Decodes an image. If it cannot be read, adds a warning that ends with `stand_in`, and returns
-  /// an empty image.
-  DecodedImage decode(int index, const char* stand_in, DecodedTexture& result) const {
+  /// Decodes an image. One that cannot be read is a warning that ends with `stand_in`, and the
+  /// result is empty.
+  DecodedImage decode(int index, const char* stand_in, LoadedTexture& loaded) const {
     try {
       return decode_texture_image(image(index), options_);
     } catch (const Cancelled&) {
@@ -130,31 +146,31 @@ class Loader {
     } catch (const OverMemory&) {
       throw;
     } catch (const Error& error) {
-      result.warnings.push_back(std::string(error.what()) + stand_in);
+      loaded.warnings.push_back(std::string(error.what()) + stand_in);
       return {};
     }
   }
 
-  void make_normals(const Recipe& recipe, DecodedTexture& result) const {
-    const TextureWraps wraps{recipe.wrap_u, recipe.wrap_v};
+  void make_normals(const TextureKey& key, LoadedTexture& loaded) const {
+    const TextureWraps wraps{key.wrap_u, key.wrap_v};
     const DecodedImage pixels =
-        decode(recipe.image, ": the mesh's own normals stand in for the normal map", result);
+        decode(key.image, ": the mesh's own normals stand in for the normal map", loaded);
     if (pixels.is_empty()) return;
     const bool is_heights =
-        recipe.kind == Recipe::kHeights ||
-        (recipe.kind == Recipe::kEither && !looks_like_normal_map(pixels, options_));
-    result.texture = std::make_shared<Texture>(
-        is_heights ? make_bump_texture(pixels, recipe.number, wraps, options_)
-                   : make_normal_texture(pixels, recipe.number, wraps, options_));
+        key.kind == TextureKey::kHeights ||
+        (key.kind == TextureKey::kEither && !looks_like_normal_map(pixels, options_));
+    loaded.texture = std::make_shared<Texture>(
+        is_heights ? make_bump_texture(pixels, key.number, wraps, options_)
+                   : make_normal_texture(pixels, key.number, wraps, options_));
   }
 
-  void make_color(const Recipe& recipe, DecodedTexture& result) const {
+  void make_color(const TextureKey& key, LoadedTexture& loaded) const {
     DecodedImage pixels;
-    if (recipe.image >= 0)
-      pixels = decode(recipe.image, ": the material's colour stands in for the texture", result);
-    if (recipe.alpha_image >= 0) {
+    if (key.image >= 0)
+      pixels = decode(key.image, ": the material's colour stands in for the texture", loaded);
+    if (key.alpha_image >= 0) {
       const DecodedImage alpha =
-          decode(recipe.alpha_image, ": the material is opaque without its alpha map", result);
+          decode(key.alpha_image, ": the material is opaque without its alpha map", loaded);
       if (!alpha.is_empty()) {
         if (pixels.is_empty()) {
           pixels = DecodedImage(1, 1, 4, 2, options_.memory);
@@ -164,44 +180,43 @@ class Loader {
       }
     }
     if (!pixels.is_empty())
-      result.texture = std::make_shared<Texture>(
-          make_color_texture(pixels, recipe.number, {recipe.wrap_u, recipe.wrap_v}, options_));
+      loaded.texture = std::make_shared<Texture>(
+          make_color_texture(pixels, key.number, {key.wrap_u, key.wrap_v}, options_));
   }
 
-  MaterialLook look(const Material& material) const {
-    MaterialLook look;
-    look.color = material.base_color;
-    const Recipe color = color_recipe(material);
-    if (const auto found = decoded_.find(color); found != decoded_.end())
-      look.color_texture = found->second.texture;
+  ResolvedMaterial resolve(const Material& material) const {
+    ResolvedMaterial resolved;
+    resolved.color = material.base_color;
+    const TextureKey color = color_key(material);
+    if (const auto found = textures_.find(color); found != textures_.end())
+      resolved.color_texture = found->second.texture;
     const float least = least_alpha(material);
-    if (look.color_texture) {
-      if (color.image >= 0) look.color = material.texture_tint;
-      look.color_uv = color.image >= 0 ? material.color_map.uv : material.alpha_map.uv;
-      look.is_alpha_textured = has_cut_texels(*look.color_texture);
+    if (resolved.color_texture) {
+      if (color.image >= 0) resolved.color = material.texture_tint;
+      resolved.color_uv = color.image >= 0 ? material.color_map.uv : material.alpha_map.uv;
+      resolved.is_alpha_textured = has_masked_texels(*resolved.color_texture);
     }
-    // Texture alpha and corner alpha are tested separately, so that texels can be tested in
-    // advance.
-    if (least > 0) look.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
-    if (const auto found = decoded_.find(normal_recipe(material)); found != decoded_.end()) {
-      look.normal_texture = found->second.texture;
-      look.normal_uv = material.normal_map.uv;
+    // The alphas of texels and corners are tested separately, so that texels can be tested here.
+    if (least > 0) resolved.least_corner_alpha = material.alpha > 0 ? least / material.alpha : 2;
+    if (const auto found = textures_.find(normal_key(material)); found != textures_.end()) {
+      resolved.normal_texture = found->second.texture;
+      resolved.normal_uv = material.normal_map.uv;
     }
-    return look;
+    return resolved;
   }
 
   const Appearance& appearance_;
   const bool has_uvs_;
   const ImageOptions options_;
-  bool asked_without_uvs_ = false;
-  std::map<Recipe, DecodedTexture> decoded_;
+  bool has_unused_textures_ = false;
+  std::map<TextureKey, LoadedTexture> textures_;
 };
 
 }  // namespace
 
-std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
-                                              std::vector<std::string>& warnings,
-                                              Progress* progress, MemoryBudget* memory) {
+std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
+                                             std::vector<std::string>& warnings, Progress* progress,
+                                             MemoryBudget* memory) {
   return Loader(appearance, has_uvs, image_options(progress, memory)).load(warnings, progress);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The decoded textures of a mesh's materials.
+/// The materials of a mesh with their textures decoded.
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,25 +10,25 @@
 
 namespace voxdag {
 
-/// The appearance of a material, ready for look-up.
-struct MaterialLook {
+/// A material with its alpha test applied to the texels.
+struct ResolvedMaterial {
   Vec3f color{1, 1, 1};  ///< Linear light; multiplies the texture if there is one.
   std::shared_ptr<const Texture> color_texture;
   UvTransform color_uv;
   std::shared_ptr<const Texture> normal_texture;
   UvTransform normal_uv;
-  /// Surface with less corner alpha is removed. Over 1: all of it.
+  /// Where the corners' alpha is less, the surface is masked out: everywhere if this exceeds 1.
   float least_corner_alpha = 0;
-  bool is_alpha_textured = false;  ///< The alpha test removes some texels of the colour texture.
+  bool is_alpha_textured = false;  ///< Some texels of the colour texture are masked out.
 };
 
-/// Decodes the textures of the materials, each one once, in parallel. A texture that cannot be read
-/// is left out; `warnings` gets a line that names the file, the reason and the replacement. If the
-/// mesh has no texture coordinates (`has_uvs`), all textures are left out. Throws Cancelled, and
-/// OverMemory with the name of the image.
-std::vector<MaterialLook> load_material_looks(const Appearance& appearance, bool has_uvs,
-                                              std::vector<std::string>& warnings,
-                                              Progress* progress, MemoryBudget* memory);
+/// Decodes the textures of the materials, each texture once, in parallel. A texture that cannot be
+/// read is left out, with a line in `warnings` that names the file, the reason and what replaces
+/// it. Without texture coordinates (`has_uvs`) all textures are left out. Throws Cancelled, and
+/// OverMemory with the name of an image that does not fit even when it is decoded alone.
+std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
+                                             std::vector<std::string>& warnings, Progress* progress,
+                                             MemoryBudget* memory);
 
 /// Decodes an image that a mesh names or contains. Throws Error, OverMemory, and what options.poll
 /// throws.

@@ -9,7 +9,12 @@
 namespace voxdag {
 namespace {
 
-/// Corners with equal keys share a tangent.
+Vec3f unit_or_zero(Vec3f v) {
+  const float length2 = dot(v, v);
+  return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : Vec3f{};
+}
+
+/// Corners that are equal share a tangent.
 struct Corner {
   Vec3f position, normal;
   Vec2f uv;
@@ -27,6 +32,13 @@ struct CornerHash {
   }
 };
 
+void report_tangents(Progress* progress, std::size_t triangle, std::size_t count) {
+  if (progress == nullptr || triangle % 65536 != 0) return;
+  progress->throw_if_cancelled();
+  progress->report("tangents", static_cast<double>(triangle) / static_cast<double>(count),
+                   triangle);
+}
+
 }  // namespace
 
 Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
@@ -34,7 +46,7 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
   const Vec3f a = mesh.vertices[t[0]];
   const Vec3f normal = normalized_or(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a), {});
   if (normal != Vec3f{}) return normal;
-  // In double: the areas of tiny triangles underflow in float32.
+  // The areas of tiny triangles underflow in float32.
   const Vec3d d(a);
   return static_cast<Vec3f>(
       normalized_or(cross(Vec3d(mesh.vertices[t[1]]) - d, Vec3d(mesh.vertices[t[2]]) - d), {}));
@@ -42,9 +54,12 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
 
 TangentTable::TangentTable(
     const Mesh& mesh, const Appearance& appearance,
-    const std::function<const UvTransform*(std::size_t triangle)>& uv_transform) {
-  places_.assign(mesh.triangles.size(), kNone);
-  std::unordered_map<Corner, Vec3f, CornerHash> sums;
+    const std::function<const UvTransform*(std::size_t triangle)>& uv_transform, Progress* progress,
+    MemoryBudget* memory)
+    : places_(mesh.triangles.size(), kNone, memory), tangents_(memory) {
+  using Sums = std::unordered_map<Corner, Vec3f, CornerHash, std::equal_to<>,
+                                  CountedAllocator<std::pair<const Corner, Vec3f>>>;
+  Sums sums{Sums::allocator_type(memory)};
   const auto corner_of = [&](std::size_t t, std::size_t c, bool mirrored) {
     Corner corner{mesh.vertices[mesh.triangles[t][c]], {}, appearance.uvs[3 * t + c], mirrored};
     if (!appearance.normals.empty()) corner.normal = appearance.normals[3 * t + c];
@@ -53,6 +68,7 @@ TangentTable::TangentTable(
   };
   std::uint32_t count = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    report_tangents(progress, t, mesh.triangles.size());
     const UvTransform* const transform = uv_transform(t);
     if (transform == nullptr) continue;
     std::array<Vec3f, 3> p;

@@ -1,33 +1,38 @@
 #pragma once
-/// Computes the axes of tangent-space normal maps.
+/// The directions of the axes of tangent-space normal maps.
 ///
-/// After M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited" (2008): the tangents of the
-/// triangles around a vertex that agree in position, normal, texture coordinates and handedness are
-/// averaged, weighted by angle.
+/// After M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited" (2008): the tangent of a corner
+/// is the mean of the tangents of the triangles around the vertex that agree in position, normal,
+/// texture coordinates and handedness, weighted by angle.
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
-/// The frames of one triangle.
-struct TangentFrames {
-  const Vec3f* tangents = nullptr;  ///< Per corner, unit, along +u; null: no texture area.
+/// The tangents of one triangle.
+struct CornerTangents {
+  const Vec3f* tangents = nullptr;  ///< Per corner, unit length, along +u. Null: the triangle's
+                                    ///< texture coordinates span no area.
   float handedness = 1;  ///< handedness * cross(normal, tangent) points to the image's upper edge.
 };
 
 class TangentTable {
  public:
   TangentTable() = default;
-  /// Computes the frames of the triangles for which `uv_transform(triangle)` is not null.
+  /// Computes tangents for the triangles for which `uv_transform(triangle)` is not null. Throws
+  /// Cancelled and OverMemory.
   TangentTable(const Mesh& mesh, const Appearance& appearance,
-               const std::function<const UvTransform*(std::size_t triangle)>& uv_transform);
+               const std::function<const UvTransform*(std::size_t triangle)>& uv_transform,
+               Progress* progress = nullptr, MemoryBudget* memory = nullptr);
 
-  TangentFrames operator[](std::size_t triangle) const {
+  CornerTangents operator[](std::size_t triangle) const {
     if (places_.empty() || places_[triangle] == kNone) return {};
     const std::uint32_t place = places_[triangle];
     return {tangents_.data() + 3 * std::size_t{place & ~kMirrored},
@@ -40,11 +45,11 @@ class TangentTable {
  private:
   static constexpr std::uint32_t kNone = ~0u, kMirrored = 1u << 31;
 
-  std::vector<std::uint32_t> places_;  ///< Per triangle: index into `tangents_`, and kMirrored.
-  std::vector<Vec3f> tangents_;
+  CountedVector<std::uint32_t> places_;  ///< Per triangle: index into `tangents_`, with kMirrored.
+  CountedVector<Vec3f> tangents_;
 };
 
-/// Returns the unit normal of a triangle's plane; zero if it has no area.
+/// Returns the unit normal of a triangle's plane; zero if the triangle has no area.
 Vec3f face_normal(const Mesh& mesh, std::size_t triangle);
 
 }  // namespace voxdag

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kMostAtOnce = 1 << 18;  // samples
 
-/// splitmix64: a number for each counter value.
+/// splitmix64: returns a random number for each counter value.
 std::uint64_t mix(std::uint64_t v) {
   v += 0x9E3779B97F4A7C15ull;
   v = (v ^ v >> 30) * 0xBF58476D1CE4E5B9ull;
@@ -25,7 +25,7 @@ std::uint64_t mix(std::uint64_t v) {
 
 double unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// Walks to a point; remembers how deep it came.
+/// Walks down to a point and remembers the deepest level it reached.
 struct Walk {
   const EsvoView& esvo;
   Vec3d point;  // in voxels
@@ -39,8 +39,8 @@ struct Walk {
     deepest = std::max(deepest, level);
     for (int child = 0; child < 8; ++child) {
       if ((d.valid_mask() >> child & 1) == 0) continue;
-      const Vec3i at = cell * 2 + child_offset(child);
-      // The point in the coordinates in which the child is [-1,1]³.
+      const Vec3i at = cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2};
+      // The point in the child's own coordinates, in which it is [-1,1]³.
       Vec3d local;
       bool in_cube = true;
       for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +94,7 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
   const double size = static_cast<double>(std::int64_t{1} << esvo.levels);
   const auto look_at = [&](std::uint64_t i) {
     const std::uint64_t a = mix(seed * 0x10001 + 3 * i), b = mix(a), c = mix(b);
-    // Half of the samples go by area, half by triangle.
+    // Half of the samples are spread by area, half by triangle.
     std::size_t triangle = i / 2 % count;
     if (i % 2 == 0) {
       const auto at =
@@ -105,13 +105,13 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
     if (!mesh.in_range(triangle)) return;
     const std::uint32_t source = mesh.source(triangle);
     const bool is_displaced = displaced != nullptr && displaced->is_displaced(source);
-    // Pieces stand for what was cut off at the grid's sides, before displacement.
+    // Displaced triangles are sampled whole, not by their pieces at the grid's sides.
     if (is_displaced && source != triangle) return;
     Vec3d p[3];
     corners(triangle, p);
     double u = unit(a), v = unit(b);
     if (u + v > 1) u = 1 - u, v = 1 - v;
-    // Corners and edges, now and then.
+    // Some samples are corners or lie on edges.
     if (i % 16 == 1) u = static_cast<double>(a & 1), v = u > 0 ? 0 : static_cast<double>(b & 1);
     if (i % 16 == 3) v = 0;
     Vec2f place{static_cast<float>(u), static_cast<float>(v)};
@@ -122,7 +122,7 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
         if (!q) return;
         p[k] = static_cast<Vec3d>(*q) * (1.0 / kSubvoxels);
       }
-      // Anywhere in the small one.
+      // A random point of the micro triangle.
       u = unit(mix(c)), v = unit(mix(c + 1));
       if (u + v > 1) u = 1 - u, v = 1 - v;
       const std::array<Vec2f, 3>& corner = micro.barycentrics;

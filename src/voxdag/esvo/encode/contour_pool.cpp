@@ -5,7 +5,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns the hash of a run, given the hash of the run without its last contour.
+/// Returns the hash of a run from the hash of the run without its last contour.
 std::uint64_t hash_next(std::uint64_t hash, Contour contour) {
   hash = (hash ^ contour.bits) * 0x9E3779B97F4A7C15u;
   return hash ^ hash >> 32;

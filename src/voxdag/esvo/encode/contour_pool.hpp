@@ -1,5 +1,5 @@
 #pragma once
-/// Stores the contours of a block: one list per group of siblings, equal lists once.
+/// The contours of a block: one list for each set of siblings, equal runs stored once.
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -9,18 +9,19 @@
 
 namespace voxdag {
 
-/// Walls along an axis repeat their contours voxel after voxel. A list that equals a list, or a
-/// part of a list, that was added before takes no room. Add long lists first for most sharing.
+/// Walls along an axis repeat the same contours voxel after voxel. So equal lists are stored once,
+/// and a list that is part of another one takes no place of its own. Long lists must be added first
+/// to share the most.
 class ContourPool {
  public:
-  /// Returns the index of `list` (1 to 8 contours) in contours().
+  /// Returns the index in contours() at which `list` (1 to 8 contours) begins.
   std::uint32_t add(std::span<const Contour> list);
 
   const std::vector<Contour>& contours() const { return contours_; }
 
  private:
   std::vector<Contour> contours_;
-  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // hash of a run to its index
+  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // by hash of a run: its index
 };
 
 }  // namespace voxdag

@@ -1,8 +1,8 @@
-/// Source: the cluster fit of Simon Brown's libsquish. Along the principal axis of the colours, an
-/// optimal block assigns the selectors in order. So the candidates are the ways to cut the sorted
-/// colours into four runs. For each of them prefix sums give the best real-valued ends and their
-/// error in closed form. The best cuts get integer ends and the nearest selectors. The best block
-/// of these then improves ends and selectors in turn while that helps.
+/// Source: the cluster fit of Simon Brown's libsquish. An optimal block gives the colours selectors
+/// in their order along the principal axis, so the candidates are the ways to cut the sorted list
+/// into four. Prefix sums give each cut's best ends, as real numbers, and the remaining error in
+/// closed form. The best cuts then get ends in whole steps and selectors by distance; the best of
+/// these blocks gets new ends and selectors in turn while that helps.
 #include "voxdag/esvo/encode/encode_color_block.hpp"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kPadded = kValuesPerBlock + kLanes;
 constexpr FloatLanes kSteps = {31.0f, 63.0f, 31.0f, 1.0f};
 
-/// The distinct used values. Entries from `count` to the next multiple of kLanes have weight 0.
+/// The distinct used values. Entries past `count`, up to the next multiple of kLanes, have
+/// weight 0.
 struct Values {
   std::size_t count = 0;
   float total_weight = 0.0f;
@@ -54,14 +55,14 @@ void gather(std::span<const Vec3f, kValuesPerBlock> colors, std::uint32_t used,
   values.mean = sum / values.total_weight;
 }
 
-/// A block under construction: its ends in steps, and the thirds of c0 in each value.
+/// A block while it is fitted: its ends in steps, and how many thirds of c0 each value takes.
 struct Fit {
   FloatLanes c0, c1;
   float thirds[kValuesPerBlock];
   float error;
 };
 
-/// Fits integer ends to the values, with the current selectors.
+/// Returns the ends, in whole steps, that fit the values best with the given selectors.
 void fit_ends(const Values& values, Fit& fit) {
   float aa = 0, ab = 0, bb = 0;
   FloatLanes a_sum = {};
@@ -77,8 +78,7 @@ void fit_ends(const Values& values, Fit& fit) {
   const FloatLanes b = values.mean * (3.0f * values.total_weight) * scale - a;
   // A channel's error is aa p² + 2 ab p q + bb q² - 2 a p - 2 b q and a constant.
   const float det = aa * bb - ab * ab;
-  // With a single selector many p and q give the same mix; equal ones are the nearest after
-  // rounding.
+  // With a single selector any p and q of the right mix would do; equal ones come nearest to it.
   const bool line = det <= 1e-5f * (aa + bb) * (aa + bb);
   const FloatLanes real_p = line ? mean : (a * bb - b * ab) / det;
   const FloatLanes real_q = line ? mean : (b * aa - a * ab) / det;
@@ -101,7 +101,7 @@ void fit_ends(const Values& values, Fit& fit) {
   consider(p_for(next_q), next_q);
 }
 
-/// Assigns the nearest of the four colours to each value, and sets the error.
+/// Assigns the nearest of the four colours to each value and sets the error.
 void fit_selectors(const Values& values, Fit& fit) {
   FloatLanes palette[4];
   for (int thirds = 0; thirds < 4; ++thirds) {
@@ -127,8 +127,8 @@ void fit_selectors(const Values& values, Fit& fit) {
   fit.error = error[0] + error[1] + error[2] + error[3];
 }
 
-/// The values sorted along their axis, and prefix sums over them: weights, and weighted differences
-/// from the mean. The sums after the last value repeat.
+/// The values sorted along their axis, and prefix sums of their weights and of their weighted
+/// differences from the mean. The last sum repeats past the end.
 struct Sorted {
   std::size_t order[kValuesPerBlock];
   float weight[kPadded + 1], x[kPadded + 1], y[kPadded + 1], z[kPadded + 1];
@@ -161,8 +161,7 @@ void sort_along_axis(const Values& values, Sorted& sorted) {
   }
 }
 
-/// Cuts of the sorted values: those before `a` are c0, those before `b` 2/3 c0, those before `c`
-/// 1/3 c0.
+/// Cuts of the sorted values: those before `a` take c0, before `b` 2/3 of it, before `c` 1/3.
 struct Cuts {
   int a = 0, b = 0, c = 0;
   float gain = 0.0f;  ///< by how much the best ends reduce the sum of squared differences
@@ -182,9 +181,9 @@ class CutSearch {
         nine_weight_(9.0f * sorted.weight[count]),
         least_det_(1e-5f * sorted.weight[count] * sorted.weight[count]) {}
 
-  /// Returns eight cuts, each the best of one of eight disjoint sets, which together are all cuts
-  /// but those with a single selector. The first four use both ends. The last four leave one end
-  /// unused; that end may be no valid colour, which the gain does not consider.
+  /// The best cut of each of eight disjoint sets, which hold all cuts but those of a single
+  /// selector. The first four use both ends. The last four leave one end unused, which may then lie
+  /// outside of the colours; the gain does not account for that.
   std::array<Cuts, 2 * kLanes> run() const {
     BestCuts inner, outer;
     for (int a = 1; a < count_; ++a)
@@ -248,7 +247,7 @@ class CutSearch {
   float nine_weight_, least_det_;
 };
 
-/// Fits a block to the cuts, and replaces `best` if the block is better.
+/// Assigns the thirds of c0 by the cuts, and keeps the fit if it is better.
 void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, Fit& best) {
   Fit fit;
   for (int i = 0; i < static_cast<int>(values.count); ++i)
@@ -258,7 +257,7 @@ void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, F
   if (fit.error < best.error) best = fit;
 }
 
-/// Returns a block whose values are all 2/3 c0 + 1/3 c1, which can be any third of a step.
+/// Gives all values 2/3 c0 + 1/3 c1, which reaches every third of a step.
 Fit one_color(const Values& values) {
   Fit fit;
   std::fill_n(fit.thirds, kValuesPerBlock, 2.0f);
@@ -276,13 +275,13 @@ Fit fit_cuts(const Values& values) {
   fit_selectors(values, best);
   const int count = static_cast<int>(values.count);
   if (count <= 3) {
-    // Many cuts fit few values exactly; only the rounding of the ends decides between them.
+    // Many cuts fit few values exactly; then only the rounding to whole steps decides.
     for (int a = 0; a <= count; ++a)
       for (int b = a; b <= count; ++b)
         for (int c = b; c <= count; ++c) try_cuts(values, sorted, a, b, c, best);
   } else {
-    // Rounding to integer steps costs about a twelfth of a squared step per value and channel. Cuts
-    // that are worse by more than that cannot win.
+    // Rounding to whole steps costs about a twelfth of a squared step for each value and channel:
+    // cuts that are worse by more than that are not tried.
     constexpr float kStepError = (2.0f / (31.0f * 31.0f) + 1.0f / (63.0f * 63.0f)) / 12.0f;
     const std::array<Cuts, 2 * kLanes> cuts = CutSearch(sorted, values.count).run();
     float enough = 0.0f;

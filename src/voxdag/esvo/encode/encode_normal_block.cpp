@@ -1,9 +1,9 @@
 /// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 3.5, whose last
-/// paragraph names the three kinds of grids tried here: across the mean of the normals, along one
-/// line, and through unrelated directions. Each kind gives a real-valued grid. Then three steps
-/// alternate: the grid is rounded to its stored form, every normal gets the nearest grid point, and
-/// the grid is fitted to the normals by least squares. If the normals differ much, single integers
-/// of the axes are changed while that helps.
+/// paragraph names the three kinds of grids tried here: across the normals' mean, along one line
+/// with parallel axes, and through entirely different directions. Each kind starts with a grid of
+/// real numbers. The grid is then, in turn, rounded to its stored form, assigned to the normals and
+/// fitted by least squares to the normals at each point. If the normals differ much, the integers
+/// of the axes are finally changed one by one while that helps.
 #include "voxdag/esvo/encode/encode_normal_block.hpp"
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace {
 
 /// Mean squared chord above which more kinds of grids are tried: two degrees.
 constexpr float kHard = 1.2e-3f;
-/// Mean squared chord below which no other kind is tried: half a degree.
+/// Mean squared chords below which no other kind is tried: half a degree.
 constexpr float kGood = kHard / 16;
 
-/// The normals projected along their rays onto a plane across their mean, in coordinates along the
-/// two principal directions.
+/// The normals projected onto a plane across their mean, in the coordinates of the two principal
+/// directions of the projected points.
 struct PlaneView {
   Vec3f middle, along, across;
   float p[kValuesPerBlock], q[kValuesPerBlock];
@@ -47,7 +47,7 @@ struct PlaneView {
       pp += values.weight[i] * dp * dp, pq += values.weight[i] * dp * dq;
       qq += values.weight[i] * dq * dq;
     }
-    // An eigenvector of the covariance matrix, from the sum without cancellation.
+    // An eigenvector of the covariance matrix, from the sum that does not cancel.
     const float half = 0.5f * (pp - qq), root = std::sqrt(half * half + pq * pq);
     float c = half >= 0.0f ? half + root : pq, s = half >= 0.0f ? pq : root - half;
     const float length = std::sqrt(c * c + s * s);
@@ -70,14 +70,14 @@ struct PlaneView {
   }
 };
 
-/// Returns the nearest of the `steps` + 1 even steps from `low` to `high`.
+/// Returns which of the `steps` + 1 even steps from `low` to `high` is nearest to a value.
 int step_of(float value, float low, float high, float steps) {
   return static_cast<int>((value - low) * (steps / std::max(high - low, 1e-20f)) + 0.5f);
 }
 
 float coefficient(int step) { return static_cast<float>(step) * (2.0f / 3.0f) - 1.0f; }
 
-/// Tries the first kind: four by four points over the ranges of the plane view.
+/// The first kind: 4x4 points over the ranges of the plane view.
 void consider_across(const NormalValues& values, const PlaneView& view, NormalFit& best) {
   NormalFit start{};
   for (std::size_t i = 0; i < values.count; ++i) {
@@ -101,8 +101,8 @@ void consider_line(const NormalValues& values, const PlaneView& view, NormalFit&
   consider_grid(values, grid, start, 3, best);
 }
 
-/// Tries the better one of the first two kinds. For a view of half width p and half height q their
-/// expected squared errors are (p² + q²) / 27 and q² / 3.
+/// Returns the better of the first two kinds. A view of width p and height q makes one expect
+/// squared errors of (p² + q²) / 27 and of q² / 3.
 void consider_plane(const NormalValues& values, Vec3f mean, NormalFit& best) {
   const PlaneView view(values, mean);
   const float p = view.half_p(), q = view.half_q();
@@ -110,7 +110,7 @@ void consider_plane(const NormalValues& values, Vec3f mean, NormalFit& best) {
   if (q < 0.42f * p) consider_line(values, view, best);
 }
 
-/// Three of the normals, each far from the ones before it.
+/// Returns three of the normals, each far from those before it.
 struct FarNormals {
   Vec3f normal[3];
 
@@ -128,7 +128,7 @@ struct FarNormals {
   }
 };
 
-/// Tries the third kind: grids with three corners at three far directions, in all three ways.
+/// The third kind: three corners of the grid are at three far directions. Tries each assignment.
 void consider_corners(const NormalValues& values, NormalFit& best) {
   const FarNormals far(values);
   for (int shared = 0; shared < 3; ++shared) {
@@ -139,8 +139,8 @@ void consider_corners(const NormalValues& values, NormalFit& best) {
   }
 }
 
-/// Tries a grid for normals and their opposites, as on both sides of a thin wall. Three steps of u
-/// give the base in three lengths, the fourth gives minus the base.
+/// For normals and their opposites, as on both sides of a thin wall: three steps of u give
+/// multiples of the base, and the fourth gives minus the base.
 void consider_opposites(const NormalValues& values, NormalFit& best) {
   OuterProductSum spread;
   for (std::size_t i = 0; i < values.count; ++i) spread.add(values.normal[i], values.weight[i]);
@@ -174,11 +174,11 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
     across.add(from, values.weight[i]);
     widest = std::max(widest, dot(from, from));
   }
-  // Steps -1/3 (front) and 1 (back) of u are then the means of the two sides.
+  // The steps -1/3 (front) and 1 (back) of u then have the means of the two sides.
   const Vec3f base = axis + (in_front * 5.0f - behind) * 0.25f;
   const Vec3f u = axis * -2.0f - (behind + in_front * (5.0f / 3.0f)) * 0.75f;
   if (!(longest_side(base) > 0.25f)) return;
-  // v follows the spread of the normals; without a spread it corrects u.
+  // Without a spread v is free to correct u; otherwise v takes the direction of the spread.
   NormalFit start{};
   for (std::size_t i = 0; i < values.count; ++i) {
     const bool is_front = dot(values.normal[i], axis) > 0.0f;
@@ -192,7 +192,7 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
   }
 }
 
-/// Changes single integers of the axes by one while that helps.
+/// Changes the integers of the axes by one while that helps.
 void move_integers(const NormalValues& values, NormalFit& fit) {
   for (int round = 0; round < 3; ++round) {
     const float before = fit.error;
@@ -212,7 +212,7 @@ void move_integers(const NormalValues& values, NormalFit& fit) {
   }
 }
 
-/// Fits one normal: the base, and an axis from the base to the normal.
+/// For a single normal: stores the base, and an axis from the base to the normal.
 NormalFit fit_one_normal(Vec3f normal) {
   NormalValues values;
   values.count = 1;
@@ -223,19 +223,19 @@ NormalFit fit_one_normal(Vec3f normal) {
   plain.base = nearest_cube_point(normal);
   fit_points(values, plain);
   NormalFit fit = plain;
-  // The normal takes the grid point base + u + v; one of the axes is zero.
+  // The point to which both axes are added; one of them is zero.
   const Vec3f base = plain.base.position();
   fit.u = nearest_axis(normal * dot(normal, base) - base, normal, 0.0f);
   fit_points(values, fit);
   return fit.error < plain.error ? fit : plain;
 }
 
-/// Returns fit_one_normal() from a cache: flat surfaces repeat few normals, block after block.
+/// Returns the block of a single normal from a cache: flat surfaces repeat few normals.
 const NormalFit& one_normal(Vec3f normal) {
-  // Compares bits: 0 and -0 must differ, or the result would depend on the thread's earlier blocks.
+  // Compares bits: if 0 and -0 were equal, results would depend on what the thread did before.
   using Bits = std::array<std::uint32_t, 3>;
   struct Known {
-    Bits normal{};  // no unit vector
+    Bits normal{};  // Zero is no unit vector.
     NormalFit fit;
   };
   constexpr int kLog2Known = 6;

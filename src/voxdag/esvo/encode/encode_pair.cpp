@@ -9,9 +9,9 @@
 namespace voxdag {
 namespace {
 
-/// Weights of a leaf relative to an inner voxel. Leaves can be large and close to the viewer; inner
-/// voxels show only when they are smaller than a pixel. On a flat wall, a leaf whose normal errs by
-/// a degree stands out from its neighbours.
+/// The weight of a leaf relative to an inner voxel. Leaves may be large and near to the viewer;
+/// inner voxels are seen only where they are smaller than a pixel. On a flat wall a leaf whose
+/// normal is off by a degree stands out from the leaves beside it.
 constexpr float kColorOfLeaf = 16, kNormalOfLeaf = 256;
 
 std::array<float, kValuesPerBlock> weights_of(const PairValues& values, float leaf) {

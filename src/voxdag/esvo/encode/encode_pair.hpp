@@ -6,10 +6,10 @@
 
 namespace voxdag {
 
-/// The 16 values of a pair of slots.
+/// The 16 values of a pair of slots; `mask` tells which of them a voxel has.
 struct PairValues {
-  std::uint32_t mask = 0;    ///< Bit i: a voxel has value i.
-  std::uint32_t leaves = 0;  ///< Bit i: a leaf has value i.
+  std::uint32_t mask = 0;
+  std::uint32_t leaves = 0;  ///< Bit i: value i belongs to a leaf.
   VoxelValue values[16];
 
   void set(std::uint32_t at, const VoxelValue& value, bool is_leaf) {
@@ -19,10 +19,10 @@ struct PairValues {
   }
 };
 
-/// Writes one slot, a colour block. At least one value is set.
+/// Writes a colour block, one slot. At least one value is set.
 void encode_pair_colors(const PairValues& values, std::uint64_t* block);
 
-/// Writes two slots, a normal block. At least one value is set.
+/// Writes a normal block, two slots. At least one value is set.
 void encode_pair_normals(const PairValues& values, std::uint64_t* block);
 
 }  // namespace voxdag

@@ -18,8 +18,8 @@ struct LanesVec {
   Vec3f sum() const { return {sum_of(x), sum_of(y), sum_of(z)}; }
 };
 
-/// For four normals: the vectors from their grid points to the nearest points on the normals' rays,
-/// and their weights. The angle of a difference is inversely proportional to the distance.
+/// For four normals: the differences from their grid points to the nearest points on the normals'
+/// rays, and their weights. A difference makes an angle in inverse proportion to the distance.
 struct Residuals {
   LanesVec difference;
   FloatLanes weight;
@@ -42,8 +42,8 @@ int group_count(const NormalValues& values) {
   return (static_cast<int>(values.count) + kLanes - 1) / kLanes;
 }
 
-/// Returns `grid` fitted by least squares to the normals that `points` assigns to its points. Parts
-/// that they do not determine stay as they are.
+/// Returns `grid` fitted by least squares to the normals that `points` assigns to its points. What
+/// they do not determine stays as it is.
 RealGrid fitted(const NormalValues& values, const NormalFit& points, RealGrid grid) {
   FloatLanes w_sum = {}, u_sum = {}, v_sum = {}, uu_sum = {}, uv_sum = {}, vv_sum = {};
   LanesVec r_sum, ru_sum, rv_sum;
@@ -74,7 +74,8 @@ RealGrid fitted(const NormalValues& values, const NormalFit& points, RealGrid gr
   return grid;
 }
 
-/// Returns the slope of cu over cv, by least squares: the part of a change of u that v can take.
+/// Returns the change of the v axis for a change of the u axis, by least squares: the slope of cu
+/// over cv.
 float slope(const NormalValues& values, const NormalFit& points) {
   FloatLanes u_sum = {}, v_sum = {}, uv_sum = {}, vv_sum = {};
   for (int group = 0; group < group_count(values); ++group) {
@@ -89,14 +90,14 @@ float slope(const NormalValues& values, const NormalFit& points) {
   return (sum_of(uv_sum) - mean_v * sum_of(u_sum)) / vv;
 }
 
-/// Rounds the grid to its stored form in `fit`, and assigns its points to the normals. On entry
-/// `fit` has the points of the real-valued grid.
+/// Stores the grid in `fit` as precisely as possible and assigns its points to the normals. On
+/// entry the fit has the points of the grid before it was stored.
 void store(const NormalValues& values, const RealGrid& grid, NormalFit& fit) {
   const float scale = 1.0f / longest_side(grid.base);
   const Vec3f u = grid.u * scale, v = grid.v * scale, direction = unit_vector(grid.base);
   const float bend = std::min(0.3f * (dot(u, u) + dot(v, v)), 1.0f);
   fit.u = nearest_axis(u, direction, bend);
-  // If cu and cv are correlated, v takes the rounding error of u. This fits two directions exactly.
+  // If cu and cv are proportional, v takes the rounding error of u: this fits two directions.
   const Vec3f missing = u - fit.u.vector();
   const Vec3f across = missing - direction * dot(missing, direction);
   fit.v = nearest_axis(v + across * slope(values, fit), direction, bend);

@@ -1,18 +1,18 @@
 #pragma once
-/// Fits grids of normals to normals by least squares.
+/// Fits grids to normals by least squares.
 #include "voxdag/esvo/encode/normal_grid.hpp"
 
 namespace voxdag {
 
-/// Returns `grid` with its base moved to fit the normals that `points` assigns to its points.
+/// Returns `grid` with the base moved to where its points best fit the normals assigned to them.
 RealGrid settled_grid(const NormalValues& values, const NormalFit& points, RealGrid grid);
 
-/// Returns whether the base is too short to have a direction.
+/// Vectors shorter than this count as having no direction.
 inline bool is_lost(const RealGrid& grid) { return !(longest_side(grid.base) > 0.1f); }
 
-/// Repeats three steps while that helps, at most `rounds` times: fits the grid to the normals, with
-/// the points that `start` assigns to them (only its coefficients matter); rounds it to its stored
-/// form; assigns the nearest points. Replaces `best` if the result is better.
+/// Fits the grid to the points that `start` assigns, stores it, assigns the points again, and
+/// repeats that while it helps, at most `rounds` times. Keeps the result if it is better than the
+/// best so far. Only the coefficients of `start` matter.
 void consider_grid(const NormalValues& values, const RealGrid& grid, const NormalFit& start,
                    int rounds, NormalFit& best);
 

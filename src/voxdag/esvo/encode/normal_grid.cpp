@@ -6,7 +6,7 @@
 namespace voxdag {
 namespace {
 
-/// Normals whose components differ by less are equal: about 0.0003 degrees.
+/// Normals whose components differ by less are merged: about 0.0003 degrees.
 constexpr float kSame = 4e-6f;
 constexpr float kThird = 1.0f / 3.0f;
 constexpr float kCoefficients[4] = {-1.0f, -kThird, kThird, 1.0f};
@@ -17,13 +17,13 @@ FloatLanes square_root(FloatLanes v) {
   return v;
 }
 
-/// Rounds to the nearest integer in [-8, 7].
+/// Rounds to the nearest integer within [-8, 7].
 FloatLanes nearest_component(FloatLanes v) {
   return truncated(min(max(v, all_lanes(-8.0f)), all_lanes(7.0f)) + 8.5f) - 8.0f;
 }
 
-/// The directions of a grid's points relative to the direction of its base, four per u step, and
-/// half of their squares.
+/// The directions of a grid's points relative to its base, the four points of a u step at once, and
+/// half their squares.
 struct GridDirections {
   FloatLanes x[4], y[4], z[4], half_square[4];
   Vec3f base;
@@ -35,7 +35,7 @@ struct GridDirections {
       const Vec3f start = grid.base + grid.u * kCoefficients[row];
       const FloatLanes px = vx + start.x, py = vy + start.y, pz = vz + start.z;
       const FloatLanes squared = px * px + py * py + pz * pz;
-      // A point without a direction gets a distance at which no normal takes it.
+      // A point without a direction is placed too far away to be chosen.
       const IntLanes directed = squared > 1e-6f;
       const FloatLanes scale = 1.0f / square_root(directed ? squared : all_lanes(1.0f));
       x[row] = px * scale - base.x, y[row] = py * scale - base.y, z[row] = pz * scale - base.z;
@@ -45,7 +45,7 @@ struct GridDirections {
   }
 };
 
-/// Assigns points to 4 `Groups` normals, by squared chords without the terms that all points share.
+/// For 4 `Groups` normals: compares squared chords without the terms that all points share.
 template <int Groups>
 void fit_groups(const NormalValues& values, const GridDirections& points, NormalFit& fit) {
   FloatLanes x[Groups], y[Groups], z[Groups], least[Groups], nearest[Groups];
@@ -132,14 +132,14 @@ CubePoint nearest_cube_point(Vec3f direction) {
 }
 
 GridAxis nearest_axis(Vec3f target, Vec3f base, float bend) {
-  // The finest unit in which all components stay within 7.45.
+  // The finest unit in which no component exceeds 7.45.
   const std::uint32_t bits = bits_of_float(longest_side(target) * (1.0f / 7.45f));
   const int ceiling = static_cast<int>(bits >> 23) - 127 + ((bits & 0x7FFFFFu) != 0 ? 1 : 0);
   const int exponent = std::min(std::max(ceiling + GridAxis::kBias, 0), 15);
   const Vec3f t = target * (1.0f / GridAxis::scale(exponent));
 
-  // One component tries its sixteen values. The multiple of the base that leads to each value is
-  // added to the other components before they are rounded.
+  // One component takes each of its sixteen values in turn, by adding a multiple of the base; the
+  // other components get the same multiple before they are rounded.
   const Vec3f size{std::fabs(base.x), std::fabs(base.y), std::fabs(base.z)};
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   FloatLanes least = all_lanes(INFINITY), best_x = {}, best_y = {}, best_z = {};

@@ -1,5 +1,5 @@
 #pragma once
-/// A grid of normals under construction: its normals, its error, and the nearest stored forms of
+/// A grid of normals while it is fitted: its normals, its error, and the stored forms nearest to
 /// its parts.
 #include <cmath>
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace voxdag {
 
-/// The used normals of a block; nearly equal ones are one. Entries after `count` have weight 0.
+/// The used normals of a block; nearly equal ones are merged. Entries past `count` have weight 0.
+///
 struct NormalValues {
   std::size_t count = 0;
   float total_weight = 0.0f;
@@ -31,7 +32,7 @@ struct RealGrid {
   Vec3f base, u, v;
 };
 
-/// A grid in its stored form, the grid point of each normal, and the error.
+/// A grid, the grid point assigned to each normal, and the error.
 struct NormalFit {
   CubePoint base;
   GridAxis u, v;
@@ -41,20 +42,19 @@ struct NormalFit {
   RealGrid grid() const { return {base.position(), u.vector(), v.vector()}; }
 };
 
-/// Assigns the nearest grid point to each normal, and sets the error.
+/// Assigns the nearest grid point to each normal and sets the error of the fit.
 void fit_points(const NormalValues& values, NormalFit& fit);
 
 inline Vec3f unit_vector(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
-/// Returns the largest absolute value of a component.
+/// Returns the greatest absolute value of the components.
 float longest_side(Vec3f v);
 
-/// Returns the point of the cube nearest to a direction, which may have any length but zero.
+/// Returns the stored cube point nearest to a direction, which is not zero.
 CubePoint nearest_cube_point(Vec3f direction);
 
 /// Returns the stored axis nearest to `target` as seen along `base`, a unit vector. Components
-/// along the base only change the length of a grid's normals, so they are nearly free, which makes
-/// the others finer. `bend` is the cost of a squared unit along the base, in squared units across
-/// it.
+/// along the base only lengthen the grid's normals; leaving them free makes the other components
+/// finer. `bend` is the cost of their square relative to the square of the error across.
 GridAxis nearest_axis(Vec3f target, Vec3f base, float bend);
 
 }  // namespace voxdag

@@ -14,10 +14,10 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// The division into blocks: whether the children of each node begin a block.
+/// The decision for each node whether its children begin a block of their own.
 struct Cut {
-  std::vector<std::uint32_t> slots;  ///< Of the node's descendants in the node's own block.
-  std::vector<bool> is_cut;          ///< The node's children are in another block.
+  std::vector<std::uint32_t> slots;  ///< Of everything below the node in the node's own block.
+  std::vector<bool> is_cut;          ///< The node's children are in another block than the node.
 };
 
 /// Calls body(child node) for each inner child that is a node of the tree.
@@ -28,7 +28,7 @@ void for_each_child(const EsvoTree& tree, std::uint32_t node, const Body& body) 
   for (std::uint32_t i = 0; i < n.inner_count(); ++i) body(n.first_child + i);
 }
 
-/// Returns the slots of a group of siblings: descriptors, their far pointers, a gap.
+/// Returns the slots of the children of a node alone: descriptors, their far pointers, a gap.
 std::uint32_t group_slots(std::uint32_t descriptors, std::uint32_t far_pointers) {
   return (descriptors + far_pointers + 1) & ~1u;
 }
@@ -62,20 +62,20 @@ Cut cut_blocks(const EsvoTree& tree, std::uint32_t max_slots) {
   return cut;
 }
 
-/// Slots by node, counted from the beginning of the block. 0: none.
+/// The slots of each node in its block, counted from the block's begin. 0: none.
 struct Placement {
   explicit Placement(std::size_t nodes) : children(nodes), far_pointer(nodes) {}
-  std::vector<std::uint32_t> children;     ///< The first child's descriptor.
+  std::vector<std::uint32_t> children;     ///< The first of the node's children.
   std::vector<std::uint32_t> far_pointer;  ///< The far pointer to the children.
 };
 
-/// Assembles one block.
+/// Writes one block.
 class BlockWriter {
  public:
   BlockWriter(const EsvoTree& tree, const Cut& cut, Placement& placement)
       : tree_(tree), cut_(cut), placement_(placement) {}
 
-  /// Assigns slots to the descendants of `node` in this block, depth first.
+  /// Assigns slots to the children of `node` and to all below them in this block, depth first.
   void place(std::uint32_t node) {
     std::vector<std::uint32_t> stack{node};
     while (!stack.empty()) {
@@ -91,9 +91,8 @@ class BlockWriter {
     resize((slots_.size() + 1) / 2 * 2);
   }
 
-  /// Writes the descriptors and the sections after them. `target(node)` returns the slot of the
-  /// first child of a node whose children are in another block, counted from the beginning of this
-  /// block.
+  /// Fills in the descriptors and everything after them. For a node whose children are in another
+  /// block, `target(node)` returns the slot of the first child, counted from this block's begin.
   template <class Target>
   std::vector<std::uint64_t> finish(const PackOptions& options, const Target& target) {
     EsvoBlockInfo info{};
@@ -141,8 +140,8 @@ class BlockWriter {
     const EsvoNode& n = tree_.nodes[node];
     const std::uint32_t count = n.inner_count();
     auto at = static_cast<std::uint32_t>(slots_.size());
-    // Both descriptors of a pair have one parent; a far pointer or a page header can be in any
-    // pair.
+    // Both descriptors of a pair have the same parent; far pointers and page headers may be beside
+    // any.
     if (at % 2 == 1 && node_at_.back() != kNone) ++at;
     if (at % kEsvoPageSlots == 0 || at / kEsvoPageSlots != (at + count - 1) / kEsvoPageSlots)
       at = (at + kEsvoPageSlots - 1) / kEsvoPageSlots * kEsvoPageSlots + 1;
@@ -170,7 +169,7 @@ class BlockWriter {
 
   struct PlacedContours {
     ContourPool pool;
-    std::vector<std::uint32_t> first;  ///< By slot: index of the descriptor's list in the pool.
+    std::vector<std::uint32_t> first;  ///< By slot: index of the descriptor's list.
   };
 
   PlacedContours place_contours() const {
@@ -240,11 +239,11 @@ class BlockWriter {
   const Cut& cut_;
   Placement& placement_;
   std::vector<std::uint64_t> slots_;
-  std::vector<std::uint32_t> node_at_;  // by slot: the node whose descriptor it is, or kNone
+  std::vector<std::uint32_t> node_at_;  // by slot: the node of its descriptor, or kNone
   std::uint32_t first_ = 0;
 };
 
-/// The cell of a node.
+/// The cell of a node that begins a block, found from the path up to the root.
 struct NodeCell {
   int level;
   Vec3i cell;
@@ -311,7 +310,7 @@ PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint6
   PackedBlocks result;
   result.counts = count_voxels(tree, parents, level);
   Placement placement(tree.nodes.size());
-  // By node: the first slot of its children in result.slots, and the block that they begin.
+  // By node: the index of its first child in result.slots, and the block that begins there.
   std::vector<std::uint64_t> first_child(tree.nodes.size());
   std::vector<std::uint32_t> block_of(tree.nodes.size(), kNone);
   for (auto node = static_cast<std::uint32_t>(tree.nodes.size()); node-- > 0;) {
@@ -357,7 +356,7 @@ void add_super_root(EsvoTree& tree) {
   EsvoNode top;
   top.valid_mask = 1;
   top.first_child = 1;
-  // The value of the root has no parent's descriptor and is not stored.
+  // If there are values, the new node needs one, which no descriptor stores.
   if (tree.has_values()) {
     top.first_value = static_cast<std::uint32_t>(tree.values.size());
     tree.values.emplace_back();

@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-ConvexPolyhedron& ConvexPolyhedron::operator=(const ConvexPolyhedron& other) {
+ConvexPolyhedron& ConvexPolyhedron::operator=(const ConvexPolyhedron& other) noexcept {
   if (this == &other) return *this;
   vertex_count_ = other.vertex_count_;
   edge_count_ = other.edge_count_;
@@ -56,7 +56,7 @@ void ConvexPolyhedron::become_half(const ConvexPolyhedron& whole, int axis, bool
 }
 
 void ConvexPolyhedron::become_part(const ConvexPolyhedron& whole, const float* distances) {
-  // Hardly a branch depends on where the plane runs: processors could not foresee it.
+  // Few branches depend on where the plane runs, because processors cannot predict them.
   std::uint64_t outside = 0;
   for (int i = 0; i < whole.vertex_count_; i += kLanes)
     outside |= std::uint64_t{lane_bits(load_lanes(&distances[i]) > 0.0f)} << i;
@@ -65,7 +65,7 @@ void ConvexPolyhedron::become_part(const ConvexPolyhedron& whole, const float* d
     *this = whole;
     return;
   }
-  // Where vertices go, and kOut besides for those that are cut away.
+  // The new index of each vertex, with kOut set for those that are cut away.
   constexpr std::uint8_t kOut = 0x80;
   std::uint8_t places[kMaxVertices];
   int count = 0;
@@ -98,7 +98,7 @@ void ConvexPolyhedron::become_part(const ConvexPolyhedron& whole, const float* d
   }
   next_face_ = std::max(whole.next_face_, cut_face + 1);
 
-  // The end of an edge across a face that has been found, where the other has not.
+  // For each face: the first end of the cut across it, while the second end is not found yet.
   std::uint8_t open_end[kMaxFaces];
   std::uint64_t open = 0;
   for (int k = 0; k < crossings; ++k) {

@@ -21,8 +21,8 @@ class ConvexPolyhedron {
 
   // Most have a few of the vertices and edges that there is room for: copies leave out the rest.
   ConvexPolyhedron() {}
-  ConvexPolyhedron(const ConvexPolyhedron& other) { *this = other; }
-  ConvexPolyhedron& operator=(const ConvexPolyhedron& other);
+  ConvexPolyhedron(const ConvexPolyhedron& other) noexcept { *this = other; }
+  ConvexPolyhedron& operator=(const ConvexPolyhedron& other) noexcept;
 
   /// The cube [-1,1]³.
   static ConvexPolyhedron cube();

@@ -28,14 +28,14 @@ ContourDirection ContourDirection::nearest(Vec3d direction) {
   if (!(largest > 0)) return {};
   const auto d = static_cast<Vec3f>(direction * (1 / largest));
   const auto rounded = [](FloatLanes v) { return truncated(v + 32.5f) - 32.0f; };
-  // Longer vectors are finer, but a shorter one may be closer to the direction.
+  // Longer vectors are finer on average, but a shorter one may hit the direction better.
   FloatLanes least = all_lanes(HUGE_VALF), x{}, y{}, z{};
   for (int most = Contour::kMaxNormal; most > Contour::kMaxNormal / 2; most -= kLanes) {
     const FloatLanes scale = static_cast<float>(most) - FloatLanes{0, 1, 2, 3};
     const FloatLanes nx = rounded(scale * d.x), ny = rounded(scale * d.y),
                      nz = rounded(scale * d.z);
     const FloatLanes cx = ny * d.z - nz * d.y, cy = nz * d.x - nx * d.z, cz = nx * d.y - ny * d.x;
-    // The squared sine of the angle.
+    // The square of the sine.
     const FloatLanes off = (cx * cx + cy * cy + cz * cz) / (nx * nx + ny * ny + nz * nz);
     const IntLanes better = off < least;
     least = better ? off : least;
@@ -48,7 +48,7 @@ ContourDirection ContourDirection::nearest(Vec3d direction) {
     if (least[lane] < least[best]) best = lane;
   const Vec3i n{static_cast<std::int32_t>(x[best]), static_cast<std::int32_t>(y[best]),
                 static_cast<std::int32_t>(z[best])};
-  // Both signs mean the same planes. The one that points up lets equal contours be shared.
+  // Chooses the direction that points up, so that equal contours can be shared.
   const bool points_up = n.z != 0 ? n.z > 0 : n.y != 0 ? n.y > 0 : n.x > 0;
   return ContourDirection(points_up ? n : -n);
 }
@@ -77,11 +77,11 @@ void ContourCandidates::add(const ContourDirection& direction, double weight) {
 
 namespace {
 
-/// Returns the extents along the directions, four per group.
+/// Returns the extents along up to four directions per group.
 template <int groups>
 ContourExtents extents_by_groups(std::span<const PlanarPolygon> surface,
                                  std::span<const ContourDirection> directions) {
-  // Floats suffice: their rounding is a hundredth of kMargin.
+  // Floats are precise enough: their rounding is a hundredth of kMargin.
   FloatLanes x[groups]{}, y[groups]{}, z[groups]{}, least[groups], most[groups];
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const auto n = static_cast<Vec3f>(directions[i].normal);
@@ -121,7 +121,7 @@ ContourExtents extents_of(std::span<const PlanarPolygon> surface,
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
                                          const ContourCandidates& candidates,
                                          const ContourExtents& extents) {
-  // In steps of the stored positions.
+  // A safety margin, in steps of the stored positions.
   constexpr double kMargin = 0.01;
   if (shape.is_empty()) return std::nullopt;
   const ContourDirection* best = nullptr;
@@ -146,7 +146,7 @@ std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
   const auto step_of = [&](double position) {
     return (position / length1_of_best + 1) * (kSteps / 2);
   };
-  // Truncation rounds values >= 0 down. Positions are clamped to the stored range.
+  // Truncation rounds down, because the positions are clamped to at least 0.
   const double below = step_of(best_surface.lo) - kMargin;
   const double above = kSteps - (step_of(best_surface.hi) + kMargin);
   const int low = std::clamp(static_cast<int>(below), 0, Contour::kMaxPosition);

@@ -33,7 +33,7 @@ struct PointGroups {
 
 FloatLanes size_of(FloatLanes v) { return max(v, -v); }
 
-/// Computes heights over a polygon's plane.
+/// The plane of a polygon.
 struct Plane {
   Vec3f normal;
   float offset = 0;
@@ -47,7 +47,7 @@ struct Plane {
   }
 };
 
-/// Tests distances from a convex polygon.
+/// Compares distances from a convex polygon.
 class PolygonDistance {
  public:
   PolygonDistance() {}
@@ -68,7 +68,7 @@ class PolygonDistance {
     has_inside_ = count_ > 2 && p.normal != Vec3f{};
   }
 
-  /// Returns those of the points `far` that are farther than `distance`.
+  /// Returns which of the points in the mask `far` are farther away than `distance`.
   IntLanes still_far(const PointGroups& points, int group, float distance, IntLanes far) const {
     if (has_inside_) {
       IntLanes is_inside = size_of(plane_.height(points, group)) <= distance;
@@ -97,9 +97,9 @@ class PolygonDistance {
  private:
   struct Edge {
     Vec3f from, along;
-    Vec3f inward;  ///< In the plane; dot(inward, p) >= offset for points inside.
+    Vec3f inward;  ///< In the plane; inside points have at least `offset` along it.
     float offset;
-    float per_length2;  ///< 1 / squared length of `along`; zero for a point.
+    float per_length2;  ///< 1 / length² of `along`; zero for a point.
   };
 
   Plane plane_;
@@ -117,7 +117,7 @@ bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygo
   if (shape.is_empty()) return true;
   if (surface.empty() || surface.size() > kMostNearPolygons || !(distance > 0)) return false;
   const PointGroups points(shape);
-  // Early out: most shapes that reach too far have a point that is high above all planes.
+  // Most shapes that reach too far have a point that is too high over all of the planes.
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
     for (const PlanarPolygon& polygon : surface)
@@ -128,7 +128,7 @@ bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygo
   std::size_t known = 0;
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
-    // Fast test first: most near points are near a corner of a small polygon.
+    // Most near points are near a corner of a small polygon.
     for (const PlanarPolygon& polygon : surface) {
       const auto corner = static_cast<Vec3f>(polygon.polygon->corners[0]);
       const FloatLanes x = points.x[i] - corner.x, y = points.y[i] - corner.y,
