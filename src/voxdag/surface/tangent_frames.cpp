@@ -9,11 +9,6 @@
 namespace voxdag {
 namespace {
 
-Vec3f unit_or_zero(Vec3f v) {
-  const float length2 = dot(v, v);
-  return length2 > 0 && std::isfinite(length2) ? v * (1 / std::sqrt(length2)) : Vec3f{};
-}
-
 /// Corners that are equal share a tangent.
 struct Corner {
   Vec3f position, normal;
