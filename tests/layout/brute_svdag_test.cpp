@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 
 namespace voxdag {

@@ -7,6 +7,7 @@
 
 #include "support/brute_svdag.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 
 namespace voxdag {

@@ -10,6 +10,7 @@
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/stream/paged_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/report/dag_report.hpp"
@@ -20,7 +21,7 @@ void esvo_info(const std::string& path, bool json) {
     fmt::print("{}", json_text(esvo_json(report)));
   else
     fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
-               report.metadata.program, esvo_table(report), esvo_level_table(report));
+               printable(report.metadata.program), esvo_table(report), esvo_level_table(report));
 }
 
 void info(const std::string& path, bool json) {
@@ -32,7 +33,8 @@ void info(const std::string& path, bool json) {
     return;
   }
   fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
-             report.metadata.program, dag_table(report), level_table(report.metadata.counts));
+             printable(report.metadata.program), dag_table(report),
+             level_table(report.metadata.counts));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace voxdag {
 
 std::shared_ptr<void> allocate_large(std::size_t bytes) {
-  constexpr std::size_t kLargePage = 2 << 20;
-  const std::size_t alignment = bytes >= kLargePage ? kLargePage : alignof(std::max_align_t);
+  constexpr std::size_t kLargePage = 2 << 20, kCacheLine = 64;
+  const std::size_t alignment = bytes >= kLargePage ? kLargePage : kCacheLine;
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
   if (rounded < bytes) throw std::bad_alloc();
   void* const memory = std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);

@@ -8,7 +8,8 @@
 namespace voxdag {
 
 /// Returns `bytes` of memory, on large pages where the system grants them: with small pages, random
-/// reads spend more time on address translation than on the reads. Throws std::bad_alloc.
+/// reads spend more time on address translation than on the reads. It begins at a multiple of 64
+/// bytes. Throws std::bad_alloc.
 std::shared_ptr<void> allocate_large(std::size_t bytes);
 
 /// Returns an array of `count` uninitialised elements. Throws std::bad_alloc.

@@ -18,7 +18,7 @@ class FileCopy {
   /// cannot be read, or is truncated meanwhile.
   explicit FileCopy(const std::filesystem::path& path, SizeLimit limit = {});
 
-  /// Aligned to 16 bytes or more; empty for an empty file.
+  /// Aligned to 64 bytes or more; empty for an empty file.
   std::span<const std::byte> bytes() const { return {bytes_.get(), size_}; }
 
  private:

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "voxdag/readers/quoted.hpp"
+#include "voxdag/core/printable.hpp"
 
 namespace voxdag {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "voxdag/readers/quoted.hpp"
+#include "voxdag/core/printable.hpp"
 
 namespace voxdag {
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "voxdag/core/printable.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
@@ -72,7 +73,7 @@ std::string placement_table(const Grid& grid, const VdagSource& source) {
   return fmt::format(
       "  {:<14}{}, {} triangles\n"
       "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
-      "mesh", source.name, with_commas(source.triangles), "grid",
+      "mesh", printable(source.name), with_commas(source.triangles), "grid",
       with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x, lo.y, lo.z,
       hi.x, hi.y, hi.z);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a DAG holds and takes, as a table and as JSON: `build` and `info` show the same.
+/// Reports the counts and sizes of a DAG as tables and as JSON, for `build` and `info`.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -14,21 +14,21 @@ struct DagReport {
   std::uint64_t file_bytes = 0;
 };
 
-/// The keys of `info --json`; docs/cli.md lists them.
+/// Returns the keys of `info --json`; docs/cli.md lists them.
 nlohmann::ordered_json dag_json(const DagReport& report);
 
-/// Grid and placement, then SVO and DAG side by side: nodes, bytes, bits per voxel.
+/// Returns the placement, then SVO and DAG side by side: nodes, bytes, bits per voxel.
 std::string dag_table(const DagReport& report);
 
-/// What all kinds of voxels have: "transform", "source", "program" and "build".
+/// Adds the keys of all kinds of voxels: "transform", "source", "program" and "build".
 void add_placement_json(nlohmann::ordered_json& json, const Grid& grid, const VdagSource& source,
                         const std::string& program,
                         const std::map<std::string, std::string>& build);
 
-/// The mesh and the grid, a line each.
+/// Returns the mesh and the grid, a line each. The name of the mesh is made printable.
 std::string placement_table(const Grid& grid, const VdagSource& source);
 
-/// Nodes of SVO and DAG side by side for each level.
+/// Returns the nodes of SVO and DAG side by side, a line per level.
 std::string level_table(const SvdagCounts& counts);
 
 }  // namespace voxdag

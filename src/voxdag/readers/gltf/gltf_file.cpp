@@ -1,6 +1,6 @@
 #include "voxdag/readers/gltf/gltf_file.hpp"
 
-#include "voxdag/readers/quoted.hpp"
+#include "voxdag/core/printable.hpp"
 
 namespace voxdag {
 namespace {

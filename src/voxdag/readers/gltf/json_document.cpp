@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voxdag/core/utf8.hpp"
 #include "voxdag/readers/text_scan.hpp"
-#include "voxdag/readers/utf8.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
-/// Text from a file in error messages: on one line, of limited length.
+/// Makes text from files safe to print: one line, of limited length.
 #include <string>
 #include <string_view>
 
-#include "voxdag/readers/utf8.hpp"
+#include "voxdag/core/utf8.hpp"
 
 namespace voxdag {
 
