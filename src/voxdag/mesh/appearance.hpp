@@ -26,7 +26,7 @@ struct Rgba16 {
   friend bool operator==(const Rgba16&, const Rgba16&) = default;
 };
 
-/// The nearest Rgba16; what lies outside [0,1] is clamped, NaN becomes 0.
+/// Rounds to the nearest Rgba16. Values outside [0,1] are clamped, NaN becomes 0.
 inline Rgba16 to_rgba16(Vec3f color, float alpha) {
   const auto code = [](float x) {
     return static_cast<std::uint16_t>(x > 0 ? (x < 1 ? std::lround(x * 65535) : 65535) : 0);
@@ -34,17 +34,17 @@ inline Rgba16 to_rgba16(Vec3f color, float alpha) {
   return {code(color.x), code(color.y), code(color.z), code(alpha)};
 }
 
-/// uv -> (xx * u + xy * v + x, yx * u + yy * v + y).
+/// Maps uv to (xx * u + xy * v + x, yx * u + yy * v + y).
 struct UvTransform {
   float xx = 1, xy = 0, yx = 0, yy = 1, x = 0, y = 0;
 
   Vec2f operator()(Vec2f uv) const { return linear(uv) + Vec2f{x, y}; }
-  /// For differences of texture coordinates.
+  /// Maps a difference of texture coordinates.
   Vec2f linear(Vec2f uv) const { return {xx * uv.x + xy * uv.y, yx * uv.x + yy * uv.y}; }
   friend bool operator==(const UvTransform&, const UvTransform&) = default;
 };
 
-/// How a material looks into an image. Texture coordinates run to the right and DOWN from the
+/// How a material uses an image. Texture coordinates run to the right and DOWN from the
 /// image's upper left corner, (1,1) being the lower right one.
 struct TextureUse {
   int image = -1;  ///< Index into Appearance::images; -1: no texture.
@@ -69,14 +69,14 @@ enum class AlphaMode : std::uint8_t {
 };
 inline constexpr float kBlendCutoff = 0.1f;
 
-/// Of materials that nothing describes: sRGB 0.8.
+/// The colour of materials that nothing describes: sRGB 0.8.
 inline constexpr Vec3f kDefaultColor{0.603827f, 0.603827f, 0.603827f};
 
 /// What Material::normal_map holds.
 enum class NormalMapKind : std::uint8_t {
   kTangentSpace,  ///< Normals, green towards the image's upper edge (OpenGL, glTF).
   kHeights,       ///< Heights from black to white.
-  kEither         ///< As its content looks: OBJ's map_Bump is used for both.
+  kEither         ///< The content decides: OBJ files use map_Bump for both.
 };
 
 struct Material {
@@ -103,7 +103,7 @@ struct Appearance {
   std::vector<Material> materials;  ///< By Mesh::triangle_materials; never empty after reading.
   std::vector<TextureImage> images;
 
-  /// Index of a triangle's material: 0 where the mesh has none.
+  /// Returns the index of a triangle's material: 0 if the mesh has none.
   static std::uint32_t material_index(const Mesh& mesh, std::size_t triangle) {
     return mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle];
   }

@@ -11,7 +11,8 @@ namespace voxdag {
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< Three indices into Mesh::vertices.
 
-/// Every index is in range and every vertex that a triangle references is finite: readers check it.
+/// Readers check that every index is in range and every vertex that a triangle references is
+/// finite.
 struct Mesh {
   std::vector<Vec3f> vertices;  ///< World units, float32 as in the file (correctly rounded).
   std::vector<Triangle> triangles;

@@ -23,11 +23,12 @@ inline std::uint64_t hash_bits(Vec3f position, std::uint64_t seed = 0) {
 /// on it.
 class VertexTable {
  public:
-  /// Makes room for `vertices` in a table of `slots`; both grow where they must.
+  /// Makes room for `vertices` vertices and `slots` slots; both grow when they are full.
   explicit VertexTable(std::size_t vertices = 0, std::size_t slots = 64) : slots_(slots, kFree) {
     vertices_.reserve(vertices);
   }
 
+  /// Returns the index of the vertex with the same bits; adds it if there is none.
   std::uint32_t find_or_add(Vec3f position) {
     std::size_t i = home(position);
     for (; slots_[i] != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
