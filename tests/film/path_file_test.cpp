@@ -26,7 +26,7 @@ TEST(PathFile, IsReadAsItWasWritten) {
 
 TEST(PathFile, AnEndlessFileIsRefused) {
   EXPECT_EQ(error_of([] { read_path_file("/dev/zero"); }),
-            "/dev/zero: is larger than 64 MiB, the limit for a camera path");
+            "/dev/zero: is neither a regular file nor a pipe");
 }
 
 TEST(PathFile, AnErrorNamesTheKey) {
