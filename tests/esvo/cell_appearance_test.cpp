@@ -26,7 +26,7 @@ struct ColoredCell {
       mesh.triangles.push_back({first, first + 1, first + 2});
     }
     const QuantizedMesh quantized(mesh, {3, {0, 0, 0}, 1.0, kSubvoxels});
-    pieces.start(3, {});
+    pieces.start(3, {}, mesh.triangles.size());
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
       pieces.add(SurfaceTriangle::make(quantized.triangle(i), {}, i, 0), i);
   }

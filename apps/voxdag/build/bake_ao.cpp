@@ -43,17 +43,17 @@ void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
 }
 
 Occluders::Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
-                     const EsvoSettings& settings, const SurfaceShading& shading,
+                     const EsvoOptions& build, const SurfaceShading& shading,
                      const DisplacedTriangles* displaced, Progress& progress)
     : grid_(grid) {
   constexpr int kFinest = 10;
   const Grid own = coarser(grid, kFinest);
-  EsvoOptions options;
-  options.settings = settings;
+  EsvoOptions options = build;
   options.settings.attributes = false;
-  EsvoMemory memory;
+  EsvoMemory memory(options.memory);
   const EsvoResult result = build_esvo(mesh, own, options, &shading, displaced, memory, &progress);
   esvo_ = {memory.take(), result.root, own.levels};
+  memory_ = {options.memory, esvo_.slots.size() * sizeof(std::uint64_t)};
   openness_.emplace(esvo_.view(), own, arguments.rays, arguments.distance_in(grid));
 }
 

@@ -36,7 +36,7 @@ void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
 class Occluders {
  public:
   Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
-            const EsvoSettings& settings, const SurfaceShading& shading,
+            const EsvoOptions& build, const SurfaceShading& shading,
             const DisplacedTriangles* displaced, Progress& progress);
   Occluders(const Occluders&) = delete;
   Occluders& operator=(const Occluders&) = delete;
@@ -46,6 +46,7 @@ class Occluders {
 
  private:
   Grid grid_;
+  MemoryReservation memory_;
   Esvo esvo_;
   std::optional<SurfaceOpenness> openness_;
 };

@@ -8,9 +8,7 @@
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/esvo_writer.hpp"
-#include "voxdag/io/mapped_file.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/io/resolved_output.hpp"
 #include "voxdag/report/esvo_report.hpp"
@@ -19,25 +17,23 @@
 namespace voxdag {
 namespace {
 
-/// Appends blocks to the file, as long as the memory limit is kept.
+/// Appends blocks to the file and counts their bytes.
 class FileSink : public EsvoSink {
  public:
-  FileSink(EsvoFileWriter& writer, std::uint64_t memory_limit)
-      : writer_(writer), memory_limit_(memory_limit) {}
+  explicit FileSink(EsvoFileWriter& writer) : writer_(writer) {}
 
   void append(std::span<const std::uint64_t> slots) override {
     writer_.append(slots);
-    if (memory_limit_ != 0 && peak_resident_bytes() > memory_limit_)
-      throw Error(fmt::format("needs more than the {} of --memory", human_bytes(memory_limit_)));
+    bytes_ += esvo_bytes(slots);
   }
+  const EsvoBytes& bytes() const { return bytes_; }
 
  private:
   EsvoFileWriter& writer_;
-  std::uint64_t memory_limit_;
+  EsvoBytes bytes_;
 };
 
-/// Throws Error unless `path` is or becomes a regular file: an ESVO is written out of order, and
-/// read again.
+/// Throws Error unless `path` is or becomes a regular file: an ESVO is written out of order.
 void check_regular(const std::string& path) {
   std::error_code unknown;
   if (resolve_output(path).descriptor >= 0 ||
@@ -113,6 +109,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
 
   EsvoOptions options;
   options.settings = esvo.settings;
+  options.memory = &memory;
   options.settings.normal_error = static_cast<float>(esvo.normal_degrees * std::numbers::pi / 180);
   const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
   EsvoMetadata metadata;
@@ -127,28 +124,25 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   std::optional<Occluders> occluders;
   if (esvo.bake.rays > 0 && options.settings.attributes) {
     add_bake_settings(esvo.bake, metadata.grid, metadata.build);
-    occluders.emplace(source.mesh, metadata.grid, esvo.bake, options.settings, shading, moved,
-                      progress);
+    occluders.emplace(source.mesh, metadata.grid, esvo.bake, options, shading, moved, progress);
     options.settings.light = occluders->light();
   }
+  EsvoReport report;
   {
     EsvoFileWriter writer(arguments.output);
-    FileSink sink(writer,
-                  arguments.memory_limit != 0 ? arguments.memory_limit : default_memory_limit());
+    FileSink sink(writer);
     EsvoResult result =
         build_esvo(source.mesh, metadata.grid, options, &shading, moved, sink, &progress);
     metadata.root = result.root;
     metadata.counts = result.counts;
     progress.throw_if_cancelled();
-    writer.finish(std::move(result.directory), metadata);
+    // The file is not read again: by then its name may belong to another file.
+    report = {metadata, sink.bytes(), writer.finish(std::move(result.directory), metadata)};
   }
   seconds.build = watch.lap();
   warn_if_empty(metadata.counts.voxels(), arguments.output, session);
   session.bar.clear();
-  // Mapped, because the file may be larger than the memory limit.
-  const MappedFile file(arguments.output);
-  print_summary(report_of(parse_esvo(file.bytes()), file.bytes().size()), seconds, arguments,
-                session);
+  print_summary(report, seconds, arguments, session);
 }
 
 }  // namespace voxdag

@@ -82,7 +82,7 @@ std::optional<DisplacedTriangles> open_displaced(const DisplaceArguments& argume
                    [](const Displacement& d) { return d.moves(); }))
     return std::nullopt;
   return std::optional<DisplacedTriangles>(std::in_place, mesh, appearance,
-                                           std::move(displacements));
+                                           std::move(displacements), &progress, memory);
 }
 
 Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh) {

@@ -35,14 +35,18 @@ class HeightRange {
 }  // namespace
 
 DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
-                                       std::vector<Displacement> displacements)
-    : mesh_{mesh, appearance, std::move(displacements)} {
+                                       std::vector<Displacement> displacements, Progress* progress,
+                                       MemoryBudget* memory)
+    : mesh_{mesh, appearance, std::move(displacements)}, bounds_(memory) {
   for (const Displacement& d : mesh_.displacements)
     if (d.moves()) radius_ = std::max({radius_, std::abs(d.base), std::abs(d.base + d.gain)});
-  if (radius_ > 0) seams_ = DisplacementSeams(mesh_);
+  if (radius_ > 0) seams_ = DisplacementSeams(mesh_, progress, memory);
   bounds_.resize(mesh.triangles.size());
-  parallel_for(bounds_.size(), 256,
-               [&](std::size_t i) { bounds_[i] = find_bounds(static_cast<std::uint32_t>(i)); });
+  parallel_for(bounds_.size(), 256, [&](std::size_t i) {
+    if (progress != nullptr && progress->cancelled()) return;
+    bounds_[i] = find_bounds(static_cast<std::uint32_t>(i));
+  });
+  if (progress != nullptr) progress->throw_if_cancelled();
 }
 
 const Vec3d& DisplacedTriangles::displace(const Pass& pass, PieceCorner& v) const {

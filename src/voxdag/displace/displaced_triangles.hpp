@@ -6,7 +6,7 @@
 /// moves along the triangle's own (interpolated) normal by the height at its own texture
 /// coordinates. On an edge or corner whose triangles disagree on normal, texture or coordinates, a
 /// point moves by the mean of their displacements; where one of the triangles is not displaced at
-/// all, the point stays. So there are no cracks.
+/// all, or more than 64 displacements meet, the point stays. So there are no cracks.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -32,9 +32,11 @@ struct MicroTriangle {
 /// on the mesh alone.
 class DisplacedTriangles {
  public:
-  /// `displacements` has one for each material.
+  /// `displacements` has one for each material. Counts the tables in `memory` for as long as they
+  /// live; null: no limit. Throws Cancelled and OverMemory.
   DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
-                     std::vector<Displacement> displacements);
+                     std::vector<Displacement> displacements, Progress* progress = nullptr,
+                     MemoryBudget* memory = nullptr);
 
   /// Returns whether the inside of a triangle moves. If not, tessellate() emits it whole.
   bool is_displaced(std::uint32_t triangle) const { return mesh_.is_displaced(triangle); }
@@ -179,9 +181,9 @@ class DisplacedTriangles {
   }
 
   const DisplacedMesh mesh_;
-  DisplacementSeams seams_;    ///< Empty if nothing moves.
-  double radius_ = 0;          ///< No point moves farther than this, in world units.
-  std::vector<Box3d> bounds_;  ///< By triangle: displaced_bounds().
+  DisplacementSeams seams_;      ///< Empty if nothing moves.
+  double radius_ = 0;            ///< No point moves farther than this, in world units.
+  CountedVector<Box3d> bounds_;  ///< By triangle: displaced_bounds().
 };
 
 }  // namespace voxdag

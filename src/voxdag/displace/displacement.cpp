@@ -20,12 +20,13 @@ double longest_side(const Mesh& mesh) {
   return std::max({extent.x, extent.y, extent.z});
 }
 
-/// Whether the mesh would be less than a voxel beside what it is displaced by, in any grid.
-bool is_absurd(double amount, double side) {
+/// Returns whether the mesh would be smaller than a voxel in every grid that holds its
+/// displacement.
+bool is_too_large(double amount, double side) {
   return !(std::fabs(amount) <= std::ldexp(side, kMaxLevels));
 }
 
-std::string absurd(double amount, double side) {
+std::string too_large_text(double amount, double side) {
   char text[128];
   std::snprintf(text, sizeof text,
                 "a displacement by %.6g units is too much for a mesh of %.6g units", amount, side);
@@ -46,12 +47,16 @@ std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance&
     const Material& material = appearance.materials[i];
     const TextureUse& use = material.displacement_map;
     if (!use.exists()) continue;
-    if (progress != nullptr) progress->throw_if_cancelled();
+    if (progress != nullptr) {
+      progress->throw_if_cancelled();
+      progress->report("height textures",
+                       static_cast<double>(i) / static_cast<double>(displacements.size()), i);
+    }
     const TextureImage& image = appearance.images[static_cast<std::size_t>(use.image)];
     const double base = material.displacement_base, gain = material.displacement_gain;
     if (const double most = std::max(std::fabs(base), std::fabs(base + gain));
-        is_absurd(most, side)) {
-      warnings.push_back(image.name + ": " + absurd(most, side) +
+        is_too_large(most, side)) {
+      warnings.push_back(image.name + ": " + too_large_text(most, side) +
                          ": the surface stays without displacement");
       continue;
     }
@@ -75,7 +80,7 @@ std::vector<Displacement> displace_all(const Mesh& mesh, const Appearance& appea
                                        std::shared_ptr<const HeightTexture> heights, double amount,
                                        double box_size) {
   const double side = longest_side(mesh);
-  if (is_absurd(amount, side)) throw Error(absurd(amount, side));
+  if (is_too_large(amount, side)) throw Error(too_large_text(amount, side));
   if (appearance.uvs.empty() && !(box_size > 0)) box_size = side / 16;
   return std::vector<Displacement>(std::max<std::size_t>(appearance.materials.size(), 1),
                                    {std::move(heights), 0, amount, {}, std::max(box_size, 0.0)});

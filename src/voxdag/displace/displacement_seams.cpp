@@ -1,5 +1,7 @@
 #include "voxdag/displace/displacement_seams.hpp"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -31,22 +33,40 @@ struct PositionHash {
   }
 };
 
-}  // namespace
-
-DisplacementSeams::DisplacementSeams(const DisplacedMesh& mesh) {
-  number_places(mesh.mesh);
-  group_corners(mesh);
-  group_edges(mesh);
+/// Reports the share that is done of one of three passes over the mesh, now and then.
+void report(Progress* progress, int pass, std::size_t item, std::size_t count) {
+  if (progress == nullptr || item % 65536 != 0) return;
+  progress->throw_if_cancelled();
+  const double part = static_cast<double>(item) / static_cast<double>(count);
+  progress->report("displacement seams", (pass + part) / 3, item);
 }
 
-void DisplacementSeams::number_places(const Mesh& mesh) {
-  std::unordered_map<Vec3f, std::uint32_t, PositionHash> place_of(mesh.vertices.size());
+}  // namespace
+
+DisplacementSeams::DisplacementSeams(const DisplacedMesh& mesh, Progress* progress,
+                                     MemoryBudget* memory)
+    : places_(memory),
+      corner_groups_(memory),
+      edge_groups_(memory),
+      groups_(memory),
+      members_(memory) {
+  number_places(mesh.mesh, progress);
+  group_corners(mesh, progress);
+  group_edges(mesh, progress);
+}
+
+void DisplacementSeams::number_places(const Mesh& mesh, Progress* progress) {
+  using PlaceOf = std::unordered_map<Vec3f, std::uint32_t, PositionHash, std::equal_to<>,
+                                     CountedAllocator<std::pair<const Vec3f, std::uint32_t>>>;
+  PlaceOf place_of(mesh.vertices.size(), PlaceOf::allocator_type(places_.get_allocator()));
   places_.reserve(3 * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle)
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    report(progress, 0, i, mesh.triangles.size());
+    for (const std::uint32_t vertex : mesh.triangles[i])
       places_.push_back(
           place_of.try_emplace(mesh.vertices[vertex], static_cast<std::uint32_t>(place_of.size()))
               .first->second);
+  }
   place_count_ = place_of.size();
 }
 
@@ -56,14 +76,16 @@ bool DisplacementSeams::edges_agree(const DisplacedMesh& mesh, CornerIndex a, Co
                                   : corners_agree(mesh, a, b_end) && corners_agree(mesh, a_end, b);
 }
 
-/// Adds the group of coinciding corners or edges, with those as members that no earlier one agrees
-/// with.
+/// Adds the group of coinciding corners or edges. Its members are those that agree with no earlier
+/// member.
 template <class Agree>
 void DisplacementSeams::add_group(const DisplacedMesh& mesh, std::span<const CornerIndex> all,
                                   const Agree& agree) {
   StoredGroup group{static_cast<std::uint32_t>(members_.size()), 0, false};
   for (const CornerIndex corner : all) {
-    group.is_pinned |= !mesh.is_displaced(corner / 3);
+    group.is_pinned |= !mesh.is_displaced(corner / 3) || group.count > kMostMembers;
+    // The members of a pinned group do not matter, but for the first.
+    if (group.is_pinned && group.count > 0) break;
     bool is_known = false;
     for (std::uint32_t i = 0; i < group.count && !is_known; ++i)
       is_known = agree(members_[group.first + i], corner);
@@ -74,36 +96,41 @@ void DisplacementSeams::add_group(const DisplacedMesh& mesh, std::span<const Cor
   groups_.push_back(group);
 }
 
-void DisplacementSeams::group_corners(const DisplacedMesh& mesh) {
+void DisplacementSeams::group_corners(const DisplacedMesh& mesh, Progress* progress) {
+  const auto allocator = places_.get_allocator();
   // Counting sort of the corners by place.
-  std::vector<std::uint32_t> starts(place_count_ + 1);
+  CountedVector<std::uint32_t> starts(place_count_ + 1, allocator);
   for (const std::uint32_t place : places_) ++starts[place + 1];
   for (std::size_t i = 0; i < place_count_; ++i) starts[i + 1] += starts[i];
-  std::vector<CornerIndex> sorted(places_.size());
-  std::vector<std::uint32_t> ends(starts.begin(), starts.end() - 1);
+  CountedVector<CornerIndex> sorted(places_.size(), allocator);
+  CountedVector<std::uint32_t> ends(starts.begin(), starts.end() - 1, allocator);
   for (std::size_t i = 0; i < places_.size(); ++i)
     sorted[ends[places_[i]]++] = static_cast<CornerIndex>(i);
   corner_groups_ = places_;
   groups_.reserve(place_count_ + places_.size() / 2);
-  for (std::size_t place = 0; place < place_count_; ++place)
+  for (std::size_t place = 0; place < place_count_; ++place) {
+    report(progress, 1, place, place_count_);
     add_group(mesh, {sorted.data() + starts[place], sorted.data() + starts[place + 1]},
               [&](CornerIndex a, CornerIndex b) { return corners_agree(mesh, a, b); });
+  }
 }
 
-void DisplacementSeams::group_edges(const DisplacedMesh& mesh) {
+void DisplacementSeams::group_edges(const DisplacedMesh& mesh, Progress* progress) {
   const auto key = [this](CornerIndex edge) {
     const Ends e = ends(edge);
     return std::uint64_t{places_[e.first]} << 32 | places_[e.last];
   };
-  std::vector<std::pair<std::uint64_t, CornerIndex>> edges(places_.size());
+  const auto allocator = places_.get_allocator();
+  CountedVector<std::pair<std::uint64_t, CornerIndex>> edges(places_.size(), allocator);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto edge = static_cast<CornerIndex>(i);
     edges[i] = {key(edge), edge};
   }
-  std::sort(edges.begin(), edges.end());
+  tbb::parallel_sort(edges.begin(), edges.end());
   edge_groups_.resize(edges.size());
-  std::vector<CornerIndex> coinciding;
+  CountedVector<CornerIndex> coinciding(allocator);
   for (std::size_t first = 0; first < edges.size();) {
+    report(progress, 2, first, edges.size());
     coinciding.clear();
     std::size_t last = first;
     for (; last < edges.size() && edges[last].first == edges[first].first; ++last) {

@@ -2,27 +2,35 @@
 /// Which corners and edges of a displaced mesh coincide, and where their displacements differ.
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/displace/displaced_mesh.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
-/// Corners at one place, or edges between the same two places. Immutable.
+/// Groups the corners at one place, and the edges between the same two places. Immutable.
 class DisplacementSeams {
  public:
   /// A set of coinciding corners or edges.
   struct Group {
     /// One corner or edge for each different displacement; there is at least one.
     std::span<const CornerIndex> members;
-    bool is_pinned;  ///< It does not move, because a triangle without displacement has it too.
+    bool is_pinned;  ///< It does not move: a triangle without displacement has it too, or its
+                     ///< displacements are more than kMostMembers.
 
     /// Returns whether triangles disagree on how the group moves.
     bool is_seam() const { return members.size() > 1 || is_pinned; }
   };
 
+  /// A corner or edge with more different displacements is pinned: to compare and to average all of
+  /// them would take quadratic time.
+  static constexpr std::uint32_t kMostMembers = 64;
+
   DisplacementSeams() = default;
-  explicit DisplacementSeams(const DisplacedMesh& mesh);
+  /// Throws Cancelled and OverMemory.
+  explicit DisplacementSeams(const DisplacedMesh& mesh, Progress* progress = nullptr,
+                             MemoryBudget* memory = nullptr);
 
   Group corner_group(CornerIndex corner) const { return group(corner_groups_[corner]); }
   Group edge_group(CornerIndex edge) const { return group(edge_groups_[edge]); }
@@ -46,18 +54,18 @@ class DisplacementSeams {
     const StoredGroup& stored = groups_[index];
     return {{members_.data() + stored.first, stored.count}, stored.is_pinned};
   }
-  void number_places(const Mesh& mesh);
-  void group_corners(const DisplacedMesh& mesh);
-  void group_edges(const DisplacedMesh& mesh);
+  void number_places(const Mesh& mesh, Progress* progress);
+  void group_corners(const DisplacedMesh& mesh, Progress* progress);
+  void group_edges(const DisplacedMesh& mesh, Progress* progress);
   template <class Agree>
   void add_group(const DisplacedMesh& mesh, std::span<const CornerIndex> all, const Agree& agree);
   bool edges_agree(const DisplacedMesh& mesh, CornerIndex a, CornerIndex b) const;
 
   std::size_t place_count_ = 0;
-  std::vector<std::uint32_t> places_;  ///< By CornerIndex: equal for equal positions.
-  std::vector<std::uint32_t> corner_groups_, edge_groups_;  ///< By CornerIndex.
-  std::vector<StoredGroup> groups_;
-  std::vector<CornerIndex> members_;
+  CountedVector<std::uint32_t> places_;  ///< By CornerIndex: equal for equal positions.
+  CountedVector<std::uint32_t> corner_groups_, edge_groups_;  ///< By CornerIndex.
+  CountedVector<StoredGroup> groups_;
+  CountedVector<CornerIndex> members_;
 };
 
 }  // namespace voxdag

@@ -33,7 +33,8 @@ void EsvoFileWriter::append(std::span<const std::uint64_t> slots) {
   slots_ += slots.size();
 }
 
-void EsvoFileWriter::finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata) {
+std::uint64_t EsvoFileWriter::finish(std::vector<EsvoBlockEntry> directory,
+                                     const EsvoMetadata& metadata) {
   assert(directory.size() == block_checksums_.size());
   for (std::size_t i = 0; i < directory.size(); ++i) directory[i].checksum = block_checksums_[i];
   const std::string json = esvo_metadata_json(metadata);
@@ -67,6 +68,7 @@ void EsvoFileWriter::finish(std::vector<EsvoBlockEntry> directory, const EsvoMet
   std::memcpy(head.data(), &header, sizeof header);
   file_.overwrite(0, head.data(), head.size());
   file_.commit();
+  return header.file_bytes;
 }
 
 }  // namespace voxdag

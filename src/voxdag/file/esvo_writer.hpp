@@ -23,7 +23,8 @@ class EsvoFileWriter {
   void append(std::span<const std::uint64_t> slots);
 
   /// Completes the file. `directory` lists all blocks, in order; finish() sets their checksums.
-  void finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata);
+  /// Returns the size of the file in bytes.
+  std::uint64_t finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata);
 
  private:
   AtomicFile file_;

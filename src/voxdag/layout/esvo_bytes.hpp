@@ -22,7 +22,11 @@ struct EsvoBytes {
   std::uint64_t total() const {
     return descriptors + far_pointers + gaps + info + contours + colors + normals + padding;
   }
+  EsvoBytes& operator+=(const EsvoBytes& other);
 };
+
+/// Counts the bytes of whole blocks that follow each other.
+EsvoBytes esvo_bytes(std::span<const std::uint64_t> blocks);
 
 /// The view must be valid.
 EsvoBytes esvo_bytes(const EsvoView& view, std::span<const EsvoBlockEntry> directory);

@@ -238,10 +238,13 @@ SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
                   [](const MaterialLook& look) { return look.normal_texture != nullptr; });
   TangentTable tangents;
   if (has_normal_maps)
-    tangents = TangentTable(mesh, appearance, [&](std::size_t t) -> const UvTransform* {
-      const MaterialLook& look = looks[Appearance::material_index(mesh, t)];
-      return look.normal_texture ? &look.normal_uv : nullptr;
-    });
+    tangents = TangentTable(
+        mesh, appearance,
+        [&](std::size_t t) -> const UvTransform* {
+          const MaterialLook& look = looks[Appearance::material_index(mesh, t)];
+          return look.normal_texture ? &look.normal_uv : nullptr;
+        },
+        progress, memory);
   tables_ = std::make_unique<const Tables>(
       Tables{mesh, appearance, std::move(looks), std::move(tangents)});
 }

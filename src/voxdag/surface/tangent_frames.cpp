@@ -42,9 +42,12 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
 
 TangentTable::TangentTable(
     const Mesh& mesh, const Appearance& appearance,
-    const std::function<const UvTransform*(std::size_t triangle)>& uv_transform) {
-  places_.assign(mesh.triangles.size(), kNone);
-  std::unordered_map<Corner, Vec3f, CornerHash> sums;
+    const std::function<const UvTransform*(std::size_t triangle)>& uv_transform, Progress* progress,
+    MemoryBudget* memory)
+    : places_(mesh.triangles.size(), kNone, memory), tangents_(memory) {
+  using Sums = std::unordered_map<Corner, Vec3f, CornerHash, std::equal_to<>,
+                                  CountedAllocator<std::pair<const Corner, Vec3f>>>;
+  Sums sums{Sums::allocator_type(memory)};
   const auto corner_of = [&](std::size_t t, std::size_t c, bool mirrored) {
     Corner corner{mesh.vertices[mesh.triangles[t][c]], {}, appearance.uvs[3 * t + c], mirrored};
     if (!appearance.normals.empty()) corner.normal = appearance.normals[3 * t + c];
@@ -53,6 +56,11 @@ TangentTable::TangentTable(
   };
   std::uint32_t count = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (progress != nullptr && t % 65536 == 0) {
+      progress->throw_if_cancelled();
+      progress->report("tangents",
+                       static_cast<double>(t) / static_cast<double>(mesh.triangles.size()), t);
+    }
     const UvTransform* const transform = uv_transform(t);
     if (transform == nullptr) continue;
     std::array<Vec3f, 3> p;

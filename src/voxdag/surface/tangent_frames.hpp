@@ -6,11 +6,12 @@
 /// averaged, weighted by angle.
 #include <cstdint>
 #include <functional>
-#include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
@@ -23,9 +24,11 @@ struct TangentFrames {
 class TangentTable {
  public:
   TangentTable() = default;
-  /// Computes the frames of the triangles for which `uv_transform(triangle)` is not null.
+  /// Computes the frames of the triangles for which `uv_transform(triangle)` is not null. Throws
+  /// Cancelled and OverMemory.
   TangentTable(const Mesh& mesh, const Appearance& appearance,
-               const std::function<const UvTransform*(std::size_t triangle)>& uv_transform);
+               const std::function<const UvTransform*(std::size_t triangle)>& uv_transform,
+               Progress* progress = nullptr, MemoryBudget* memory = nullptr);
 
   TangentFrames operator[](std::size_t triangle) const {
     if (places_.empty() || places_[triangle] == kNone) return {};
@@ -40,8 +43,8 @@ class TangentTable {
  private:
   static constexpr std::uint32_t kNone = ~0u, kMirrored = 1u << 31;
 
-  std::vector<std::uint32_t> places_;  ///< Per triangle: index into `tangents_`, and kMirrored.
-  std::vector<Vec3f> tangents_;
+  CountedVector<std::uint32_t> places_;  ///< Per triangle: index into `tangents_`, and kMirrored.
+  CountedVector<Vec3f> tangents_;
 };
 
 /// Returns the unit normal of a triangle's plane; zero if it has no area.

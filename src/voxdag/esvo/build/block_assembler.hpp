@@ -14,6 +14,7 @@ struct FinishedTask {
   BuiltVoxel voxel;
   bool has_blocks = false;
   PackedBlocks blocks;  ///< Everything below the voxel, if has_blocks.
+  MemoryReservation block_memory;
 };
 
 /// Returns whether a tree is large enough for blocks of its own.
@@ -22,7 +23,7 @@ bool needs_blocks(const EsvoTree& tree);
 class BlockAssembler {
  public:
   /// Refers to its arguments; finishes the cells.
-  BlockAssembler(std::vector<TopCell>& cells, const EsvoOptions& options, EsvoSink& sink)
+  BlockAssembler(TopCells& cells, const EsvoOptions& options, EsvoSink& sink)
       : cells_(cells), options_(options), sink_(sink) {}
 
   /// Takes the tasks in Morton order.
@@ -35,7 +36,7 @@ class BlockAssembler {
   std::uint64_t append(const PackedBlocks& blocks);
   void arrive(std::size_t cell, BuiltVoxel&& voxel);
 
-  std::vector<TopCell>& cells_;
+  TopCells& cells_;
   const EsvoOptions& options_;
   EsvoSink& sink_;
   std::uint64_t position_ = 0;

@@ -10,6 +10,7 @@
 #include "voxdag/esvo/build/cell_scratch.hpp"
 #include "voxdag/esvo/build/duplicate_triangles.hpp"
 #include "voxdag/esvo/build/load_pieces.hpp"
+#include "voxdag/esvo/build/memory_gate.hpp"
 #include "voxdag/esvo/build/open_edges.hpp"
 #include "voxdag/esvo/build/subtree_builder.hpp"
 #include "voxdag/esvo/build/top_cells.hpp"
@@ -21,17 +22,19 @@ namespace {
 class TaskBuilder {
  public:
   TaskBuilder(const TriangleSource& source, const EsvoOptions& options,
-              const SurfaceShading* shading, std::vector<TopCell>& cells)
+              const SurfaceShading* shading, TopCells& cells)
       : source_(source),
         options_(options),
         appearance_(options.settings, shading),
         cells_(cells),
-        scratch_([this] { return CellScratch(options_.settings, appearance_); }) {}
+        gate_(options.memory),
+        scratch_([this] { return CellScratch(options_.settings, appearance_, options_.memory); }) {}
 
   /// Builds a task and frees its triangles.
-  std::unique_ptr<FinishedTask> build(std::size_t task) {
-    auto finished = std::make_unique<FinishedTask>();
+  std::shared_ptr<FinishedTask> build(std::size_t task) {
+    auto finished = std::make_shared<FinishedTask>();
     TopCell& cell = cells_[task];
+    const MemoryGate::Pass pass(gate_, expected_bytes(cell));
     CellScratch& scratch = scratch_.local();
     load_pieces(scratch.pieces, appearance_.sampler(), source_, cell.level, cell.cell,
                 cell.triangles);
@@ -41,23 +44,41 @@ class TaskBuilder {
       cell.decision = scratch.decider.decide(scratch.pieces.view(root),
                                              cells_[cell.parent].decision.is_near, cell.shape, sum);
     }
-    cell.triangles = {};
+    cell.triangles = TriangleList(options_.memory);
     finished->cell = task;
     finished->voxel =
         SubtreeBuilder(options_.settings, appearance_, scratch.decider, scratch.pieces)
             .build(cell.decision, cell.shape);
+    if (options_.memory != nullptr && options_.memory->limit() != 0) scratch.pieces.free_memory();
+    finished->voxel.count_tree(options_.memory);
     const EsvoTree& tree = finished->voxel.tree;
     finished->has_blocks = needs_blocks(tree);
-    if (finished->has_blocks)
-      finished->blocks = pack_blocks(tree, cell.level, cell.cell, 0, options_.pack);
+    if (!finished->has_blocks) return finished;
+    finished->block_memory = {options_.memory, packed_slots(tree) * kPackingBytesPerSlot};
+    finished->blocks = pack_blocks(tree, cell.level, cell.cell, 0, options_.pack);
+    finished->block_memory.resize(finished->blocks.slots.capacity() * sizeof(std::uint64_t));
     return finished;
   }
 
  private:
+  /// Scratch memory and result of packing, for each slot that is packed.
+  static constexpr std::uint64_t kPackingBytesPerSlot = 96;
+
+  /// Returns how much memory a task is expected to take.
+  std::uint64_t expected_bytes(const TopCell& cell) const {
+    constexpr double kTreeBytesPerVoxel = 64;
+    // Of what is tessellated two triangles or so go to a voxel.
+    const double displaced = cell.is_displaced ? 4 * cell.weight : 0;
+    return static_cast<std::uint64_t>((static_cast<double>(cell.triangles.size()) + displaced) *
+                                          static_cast<double>(PieceStack::kBytesPerTriangle) +
+                                      cell.weight * kTreeBytesPerVoxel);
+  }
+
   const TriangleSource& source_;
   const EsvoOptions& options_;
   const CellAppearance appearance_;
-  std::vector<TopCell>& cells_;
+  TopCells& cells_;
+  MemoryGate gate_;
   tbb::enumerable_thread_specific<CellScratch> scratch_;
 };
 
@@ -66,14 +87,23 @@ class TaskBuilder {
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                       const SurfaceShading* shading, const DisplacedTriangles* displaced,
                       EsvoSink& sink, Progress* progress) {
+  MemoryBudget* const memory = options.memory;
+  const std::uint64_t table_bytes =
+      45 * std::uint64_t{mesh.triangles.size()} + 12 * std::uint64_t{mesh.vertices.size()};
+  if (memory != nullptr && memory->left() < table_bytes)
+    memory->throw_over_memory(memory->base() + memory->used() + table_bytes);
+  MemoryReservation tables(memory, 12 * std::uint64_t{mesh.vertices.size()});
   const QuantizedMesh quantized(mesh, grid);
+  tables.resize(quantized.bytes() + 2 * quantized.triangle_count());
   const Appearance* const appearance = shading != nullptr     ? &shading->appearance()
                                        : displaced != nullptr ? &displaced->appearance()
                                                               : nullptr;
-  const std::vector<std::uint8_t> duplicates = find_duplicate_triangles(mesh, appearance);
-  const std::vector<std::uint8_t> open_edges = find_open_edges(quantized, duplicates);
+  const std::vector<std::uint8_t> duplicates =
+      find_duplicate_triangles(mesh, appearance, progress, memory);
+  const std::vector<std::uint8_t> open_edges =
+      find_open_edges(quantized, duplicates, progress, memory);
   const TriangleSource source{grid, quantized, open_edges, displaced, duplicates};
-  std::vector<TopCell> cells = find_top_cells(source, options.settings, shading, progress);
+  TopCells cells = find_top_cells(source, options.settings, shading, progress, memory);
   const std::vector<std::size_t> tasks = task_order(cells);
   double total_weight = 0, weight_so_far = 0;
   for (const std::size_t task : tasks) total_weight += cells[task].weight;
@@ -88,9 +118,9 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
     }
     return tasks[next++];
   };
-  const auto build = [&](std::size_t task) { return builder.build(task).release(); };
-  const auto assemble = [&](FinishedTask* result) {
-    const std::unique_ptr<FinishedTask> finished(result);
+  using Finished = std::shared_ptr<FinishedTask>;
+  const auto build = [&](std::size_t task) { return builder.build(task); };
+  const auto assemble = [&](const Finished& finished) {
     weight_so_far += cells[finished->cell].weight;
     assembler.add(*finished);
     if (progress != nullptr)
@@ -100,15 +130,15 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
   tbb::parallel_pipeline(
       2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next_task) &
-          tbb::make_filter<std::size_t, FinishedTask*>(tbb::filter_mode::parallel, build) &
-          tbb::make_filter<FinishedTask*, void>(tbb::filter_mode::serial_in_order, assemble));
+          tbb::make_filter<std::size_t, Finished>(tbb::filter_mode::parallel, build) &
+          tbb::make_filter<Finished, void>(tbb::filter_mode::serial_in_order, assemble));
   if (progress != nullptr) progress->throw_if_cancelled();
   return assembler.finish();
 }
 
 Esvo build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                 const SurfaceShading* shading, Progress* progress) {
-  EsvoMemory memory;
+  EsvoMemory memory(options.memory);
   const EsvoResult result = build_esvo(mesh, grid, options, shading, nullptr, memory, progress);
   return {memory.take(), result.root, grid.levels};
 }

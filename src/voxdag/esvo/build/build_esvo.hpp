@@ -8,11 +8,13 @@
 /// blocks at once; a small one becomes part of the tree of the cell above, which becomes blocks
 /// when it is large enough. So memory holds the mesh, the upper levels and the results of a few
 /// tasks, however large the octree is.
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/displace/displaced_triangles.hpp"
 #include "voxdag/esvo/build/esvo_settings.hpp"
 #include "voxdag/esvo/encode/pack_blocks.hpp"
@@ -25,6 +27,7 @@ namespace voxdag {
 struct EsvoOptions {
   EsvoSettings settings;
   PackOptions pack;
+  MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
 
 /// Receives finished blocks, one after the other.
@@ -37,12 +40,27 @@ class EsvoSink {
 /// A sink that keeps the blocks in memory.
 class EsvoMemory : public EsvoSink {
  public:
+  /// Counts the blocks in `budget`; null: no limit.
+  explicit EsvoMemory(MemoryBudget* budget = nullptr) : memory_(budget, 0) {}
+
   void append(std::span<const std::uint64_t> slots) override {
+    if (slots_.size() + slots.size() > slots_.capacity()) {
+      // The old and the new array exist at the same time.
+      const std::size_t capacity = std::max(2 * slots_.capacity(), slots_.size() + slots.size());
+      memory_.resize((slots_.capacity() + capacity) * sizeof(std::uint64_t));
+      slots_.reserve(capacity);
+      memory_.resize(capacity * sizeof(std::uint64_t));
+    }
     slots_.insert(slots_.end(), slots.begin(), slots.end());
   }
-  std::vector<std::uint64_t> take() { return std::move(slots_); }
+  /// Returns the blocks, which are no longer counted.
+  std::vector<std::uint64_t> take() {
+    memory_.resize(0);
+    return std::move(slots_);
+  }
 
  private:
+  MemoryReservation memory_;
   std::vector<std::uint64_t> slots_;
 };
 
@@ -55,7 +73,9 @@ struct EsvoResult {
 /// Builds the octree of the mesh's surface in `grid`. `shading` is the mesh's own, or null for a
 /// grey surface; `displaced`, if it is not null, moves the surface. A mesh without visible surface
 /// in the grid gives no blocks. The blocks depend on the arguments alone, not on the number of
-/// threads or the machine. Runs on the current TBB arena.
+/// threads, the memory limit or the machine. Runs on the current TBB arena.
+/// With a memory limit fewer tasks are built at a time. Throws OverMemory before the work if even
+/// the tables of the triangles do not fit (45 bytes a triangle and 12 a vertex), or during it.
 /// Throws Error if the octree is so large (16 GiB) that far pointers do not reach, Cancelled, and
 /// what the sink throws.
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,

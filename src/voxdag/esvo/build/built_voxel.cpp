@@ -30,8 +30,15 @@ EsvoNode append_tree(EsvoTree& tree, const EsvoTree& child) {
 
 }  // namespace
 
+void BuiltVoxel::count_tree(MemoryBudget* budget) {
+  memory = {budget, tree.nodes.capacity() * sizeof(EsvoNode) +
+                        tree.contours.capacity() * sizeof(Contour) +
+                        tree.values.capacity() * sizeof(VoxelValue) +
+                        tree.packed.capacity() * sizeof(std::uint64_t)};
+}
+
 BuiltVoxel join_children(const CellDecision& decision, std::span<BuiltVoxel, 8> children,
-                         bool attributes) {
+                         bool attributes, MemoryBudget* budget) {
   BuiltVoxel built;
   built.contour = decision.contour;
   EsvoTree& tree = built.tree;
@@ -60,6 +67,7 @@ BuiltVoxel join_children(const CellDecision& decision, std::span<BuiltVoxel, 8> 
     tree.nodes[at++] = append_tree(tree, child.tree);
     child = {};
   }
+  built.count_tree(budget);
   return built;
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/esvo/build/decide_cell.hpp"
 #include "voxdag/esvo/build/surface_sum.hpp"
 #include "voxdag/esvo/encode/esvo_tree.hpp"
@@ -14,12 +15,17 @@ struct BuiltVoxel {
   bool is_leaf = false;
   std::optional<Contour> contour;
   SurfaceSum sum;
-  EsvoTree tree;  ///< Node 0 is the voxel; empty if the voxel is a leaf.
+  EsvoTree tree;             ///< Node 0 is the voxel; empty if the voxel is a leaf.
+  MemoryReservation memory;  ///< Of the tree.
+
+  /// Counts the tree in a budget (null: no limit). Throws OverMemory.
+  void count_tree(MemoryBudget* budget);
 };
 
 /// Joins the eight children of a voxel, in order, to the voxel. Consumes the children.
+/// Counts the tree in `budget`; null: no limit. Throws OverMemory.
 BuiltVoxel join_children(const CellDecision& decision, std::span<BuiltVoxel, 8> children,
-                         bool attributes);
+                         bool attributes, MemoryBudget* budget = nullptr);
 
 /// Reduces a tree to its node 0 after everything below it was packed into blocks. `first_child` is
 /// the slot of the first child's descriptor.

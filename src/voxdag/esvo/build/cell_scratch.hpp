@@ -6,8 +6,8 @@
 namespace voxdag {
 
 struct CellScratch {
-  CellScratch(const EsvoSettings& settings, const CellAppearance& appearance)
-      : decider(settings, appearance) {}
+  CellScratch(const EsvoSettings& settings, const CellAppearance& appearance, MemoryBudget* memory)
+      : pieces(memory), decider(settings, appearance) {}
 
   PieceStack pieces;
   CellDecider decider;

@@ -79,17 +79,20 @@ class TriangleKeys {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_duplicate_triangles(const Mesh& mesh, const Appearance* appearance) {
+std::vector<std::uint8_t> find_duplicate_triangles(const Mesh& mesh, const Appearance* appearance,
+                                                   Progress* progress, MemoryBudget* memory) {
   const TriangleKeys keys(mesh, appearance);
   const std::size_t count = mesh.triangles.size();
   constexpr std::uint64_t kIndex = 0xFFFFFFFF;
   // The upper half of a triangle's hash and its index.
-  std::vector<std::uint64_t> order(count);
+  CountedVector<std::uint64_t> order(count, memory);
   parallel_for(count, 1024, [&](std::size_t i) { order[i] = (keys.hash(i) & ~kIndex) | i; });
+  if (progress != nullptr) progress->throw_if_cancelled();
   tbb::parallel_sort(order.begin(), order.end());
   std::vector<std::uint8_t> duplicates;
   std::size_t first = 0;
   for (std::size_t i = 1; i < count; ++i) {
+    if (i % (1 << 20) == 0 && progress != nullptr) progress->throw_if_cancelled();
     // Compares each triangle with the first of its hash: by chance this may miss a duplicate.
     if (order[i] >> 32 != order[first] >> 32 ||
         !keys.are_equal(order[first] & kIndex, order[i] & kIndex)) {

@@ -53,7 +53,7 @@ void load_pieces(PieceStack& pieces, const PieceSampler& sampler, const Triangle
     surface.constant_sample = sampler.constant_sample(surface);
     pieces.add(surface, triangle);
   };
-  pieces.start(log2_size, origin);
+  pieces.start(log2_size, origin, triangles.size());
   for (const std::uint32_t triangle : triangles) {
     if (!source.is_displaced(triangle)) {
       add(SurfaceTriangle::make(source.mesh.triangle(triangle), origin,

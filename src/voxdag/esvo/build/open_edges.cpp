@@ -26,14 +26,15 @@ std::uint64_t edge_key(Vec3i a, Vec3i b) {
 }  // namespace
 
 std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh,
-                                          std::span<const std::uint8_t> duplicates) {
+                                          std::span<const std::uint8_t> duplicates,
+                                          Progress* progress, MemoryBudget* memory) {
   const std::size_t count = mesh.triangle_count();
   const auto counts = [&](std::size_t i) {
     return mesh.in_range(i) && (duplicates.empty() || duplicates[mesh.source(i)] == 0);
   };
   // The upper half of an edge's key and its number, 3 * triangle + edge. The edges of triangles
   // that do not count are all alike, so that none of them is open.
-  std::vector<std::uint64_t> edges(3 * count);
+  CountedVector<std::uint64_t> edges(3 * count, memory);
   parallel_for(count, 1024, [&](std::size_t i) {
     const QuantizedTriangle t = counts(i) ? mesh.triangle(i) : QuantizedTriangle{};
     for (int e = 0; e < 3; ++e) {
@@ -41,12 +42,20 @@ std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh,
       edges[edge] = (edge_key(t[e], t[(e + 1) % 3]) & ~std::uint64_t{0xFFFFFFFF}) | edge;
     }
   });
+  const auto report = [&](double fraction) {
+    if (progress == nullptr) return;
+    progress->throw_if_cancelled();
+    progress->report("open edges", fraction, count);
+  };
+  report(0.3);
   tbb::parallel_sort(edges.begin(), edges.end());
   std::vector<std::uint8_t> open(count);
   const auto is_same = [&](std::size_t i, std::size_t j) {
     return edges[i] >> 32 == edges[j] >> 32;
   };
   for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (i % (1 << 20) == 0)
+      report(0.7 + 0.3 * static_cast<double>(i) / static_cast<double>(edges.size()));
     if ((i > 0 && is_same(i, i - 1)) || (i + 1 < edges.size() && is_same(i, i + 1))) continue;
     const std::size_t edge = edges[i] & 0xFFFFFFFF, triangle = edge / 3;
     if (counts(triangle) && mesh.source(triangle) == triangle)

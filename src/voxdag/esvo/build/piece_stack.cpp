@@ -7,12 +7,22 @@
 
 namespace voxdag {
 
-void PieceStack::start(int log2_size, Vec3i origin) {
+void PieceStack::start(int log2_size, Vec3i origin, std::size_t triangles) {
   log2_size_ = log2_size;
   origin_ = origin;
   triangles_.clear();
   ids_.clear();
   pieces_.clear();
+  triangles_.reserve(triangles);
+  ids_.reserve(triangles);
+  pieces_.reserve(triangles);
+}
+
+void PieceStack::free_memory() {
+  triangles_ = CountedVector<SurfaceTriangle>(triangles_.get_allocator());
+  ids_ = CountedVector<std::uint32_t>(ids_.get_allocator());
+  pieces_ = CountedVector<TrianglePiece>(pieces_.get_allocator());
+  classified_ = CountedVector<ChildConditions>(classified_.get_allocator());
 }
 
 void PieceStack::add(const SurfaceTriangle& triangle, std::uint32_t id) {
@@ -39,7 +49,7 @@ double PieceStack::weight() const {
   return weight;
 }
 
-void PieceStack::list_children(std::array<std::vector<std::uint32_t>, 8>& children) const {
+void PieceStack::list_children(ChildTriangles& children) const {
   for (auto& child : children) child.clear();
   for (const TrianglePiece& piece : pieces_) {
     const ChildConditions classified = classify(piece, log2_size_, {});

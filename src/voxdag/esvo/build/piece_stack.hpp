@@ -4,11 +4,12 @@
 ///
 /// Each level of the recursion cuts the pieces of the cell above at the cell's middle planes. Which
 /// children a triangle meets is exact (design: exact cover): the polygons are only its shape.
-#include <array>
+#include <algorithm>
 #include <cstdint>
-#include <vector>
 
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/esvo/build/cell.hpp"
+#include "voxdag/esvo/build/child_triangles.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 
 namespace voxdag {
@@ -25,15 +26,25 @@ struct StackedCell {
 
 class PieceStack {
  public:
+  /// Counts its memory in `budget`; null: no limit. Functions that add throw OverMemory.
+  explicit PieceStack(MemoryBudget* budget = nullptr)
+      : triangles_(budget), ids_(budget), pieces_(budget), classified_(budget) {}
+
   /// Which children the pieces of a cell meet.
   struct Split {
     std::uint32_t children = 0;  ///< Bit mask of the children that some piece meets.
     std::size_t first = 0;       ///< Of `classified_`.
   };
 
+  /// The bytes that a cell takes for each of its triangles, with those of the cells below it.
+  static constexpr std::uint64_t kBytesPerTriangle =
+      sizeof(SurfaceTriangle) + 2 * (sizeof(TrianglePiece) + sizeof(ChildConditions));
+
   /// Removes all triangles and begins a cell of 2^log2_size voxels at `origin` in the grid, in
-  /// voxels.
-  void start(int log2_size, Vec3i origin);
+  /// voxels. `triangles` is how many are expected.
+  void start(int log2_size, Vec3i origin, std::size_t triangles);
+  /// Frees the memory that it holds.
+  void free_memory();
   /// Adds a triangle, whose coordinates begin at the cell's origin. `id` is the caller's.
   void add(const SurfaceTriangle& triangle, std::uint32_t id);
 
@@ -47,7 +58,7 @@ class PieceStack {
   /// Returns the area of the root's surface in voxels², and one for each triangle.
   double weight() const;
   /// Lists the ids of the triangles that meet each child of the root.
-  void list_children(std::array<std::vector<std::uint32_t>, 8>& children) const;
+  void list_children(ChildTriangles& children) const;
 
   /// Removes those pieces of the topmost cell for which `is_removed(view, piece)` is true.
   template <class Predicate>
@@ -76,10 +87,10 @@ class PieceStack {
 
   int log2_size_ = 0;
   Vec3i origin_{};
-  std::vector<SurfaceTriangle> triangles_;
-  std::vector<std::uint32_t> ids_;
-  std::vector<TrianglePiece> pieces_;
-  std::vector<ChildConditions> classified_;  // by piece of the cells that are being split
+  CountedVector<SurfaceTriangle> triangles_;
+  CountedVector<std::uint32_t> ids_;
+  CountedVector<TrianglePiece> pieces_;
+  CountedVector<ChildConditions> classified_;  // by piece of the cells that are being split
 };
 
 }  // namespace voxdag

@@ -1,7 +1,9 @@
 #include "voxdag/esvo/build/split_triangles.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
@@ -41,20 +43,27 @@ class Splitter {
 }  // namespace
 
 ChildTriangles split_triangles(const TriangleSource& source, int level, Vec3i cell,
-                               std::span<const std::uint32_t> triangles) {
+                               std::span<const std::uint32_t> triangles, MemoryBudget* memory) {
   constexpr std::size_t kChunk = 1024;
   const Splitter splitter(source, level, cell);
-  std::vector<ChildTriangles> chunks((triangles.size() + kChunk - 1) / kChunk);
+  std::vector<ChildTriangles> chunks((triangles.size() + kChunk - 1) / kChunk,
+                                     empty_children(memory));
   parallel_for(chunks.size(), [&](std::size_t chunk) {
     const std::size_t end = std::min((chunk + 1) * kChunk, triangles.size());
     for (std::size_t i = chunk * kChunk; i < end; ++i)
       for (std::uint32_t left = splitter.children_met(triangles[i]); left != 0; left &= left - 1)
         chunks[chunk][static_cast<std::size_t>(std::countr_zero(left))].push_back(triangles[i]);
   });
-  ChildTriangles children;
-  for (std::size_t child = 0; child < 8; ++child)
-    for (const ChildTriangles& chunk : chunks)
+  ChildTriangles children = empty_children(memory);
+  for (std::size_t child = 0; child < 8; ++child) {
+    std::size_t count = 0;
+    for (const ChildTriangles& chunk : chunks) count += chunk[child].size();
+    children[child].reserve(count);
+    for (ChildTriangles& chunk : chunks) {
       children[child].insert(children[child].end(), chunk[child].begin(), chunk[child].end());
+      chunk[child] = TriangleList(memory);
+    }
+  }
   return children;
 }
 

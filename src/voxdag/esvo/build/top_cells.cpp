@@ -3,12 +3,14 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
 #include "voxdag/esvo/build/enclose_cell.hpp"
 #include "voxdag/esvo/build/load_pieces.hpp"
+#include "voxdag/esvo/build/memory_gate.hpp"
 #include "voxdag/esvo/build/split_triangles.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
@@ -38,8 +40,9 @@ bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
 }
 
 /// Lists the triangles that may meet the grid.
-std::vector<std::uint32_t> root_triangles(const TriangleSource& source) {
-  std::vector<std::uint32_t> triangles;
+TriangleList root_triangles(const TriangleSource& source, MemoryBudget* memory) {
+  TriangleList triangles(memory);
+  triangles.reserve(source.mesh.triangle_count());
   for (std::size_t i = 0; i < source.mesh.triangle_count(); ++i) {
     if (source.is_duplicate(i)) continue;
     // Displaced triangles are clipped after they are displaced: not their pieces are built, but
@@ -54,26 +57,33 @@ std::vector<std::uint32_t> root_triangles(const TriangleSource& source) {
   return triangles;
 }
 
-class TopCells {
+class TopCellFinder {
  public:
-  TopCells(const TriangleSource& source, const EsvoSettings& settings,
-           const SurfaceShading* shading)
+  TopCellFinder(const TriangleSource& source, const EsvoSettings& settings,
+                const SurfaceShading* shading, MemoryBudget* memory)
       : source_(source),
         settings_(settings),
         appearance_(settings, shading),
-        scratch_([this] { return CellScratch(settings_, appearance_); }) {
+        memory_(memory),
+        gate_(memory),
+        scratch_([this] { return CellScratch(settings_, appearance_, memory_); }),
+        cells_(memory) {
     cells_.resize(1);
     cells_[0].shape = ConvexPolyhedron::cube();
-    cells_[0].triangles = root_triangles(source);
+    cells_[0].triangles = root_triangles(source, memory);
   }
 
-  std::vector<TopCell> find(Progress* progress) {
+  TopCells find(Progress* progress) {
     for (std::size_t begin = 0; begin < cells_.size();) {
       const std::size_t end = cells_.size();
-      std::vector<ChildTriangles> children(end - begin);
+      std::vector<ChildTriangles> children(end - begin, empty_children(memory_));
+      std::atomic<std::size_t> done{0};
       parallel_for(end - begin, [&](std::size_t i) {
         if (progress != nullptr && progress->cancelled()) return;
         decide(cells_[begin + i], children[i]);
+        if (progress != nullptr)
+          progress->report("upper levels",
+                           static_cast<double>(++done) / static_cast<double>(end - begin), end);
       });
       if (progress != nullptr) progress->throw_if_cancelled();
       for (std::size_t at = begin; at < end; ++at)
@@ -96,7 +106,7 @@ class TopCells {
       decide_unloaded(cell, is_heavy, children);
     else
       decide_loaded(cell, children);
-    if (!cell.is_task) cell.triangles = {};
+    if (!cell.is_task) cell.triangles = TriangleList(memory_);
   }
 
   void decide_unloaded(TopCell& cell, bool is_heavy, ChildTriangles& children) const {
@@ -105,10 +115,11 @@ class TopCells {
     if (cell.is_task) return;
     if (settings_.contours && !is_heavy && cell.parent != TopCell::kNoParent)
       cell.decision = decide_enclosed(source_, cell.level, cell.cell, cell.triangles, cell.shape);
-    children = split_triangles(source_, cell.level, cell.cell, cell.triangles);
+    children = split_triangles(source_, cell.level, cell.cell, cell.triangles, memory_);
   }
 
   void decide_loaded(TopCell& cell, ChildTriangles& children) {
+    const MemoryGate::Pass pass(gate_, cell.triangles.size() * PieceStack::kBytesPerTriangle);
     CellScratch& scratch = scratch_.local();
     PieceStack& pieces = scratch.pieces;
     load_pieces(pieces, appearance_.sampler(), source_, cell.level, cell.cell, cell.triangles);
@@ -121,11 +132,12 @@ class TopCells {
     cell.is_task =
         cell.decision.is_leaf || log2_size(cell) <= kLeastLog2 || cell.weight < kTaskWeight;
     if (!cell.is_task) pieces.list_children(children);
+    if (memory_ != nullptr && memory_->limit() != 0) pieces.free_memory();
   }
 
   void add_children(std::size_t parent, ChildTriangles& children) {
     for (int child = 0; child < 8; ++child) {
-      std::vector<std::uint32_t>& triangles = children[static_cast<std::size_t>(child)];
+      TriangleList& triangles = children[static_cast<std::size_t>(child)];
       if (triangles.empty()) continue;
       ++cells_[parent].children_left;
       TopCell& cell = cells_.emplace_back();
@@ -144,18 +156,20 @@ class TopCells {
   const TriangleSource& source_;
   const EsvoSettings& settings_;
   const CellAppearance appearance_;
+  MemoryBudget* const memory_;
+  MemoryGate gate_;
   tbb::enumerable_thread_specific<CellScratch> scratch_;
-  std::vector<TopCell> cells_;
+  TopCells cells_;
 };
 
 }  // namespace
 
-std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
-                                    const SurfaceShading* shading, Progress* progress) {
-  return TopCells(source, settings, shading).find(progress);
+TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
+                        const SurfaceShading* shading, Progress* progress, MemoryBudget* memory) {
+  return TopCellFinder(source, settings, shading, memory).find(progress);
 }
 
-std::vector<std::size_t> task_order(const std::vector<TopCell>& cells) {
+std::vector<std::size_t> task_order(const TopCells& cells) {
   std::vector<std::vector<std::size_t>> children(cells.size());
   for (std::size_t i = 1; i < cells.size(); ++i) children[cells[i].parent].push_back(i);
   std::vector<std::size_t> tasks, stack{0};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "voxdag/esvo/build/built_voxel.hpp"
+#include "voxdag/esvo/build/child_triangles.hpp"
 #include "voxdag/esvo/build/triangle_source.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -15,9 +16,9 @@ struct TopCell {
   int level = 0;
   Vec3i cell{};  ///< In cells of the level.
   std::uint32_t parent = kNoParent;
-  int child = 0;                         ///< Which of the parent's children it is.
-  std::vector<std::uint32_t> triangles;  ///< Those that may meet it. Empty if it is no task.
-  ConvexPolyhedron shape;                ///< Already cut by the cell's own contour.
+  int child = 0;           ///< Which of the parent's children it is.
+  TriangleList triangles;  ///< Those that may meet it. Empty if it is no task.
+  ConvexPolyhedron shape;  ///< Already cut by the cell's own contour.
   CellDecision decision;
   double weight = 0;              ///< See PieceStack::weight(); an estimate if `is_displaced`.
   bool is_displaced = false;      ///< Has displaced triangles: a task decides it when it is built.
@@ -26,13 +27,17 @@ struct TopCell {
   std::vector<BuiltVoxel> built;  ///< The finished children.
 };
 
+using TopCells = CountedVector<TopCell>;
+
 /// Decides the cells down to tasks, parents before children. The first cell is the root, which is
 /// never a leaf. Small cells with displaced triangles are tasks; larger ones get contours around
-/// what encloses the triangles. Cells with very many triangles get no contours. Throws Cancelled.
-std::vector<TopCell> find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
-                                    const SurfaceShading* shading, Progress* progress);
+/// what encloses the triangles. Cells with very many triangles get no contours. Counts
+/// the cells and scratch memory in `memory`; null: no limit. Throws Cancelled and OverMemory.
+TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
+                        const SurfaceShading* shading, Progress* progress,
+                        MemoryBudget* memory = nullptr);
 
 /// Returns the tasks in Morton order.
-std::vector<std::size_t> task_order(const std::vector<TopCell>& cells);
+std::vector<std::size_t> task_order(const TopCells& cells);
 
 }  // namespace voxdag
