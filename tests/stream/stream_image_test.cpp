@@ -11,6 +11,7 @@
 #include "voxdag/stream/paged_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,4 +1,5 @@
 // The builder's linear conditions against the definition, at every level of the octree.
+#include "voxdag/core/morton.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
 #include <gtest/gtest.h>
