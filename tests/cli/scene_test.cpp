@@ -32,7 +32,7 @@ TEST_F(Sponge, EverySceneHasAFlight) {
 TEST_F(Sponge, QuietScenesSayNothingButJson) {
   const auto scene = [&](const std::string& option) {
     return run_voxdag(
-        {"scene", "sponge", "--size", "1", "-o", path("quiet.ply"), "--quiet", option});
+        {"scene", "hairball", "--size", "10", "-o", path("quiet.ply"), "--quiet", option});
   };
   const ProcessResult quiet = scene("--seed=1");
   EXPECT_EQ(quiet.status, 0) << quiet.err;

@@ -178,11 +178,19 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);
-  command.parsed(
-      "--memory", arguments.stream_memory, parse_memory, "LIMIT",
-      "Stream an ESVO: load only the parts that the picture shows, into this much memory (512M). "
-      "A coarse picture is written at once and replaced as it becomes finer; frames of --path are "
-      "written once");
+  command
+      .parsed("--memory", arguments.stream_memory, parse_memory, "LIMIT",
+              "Stream an ESVO: load only the parts that the picture shows, into this much memory "
+              "(512M). "
+              "A coarse picture is written at once and replaced as it becomes finer; frames of "
+              "--path are "
+              "written once")
+      .only_if(
+          [&arguments] {
+            return arguments.mesh.file.empty() &&
+                   arguments.device.kind != DeviceChoice::Kind::kCuda;
+          },
+          "with --mesh or --device cuda");
   add_threads_option(command, session);
   add_quiet_option(command, session);
 }
