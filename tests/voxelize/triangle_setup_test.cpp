@@ -1,5 +1,4 @@
 // The builder's linear conditions against the definition, at every level of the octree.
-#include "voxdag/core/morton.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include <random>
 
 #include "support/random_triangles.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 #include "voxdag/voxelize/overlap.hpp"
 

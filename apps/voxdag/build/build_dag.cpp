@@ -80,7 +80,9 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
 
   progress.throw_if_cancelled();
   const SvdagView view = result.dag.view();
+  MemoryReservation counting(&memory, view.bytes());
   report.metadata.counts = count_svdag(view);
+  counting.resize(0);
   report.svdag_bytes = view.bytes();
   progress.throw_if_cancelled();
   write_vdag(arguments.output, view, report.metadata);

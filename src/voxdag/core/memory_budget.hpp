@@ -112,6 +112,8 @@ class MemoryReservation {
     bytes_ = bytes;
   }
   std::uint64_t bytes() const { return bytes_; }
+  /// Forgets the bytes without releasing them: somebody else will.
+  void keep() noexcept { bytes_ = 0; }
 
  private:
   MemoryBudget* budget_ = nullptr;

@@ -11,33 +11,35 @@
 #include "voxdag/core/morton.hpp"
 #include "voxdag/dag/build_methods.hpp"
 #include "voxdag/dag/canonical_order.hpp"
+#include "voxdag/dag/join_cells.hpp"
+#include "voxdag/dag/stop_watch.hpp"
 #include "voxdag/dag/subvolume.hpp"
-#include "voxdag/dag/subvolume_bins.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr int kLog2MemoSets = 16;  // 8 MiB for each thread
+/// 8 MiB for each thread, less where memory is short.
+constexpr int kMostLog2MemoSets = 16, kLeastLog2MemoSets = 10;
 
 using Stores = std::vector<std::unique_ptr<NodeStore>>;
 
-/// Sub-volumes small enough to share out well, large enough to seldom cut a triangle.
-int subvolume_level(int levels, std::size_t triangles) {
-  int level = std::clamp(levels - 5, 0, 6);
-  // About 1024 triangles for each of the ~4^level cells of a surface.
-  while (level < levels - 2 && level < 10 && (triangles >> (2 * level)) > 1024) ++level;
-  // The recursion goes two levels at a time.
-  if ((levels - level) % 2 != 0) level += level > 0 ? -1 : 1;
-  return level;
+/// Lets the plane memos of all threads take a quarter of the memory that is left.
+int log2_memo_sets(const MemoryBudget& budget, std::size_t threads) {
+  int log2_sets = kMostLog2MemoSets;
+  while (log2_sets > kLeastLog2MemoSets && DagSink::bytes(log2_sets) * threads > budget.left() / 4)
+    --log2_sets;
+  return log2_sets;
 }
 
 /// canonical_order's view of the stores.
 struct StoreSource {
   Stores& stores;
-  std::vector<std::uint32_t> forwards;  // by half the leaf's id: all of them are even
+  PageVector<std::uint32_t> forwards;  // by half the leaf's id: all of them are even
 
-  explicit StoreSource(Stores& all) : stores(all), forwards(stores.back()->end_id() / 2) {}
+  StoreSource(Stores& all, MemoryBudget& budget) : stores(all), forwards(&budget) {
+    forwards.resize(stores.back()->end_id() / 2);
+  }
   std::uint32_t* words(int level, NodeId id) { return stores[level]->words(id); }
   void prefetch(int level, NodeId id) const {
     stores[level]->prefetch_words(id);
@@ -54,88 +56,87 @@ struct StoreSource {
   std::uint32_t& forward(NodeId leaf) { return forwards[leaf / 2]; }
 };
 
-/// Joins the nodes of `level` (cells ascending, kNoNode left out) up to the root.
-NodeId join_top(Stores& stores, int level, std::vector<std::uint32_t> cells,
-                std::vector<NodeId> ids) {
-  for (; level > 0; --level) {
-    std::size_t kept = 0;
-    NodeStore::Run run;
-    for (std::size_t i = 0; i < cells.size();) {
-      const std::uint32_t parent = cells[i] >> 3;
-      std::uint32_t words[9] = {};
-      int count = 1;
-      for (; i < cells.size() && cells[i] >> 3 == parent; ++i) {
-        if (ids[i] == kNoNode) continue;
-        words[0] |= 1u << (cells[i] & 7);
-        words[count++] = ids[i];
-      }
-      cells[kept] = parent;
-      ids[kept++] = count == 1
-                        ? kNoNode
-                        : stores[level - 1]->intern(words, count, hash_words(words, count), run);
-    }
-    cells.resize(kept);
-    ids.resize(kept);
+void measure(const Stores& stores, StageBytes& bytes) {
+  // Tables are between 5/16 and 5/8 full.
+  constexpr double kSlotBytes = 8 * 2.3;
+  std::uint64_t words = 0, nodes = 0;
+  for (const auto& store : stores) {
+    words += store->word_count();
+    nodes += store->node_count();
   }
-  return ids.empty() ? kNoNode : ids[0];
+  const auto leaves = static_cast<double>(stores.back()->node_count());
+  const double word_bytes = static_cast<double>(words) * 4;
+  bytes.voxelize = word_bytes + static_cast<double>(nodes) * kSlotBytes;
+  bytes.number = 2 * word_bytes + leaves * 4;
 }
 
 }  // namespace
 
-BuildResult build_hash_consed(const QuantizedMesh& mesh, int levels, MemoryBudget& budget,
-                              Progress* progress) {
-  BuildResult result;
-  StopWatch watch;
-  const SubvolumeBins bins =
-      bin_triangles(mesh, levels, subvolume_level(levels, mesh.triangle_count()), budget, progress);
-  result.report.quantize_seconds = watch.lap();
-  result.report.subvolumes = bins.cells.size();
+/// Returns a level at which sub-volumes are small enough to balance the threads, and large enough
+/// to seldom cut a triangle.
+int hash_bin_level(int levels, std::size_t triangles) {
+  int level = std::clamp(levels - 5, 0, 6);
+  // About 1024 triangles for each of the ~4^level cells of a surface.
+  while (level < levels - 2 && level < 10 && (triangles >> (2 * level)) > 1024) ++level;
+  // The recursion goes down two levels at a time.
+  if ((levels - level) % 2 != 0) level += level > 0 ? -1 : 1;
+  return level;
+}
 
-  Stores stores;
+HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& report,
+                                     StageBytes& bytes) {
+  StopWatch watch;
+  MemoryBudget& budget = input.budget;
+  const int levels = input.grid.levels;
+  const BinnedMesh binned = bin_mesh(input);
+  const SubvolumeBins& bins = binned.bins;
+  report.quantize_seconds = watch.lap();
+  report.subvolumes = bins.cells.size();
+  const std::size_t threads = thread_count(bins.cells.size());
+  const int log2_sets = log2_memo_sets(budget, threads);
+  bytes.prepare = binned.prepare_bytes;
+  bytes.voxelize_fixed =
+      static_cast<double>(budget.used()) +
+      static_cast<double>(threads) *
+          (static_cast<double>(DagSink::bytes(log2_sets)) + list_scratch_bytes(bins));
+
+  HashConsedNodes result;
   for (int level = 0; level <= levels - 2; ++level)
-    stores.push_back(std::make_unique<NodeStore>(budget));
+    result.stores.push_back(std::make_unique<NodeStore>(budget));
   const int log2_size = levels - bins.level;
   using Context = SubvolumeContext<DagSink>;
   tbb::enumerable_thread_specific<Context> contexts([&] {
-    Context context(mesh, levels, DagSink(stores, kLog2MemoSets));
-    budget.add(context.sink.memo.bytes());
-    return context;
+    return Context(binned.mesh, levels, DagSink(result.stores, log2_sets, budget), budget,
+                   input.progress);
   });
   std::vector<NodeId> ids(bins.cells.size(), kNoNode);
-  std::atomic<std::uint64_t> done{0};
-  parallel_for(bins.cells.size(), [&](std::size_t i) {
-    if (progress != nullptr && progress->cancelled()) return;
-    if (budget.exceeded()) return;
+  polled_for(bins.cells.size(), 1, input.progress, "voxelize", [&](std::size_t i) {
     const Vec3i cell = morton_decode(bins.cells[i]);
     const SubvolumeJob job{
         {cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)};
     ids[i] = build_subvolume(contexts.local(), job);
-    const std::uint64_t finished = done.fetch_add(1, std::memory_order_relaxed) + 1;
-    if (progress != nullptr)
-      progress->report("voxelize",
-                       static_cast<double>(finished) / static_cast<double>(bins.cells.size()));
   });
-  if (progress != nullptr) progress->throw_if_cancelled();
-  if (budget.exceeded())
-    throw_over_memory(budget, static_cast<double>(done.load()) /
-                                  static_cast<double>(std::max<std::size_t>(1, bins.cells.size())));
-  contexts.clear();
-  const NodeId root = join_top(stores, bins.level, bins.cells, std::move(ids));
-  result.report.voxelize_seconds = watch.lap();
-
-  result.dag.levels = levels;
-  if (root != kNoNode) {
-    for (const auto& store : stores) store->release_slots();
-    StoreSource source(stores);
-    const std::uint64_t copy = source.node_words() * 4 + source.leaf_blocks() * 12;
-    budget.add(copy);
-    if (budget.exceeded()) throw_over_memory(budget, 1);
-    result.dag = canonical_order(source, levels, root);
-    budget.remove(source.leaf_blocks() * 4);
-  }
-  result.report.canonical_seconds = watch.lap();
-  result.report.peak_bytes = budget.peak();
+  std::vector<NodeStore::Run> runs(result.stores.size());
+  result.root = join_cells(bins.level, {bins.cells.begin(), bins.cells.end()}, std::move(ids),
+                           [&](int level, const std::uint32_t* words, int count) {
+                             return result.stores[level]->intern(
+                                 words, count, hash_words(words, count), runs[level]);
+                           });
+  measure(result.stores, bytes);
+  report.voxelize_seconds = watch.lap();
   return result;
+}
+
+Svdag number_nodes(HashConsedNodes nodes, const BuildInput& input, BuildReport& report) {
+  Svdag dag;
+  dag.levels = input.grid.levels;
+  if (nodes.root == kNoNode) return dag;
+  StopWatch watch;
+  for (const auto& store : nodes.stores) store->release_slots();
+  StoreSource source(nodes.stores, input.budget);
+  dag = canonical_order(source, dag.levels, nodes.root, &input.budget, input.progress);
+  report.canonical_seconds = watch.lap();
+  return dag;
 }
 
 }  // namespace voxdag

@@ -1,33 +1,65 @@
 #pragma once
 /// The two builders behind build_svdag(), and what they share.
-#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/dag/sort_tree.hpp"
+#include "voxdag/dag/subvolume_bins.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 
-BuildResult build_hash_consed(const QuantizedMesh& mesh, int levels, MemoryBudget& budget,
-                              Progress* progress);
-BuildResult build_by_sorting(const QuantizedMesh& mesh, int levels, MemoryBudget& budget,
-                             Progress* progress);
-
-/// Throws the Error of a build that outgrew its limit with `fraction` of the work done.
-[[noreturn]] void throw_over_memory(const MemoryBudget& budget, double fraction);
-
-/// Seconds from lap to lap.
-class StopWatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+/// The input of a builder. Refers to everything; `progress` may be null.
+struct BuildInput {
+  const Mesh& mesh;
+  Grid grid;
+  int bin_level;  ///< The sub-volumes are the cells of this level.
+  MemoryBudget& budget;
+  Progress* progress;
 };
+
+/// Bytes that the stages of a build hold, besides the mesh. Those marked * follow the resolution.
+struct StageBytes {
+  double prepare = 0;         ///< Quantized mesh and binning.
+  double voxelize_fixed = 0;  ///< Quantized mesh, lists and the threads' scratch memory.
+  double voxelize = 0;        ///< * Nodes of all sub-volumes, and what makes them.
+  double merge = 0;           ///< * kSort: the final reduction.
+  double number = 0;          ///< * Numbering in canonical order.
+};
+
+/// The triangles of a mesh on the grid, and the lists of those that each sub-volume meets.
+struct BinnedMesh {
+  QuantizedMesh mesh;
+  SubvolumeBins bins;
+  double prepare_bytes;  ///< Most bytes held while it was made.
+};
+
+/// Quantizes and bins the mesh; exact duplicates of triangles are left out. Throws OverMemory and
+/// Cancelled.
+BinnedMesh bin_mesh(const BuildInput& input);
+
+/// Bytes of setups and lists that a thread holds for the sub-volume with the longest list.
+double list_scratch_bytes(const SubvolumeBins& bins);
+
+/// Threads that a loop over `items` items runs on.
+std::size_t thread_count(std::size_t items);
+
+/// The unique nodes of all sub-volumes and those above them; `root` is kNoNode without voxels.
+struct HashConsedNodes {
+  std::vector<std::unique_ptr<NodeStore>> stores;  ///< By level.
+  NodeId root;
+};
+int hash_bin_level(int levels, std::size_t triangles);
+HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& report,
+                                     StageBytes& bytes);
+Svdag number_nodes(HashConsedNodes nodes, const BuildInput& input, BuildReport& report);
+
+/// The reduced trees of all sub-volumes below a top tree. Level 0 is empty without voxels.
+int sort_bin_level(int levels);
+SortTree voxelize_by_sorting(const BuildInput& input, BuildReport& report, StageBytes& bytes);
+Svdag merge_and_number(SortTree tree, const BuildInput& input, BuildReport& report);
 
 }  // namespace voxdag

@@ -3,195 +3,224 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <functional>
+#include <mutex>
 #include <vector>
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/dag/build_methods.hpp"
 #include "voxdag/dag/canonical_order.hpp"
+#include "voxdag/dag/join_cells.hpp"
 #include "voxdag/dag/sort_reduce.hpp"
+#include "voxdag/dag/stop_watch.hpp"
 #include "voxdag/dag/subvolume.hpp"
-#include "voxdag/dag/subvolume_bins.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr int kSubvolumeLevels = 10;
 
-/// The explicit octree of one sub-volume; its sink is emptied.
-SortTree take_tree(TreeSink& sink, int root_level) {
-  SortTree tree;
-  for (std::size_t level = root_level; level < sink.nodes.size(); ++level)
-    tree.levels.push_back(std::move(sink.nodes[level]));
-  tree.leaf_blocks = std::move(sink.leaf_blocks);
-  for (auto& level : sink.nodes) level.clear();
-  sink.leaf_blocks.clear();
-  return tree;
+void require_32_bits(std::uint64_t nodes) {
+  if (nodes * 9 >= kNoNode)
+    throw Error("the DAG is too large: one level of its sub-volumes outgrew 32-bit pointers");
 }
 
-/// Appends the nodes of `from` below those of `to`, level by level, from `level` down.
-void append(SortTree& to, const SortTree& from, std::size_t level) {
-  const auto shifted = [](SortNode node, std::size_t by) {
-    for (std::uint32_t& pointer : node)
-      if (pointer != kNoNode) pointer += static_cast<std::uint32_t>(by);
-    return node;
+/// Appends the nodes of `from` below those of `to`, level by level, from `level` down. Returns the
+/// index of the root of `from`. Throws OverMemory before it changes anything.
+std::uint32_t append(SortTree& to, const SortTree& from, std::size_t level,
+                     const Progress* progress) {
+  const auto end_of = [&](std::size_t l) {
+    const std::size_t end = l < to.levels.size() ? to.levels[l].size() : to.leaf_blocks.size();
+    require_32_bits(end);
+    return static_cast<std::uint32_t>(end);
   };
+  const std::uint32_t root = end_of(level);
+  for (std::size_t l = 0; l < from.levels.size(); ++l)
+    to.levels[level + l].reserve(to.levels[level + l].size() + from.levels[l].size());
+  to.leaf_blocks.reserve(to.leaf_blocks.size() + from.leaf_blocks.size());
   for (std::size_t l = 0; l < from.levels.size(); ++l) {
-    const std::size_t below =
-        level + l + 1 < to.levels.size() ? to.levels[level + l + 1].size() : to.leaf_blocks.size();
-    for (const SortNode& node : from.levels[l])
-      to.levels[level + l].push_back(shifted(node, below));
+    const std::uint32_t below = end_of(level + l + 1);
+    for (std::size_t i = 0; i < from.levels[l].size(); ++i) {
+      poll_seldom(progress, i);
+      SortNode node = from.levels[l][i];
+      for (std::uint32_t& pointer : node)
+        if (pointer != kNoNode) pointer += below;
+      to.levels[level + l].push_back(node);
+    }
   }
-  to.leaf_blocks.insert(to.leaf_blocks.end(), from.leaf_blocks.begin(), from.leaf_blocks.end());
+  for (std::size_t i = 0; i < from.leaf_blocks.size(); ++i) {
+    poll_seldom(progress, i);
+    to.leaf_blocks.push_back(from.leaf_blocks[i]);
+  }
+  return root;
 }
 
-/// Adds the nodes above `level`, whose nodes are those of the cells (Morton codes, ascending).
-void add_top(SortTree& tree, int level, std::vector<std::uint32_t> cells) {
-  for (; level > 0; --level) {
-    std::vector<SortNode>& parents = tree.levels[level - 1];
-    std::size_t kept = 0;
-    for (std::uint32_t i = 0; i < cells.size();) {
-      const std::uint32_t parent = cells[i] >> 3;
-      SortNode node;
-      node.fill(kNoNode);
-      for (; i < cells.size() && cells[i] >> 3 == parent; ++i) node[cells[i] & 7] = i;
-      parents.push_back(node);
-      cells[kept++] = parent;
-    }
-    cells.resize(kept);
-  }
+/// Returns the bytes of the entries and indirections that the reduction of a tree needs at once.
+std::uint64_t reduction_bytes(const SortTree& tree) {
+  std::uint64_t bytes = tree.leaf_blocks.size() * 20;
+  for (const auto& level : tree.levels) bytes = std::max<std::uint64_t>(bytes, level.size() * 40);
+  return bytes;
 }
 
 /// canonical_order's view: ids become word offsets, from the leaf blocks up.
 class WordSource {
  public:
-  explicit WordSource(SortTree& tree) : words_(tree.levels.size() + 1) {
+  WordSource(SortTree& tree, MemoryBudget& budget, const Progress* progress) : forwards_(&budget) {
+    for (std::size_t level = 0; level <= tree.levels.size(); ++level) words_.emplace_back(&budget);
     forwards_.resize(tree.leaf_blocks.size());
-    for (std::uint64_t block : tree.leaf_blocks) {
-      words_.back().push_back(static_cast<std::uint32_t>(block));
-      words_.back().push_back(static_cast<std::uint32_t>(block >> 32));
+    for (std::size_t i = 0; i < tree.leaf_blocks.size(); ++i) {
+      poll_seldom(progress, i);
+      words_.back().push_back(static_cast<std::uint32_t>(tree.leaf_blocks[i]));
+      words_.back().push_back(static_cast<std::uint32_t>(tree.leaf_blocks[i] >> 32));
     }
-    std::vector<std::uint32_t> offsets(tree.leaf_blocks.size()), next;
+    PageVector<std::uint32_t> offsets(&budget), next(&budget);
+    offsets.resize(tree.leaf_blocks.size());
     for (std::uint32_t i = 0; i < offsets.size(); ++i) offsets[i] = 2 * i;
+    tree.leaf_blocks.release();
     for (std::size_t level = tree.levels.size(); level-- > 0;) {
       next.clear();
-      for (const SortNode& node : tree.levels[level]) {
-        next.push_back(static_cast<std::uint32_t>(words_[level].size()));
+      for (std::size_t i = 0; i < tree.levels[level].size(); ++i) {
+        poll_seldom(progress, i);
+        const SortNode& node = tree.levels[level][i];
+        const std::size_t at = words_[level].size();
+        next.push_back(static_cast<std::uint32_t>(at));
         words_[level].push_back(0);
         for (int child = 0; child < 8; ++child) {
           if (node[child] == kNoNode) continue;
-          words_[level][next.back()] |= 1u << child;
+          words_[level][at] |= 1u << child;
           words_[level].push_back(offsets[node[child]]);
         }
       }
-      std::vector<SortNode>().swap(tree.levels[level]);
+      tree.levels[level].release();
       offsets.swap(next);
     }
-    node_words_ = 0;
     for (std::size_t level = 0; level + 1 < words_.size(); ++level)
       node_words_ += words_[level].size();
   }
 
   std::uint32_t* words(int level, std::uint32_t id) { return words_[level].data() + id; }
   void prefetch(int, std::uint32_t) const {}
-  void release(int level) { std::vector<std::uint32_t>().swap(words_[level]); }
+  void release(int level) { words_[level].release(); }
   std::uint64_t node_words() const { return node_words_; }
   std::uint64_t leaf_blocks() const { return forwards_.size(); }
   std::uint32_t& forward(std::uint32_t leaf) { return forwards_[leaf / 2]; }
 
  private:
-  std::vector<std::vector<std::uint32_t>> words_;
-  std::vector<std::uint32_t> forwards_;
-  std::uint64_t node_words_;
+  std::vector<PageVector<std::uint32_t>> words_;
+  PageVector<std::uint32_t> forwards_;
+  std::uint64_t node_words_ = 0;
 };
 
-void require_32_bits(const SortTree& tree) {
-  std::uint64_t most = tree.leaf_blocks.size() * 2;
-  for (const auto& level : tree.levels) most = std::max<std::uint64_t>(most, level.size() * 9);
-  if (most >= kNoNode)
-    throw Error("the DAG is too large: one level of its sub-volumes outgrew 32-bit pointers");
-}
+/// Builds and reduces sub-volumes and appends them to one tree. Thread-safe.
+class SortedSubvolumes {
+ public:
+  SortedSubvolumes(const BinnedMesh& binned, const BuildInput& input)
+      : tree(std::max(0, input.grid.levels - 2), &input.budget),
+        roots(binned.bins.cells.size(), kNoNode),
+        bytes(binned.bins.cells.size()),
+        binned_(binned),
+        input_(input) {}
+
+  /// Throws OverMemory before it appends anything.
+  void add(std::size_t i, SortTimes& times) {
+    const SubvolumeBins& bins = binned_.bins;
+    const int levels = input_.grid.levels, log2_size = levels - bins.level;
+    const Vec3i cell = morton_decode(bins.cells[i]);
+    SubvolumeContext<TreeSink> context(binned_.mesh, levels,
+                                       TreeSink(levels, bins.level, input_.budget), input_.budget,
+                                       input_.progress);
+    const NodeId root = build_subvolume(
+        context,
+        {{cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)});
+    // Bins of the largest grids list triangles that miss the cell.
+    if (root == kNoNode) return;
+    SortTree reduced = std::move(context.sink.tree);
+    bytes[i] = static_cast<double>(reduced.bytes() + reduction_bytes(reduced));
+    reduce_by_sorting(reduced, false, false, times, input_.budget, input_.progress);
+    const std::lock_guard guard(mutex_);
+    roots[i] = append(tree, reduced, bins.level, input_.progress);
+  }
+
+  SortTree tree;
+  std::vector<NodeId> roots;  ///< Of each sub-volume; indices into their level.
+  std::vector<double> bytes;  ///< Most that each sub-volume took.
+
+ private:
+  std::mutex mutex_;
+  const BinnedMesh& binned_;
+  const BuildInput& input_;
+};
 
 }  // namespace
 
-BuildResult build_by_sorting(const QuantizedMesh& mesh, int levels, MemoryBudget& budget,
-                             Progress* progress) {
-  BuildResult result;
+int sort_bin_level(int levels) { return std::max(0, levels - kSubvolumeLevels); }
+
+SortTree voxelize_by_sorting(const BuildInput& input, BuildReport& report, StageBytes& bytes) {
   StopWatch watch;
-  const int root_level = std::max(0, levels - kSubvolumeLevels);
-  const SubvolumeBins bins = bin_triangles(mesh, levels, root_level, budget, progress);
-  result.report.quantize_seconds = watch.lap();
-  result.report.subvolumes = bins.cells.size();
+  const BinnedMesh binned = bin_mesh(input);
+  const SubvolumeBins& bins = binned.bins;
+  report.quantize_seconds = watch.lap();
+  report.subvolumes = bins.cells.size();
+  const std::size_t threads = thread_count(bins.cells.size());
+  bytes.prepare = binned.prepare_bytes;
+  bytes.voxelize_fixed = static_cast<double>(input.budget.used()) +
+                         static_cast<double>(threads) * list_scratch_bytes(bins);
 
-  using Context = SubvolumeContext<TreeSink>;
-  tbb::enumerable_thread_specific<Context> contexts(
-      [&] { return Context(mesh, levels, TreeSink(levels)); });
+  SortedSubvolumes subvolumes(binned, input);
   tbb::enumerable_thread_specific<SortTimes> times;
-  std::vector<SortTree> trees(bins.cells.size());
-  std::atomic<std::uint64_t> done{0};
-  const int log2_size = levels - root_level;
-  parallel_for(bins.cells.size(), [&](std::size_t i) {
-    if (progress != nullptr && progress->cancelled()) return;
-    if (budget.exceeded()) return;
-    const Vec3i cell = morton_decode(bins.cells[i]);
-    Context& context = contexts.local();
-    build_subvolume(
-        context,
-        {{cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)});
-    trees[i] = take_tree(context.sink, root_level);
-    const std::uint64_t unreduced = trees[i].bytes();
-    budget.add(2 * unreduced);  // the octree, and the larger of its sort's tables
-    reduce_by_sorting(trees[i], false, false, times.local());
-    budget.add(trees[i].bytes());
-    budget.remove(2 * unreduced);
-    const std::uint64_t finished = done.fetch_add(1, std::memory_order_relaxed) + 1;
-    if (progress != nullptr)
-      progress->report("voxelize",
-                       static_cast<double>(finished) / static_cast<double>(trees.size()));
+  // Sub-volumes that do not fit into memory together are built again one by one.
+  std::vector<std::size_t> postponed;
+  std::mutex postponed_mutex;
+  polled_for(bins.cells.size(), 1, input.progress, "voxelize", [&](std::size_t i) {
+    try {
+      subvolumes.add(i, times.local());
+    } catch (const OverMemory&) {
+      if (threads == 1) throw;
+      const std::lock_guard guard(postponed_mutex);
+      postponed.push_back(i);
+    }
   });
-  if (progress != nullptr) progress->throw_if_cancelled();
-  if (budget.exceeded())
-    throw_over_memory(budget, static_cast<double>(done.load()) /
-                                  static_cast<double>(std::max<std::size_t>(1, trees.size())));
-  SortTimes all_times;
+  for (const std::size_t i : postponed) subvolumes.add(i, times.local());
   for (const SortTimes& t : times) {
-    all_times.reduce += t.reduce;
-    all_times.sort += t.sort;
+    report.reduce_seconds += t.reduce;
+    report.sort_seconds += t.sort;
   }
-  const double subvolume_seconds = watch.lap();
 
-  // A sub-volume that only the conservative test of the largest cells kept has no root.
-  SortTree whole;
-  whole.levels.resize(std::max(0, levels - 2));
-  std::vector<std::uint32_t> cells;
-  for (std::size_t i = 0; i < trees.size(); ++i) {
-    if (trees[i].leaf_blocks.empty()) continue;
-    append(whole, trees[i], root_level);
-    budget.add(trees[i].bytes());
-    trees[i] = SortTree();
-    cells.push_back(bins.cells[i]);
-  }
-  require_32_bits(whole);
-  if (budget.exceeded()) throw_over_memory(budget, 1);
-  add_top(whole, root_level, cells);
-  reduce_by_sorting(whole, true, true, all_times);
-  if (progress != nullptr) progress->throw_if_cancelled();
-  result.report.voxelize_seconds = subvolume_seconds;
-  result.report.reduce_seconds = all_times.reduce;
-  result.report.sort_seconds = all_times.sort;
-  result.report.merge_seconds = watch.lap();
+  SortTree& tree = subvolumes.tree;
+  std::vector<double>& largest = subvolumes.bytes;
+  std::sort(largest.begin(), largest.end(), std::greater<>());
+  bytes.voxelize = static_cast<double>(tree.bytes());
+  for (std::size_t i = 0; i < threads && i < largest.size(); ++i) bytes.voxelize += largest[i];
+  bytes.merge = static_cast<double>(tree.bytes() + reduction_bytes(tree));
+  join_cells(bins.level, {bins.cells.begin(), bins.cells.end()}, std::move(subvolumes.roots),
+             [&](int level, const std::uint32_t* words, int) {
+               SortNode node;
+               node.fill(kNoNode);
+               for (std::uint32_t left = words[0]; left != 0; left &= left - 1)
+                 node[std::countr_zero(left)] = *++words;
+               tree.levels[level].push_back(node);
+               return static_cast<NodeId>(tree.levels[level].size() - 1);
+             });
+  report.voxelize_seconds = watch.lap();
+  return std::move(tree);
+}
 
-  result.dag.levels = levels;
-  if (!whole.leaf_blocks.empty()) {
-    budget.add(whole.bytes());
-    if (budget.exceeded()) throw_over_memory(budget, 1);
-    WordSource source(whole);
-    result.dag = canonical_order(source, levels, 0);
-  }
-  result.report.canonical_seconds = watch.lap();
-  result.report.peak_bytes = budget.peak();
-  return result;
+Svdag merge_and_number(SortTree tree, const BuildInput& input, BuildReport& report) {
+  Svdag dag;
+  dag.levels = input.grid.levels;
+  if (tree.leaf_blocks.empty()) return dag;
+  StopWatch watch;
+  SortTimes times;
+  reduce_by_sorting(tree, true, true, times, input.budget, input.progress);
+  report.reduce_seconds += times.reduce;
+  report.sort_seconds += times.sort;
+  report.merge_seconds = watch.lap();
+  WordSource source(tree, input.budget, input.progress);
+  dag = canonical_order(source, dag.levels, 0, &input.budget, input.progress);
+  report.canonical_seconds = watch.lap();
+  return dag;
 }
 
 }  // namespace voxdag

@@ -1,8 +1,11 @@
 #include "voxdag/dag/build_svdag.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "voxdag/dag/build_methods.hpp"
+#include "voxdag/dag/estimate_memory.hpp"
+#include "voxdag/dag/stop_watch.hpp"
 
 namespace voxdag {
 namespace {
@@ -11,34 +14,51 @@ std::string mebibytes(std::uint64_t bytes) {
   return std::to_string((bytes + (std::uint64_t{1} << 20) - 1) >> 20) + " MiB";
 }
 
-}  // namespace
-
-void throw_over_memory(const MemoryBudget& budget, double fraction) {
-  std::string reason =
-      "the memory limit of " + mebibytes(budget.limit()) + " is too small: the build needs ";
-  if (fraction > 0.01) {
-    const double whole = static_cast<double>(budget.peak()) / fraction;
-    reason += "about " + mebibytes(budget.base() + static_cast<std::uint64_t>(whole));
-  } else {
-    reason += "more than " + mebibytes(budget.base() + budget.peak());
-  }
-  throw Error(reason);
+[[noreturn]] void refuse(const MemoryBudget& budget, const std::string& needed) {
+  throw OverMemory("the memory limit of " + mebibytes(budget.limit()) +
+                   " is too small: the build needs " + needed);
 }
+
+/// Throws OverMemory if the limit is clearly too small, before any long work.
+void check_memory(const BuildInput& input, BuildMethod method) {
+  // Far enough below for a build that takes a hundredth of the time.
+  constexpr int kSteps = 4;
+  const MemoryBudget& budget = input.budget;
+  if (budget.limit() == 0 || area_bound(input.mesh, input.grid) < budget.left() / 2) return;
+  const auto needed = estimate_memory(input, method, kSteps);
+  if (!needed || *needed / 2 > budget.left()) throw OverMemory("");
+}
+
+Svdag build(const BuildInput& input, BuildMethod method, BuildReport& report) {
+  StageBytes bytes;
+  return method == BuildMethod::kSort
+             ? merge_and_number(voxelize_by_sorting(input, report, bytes), input, report)
+             : number_nodes(voxelize_hash_consed(input, report, bytes), input, report);
+}
+
+}  // namespace
 
 BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options,
                         Progress* progress) {
   MemoryBudget unlimited;
   MemoryBudget& budget = options.memory != nullptr ? *options.memory : unlimited;
-  budget.add(0);
-  if (budget.exceeded()) throw_over_memory(budget, 0);
-  StopWatch watch;
-  const QuantizedMesh quantized(mesh, grid);
-  budget.add(quantized.bytes());
-  const double quantize_seconds = watch.lap();
-  BuildResult result = options.method == BuildMethod::kSort
-                           ? build_by_sorting(quantized, grid.levels, budget, progress)
-                           : build_hash_consed(quantized, grid.levels, budget, progress);
-  result.report.quantize_seconds += quantize_seconds;
+  const int bin_level = options.method == BuildMethod::kSort
+                            ? sort_bin_level(grid.levels)
+                            : hash_bin_level(grid.levels, mesh.triangles.size());
+  const BuildInput input{mesh, grid, bin_level, budget, progress};
+  const std::uint64_t held = budget.base() + budget.used();
+  BuildResult result;
+  try {
+    check_memory(input, options.method);
+    result.dag = build(input, options.method, result.report);
+    result.memory = MemoryReservation(&budget, result.dag.view().bytes());
+  } catch (const OverMemory&) {
+    result = {};
+    if (const auto needed = estimate_memory(input, options.method, 2))
+      refuse(budget, "about " + mebibytes(held + *needed));
+    refuse(budget, "more than " + mebibytes(std::max(budget.limit(), held)));
+  }
+  result.report.peak_bytes = budget.peak();
   return result;
 }
 

@@ -15,8 +15,7 @@ enum class BuildMethod {
   /// the size of the DAG instead of that of the octree.
   kHashConsed,
   /// The paper's: octrees of sub-volumes of at most 1024³, each reduced level by level by sorting,
-  /// then
-  /// merged by one more reduction. Kept as baseline and cross-check; the result is the same.
+  /// then merged by one more reduction. Kept as baseline and cross-check; the result is the same.
   kSort,
 };
 
@@ -27,7 +26,7 @@ struct BuildOptions {
   MemoryBudget* memory = nullptr;
 };
 
-/// What a build took. Seconds are wall-clock.
+/// The stages of a build. Seconds are wall-clock.
 struct BuildReport {
   double quantize_seconds = 0;   ///< Vertices to integers, triangles into sub-volumes.
   double voxelize_seconds = 0;   ///< Sub-volumes to nodes; both methods reduce them as they go.
@@ -38,18 +37,20 @@ struct BuildReport {
   double reduce_seconds = 0;
   double sort_seconds = 0;
   std::uint64_t subvolumes = 0;
-  std::uint64_t peak_bytes = 0;  ///< Most bytes held by the build at once, without the mesh.
+  std::uint64_t peak_bytes = 0;  ///< Most bytes that BuildOptions::memory counted; 0 without one.
 };
 
 struct BuildResult {
   Svdag dag;
   BuildReport report;
+  MemoryReservation memory;  ///< Counts `dag` in BuildOptions::memory, which must outlive it.
 };
 
-/// The DAG of all voxels of `grid` that the mesh's triangles meet (design: exact cover). Runs on
-/// the current TBB arena. The result depends on mesh and grid alone: not on threads, method or
-/// machine. Throws Error if the DAG outgrows 32-bit pointers or the memory limit, Cancelled if
-/// `progress` was cancelled.
+/// Builds the DAG of all voxels of `grid` that the mesh's triangles meet (design: exact cover).
+/// Runs on the current TBB arena. The result depends on mesh and grid alone: not on threads, method
+/// or machine. Throws OverMemory, with an estimate of the memory that the build needs, if the limit
+/// is too small, before the work if it is clearly too small; Error if the DAG outgrows 32-bit
+/// pointers; Cancelled if `progress` was cancelled.
 BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options = {},
                         Progress* progress = nullptr);
 

@@ -7,26 +7,33 @@
 #include <cstdint>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
 /// `source` has
-///   std::uint32_t* words(level, id)          the words of a node, which may be overwritten
-///   std::uint32_t& forward(leaf_id)          a word for each leaf block, 0 at first
+///   std::uint32_t* words(level, id)          returns the words of a node; they may be overwritten
+///   std::uint32_t& forward(leaf_id)          returns a word for each leaf block, 0 at first
 ///   void prefetch(level, id)                 starts loading both; ids may be any numbers
-///   void release(level)                      called when a level is not needed any more
-///   std::uint64_t node_words(), leaf_blocks()  upper bounds for what is reachable
-/// The children of level l-1 are ids of level l. `root` is of level 0.
+///   void release(level)                      frees a level that is not needed any more
+///   std::uint64_t node_words(), leaf_blocks()  return upper bounds for what is reachable
+/// The children of level l-1 are ids of level l. `root` is of level 0. `budget` counts
+/// the new DAG until the call returns; it and `progress` may be null. Throws Error if the DAG
+/// outgrows 32-bit pointers, OverMemory and Cancelled.
 template <class Source>
-Svdag canonical_order(Source& source, int levels, std::uint32_t root) {
-  // A placed node's mask word becomes its new place, kPlaced higher than any mask.
+Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudget* budget,
+                      Progress* progress) {
+  // A placed node's mask word becomes its new place plus kPlaced, which is greater than any mask.
   constexpr std::uint64_t kPlaced = 256;
   Svdag dag;
   dag.levels = levels;
   const int leaf_level = levels - 2;
   if (source.node_words() + kPlaced > 0xFFFFFFFFull)
     throw Error("the DAG is too large: its nodes outgrew 32-bit pointers");
+  const MemoryReservation copy(budget, source.node_words() * sizeof(std::uint32_t) +
+                                           source.leaf_blocks() * sizeof(std::uint64_t));
   dag.nodes.reserve(source.node_words());
   dag.leaf_blocks.reserve(source.leaf_blocks());
 
@@ -54,11 +61,19 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root) {
   } else {
     place_node(0, root);
   }
-  // A level's nodes stand in any order in memory: their words are asked for this far ahead.
+  // A level's nodes are in any order in memory: their words are prefetched this far ahead.
   constexpr std::uint64_t kAhead = 24;
+  constexpr std::uint64_t kWordsPerPoll = 1 << 16;
+  const auto all_words = static_cast<double>(dag.nodes.capacity());
+  std::uint64_t next_poll = 0;
   for (int level = 0; level < leaf_level; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.nodes.size();
     for (std::uint64_t at = begin; at < end;) {
+      if (at >= next_poll && progress != nullptr) {
+        progress->throw_if_cancelled();
+        progress->report("number", static_cast<double>(at) / all_words, at);
+        next_poll = at + kWordsPerPoll;
+      }
       const int children = popcount(dag.nodes[at]);
       for (std::uint64_t i = at + 1; i <= at + children; ++i) {
         if (i + kAhead < end) source.prefetch(level + 1, dag.nodes[i + kAhead]);

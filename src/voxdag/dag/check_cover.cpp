@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "voxdag/layout/svdag_lookup.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 #include "voxdag/voxelize/overlap.hpp"
 
@@ -18,26 +18,29 @@ namespace {
 constexpr int kCoarserLevels = 4;
 constexpr std::uint64_t kMostAtOnce = 1 << 20;  // cells
 
-/// Uniform in [0, 1), the same on every machine (std::uniform_real_distribution is not).
+/// Returns a number in [0, 1), uniform and the same on every machine
+/// (std::uniform_real_distribution differs).
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// Points of the surface, uniform by area.
+/// Random points of the surface, uniform by area.
 class SurfacePoints {
  public:
-  explicit SurfacePoints(const QuantizedMesh& mesh) : mesh_(mesh) {
+  SurfacePoints(const QuantizedMesh& mesh, const Progress* progress) : mesh_(mesh) {
     double sum = 0;
     for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+      poll_seldom(progress, i);
       if (mesh.in_range(i)) {
         const QuantizedTriangle t = mesh.triangle(i);
         const Vec3d n = cross(static_cast<Vec3d>(t.y) - static_cast<Vec3d>(t.x),
                               static_cast<Vec3d>(t.z) - static_cast<Vec3d>(t.x));
-        // One square voxel more, so that degenerate triangles have their chance.
+        // One square voxel more, so that degenerate triangles are sampled, too.
         sum += std::sqrt(dot(n, n)) + kSubvoxels * kSubvoxels;
       }
       areas_.push_back(sum);
     }
   }
 
+  /// Returns the voxel of a random point.
   Vec3i voxel(std::mt19937_64& random) const {
     const double at = uniform(random) * areas_.back();
     const auto it = std::upper_bound(areas_.begin(), areas_.end(), at);
@@ -57,11 +60,14 @@ class SurfacePoints {
   std::vector<double> areas_;  // running sums
 };
 
+/// Returns `count` cells of `level`, sorted by x, y and z.
 std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int level,
-                                std::uint64_t count, std::mt19937_64& random) {
+                                std::uint64_t count, std::mt19937_64& random,
+                                const Progress* progress) {
   const std::int64_t n = std::int64_t{1} << levels;
   std::vector<Vec3i> cells;
   while (cells.size() < count) {
+    poll_seldom(progress, cells.size());
     const std::uint64_t kind = random() % 8;
     Vec3i v;
     if (kind == 0) {
@@ -69,7 +75,7 @@ std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int le
         v[axis] = static_cast<std::int32_t>(random() & static_cast<std::uint64_t>(n - 1));
     } else {
       v = surface.voxel(random);
-      // One in two is moved to a neighbour, most of which are not covered.
+      // Moves one in two to a neighbour cell, which is mostly not covered.
       const std::int32_t step = std::int32_t{1} << (levels - level);
       if (kind % 2 == 0)
         for (int axis = 0; axis < 3; ++axis)
@@ -86,15 +92,16 @@ std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int le
   return cells;
 }
 
-/// Which of `cells` (sorted by x) a triangle meets, by trying every triangle on those in its box.
+/// Returns for each of `cells` (sorted by x) whether a triangle meets it: tests every triangle
+/// against the cells in its box.
 std::unique_ptr<std::atomic<bool>[]> covered_cells(const QuantizedMesh& mesh, int levels, int level,
                                                    const std::vector<Vec3i>& cells,
-                                                   const Progress* progress) {
+                                                   Progress* progress) {
   std::unique_ptr<std::atomic<bool>[]> covered(new std::atomic<bool>[cells.size()]());
   const int shift = levels - level + 8;
   const std::int64_t size = std::int64_t{1} << shift;
-  parallel_for(mesh.triangle_count(), 256, [&](std::size_t index) {
-    if (!mesh.in_range(index) || (progress != nullptr && progress->cancelled())) return;
+  polled_for(mesh.triangle_count(), 256, progress, "cover", [&](std::size_t index) {
+    if (!mesh.in_range(index)) return;
     const QuantizedTriangle t = mesh.triangle(index);
     const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
     auto it = std::lower_bound(cells.begin(), cells.end(), lo.x >> shift,
@@ -116,27 +123,25 @@ std::unique_ptr<std::atomic<bool>[]> covered_cells(const QuantizedMesh& mesh, in
 
 CoverCheck check_cover(const SvdagView& dag, const Grid& grid, const Mesh& mesh,
                        std::uint64_t samples, std::uint64_t seed, Progress* progress) {
-  if (dag.levels != grid.levels) throw Error("the grid has another resolution than the DAG");
+  if (dag.levels != grid.levels) throw Error("the grid and the DAG differ in resolution");
   CoverCheck check;
   if (mesh.triangles.empty()) return check;
-  const QuantizedMesh quantized(mesh, grid);
-  const SurfacePoints surface(quantized);
+  const QuantizedMesh quantized(mesh, grid, nullptr, progress);
+  const SurfacePoints surface(quantized, progress);
   std::mt19937_64 random(seed);
   const int coarsest = std::max(0, grid.levels - kCoarserLevels);
   std::uint64_t left = samples;
   for (int level = grid.levels; level >= coarsest; --level) {
-    // Half of what is left at each level; the coarsest takes the rest.
+    // Each level takes half of the samples that are left; the coarsest takes the rest.
     const std::uint64_t to_leave = level == coarsest ? 0 : left / 2;
     while (left > to_leave) {
       const std::uint64_t count = std::min(left - to_leave, kMostAtOnce);
       left -= count;
-      const std::vector<Vec3i> cells = sample_cells(surface, grid.levels, level, count, random);
+      const std::vector<Vec3i> cells =
+          sample_cells(surface, grid.levels, level, count, random, progress);
       const auto covered = covered_cells(quantized, grid.levels, level, cells, progress);
-      if (progress != nullptr) {
-        progress->throw_if_cancelled();
-        progress->report("cover", 1 - static_cast<double>(left) / static_cast<double>(samples));
-      }
       for (std::size_t i = 0; i < cells.size(); ++i) {
+        poll_seldom(progress, i);
         const bool expected = covered[i].load(std::memory_order_relaxed);
         check.covered += expected ? 1 : 0;
         if (svdag_contains(dag, cells[i], level) == expected) continue;

@@ -25,10 +25,16 @@ class SpinLock {
 
 constexpr int kFirstSlotsBits = 6;
 
-/// A table that is this many eighths full is to grow; one that is the other waits until it has.
+/// The first thread that sees a table kGrowEighths full makes it grow; others add nodes to it
+/// meanwhile until it is kFullEighths full, and then wait.
 constexpr std::uint64_t kGrowEighths = 5, kFullEighths = 7;
 
-/// Has the pages of an array from the system now.
+/// Returns the bytes of a table of 2^bits slots, in whole pages.
+std::uint64_t table_bytes(std::uint64_t bits) {
+  return std::max(std::uint64_t{4096}, std::uint64_t{8} << bits);
+}
+
+/// Makes all pages of an array resident.
 void touch(PageArray<std::uint64_t>& array) {
   constexpr std::size_t kPage = 4096 / sizeof(std::uint64_t);
   for (std::size_t i = 0; i < array.size(); i += kPage)
@@ -113,20 +119,31 @@ void NodeStore::take_run(Run& run) {
   // The last id plus one must fit in a slot.
   if (end_ > kNoNode - words)
     throw Error("the DAG is too large: one level outgrew 32-bit pointers");
-  if (chunks_[chunk].size() == 0)
-    chunks_[chunk] = PageArray<std::uint32_t>(std::size_t{1} << (kFirstChunkBits + chunk));
+  const std::size_t chunk_words = std::size_t{1} << (kFirstChunkBits + chunk);
+  std::uint64_t bytes = std::uint64_t{words} * 4;
+  // Large chunks become resident by whole huge pages.
+  if (chunk_words * 4 >= PageArray<std::uint32_t>::kHugePage)
+    bytes = std::uint64_t{end_ - chunk_begin(chunk)} * 4 % PageArray<std::uint32_t>::kHugePage == 0
+                ? PageArray<std::uint32_t>::kHugePage
+                : 0;
+  MemoryReservation reserved(budget_, bytes);
+  if (chunks_[chunk].size() == 0) chunks_[chunk] = PageArray<std::uint32_t>(chunk_words);
+  reserved.keep();
   run = {end_, end_ + words};
   end_ += words;
-  budget_->add(std::uint64_t{words} * 4);
+  word_bytes_ += bytes;
 }
 
-/// Gives a shard its first table, or one twice as large; other threads may do the former as well.
+/// Gives a shard its first table, or one twice as large. Several threads may make a first table at
+/// once; one of them is used.
 void NodeStore::grow(std::uint32_t shard_index) {
   Shard& shard = shards_[shard_index];
   const std::uint64_t packed = tables_[shard_index].load(std::memory_order_acquire);
   const std::uint64_t bits = packed == 0 ? kFirstSlotsBits : (packed & 63) + 1;
   PageArray<std::uint64_t> larger;
+  MemoryReservation reserved;
   try {
+    reserved = MemoryReservation(budget_, table_bytes(bits));
     larger = PageArray<std::uint64_t>(std::size_t{1} << bits);
   } catch (...) {
     const SpinLock guard(shard.lock);
@@ -137,7 +154,7 @@ void NodeStore::grow(std::uint32_t shard_index) {
 
   const SpinLock guard(shard.lock);
   if (tables_[shard_index].load(std::memory_order_relaxed) != packed) return;
-  budget_->add(larger.bytes());
+  reserved.keep();
   const std::uint64_t last = larger.size() - 1;
   if (packed != 0) {
     const auto* old = reinterpret_cast<const std::uint64_t*>(packed & ~std::uint64_t{63});
@@ -150,6 +167,10 @@ void NodeStore::grow(std::uint32_t shard_index) {
   }
   tables_[shard_index].store(reinterpret_cast<std::uint64_t>(larger.data()) | bits,
                              std::memory_order_release);
+  if (!shard.tables.empty()) {
+    shard.tables.back().discard();
+    budget_->release(shard.tables.back().mapped_bytes());
+  }
   shard.tables.push_back(std::move(larger));
   shard.growing = false;
 }
@@ -168,8 +189,9 @@ std::uint64_t NodeStore::word_count() const {
 
 void NodeStore::release_slots() {
   for (int i = 0; i < kShards; ++i) {
-    for (const auto& table : shards_[i].tables) budget_->remove(table.bytes());
-    shards_[i].tables.clear();
+    auto& tables = shards_[i].tables;
+    if (!tables.empty()) budget_->release(tables.back().mapped_bytes());
+    tables.clear();
     tables_[i].store(0, std::memory_order_relaxed);
   }
 }
@@ -178,7 +200,7 @@ void NodeStore::release() {
   release_slots();
   for (int i = 0; i < kShards; ++i) shards_[i].node_count = 0, shards_[i].word_count = 0;
   for (auto& chunk : chunks_) PageArray<std::uint32_t>().swap(chunk);
-  budget_->remove(std::uint64_t{end_} * 4);
+  budget_->release(std::exchange(word_bytes_, 0));
   end_ = 0;
 }
 

@@ -3,10 +3,10 @@
 ///
 /// A node is a run of 32-bit words (child mask and the ids of its children, or the two words of a
 /// leaf block). `intern` returns the same id for equal words, whichever thread asks. The table is
-/// split into shards by hash. A node that is there already, the common case, is found without a
-/// lock; only adding one takes its shard's. Words go into runs of memory that each thread has for
-/// itself, so that a lock is never held while memory is had from the system. The ids depend on
-/// timing; canonical_order() makes the result independent of it.
+/// split into shards by hash. Threads find a node that exists, the common case, without a lock; to
+/// add a node they lock its shard. Each thread writes words into runs of memory of its own, so that
+/// no lock is held while memory is allocated. The ids depend on timing; canonical_order() makes the
+/// result independent of it.
 ///
 ///   id      | word offset (32 bits) |
 ///   slot    | 32 bits of hash | id + 1 |     0 = free; linear probing
@@ -53,39 +53,40 @@ class NodeStore {
   NodeStore(const NodeStore&) = delete;
   NodeStore& operator=(const NodeStore&) = delete;
 
-  /// The id of the node with these words; copies them to `run` if they are new. 1 <= count <= 9;
-  /// `hash` is hash_words(words, count); `run` is of this store and thread. Throws Error if the
-  /// level outgrows 32-bit ids.
+  /// Returns the id of the node with these words; copies them to `run` if they are new. 1 <= count
+  /// <= 9; `hash` is hash_words(words, count); `run` belongs to this store and thread. Throws Error
+  /// if the level outgrows 32-bit ids, and OverMemory.
   NodeId intern(const std::uint32_t* words, int count, std::uint64_t hash, Run& run);
 
-  /// Starts loading what intern() of a node with this hash will look at first.
+  /// Starts loading the slot that intern() of a node with this hash reads first.
   void prefetch(std::uint64_t hash) const {
     const Table table = table_of(hash);
     if (table.slots != nullptr) __builtin_prefetch(table.slots + (tag_of(hash) & table.last));
   }
-  /// Starts loading what it will look at next; best called when the first has arrived.
+  /// Starts loading the words that intern() compares next; reads the slot, so call it when
+  /// prefetch() has had time to finish.
   void prefetch_found(std::uint64_t hash) const;
 
-  /// The words of a node; they stay where they are until release().
+  /// Returns the words of a node; their address stays valid until release().
   std::uint32_t* words(NodeId id) {
     const int chunk = chunk_of(id);
     return chunks_[chunk].data() + (id - chunk_begin(chunk));
   }
   const std::uint32_t* words(NodeId id) const { return const_cast<NodeStore*>(this)->words(id); }
 
-  /// Starts loading words(id); harmless for any number. Not while nodes are added.
+  /// Starts loading words(id); any number is allowed. Not while nodes are added.
   void prefetch_words(NodeId id) const {
     const int chunk = chunk_of(id);
     const auto address = reinterpret_cast<std::uintptr_t>(chunks_[chunk].data()) +
                          std::uintptr_t{4} * (id - chunk_begin(chunk));
     __builtin_prefetch(reinterpret_cast<const void*>(address));
   }
-  /// Every id is less.
+  /// Returns a number greater than every id.
   std::uint32_t end_id() const { return end_; }
   std::uint64_t node_count() const;
   std::uint64_t word_count() const;
 
-  /// Frees the slots; after it only words() may be called. Not thread-safe.
+  /// Frees the slots; only words() may be called afterwards. Not thread-safe.
   void release_slots();
   /// Frees everything. Not thread-safe.
   void release();
@@ -107,7 +108,9 @@ class NodeStore {
     bool growing = false;
     std::uint32_t node_count = 0;
     std::uint64_t word_count = 0;
-    // Outgrown tables stay until release_slots(): another thread may be reading them.
+    // Outgrown tables keep their addresses until release_slots(), since another thread may be
+    // reading them, but not their memory: a lookup in zeros finds nothing and then looks in the
+    // newest table.
     std::vector<PageArray<std::uint64_t>> tables;
   };
 
@@ -121,26 +124,27 @@ class NodeStore {
   }
   static std::uint32_t tag_of(std::uint64_t hash) { return static_cast<std::uint32_t>(hash); }
 
-  /// The table of the hash's shard; no slots before its first node.
+  /// Returns the table of the hash's shard; `slots` is null before the shard's first node.
   Table table_of(std::uint64_t hash) const {
     const std::uint64_t packed = tables_[shard_of(hash)].load(std::memory_order_acquire);
     return {reinterpret_cast<std::uint64_t*>(packed & ~std::uint64_t{63}),
             (std::uint64_t{1} << (packed & 63)) - 1};
   }
 
-  /// The slot where the words are or would be.
+  /// Returns the slot that holds the words' id, or the free slot where it belongs.
   std::uint64_t* find(const Table& table, std::uint32_t tag, const std::uint32_t* words, int count,
                       std::uint64_t& slot) const;
   void take_run(Run& run);
   void grow(std::uint32_t shard_index);
 
-  // Read by every lookup and seldom written, so apart from the shards, which adding a node writes.
+  // Apart from the shards: every lookup reads these, while adding a node writes to the shards.
   alignas(64) std::array<std::atomic<std::uint64_t>, kShards> tables_{};
   std::array<PageArray<std::uint32_t>, kChunks> chunks_;
   std::unique_ptr<Shard[]> shards_{new Shard[kShards]};
   MemoryBudget* budget_;
   std::mutex runs_mutex_;
   std::uint32_t end_ = 0;
+  std::uint64_t word_bytes_ = 0;  // counted in the budget
 };
 
 }  // namespace voxdag

@@ -1,6 +1,6 @@
 #pragma once
-/// An array straight from the operating system's pages: zeroed, not counted as used memory until
-/// touched, given back at once when freed, and on huge pages where it is large, since hash tables
+/// An array of fixed size on pages of its own: zero at first, resident only where it was touched,
+/// given back to the system at once when freed, and on huge pages if it is large, since hash tables
 /// otherwise spend their time in TLB misses.
 #include <sys/mman.h>
 
@@ -17,10 +17,12 @@ class PageArray {
   static_assert(std::is_trivial_v<T>);
 
  public:
+  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
   PageArray() = default;
   explicit PageArray(std::size_t count) : count_(count) {
     if (count == 0) return;
-    // Huge pages need their alignment, which mmap does not promise: take more, give back the ends.
+    // Huge pages must be aligned, which mmap does not promise: maps more and unmaps the ends.
     const std::size_t slack = bytes() >= kHugePage ? kHugePage : 0;
     void* memory = ::mmap(nullptr, mapped_bytes() + slack, PROT_READ | PROT_WRITE,
                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -49,6 +51,12 @@ class PageArray {
     if (data_ != nullptr) ::munmap(data_, mapped_bytes());
   }
 
+  /// Gives the memory back to the system; the array stays and is zero. Another thread may read it
+  /// meanwhile and sees old values or zeros.
+  void discard() {
+    if (data_ != nullptr) ::madvise(data_, mapped_bytes(), MADV_DONTNEED);
+  }
+
   void swap(PageArray& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(count_, other.count_);
@@ -57,17 +65,15 @@ class PageArray {
   const T* data() const { return data_; }
   std::size_t size() const { return count_; }
   std::size_t bytes() const { return count_ * sizeof(T); }
-  T& operator[](std::size_t i) { return data_[i]; }
-  const T& operator[](std::size_t i) const { return data_[i]; }
-
- private:
-  static constexpr std::size_t kHugePage = std::size_t{2} << 20;
-
+  /// bytes() in whole pages.
   std::size_t mapped_bytes() const {
     constexpr std::size_t kPage = 4096;
     return (bytes() + kPage - 1) & ~(kPage - 1);
   }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
 
+ private:
   T* data_ = nullptr;
   std::size_t count_ = 0;
 };

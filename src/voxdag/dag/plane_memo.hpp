@@ -1,10 +1,10 @@
 #pragma once
-/// Remembers the subtrees of cells that one plane crosses and nothing else.
+/// Caches the subtrees of cells that contain one plane and nothing else.
 ///
-/// Such a subtree depends on the plane's normal and on its offset in the cell alone, and for one
+/// Such a subtree depends only on the plane's normal and on its offset in the cell, and for one
 /// normal and cell size it is piecewise constant in the offset. An entry is a node and the interval
-/// of offsets on which it holds. The memo is a two-way set-associative cache of fixed size, so it
-/// bounds the memory that it takes and forgets what a later entry displaces: only time is lost.
+/// of offsets for which it is right. The memo is a two-way set-associative cache of fixed size: a
+/// new entry may evict an old one, which costs time but never changes the result.
 #include <bit>
 #include <cstdint>
 
@@ -14,8 +14,8 @@
 
 namespace voxdag {
 
-/// The subtree of a cell crossed by a slab whose least value, seen from the cell, is `lo`: also
-/// that of every slab of the same normal and width with lo - down <= least value <= lo + up.
+/// The subtree of a cell that contains a slab whose least value, relative to the cell, is `lo`. It
+/// is the same for every slab of that normal and width with lo - down <= least value <= lo + up.
 struct SlabNode {
   NodeId id = kNoNode;
   std::uint64_t down = 0, up = 0;
@@ -23,10 +23,9 @@ struct SlabNode {
 
 class PlaneMemo {
  public:
-  /// Bytes: 128 << log2_sets.
   explicit PlaneMemo(int log2_sets) : sets_(std::size_t{2} << log2_sets) {}
 
-  /// True and the node if the memo has it. `log2_size` is that of the cell in voxels.
+  /// Returns true and sets `node` if the memo has it. The cell has 2^log2_size voxels a side.
   bool find(const PlaneSlab& slab, std::int64_t lo, int log2_size, SlabNode& node) const {
     const Entry* set = set_of(slab, lo, log2_size);
     for (int way = 0; way < 2; ++way) {
@@ -54,7 +53,7 @@ class PlaneMemo {
               log2_size};
   }
 
-  std::size_t bytes() const { return sets_.bytes(); }
+  static constexpr std::uint64_t bytes(int log2_sets) { return 2 * sizeof(Entry) << log2_sets; }
 
  private:
   struct alignas(64) Entry {
@@ -66,8 +65,8 @@ class PlaneMemo {
   static_assert(sizeof(Entry) == 64);
 
   const Entry* set_of(const PlaneSlab& slab, std::int64_t lo, int log2_size) const {
-    // About (2^k)² offsets of a cell of 2^k voxels lie between two breakpoints... of a range of
-    // |n|1.
+    // The offsets of a cell of 2^k voxels span about |n|1 * 2^k, with up to (2^k)³ breakpoints, so
+    // about |n|1 / (2^k)² offsets lie between two of them.
     const std::uint64_t typical = static_cast<std::uint64_t>(slab.width) >> (2 * log2_size);
     const int shift = typical == 0 ? 0 : static_cast<int>(std::bit_width(typical)) - 1;
     std::uint64_t h = static_cast<std::uint64_t>(lo >> shift) * 0x9E3779B97F4A7C15ull;

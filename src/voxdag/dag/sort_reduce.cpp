@@ -4,32 +4,46 @@
 
 #include <algorithm>
 
-#include "voxdag/dag/build_methods.hpp"
+#include "voxdag/dag/stop_watch.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
 
+using Indirections = PageVector<std::uint32_t>;
+
 /// Sorts `nodes` and keeps one of each; returns for every old index the new one.
 template <class Key>
-std::vector<std::uint32_t> sort_and_compact(std::vector<Key>& nodes, bool parallel,
-                                            SortTimes& times) {
+Indirections sort_and_compact(PageVector<Key>& nodes, bool parallel, SortTimes& times,
+                              MemoryBudget& budget, const Progress* progress) {
   struct Entry {
     Key key;
     std::uint32_t index;
-    bool operator<(const Entry& other) const { return key < other.key; }
   };
-  std::vector<Entry> entries(nodes.size());
-  for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {nodes[i], i};
+  PageVector<Entry> entries(&budget);
+  entries.resize(nodes.size());
+  for (std::uint32_t i = 0; i < entries.size(); ++i) {
+    poll_seldom(progress, i);
+    entries[i] = {nodes[i], i};
+  }
+  // Comparisons are all that happens often enough to poll while sorting.
+  const auto less = [progress](const Entry& a, const Entry& b) {
+    poll(progress);
+    return a.key < b.key;
+  };
   StopWatch watch;
   if (parallel)
-    tbb::parallel_sort(entries.begin(), entries.end());
+    tbb::parallel_sort(entries.begin(), entries.end(), less);
   else
-    std::sort(entries.begin(), entries.end());
+    std::sort(entries.begin(), entries.end(), less);
   times.sort += watch.lap();
 
-  std::vector<std::uint32_t> indirections(nodes.size());
+  Indirections indirections(&budget);
+  indirections.resize(nodes.size());
   std::size_t unique = 0;
-  for (const Entry& entry : entries) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    poll_seldom(progress, i);
+    const Entry& entry = entries[i];
     if (unique == 0 || nodes[unique - 1] != entry.key) nodes[unique++] = entry.key;
     indirections[entry.index] = static_cast<std::uint32_t>(unique - 1);
   }
@@ -38,30 +52,29 @@ std::vector<std::uint32_t> sort_and_compact(std::vector<Key>& nodes, bool parall
   return indirections;
 }
 
-void rewrite_pointers(std::vector<SortNode>& parents,
-                      const std::vector<std::uint32_t>& indirections) {
-  for (SortNode& parent : parents)
-    for (std::uint32_t& pointer : parent)
+void rewrite_pointers(PageVector<SortNode>& parents, const Indirections& indirections,
+                      const Progress* progress) {
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    poll_seldom(progress, i);
+    for (std::uint32_t& pointer : parents[i])
       if (pointer != kNoNode) pointer = indirections[pointer];
+  }
 }
 
 }  // namespace
 
-std::uint64_t SortTree::bytes() const {
-  std::uint64_t bytes = leaf_blocks.size() * sizeof(std::uint64_t);
-  for (const auto& level : levels) bytes += level.size() * sizeof(SortNode);
-  return bytes;
-}
-
-void reduce_by_sorting(SortTree& tree, bool merge_roots, bool parallel, SortTimes& times) {
+void reduce_by_sorting(SortTree& tree, bool merge_roots, bool parallel, SortTimes& times,
+                       MemoryBudget& budget, const Progress* progress) {
   StopWatch watch;
   if (!tree.levels.empty() || merge_roots) {
-    const auto indirections = sort_and_compact(tree.leaf_blocks, parallel, times);
-    if (!tree.levels.empty()) rewrite_pointers(tree.levels.back(), indirections);
+    const Indirections indirections =
+        sort_and_compact(tree.leaf_blocks, parallel, times, budget, progress);
+    if (!tree.levels.empty()) rewrite_pointers(tree.levels.back(), indirections, progress);
   }
   for (std::size_t level = tree.levels.size(); level-- > (merge_roots ? 0 : 1);) {
-    const auto indirections = sort_and_compact(tree.levels[level], parallel, times);
-    if (level > 0) rewrite_pointers(tree.levels[level - 1], indirections);
+    const Indirections indirections =
+        sort_and_compact(tree.levels[level], parallel, times, budget, progress);
+    if (level > 0) rewrite_pointers(tree.levels[level - 1], indirections, progress);
   }
   times.reduce += watch.lap();
 }

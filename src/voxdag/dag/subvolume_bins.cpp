@@ -1,19 +1,21 @@
 #include "voxdag/dag/subvolume_bins.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
-#include <algorithm>
+#include <array>
+#include <bit>
+#include <vector>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 
 namespace voxdag {
 namespace {
 
-using Entries = std::vector<std::uint64_t>;  // Morton code of the cell << 32 | triangle
+using Entries = PageVector<std::uint64_t>;  // Morton code of the cell << 32 | triangle
+using Cursors = std::array<std::size_t, 4096>;
 
 /// Walks down from a cell that the triangle meets to the sub-volumes.
 void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i cell, int log2_size,
@@ -34,7 +36,6 @@ void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i cell, i
 
 void bin_one(const QuantizedMesh& mesh, std::uint32_t index, int levels, int log2_bin,
              Entries& entries) {
-  if (!mesh.in_range(index)) return;
   const QuantizedTriangle t = mesh.triangle(index);
   const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
   const int shift = log2_bin + 8;
@@ -52,33 +53,58 @@ void bin_one(const QuantizedMesh& mesh, std::uint32_t index, int levels, int log
   descend(setup, setup.conditions, {0, 0, 0}, levels, log2_bin, index, entries);
 }
 
+/// Moves the entries of all `parts` to one array, sorted by 12 bits of the cell from `shift` up;
+/// equal ones keep their order. Frees the parts.
+Entries sort_by_digit(std::vector<Entries>& parts, int shift, MemoryBudget& budget,
+                      const Progress* progress) {
+  const auto digit_of = [shift](std::uint64_t entry) {
+    return (entry >> (32 + shift)) % std::tuple_size_v<Cursors>;
+  };
+  Cursors next{};
+  for (const Entries& part : parts)
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      poll_seldom(progress, i);
+      ++next[digit_of(part[i])];
+    }
+  std::size_t count = 0;
+  for (std::size_t& cursor : next) count += std::exchange(cursor, count);
+  Entries sorted(&budget);
+  sorted.resize(count);
+  for (Entries& part : parts) {
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      poll_seldom(progress, i);
+      sorted[next[digit_of(part[i])]++] = part[i];
+    }
+    part.release();
+  }
+  return sorted;
+}
+
 }  // namespace
 
-SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level, MemoryBudget& budget,
-                            const Progress* progress) {
+// The cells' codes are sorted by a radix sort of their 12-bit digits, the lowest first.
+SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
+                            const TriangleSet& excluded, MemoryBudget& budget, Progress* progress) {
   const int log2_bin = levels - level;
-  tbb::enumerable_thread_specific<Entries> per_thread;
-  parallel_for(mesh.triangle_count(), 1024, [&](std::size_t i) {
-    if (progress != nullptr && progress->cancelled()) return;
+  tbb::enumerable_thread_specific<Entries> per_thread([&] { return Entries(&budget); });
+  polled_for(mesh.triangle_count(), 1024, progress, "bin", [&](std::size_t i) {
+    if (!mesh.in_range(i) || excluded.contains(i)) return;
     bin_one(mesh, static_cast<std::uint32_t>(i), levels, log2_bin, per_thread.local());
   });
-  if (progress != nullptr) progress->throw_if_cancelled();
-
-  std::size_t count = 0;
-  for (const Entries& entries : per_thread) count += entries.size();
-  budget.add(count * 16);
-  Entries all;
-  all.reserve(count);
-  for (Entries& entries : per_thread) {
-    all.insert(all.end(), entries.begin(), entries.end());
-    Entries().swap(entries);
+  std::vector<Entries> parts;
+  for (Entries& entries : per_thread) parts.push_back(std::move(entries));
+  for (int shift = 0; shift == 0 || shift < 3 * level; shift += 12) {
+    Entries sorted = sort_by_digit(parts, shift, budget, progress);
+    parts.clear();
+    parts.push_back(std::move(sorted));
   }
-  tbb::parallel_sort(all.begin(), all.end());
 
-  SubvolumeBins bins;
+  const Entries& all = parts[0];
+  SubvolumeBins bins(&budget);
   bins.level = level;
-  bins.triangles.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  bins.triangles.resize(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    poll_seldom(progress, i);
     const std::uint32_t cell = static_cast<std::uint32_t>(all[i] >> 32);
     if (bins.cells.empty() || bins.cells.back() != cell) {
       bins.cells.push_back(cell);
@@ -86,8 +112,7 @@ SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level, Me
     }
     bins.triangles[i] = static_cast<std::uint32_t>(all[i]);
   }
-  bins.begin.push_back(count);
-  budget.remove(count * 12);
+  bins.begin.push_back(all.size());
   return bins;
 }
 

@@ -2,30 +2,33 @@
 /// Sorts a mesh's triangles into the sub-volumes that they meet.
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/page_vector.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/voxelize/duplicate_triangles.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 
-/// The sub-volumes are the cells of one octree level; those that no triangle meets are left out.
+/// For each cell of one octree level that a triangle meets, the list of these triangles.
 struct SubvolumeBins {
+  explicit SubvolumeBins(MemoryBudget* budget) : cells(budget), begin(budget), triangles(budget) {}
+
   int level = 0;
-  std::vector<std::uint32_t> cells;  ///< Morton codes of the cells, ascending.
-  std::vector<std::uint64_t> begin;  ///< cells.size() + 1 entries: where each cell's list starts.
-  std::vector<std::uint32_t> triangles;  ///< Indices into the mesh, ascending in each list.
+  PageVector<std::uint32_t> cells;  ///< Morton codes of the cells, ascending.
+  PageVector<std::uint64_t> begin;  ///< cells.size() + 1 entries: where each cell's list starts.
+  PageVector<std::uint32_t> triangles;  ///< Indices into the mesh.
 
   std::span<const std::uint32_t> list(std::size_t cell) const {
     return {triangles.data() + begin[cell], triangles.data() + begin[cell + 1]};
   }
 };
 
-/// A triangle is in the list of every cell that it meets, and, but for the largest grids, of no
-/// other. level <= levels - 2 and <= 10. Time is linear in the lists; memory is 12 bytes per entry
-/// while it sorts, 4 after.
-SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level, MemoryBudget& budget,
-                            const Progress* progress);
+/// Bins the triangles that are not in `excluded` into the cells of `level`, <= levels - 2 and
+/// <= 10. A triangle is in the list of every cell that it meets and, except in the largest grids,
+/// of no other. The order in a list depends on timing. Time is linear in the lists; memory is 16
+/// bytes per entry at most, then 4. Throws OverMemory and Cancelled.
+SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
+                            const TriangleSet& excluded, MemoryBudget& budget, Progress* progress);
 
 }  // namespace voxdag

@@ -1,5 +1,6 @@
 #include "voxdag/io/process_memory.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -43,6 +44,10 @@ std::optional<std::uint64_t> available_bytes() {
 }  // namespace
 
 MemoryBudget command_budget(std::uint64_t limit) {
+  // Freed memory goes back to the system, so that what is counted is what is resident: malloc would
+  // raise these thresholds by itself to 32 and 64 MiB.
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_TRIM_THRESHOLD, 4 << 20);
   return MemoryBudget(limit != 0 ? limit : default_memory_limit(),
                       resident_bytes() + kProgramBytes);
 }

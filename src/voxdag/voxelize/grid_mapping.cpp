@@ -1,12 +1,14 @@
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
@@ -94,18 +96,24 @@ std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
   return q;
 }
 
-QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid)
-    : mesh_(&mesh), vertices_(mesh.vertices.size()) {
+QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget,
+                             Progress* progress)
+    : mesh_(&mesh),
+      vertices_(mesh.vertices.size(), CountedAllocator<Vec3i>(budget)),
+      clipped_(CountedAllocator<QuantizedTriangle>(budget)),
+      clipped_source_(CountedAllocator<std::uint32_t>(budget)) {
   std::atomic<bool> any_out_of_range{false};
-  parallel_for(vertices_.size(), 4096, [&](std::size_t i) {
+  polled_for(vertices_.size(), 4096, progress, "quantize", [&](std::size_t i) {
     vertices_[i] = quantize(grid, static_cast<Vec3d>(mesh.vertices[i]))
                        .value_or(Vec3i{kOutOfRange, kOutOfRange, kOutOfRange});
     if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
   });
   if (!any_out_of_range.load()) return;
   const std::size_t count = mesh.triangles.size();
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i) {
+    poll_seldom(progress, i);
     if (!in_range(i)) clip(mesh, grid, static_cast<std::uint32_t>(i));
+  }
 }
 
 bool QuantizedMesh::in_range(std::size_t index) const {
@@ -120,10 +128,6 @@ QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
   if (index >= count) return clipped_[index - count];
   const Triangle& t = mesh_->triangles[index];
   return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
-}
-
-std::uint64_t QuantizedMesh::bytes() const {
-  return vertices_.size() * sizeof(Vec3i) + clipped_.size() * (sizeof(QuantizedTriangle) + 4);
 }
 
 // Sutherland-Hodgman against the six planes of the box ±kMaxUnits.

@@ -5,10 +5,11 @@
 /// quantization_scale), component by component; everything after that is integer.
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/mesh/mesh_bounds.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
@@ -39,30 +40,31 @@ using QuantizedTriangle = Vec3<Vec3i>;  ///< Three vertices in units of 1/256 vo
 /// A mesh's triangles on the grid's integers. Refers to the mesh, which must outlive it.
 class QuantizedMesh {
  public:
-  /// Triangles with a vertex beyond ±kMaxUnits (possible only where the grid does not fit the mesh)
-  /// are clipped in double precision to that box first, each giving up to 7 triangles at the end.
-  QuantizedMesh(const Mesh& mesh, const Grid& grid);
+  /// Clips triangles with a vertex beyond ±kMaxUnits (possible only if the grid does not fit the
+  /// mesh) to that box in double precision; each gives up to 7 triangles. `budget` counts the
+  /// memory and `progress` is polled; both may be null. Throws OverMemory and Cancelled.
+  QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget = nullptr,
+                Progress* progress = nullptr);
 
   std::size_t triangle_count() const { return mesh_->triangles.size() + clipped_.size(); }
-  /// Those of the mesh come first, then the pieces of clipped ones.
+  /// The triangles of the mesh come first, then the pieces of clipped ones.
   std::size_t mesh_triangle_count() const { return mesh_->triangles.size(); }
-  /// False for a triangle that was clipped: its pieces stand at the end.
+  /// Returns false for a triangle that was clipped: its pieces stand at the end.
   bool in_range(std::size_t index) const;
   QuantizedTriangle triangle(std::size_t index) const;
-  /// The triangle of the mesh that triangle `index` is, or that it is a piece of.
+  /// Returns the triangle of the mesh that triangle `index` is, or that it is a piece of.
   std::uint32_t source(std::size_t index) const {
     const std::size_t count = mesh_->triangles.size();
     return index < count ? static_cast<std::uint32_t>(index) : clipped_source_[index - count];
   }
-  std::uint64_t bytes() const;
 
  private:
   void clip(const Mesh& mesh, const Grid& grid, std::uint32_t index);
 
   const Mesh* mesh_;
-  std::vector<Vec3i> vertices_;
-  std::vector<QuantizedTriangle> clipped_;
-  std::vector<std::uint32_t> clipped_source_;
+  CountedVector<Vec3i> vertices_;
+  CountedVector<QuantizedTriangle> clipped_;
+  CountedVector<std::uint32_t> clipped_source_;
 };
 
 }  // namespace voxdag

@@ -92,9 +92,8 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
       45 * std::uint64_t{mesh.triangles.size()} + 12 * std::uint64_t{mesh.vertices.size()};
   if (memory != nullptr && memory->left() < table_bytes)
     memory->throw_over_memory(memory->base() + memory->used() + table_bytes);
-  MemoryReservation tables(memory, 12 * std::uint64_t{mesh.vertices.size()});
-  const QuantizedMesh quantized(mesh, grid);
-  tables.resize(quantized.bytes() + 2 * quantized.triangle_count());
+  const QuantizedMesh quantized(mesh, grid, memory, progress);
+  const MemoryReservation tables(memory, 2 * quantized.triangle_count());
   const Appearance* const appearance = shading != nullptr     ? &shading->appearance()
                                        : displaced != nullptr ? &displaced->appearance()
                                                               : nullptr;

@@ -1,0 +1,126 @@
+#pragma once
+/// A growing array on pages of its own, for memory that is large and short-lived.
+///
+/// It grows in place (mremap), so that old and new contents are never held at once, and what it
+/// frees goes back to the system at once. A budget counts its pages.
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#include "voxdag/core/memory_budget.hpp"
+
+namespace voxdag {
+
+/// Like std::vector, for trivial types. Functions that grow it throw OverMemory or std::bad_alloc
+/// and then change nothing. Move-only.
+template <class T>
+class PageVector {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  /// A null budget counts nothing.
+  explicit PageVector(MemoryBudget* budget = nullptr) : budget_(budget) {}
+  PageVector(PageVector&& other) noexcept { swap(other); }
+  PageVector& operator=(PageVector&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~PageVector() { release(); }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  /// Bytes that it takes from the system.
+  std::size_t bytes() const { return bytes_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T* begin() { return data_; }
+  T* end() { return data_ + size_; }
+  const T* begin() const { return data_; }
+  const T* end() const { return data_ + size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  T& back() { return data_[size_ - 1]; }
+
+  /// `value` must not be an element of this array.
+  void push_back(const T& value) {
+    if (size_ == capacity()) grow(size_ + 1);
+    data_[size_++] = value;
+  }
+  /// New elements are zero in memory that was not used before, and of any value elsewhere.
+  void resize(std::size_t size) {
+    if (size > capacity()) grow(size);
+    size_ = size;
+  }
+  /// Makes room for `size` elements in all.
+  void reserve(std::size_t size) {
+    if (size > capacity()) grow(size);
+  }
+  /// Keeps the memory.
+  void clear() { size_ = 0; }
+
+  /// Gives the pages behind the last element back.
+  void shrink_to_fit() {
+    const std::size_t bytes = page_bytes(size_);
+    if (bytes == 0) return release();
+    if (bytes == bytes_) return;
+    // Shrinking in place does not fail.
+    if (::mremap(data_, bytes_, bytes, 0) == MAP_FAILED) return;
+    if (budget_ != nullptr) budget_->release(bytes_ - bytes);
+    bytes_ = bytes;
+  }
+  /// Gives all memory back.
+  void release() noexcept {
+    if (data_ == nullptr) return;
+    ::munmap(data_, bytes_);
+    if (budget_ != nullptr) budget_->release(bytes_);
+    data_ = nullptr;
+    size_ = bytes_ = 0;
+  }
+
+  void swap(PageVector& other) noexcept {
+    std::swap(budget_, other.budget_);
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(bytes_, other.bytes_);
+  }
+
+ private:
+  static constexpr std::size_t kPage = 4096;
+
+  static std::size_t page_bytes(std::size_t count) {
+    if (count > static_cast<std::size_t>(-1) / sizeof(T) - kPage) throw std::bad_alloc();
+    return (count * sizeof(T) + kPage - 1) & ~(kPage - 1);
+  }
+
+  std::size_t capacity() const { return bytes_ / sizeof(T); }
+
+  /// Makes room for `count` elements and some more: twice the memory while it is small, an eighth
+  /// more then.
+  void grow(std::size_t count) {
+    constexpr std::size_t kSmall = std::size_t{1} << 20;
+    const std::size_t more = bytes_ < kSmall ? bytes_ : bytes_ / 8;
+    const std::size_t bytes = std::max(page_bytes(count), page_bytes((bytes_ + more) / sizeof(T)));
+    if (budget_ != nullptr) budget_->reserve(bytes - bytes_);
+    void* const memory = data_ == nullptr
+                             ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
+                             : ::mremap(data_, bytes_, bytes, MREMAP_MAYMOVE);
+    if (memory == MAP_FAILED) {
+      if (budget_ != nullptr) budget_->release(bytes - bytes_);
+      throw std::bad_alloc();
+    }
+    data_ = static_cast<T*>(memory);
+    bytes_ = bytes;
+  }
+
+  MemoryBudget* budget_ = nullptr;
+  T* data_ = nullptr;
+  std::size_t size_ = 0, bytes_ = 0;
+};
+
+}  // namespace voxdag

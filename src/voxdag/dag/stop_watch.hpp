@@ -1,0 +1,21 @@
+#pragma once
+/// Wall-clock time of the stages of a build.
+#include <chrono>
+
+namespace voxdag {
+
+class StopWatch {
+ public:
+  /// Returns the seconds since the last lap, or since construction.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace voxdag
