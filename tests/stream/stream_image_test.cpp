@@ -11,7 +11,6 @@
 #include "voxdag/stream/paged_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,8 +10,8 @@ namespace voxdag {
 
 /// Returns the budget of a whole command. Make it before anything is read, then pass it to readers
 /// and builders. Its base is what the process holds now. `limit` in bytes; 0:
-/// default_memory_limit(). Also makes malloc return freed memory to the system early, so that what is
-/// counted is what is resident: for programs, not for libraries.
+/// default_memory_limit(). Also makes malloc return freed memory to the system early, so that what
+/// is counted is what is resident: for programs, not for libraries.
 MemoryBudget command_budget(std::uint64_t limit);
 
 /// Returns three quarters of the memory that the system has available, or of what the process's
