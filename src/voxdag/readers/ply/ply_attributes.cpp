@@ -89,7 +89,6 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
                              const PlyFields& fields)
     : source_(source),
       header_(header),
-      fields_(fields),
       vertex_colors_(source.options.memory),
       vertex_normals_(source.options.memory),
       vertex_uvs_(source.options.memory),

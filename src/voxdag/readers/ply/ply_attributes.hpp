@@ -68,7 +68,6 @@ class PlyAttributes {
 
   const MeshSource& source_;
   const PlyHeader& header_;
-  const PlyFields& fields_;
   PlyColumns vertex_, face_;
   std::array<float, 4> color_scales_{};  ///< From the components' type to 0..1.
   CountedVector<Rgba16> vertex_colors_;
