@@ -61,7 +61,7 @@ std::vector<UntrustedCase> untrusted_file_cases() {
       {"an endless camera path",
        write_full_dag,
        {},
-       {"render", "full.vdag", "--path", "/dev/zero", "-o", "x.png"},
+       {"render", "full.vdag", "--path", "/dev/zero", "-o", "x_%04d.png"},
        0,
        1},
       {"OBJ names /etc/passwd",
