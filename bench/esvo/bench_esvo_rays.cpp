@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "bench/esvo/bench_esvo.hpp"
+#include "bench/rays/caster_runner.hpp"
+#include "bench/rays/trace_measure.hpp"
+#include "bench/rays/trace_rays.hpp"
 #include "bench/rivals/embree_rival.hpp"
-#include "bench/trace/caster_runner.hpp"
-#include "bench/trace/trace_measure.hpp"
-#include "bench/trace/trace_rays.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/readers/read_mesh.hpp"

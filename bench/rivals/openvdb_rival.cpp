@@ -6,8 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "bench/rays/trace_measure.hpp"
 #include "bench/report/bench_child.hpp"
-#include "bench/trace/trace_measure.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/trace/ray.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/rays/trace_rays.hpp"
+#include "bench/rays/trace_runner.hpp"
 #include "bench/report/bench_child.hpp"
-#include "bench/rivals/trace_runner.hpp"
-#include "bench/trace/trace_rays.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/trace/trace_rays.hpp"
+#include "bench/rays/trace_rays.hpp"
 #include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"

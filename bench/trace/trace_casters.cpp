@@ -1,6 +1,6 @@
 #include "bench/trace/trace_casters.hpp"
 
-#include "bench/trace/caster_runner.hpp"
+#include "bench/rays/caster_runner.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"

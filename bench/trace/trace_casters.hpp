@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/rivals/trace_runner.hpp"
-#include "bench/trace/trace_rays.hpp"
+#include "bench/rays/trace_rays.hpp"
+#include "bench/rays/trace_runner.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/trace/visit_nodes.hpp"
 

@@ -2,8 +2,8 @@
 /// Casts on a CUDA device for `voxdag bench trace`.
 #include <optional>
 
-#include "bench/rivals/trace_runner.hpp"
-#include "bench/trace/trace_rays.hpp"
+#include "bench/rays/trace_rays.hpp"
+#include "bench/rays/trace_runner.hpp"
 #include "voxdag/cuda/timed_casts.hpp"
 
 namespace voxdag {

@@ -26,7 +26,9 @@ TEST(TopCells, EveryCellIsATaskOrHasChildren) {
   grid.quantization_scale = kSubvoxels / grid.voxel_size;
   const QuantizedMesh mesh(crate.mesh, grid);
   const std::vector<std::uint8_t> open_edges(crate.mesh.triangles.size());
-  const TopCells cells = find_top_cells({grid, mesh, open_edges, &displaced}, {}, nullptr, nullptr);
+  const IndexSet duplicates;
+  const TopCells cells =
+      find_top_cells({grid, mesh, open_edges, &displaced, duplicates}, {}, nullptr, nullptr);
   std::set<std::size_t> parents;
   for (std::size_t i = 1; i < cells.size(); ++i) parents.insert(cells[i].parent);
   int missed_by_all = 0;

@@ -18,7 +18,7 @@
 #include <iterator>
 #include <string>
 
-#include "support/error_text.hpp"
+#include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/nameless_file.hpp"

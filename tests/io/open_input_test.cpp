@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "support/error_text.hpp"
+#include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/mapped_file.hpp"

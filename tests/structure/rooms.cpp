@@ -14,8 +14,8 @@ bool is_source(const std::filesystem::path& file) {
   return kExtensions.count(file.extension().string()) != 0;
 }
 
-/// The "voxdag/..." path that a line includes, or nothing.
-std::string included_path(const std::string& line) {
+/// Returns the path that a line includes if it begins with `prefix`, else nothing.
+std::string included_path(const std::string& line, const std::string& prefix) {
   const std::size_t hash = line.find_first_not_of(" \t");
   if (hash == std::string::npos || line[hash] != '#') return {};
   const std::size_t word = line.find_first_not_of(" \t", hash + 1);
@@ -24,7 +24,7 @@ std::string included_path(const std::string& line) {
   const std::size_t close = open == std::string::npos ? open : line.find_first_of("\">", open + 1);
   if (close == std::string::npos) return {};
   const std::string path = line.substr(open + 1, close - open - 1);
-  return path.rfind("voxdag/", 0) == 0 ? path : std::string();
+  return path.rfind(prefix, 0) == 0 ? path : std::string();
 }
 
 void close_transitively(Rooms& rooms) {
@@ -113,12 +113,14 @@ std::vector<std::string> broken_links(const std::filesystem::path& root, const R
   return broken;
 }
 
-std::vector<std::string> broken_includes(const std::filesystem::path& root, const Rooms& rooms) {
+std::vector<std::string> broken_includes(const std::filesystem::path& root, const Rooms& rooms,
+                                         const std::string& prefix) {
   namespace fs = std::filesystem;
   std::vector<std::string> broken;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
     if (!entry.is_regular_file() || !is_source(entry.path())) continue;
     const fs::path file = entry.path().lexically_relative(root);
+    if (!file.has_parent_path()) continue;  // A source beside the folders may include all of them.
     const auto room = rooms.find(file.begin()->string());
     if (room == rooms.end()) {
       broken.push_back(file.string() + ": is in a folder that the table does not name");
@@ -128,11 +130,12 @@ std::vector<std::string> broken_includes(const std::filesystem::path& root, cons
     int number = 0;
     for (std::string line; std::getline(in, line);) {
       ++number;
-      const std::string path = included_path(line);
+      const std::string path = included_path(line, prefix);
       if (path.empty()) continue;
-      const fs::path target = fs::path(path).lexically_relative("voxdag");
-      const bool allowed = room->second.rooms.count(target.begin()->string()) != 0;
-      if (!allowed || !fs::exists(root / target))
+      const fs::path target = path.substr(prefix.size());
+      const bool exists = fs::exists(root / target);
+      if (!exists && prefix.empty()) continue;
+      if (!exists || room->second.rooms.count(target.begin()->string()) == 0)
         broken.push_back(file.string() + ":" + std::to_string(number) + ": includes " + path);
     }
   }

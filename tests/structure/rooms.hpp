@@ -1,6 +1,6 @@
 #pragma once
-/// Reads src/voxdag/rooms.txt and finds what breaks it: includes and links between the folders of
-/// the library.
+/// Reads a table of rooms, such as src/voxdag/rooms.txt, and finds what breaks it: includes and
+/// links between the folders.
 #include <filesystem>
 #include <map>
 #include <set>
@@ -21,9 +21,11 @@ using Rooms = std::map<std::string, Room>;
 Rooms read_rooms(const std::filesystem::path& table);
 
 /// Returns one line, "folder/file.hpp:12: includes voxdag/mesh/mesh.hpp", for every include of
-/// `voxdag/...` in the sources under `root` that the table does not allow or that names no file,
-/// and one for every file in a folder that the table does not name.
-std::vector<std::string> broken_includes(const std::filesystem::path& root, const Rooms& rooms);
+/// `PREFIXfolder/file`, of a folder under `root`, that the table does not allow or that names no
+/// file, and one for every source in a folder that the table does not name. With an empty prefix
+/// an include that names no file under `root` is one of another tree, and allowed.
+std::vector<std::string> broken_includes(const std::filesystem::path& root, const Rooms& rooms,
+                                         const std::string& prefix = "voxdag/");
 
 /// Returns one line, "folder/CMakeLists.txt: links PNG::PNG", for every target that a folder's
 /// CMakeLists.txt links and the table does not allow.

@@ -47,6 +47,18 @@ TEST(Rooms, EverySourceIncludesOnlyWhatItsRoomMay) {
   for (const std::string& line : broken) ADD_FAILURE() << line;
 }
 
+TEST(Rooms, EverySourceOfTheCommandLineIncludesOnlyWhatItsRoomMay) {
+  const fs::path root = kSourceDir / "apps/voxdag";
+  for (const std::string& line : broken_includes(root, read_rooms(root / "rooms.txt"), ""))
+    ADD_FAILURE() << line;
+}
+
+TEST(Rooms, EveryBenchmarkIncludesOnlyWhatItsRoomMay) {
+  const fs::path root = kSourceDir / "bench";
+  for (const std::string& line : broken_includes(root, read_rooms(root / "rooms.txt"), "bench/"))
+    ADD_FAILURE() << line;
+}
+
 TEST(Rooms, EveryTargetLinksOnlyWhatItsRoomMay) {
   const auto broken = broken_links(kSourceDir / "src/voxdag", read_rooms(kTable));
   for (const std::string& line : broken) ADD_FAILURE() << line;

@@ -39,12 +39,12 @@ Key key_of(const QuantizedTriangle& t) {
   return key;
 }
 
-TEST(FindDuplicates, AllButTheFirstTriangleWithTheSameCorners) {
+TEST(FindDuplicateTriangles, AllButTheFirstTriangleWithTheSameCorners) {
   const Mesh mesh = crowded_mesh(20000);
   const QuantizedMesh quantized(mesh, unit_grid());
   for (const int threads : {1, 4}) {
     tbb::task_arena(threads).execute([&] {
-      const TriangleSet duplicates = find_duplicates(quantized);
+      const IndexSet duplicates = find_duplicate_triangles(quantized);
       std::map<Key, std::size_t> first;
       for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         ASSERT_EQ(duplicates.contains(i),
@@ -55,20 +55,10 @@ TEST(FindDuplicates, AllButTheFirstTriangleWithTheSameCorners) {
   }
 }
 
-TEST(FindDuplicates, TrianglesOfDifferentLookAreNone) {
-  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 2, 0}, {2, 1, 0}}, {}, {}};
-  const QuantizedMesh quantized(mesh, unit_grid());
-  const TriangleSet duplicates =
-      find_duplicates(quantized, [](std::size_t triangle) { return triangle / 2; });
-  EXPECT_FALSE(duplicates.contains(0));
-  EXPECT_TRUE(duplicates.contains(1));
-  EXPECT_FALSE(duplicates.contains(2));
-}
-
-TEST(FindDuplicates, NoneTakesNoMemory) {
+TEST(FindDuplicateTriangles, NoneTakesNoMemory) {
   const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, {}};
   MemoryBudget budget;
-  const TriangleSet duplicates = find_duplicates(QuantizedMesh(mesh, unit_grid()), {}, &budget);
+  const IndexSet duplicates = find_duplicate_triangles(QuantizedMesh(mesh, unit_grid()), &budget);
   EXPECT_FALSE(duplicates.contains(0));
   EXPECT_EQ(budget.used(), 0u);
 }

@@ -84,7 +84,7 @@ Entries sort_by_digit(std::vector<Entries>& parts, int shift, MemoryBudget& budg
 
 // The cells' codes are sorted by a radix sort of their 12-bit digits, the lowest first.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
-                            const TriangleSet& excluded, MemoryBudget& budget, Progress* progress) {
+                            const IndexSet& excluded, MemoryBudget& budget, Progress* progress) {
   const int log2_bin = levels - level;
   tbb::enumerable_thread_specific<Entries> per_thread([&] { return Entries(&budget); });
   polled_for(mesh.triangle_count(), 1024, progress, "bin", [&](std::size_t i) {

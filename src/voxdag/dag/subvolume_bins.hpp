@@ -29,6 +29,6 @@ struct SubvolumeBins {
 /// of no other. The order in a list depends on timing. Time is linear in the lists; memory is 16
 /// bytes per entry at most, then 4. Throws OverMemory and Cancelled.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
-                            const TriangleSet& excluded, MemoryBudget& budget, Progress* progress);
+                            const IndexSet& excluded, MemoryBudget& budget, Progress* progress);
 
 }  // namespace voxdag

@@ -8,7 +8,7 @@
 
 #include "voxdag/esvo/build/block_assembler.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
-#include "voxdag/esvo/build/duplicate_triangles.hpp"
+#include "voxdag/esvo/build/duplicate_surfaces.hpp"
 #include "voxdag/esvo/build/load_pieces.hpp"
 #include "voxdag/esvo/build/memory_gate.hpp"
 #include "voxdag/esvo/build/open_edges.hpp"
@@ -97,8 +97,7 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
   const Appearance* const appearance = shading != nullptr     ? &shading->appearance()
                                        : displaced != nullptr ? &displaced->appearance()
                                                               : nullptr;
-  const std::vector<std::uint8_t> duplicates =
-      find_duplicate_triangles(mesh, appearance, progress, memory);
+  const IndexSet duplicates = find_duplicate_surfaces(mesh, appearance, progress, memory);
   const std::vector<std::uint8_t> open_edges =
       find_open_edges(quantized, duplicates, progress, memory);
   const TriangleSource source{grid, quantized, open_edges, displaced, duplicates};

@@ -25,12 +25,11 @@ std::uint64_t edge_key(Vec3i a, Vec3i b) {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh,
-                                          std::span<const std::uint8_t> duplicates,
+std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh, const IndexSet& ignored,
                                           Progress* progress, MemoryBudget* memory) {
   const std::size_t count = mesh.triangle_count();
   const auto counts = [&](std::size_t i) {
-    return mesh.in_range(i) && (duplicates.empty() || duplicates[mesh.source(i)] == 0);
+    return mesh.in_range(i) && !ignored.contains(mesh.source(i));
   };
   // The upper half of an edge's key and its number, 3 * triangle + edge. The edges of triangles
   // that do not count are all alike, so that none of them is open.

@@ -1,10 +1,10 @@
 #pragma once
 /// Which edges bound a surface.
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/parallel/find_duplicates.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
@@ -13,10 +13,10 @@ namespace voxdag {
 /// Returns a bit mask for each triangle of the mesh: bit e is set if no other triangle has an edge
 /// between the same two points as its edge from corner e to the next. Points are the same if they
 /// are rounded to the same 1/256 voxel. Pieces of clipped triangles have no open edges. Triangles
-/// with duplicates[i] != 0 (by triangle of the mesh; may be empty) do not count. Counts 24 bytes
-/// per triangle of scratch memory in `memory`; null: no limit. Throws Cancelled and OverMemory.
+/// in `ignored` (indices of the mesh's triangles) do not count. Counts 24 bytes per triangle of
+/// scratch memory in `memory`; null: no limit. Throws Cancelled and OverMemory.
 std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh,
-                                          std::span<const std::uint8_t> duplicates = {},
+                                          const IndexSet& ignored = IndexSet(),
                                           Progress* progress = nullptr,
                                           MemoryBudget* memory = nullptr);
 

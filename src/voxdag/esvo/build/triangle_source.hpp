@@ -2,12 +2,12 @@
 /// The triangles that an ESVO is built from.
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/displace/displaced_triangles.hpp"
+#include "voxdag/parallel/find_duplicates.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
@@ -21,13 +21,12 @@ struct TriangleSource {
   const QuantizedMesh& mesh;
   const std::vector<std::uint8_t>& open_edges;  ///< By triangle of the quantised mesh.
   const DisplacedTriangles* displaced;          ///< Null if nothing is displaced.
-  /// By triangle of the mesh: 1 for all but the first of equal triangles, which are not built.
-  /// Empty if there are none.
-  std::span<const std::uint8_t> duplicates = {};
+  /// Triangles of the mesh that are not built, because they repeat others.
+  const IndexSet& duplicates;
 
   /// Takes a triangle of the quantised mesh.
   bool is_duplicate(std::size_t triangle) const {
-    return !duplicates.empty() && duplicates[mesh.source(triangle)] != 0;
+    return duplicates.contains(mesh.source(triangle));
   }
 
   bool is_displaced(std::uint32_t triangle) const {

@@ -2,8 +2,8 @@
 /// Any caster of ours as a runner of `voxdag bench`.
 #include <span>
 
-#include "bench/rivals/trace_runner.hpp"
-#include "bench/trace/trace_rays.hpp"
+#include "bench/rays/trace_rays.hpp"
+#include "bench/rays/trace_runner.hpp"
 
 namespace voxdag {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "bench/rivals/trace_runner.hpp"
-#include "bench/trace/trace_rays.hpp"
+#include "bench/rays/trace_rays.hpp"
+#include "bench/rays/trace_runner.hpp"
 
 namespace voxdag {
 

@@ -1,4 +1,4 @@
-#include "bench/trace/trace_measure.hpp"
+#include "bench/rays/trace_measure.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "bench/trace/trace_rays.hpp"
+#include "bench/rays/trace_rays.hpp"
 
 #include <algorithm>
 #include <cmath>

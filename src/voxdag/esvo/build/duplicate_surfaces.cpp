@@ -1,12 +1,8 @@
-#include "voxdag/esvo/build/duplicate_triangles.hpp"
-
-#include <tbb/parallel_sort.h>
+#include "voxdag/esvo/build/duplicate_surfaces.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-
-#include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {
@@ -19,13 +15,13 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
   return hash ^ hash >> 29;
 }
 
-class TriangleKeys {
+class TriangleSurfaces {
  public:
-  TriangleKeys(const Mesh& mesh, const Appearance* appearance)
+  TriangleSurfaces(const Mesh& mesh, const Appearance* appearance)
       : mesh_(mesh), appearance_(appearance) {}
 
   /// Returns a hash that is equal for equal triangles, whichever corner comes first.
-  std::uint64_t hash(std::size_t triangle) const {
+  std::optional<std::uint64_t> hash(std::size_t triangle) const {
     std::array<std::uint64_t, 3> h{};
     for (std::size_t corner = 0; corner < 3; ++corner)
       for (const std::uint32_t word : words(triangle, corner)) h[corner] = mix(h[corner], word);
@@ -79,30 +75,10 @@ class TriangleKeys {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_duplicate_triangles(const Mesh& mesh, const Appearance* appearance,
-                                                   Progress* progress, MemoryBudget* memory) {
-  const TriangleKeys keys(mesh, appearance);
-  const std::size_t count = mesh.triangles.size();
-  constexpr std::uint64_t kIndex = 0xFFFFFFFF;
-  // The upper half of a triangle's hash and its index.
-  CountedVector<std::uint64_t> order(count, memory);
-  parallel_for(count, 1024, [&](std::size_t i) { order[i] = (keys.hash(i) & ~kIndex) | i; });
-  if (progress != nullptr) progress->throw_if_cancelled();
-  tbb::parallel_sort(order.begin(), order.end());
-  std::vector<std::uint8_t> duplicates;
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < count; ++i) {
-    if (i % (1 << 20) == 0 && progress != nullptr) progress->throw_if_cancelled();
-    // Compares each triangle with the first of its hash: by chance this may miss a duplicate.
-    if (order[i] >> 32 != order[first] >> 32 ||
-        !keys.are_equal(order[first] & kIndex, order[i] & kIndex)) {
-      first = i;
-      continue;
-    }
-    if (duplicates.empty()) duplicates.resize(count);
-    duplicates[order[i] & kIndex] = 1;
-  }
-  return duplicates;
+IndexSet find_duplicate_surfaces(const Mesh& mesh, const Appearance* appearance, Progress* progress,
+                                 MemoryBudget* memory) {
+  return find_duplicates(mesh.triangles.size(), TriangleSurfaces(mesh, appearance), memory,
+                         progress, "duplicates");
 }
 
 }  // namespace voxdag
