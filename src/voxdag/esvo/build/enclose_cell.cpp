@@ -1,11 +1,13 @@
 #include "voxdag/esvo/build/enclose_cell.hpp"
 
+#include "voxdag/core/page_vector.hpp"
 #include "voxdag/esvo/build/surface_triangle.hpp"
 #include "voxdag/esvo/shape/fit_contour.hpp"
 
 namespace voxdag {
 CellDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cell,
-                             std::span<const std::uint32_t> triangles, ConvexPolyhedron& shape) {
+                             std::span<const std::uint32_t> triangles, ConvexPolyhedron& shape,
+                             MemoryBudget* memory) {
   const Grid& grid = source.grid;
   const int log2_size = grid.levels - level;
   const Box3d box = world_box(grid, cell, log2_size);
@@ -14,9 +16,10 @@ CellDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cell
   const Vec3d centre = static_cast<Vec3d>(origin) + Vec3d{half, half, half};
 
   ContourCandidates candidates;
-  std::vector<DisplacedPiece> pieces;    // in world units
-  std::vector<SurfacePolygon> polygons;  // in those of the cell
+  PageVector<DisplacedPiece> pieces(memory);       // in world units
+  CountedVector<SurfacePolygon> polygons(memory);  // in those of the cell
   for (const std::uint32_t triangle : triangles) {
+    if (pieces.size() > kMostEnclosed) return {};
     if (!source.is_displaced(triangle)) {
       const auto t = SurfaceTriangle::make(source.mesh.triangle(triangle), origin, triangle, 0);
       polygons.push_back(t.polygon({}, log2_size));
@@ -36,7 +39,7 @@ CellDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cell
   }
   if (pieces.empty() && polygons.empty()) return {};
 
-  std::vector<PlanarPolygon> surface;
+  CountedVector<PlanarPolygon> surface(memory);
   surface.reserve(polygons.size());
   for (const SurfacePolygon& polygon : polygons) surface.push_back({&polygon, {}});
   ContourExtents extents = extents_of(surface, candidates);

@@ -109,12 +109,17 @@ class TopCellFinder {
     if (!cell.is_task) cell.triangles = TriangleList(memory_);
   }
 
-  void decide_unloaded(TopCell& cell, bool is_heavy, ChildTriangles& children) const {
+  void decide_unloaded(TopCell& cell, bool is_heavy, ChildTriangles& children) {
     cell.weight = std::ldexp(1.0, 2 * log2_size(cell));
     cell.is_task = cell.is_displaced && log2_size(cell) <= kDisplacedTaskLog2;
     if (cell.is_task) return;
-    if (settings_.contours && !is_heavy && cell.parent != TopCell::kNoParent)
-      cell.decision = decide_enclosed(source_, cell.level, cell.cell, cell.triangles, cell.shape);
+    if (settings_.contours && !is_heavy && cell.parent != TopCell::kNoParent) {
+      // A triangle across the cell has some hundred pieces.
+      const std::size_t pieces = std::min(cell.triangles.size() * 256, kMostEnclosed);
+      const MemoryGate::Pass pass(gate_, pieces * kEnclosedBytes);
+      cell.decision =
+          decide_enclosed(source_, cell.level, cell.cell, cell.triangles, cell.shape, memory_);
+    }
     children = split_triangles(source_, cell.level, cell.cell, cell.triangles, memory_);
   }
 
