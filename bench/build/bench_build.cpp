@@ -62,18 +62,19 @@ class Bench {
         plan_.threads > 0 ? plan_.threads : static_cast<int>(std::thread::hardware_concurrency());
     run.load_before = load_average();
     const ScratchFolder folder;
-    const std::vector<std::string> command{this_program(),
-                                           "build",
-                                           path,
-                                           "-r",
-                                           std::to_string(1 << levels),
-                                           "-o",
-                                           "out.vdag",
-                                           "--json",
-                                           "--method",
-                                           method,
-                                           "--threads",
-                                           std::to_string(run.threads)};
+    std::vector<std::string> command{this_program(),
+                                     "build",
+                                     path,
+                                     "-r",
+                                     std::to_string(1 << levels),
+                                     "-o",
+                                     "out.vdag",
+                                     "--json",
+                                     "--method",
+                                     method,
+                                     "--threads",
+                                     std::to_string(run.threads)};
+    command.insert(command.end(), plan_.build_options.begin(), plan_.build_options.end());
     const ChildResult child = run_child(command, folder.path(), 0, progress_);
     run.cost = child.cost;
     run.failure = failure_of(child, 0);

@@ -15,7 +15,8 @@ namespace voxdag {
 struct BenchPlan {
   std::vector<std::string> meshes;  ///< Paths, or procedural scenes as NAME or NAME:SIZE.
   std::vector<int> levels;
-  std::vector<std::string> methods;  ///< As `build --method` names them.
+  std::vector<std::string> methods;        ///< As `build --method` names them.
+  std::vector<std::string> build_options;  ///< Passed to `build` as they are.
   std::vector<std::shared_ptr<Rival>> rivals;
   int threads = 0;              ///< 0: one per processor.
   int repeat = 1;               ///< Number of runs; the fastest counts.

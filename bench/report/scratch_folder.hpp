@@ -1,32 +1,28 @@
 #pragma once
 /// A folder for temporary files.
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <system_error>
+#include <sys/types.h>
 
-#include "voxdag/core/error.hpp"
+#include <filesystem>
 
 namespace voxdag {
 
-/// Creates a folder in TMPDIR, and removes it with its contents when it is destroyed.
+/// Creates a folder in TMPDIR, which is removed with its contents when this object is destroyed or
+/// when this process ends, even by SIGKILL.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::string pattern = std::filesystem::temp_directory_path() / "voxdag-bench-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "", "cannot make the folder");
-    path_ = pattern;
-  }
+  /// Throws Error if the folder cannot be made.
+  ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
+  ~ScratchFolder();
+
   const std::filesystem::path& path() const { return path_; }
 
  private:
   std::filesystem::path path_;
+  /// A shell that removes the folder as soon as the other end of its standard input is closed.
+  pid_t remover_ = -1;
+  int remover_input_ = -1;
 };
 
 }  // namespace voxdag

@@ -70,12 +70,15 @@ void write_wrong_materials(const fs::path& folder) {
   write_text(folder / "warnings.mtl", text);
 }
 
-/// 60,000 materials, each used once.
+/// 60,000 materials, each of one triangle, in another order.
 void write_many_materials(const fs::path& folder) {
-  std::string materials, mesh = "mtllib many.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  for (int i = 0; i < 60000; ++i) {
+  constexpr int kMaterials = 60000, kPerRow = 250;
+  std::string materials, mesh = "mtllib many.mtl\n";
+  for (int i = 0; i < kMaterials; ++i) {
     materials += fmt::format("newmtl m{}\nKd 1 0 0\n", i);
-    mesh += fmt::format("usemtl m{}\nf 1 2 3\n", 59999 - i);
+    const int x = i % kPerRow, y = i / kPerRow;
+    mesh += fmt::format("v {0} {1} 0\nv {2} {1} 0\nv {0} {3} 0\nusemtl m{4}\nf -3 -2 -1\n", x, y,
+                        x + 1, y + 1, kMaterials - 1 - i);
   }
   write_text(folder / "many.mtl", materials);
   write_text(folder / "many.obj", mesh);

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "process.hpp"
@@ -106,6 +108,47 @@ TEST_F(BenchBuild, AProceduralSceneIsMadeForTheRun) {
   ASSERT_EQ(builds.size(), 1u);
   EXPECT_EQ(builds[0].at("scene"), "sponge:2");
   EXPECT_GT(builds[0].at("voxels"), 0);
+}
+
+TEST_F(BenchBuild, MeshesMayNameOtherFilesIfThatIsAllowed) {
+  std::filesystem::create_directory(dir_ / "inside");
+  write_text(dir_ / "three.bin", std::string(36, '\0'));
+  write_text(
+      dir_ / "inside/a.gltf",
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)"
+      R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":)"
+      R"([{"buffer":0,"byteLength":36}],"buffers":[{"uri":"../three.bin","byteLength":36}]})");
+  const std::vector<std::string> options{dir_ / "inside/a.gltf", "-r", "64"};
+  ProcessResult refused = bench(options);
+  refused.out.clear();  // the table, without figures
+  expect_failure(refused, 1, "three.bin");
+  std::vector<std::string> allowed = options;
+  allowed.emplace_back("--allow-outside");
+  EXPECT_EQ(bench(allowed).status, 0);
+}
+
+TEST_F(BenchBuild, AKilledBenchmarkLeavesNoScratchFolder) {
+  const TempDir scratch;
+  std::vector<std::string> command =
+      voxdag_command({"bench", "build", mesh_, "-r", "64", "--rival", "slow=sleep 60"});
+  command.insert(command.begin(), {"env", "TMPDIR=" + scratch.path().string()});
+  Process process(command);
+  while (scratch.count() == 0) usleep(1000);
+  process.send_signal(SIGKILL);
+  process.wait();
+  while (scratch.count() != 0) usleep(1000);  // ctest's time limit is the limit
+}
+
+TEST(BenchUntrusted, RunsACaseAndNamesWhatItCost) {
+  const ProcessResult result =
+      run_voxdag({"bench", "untrusted", "--only", "every face 1,000 times: ESVO", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json cases = Json::parse(result.out).at("cases");
+  ASSERT_EQ(cases.size(), 1u);
+  EXPECT_EQ(cases[0].at("failure"), "");
+  EXPECT_GT(cases[0].at("peak_bytes"), 0);
+  expect_failure(run_voxdag({"bench", "untrusted", "--only", "no such case"}), 1, "no such case");
 }
 
 TEST_F(BenchBuild, BadInputIsRefused) {

@@ -12,6 +12,7 @@
 #include "bench/report/bench_machine.hpp"
 #include "bench/rivals/command_rival.hpp"
 #include "cli/commands.hpp"
+#include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/scenes/scenes.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 struct BenchArguments {
   BenchPlan plan;
+  MeshAccess access;
   BenchOutput output;
 };
 
@@ -51,7 +53,9 @@ void bench(const BenchArguments& arguments, Session& session) {
     if (!run.failure.empty()) throw Error(run.scene, std::to_string(1 << run.levels), run.failure);
 }
 
-void finish_plan(BenchPlan& plan) {
+void finish_plan(BenchPlan& plan, const MeshAccess& access) {
+  if (access.allow_outside) plan.build_options.emplace_back("--allow-outside");
+  if (access.any_importer) plan.build_options.insert(plan.build_options.end(), {"--assimp", "any"});
   if (plan.meshes.empty())
     for (const SceneInfo& scene : scene_list()) plan.meshes.emplace_back(scene.name);
   std::sort(plan.levels.begin(), plan.levels.end());
@@ -85,6 +89,7 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
       .needs(rival);
   command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
                  "Number of runs; the fastest counts");
+  add_mesh_access_options(command, arguments->access);
   command.text("-o,--output", arguments->output.json_file, "FILE.json",
                "Also write the JSON to a file");
   command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
@@ -93,7 +98,7 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
   add_quiet_option(command, session);
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
-    finish_plan(arguments->plan);
+    finish_plan(arguments->plan, arguments->access);
     session.inputs = arguments->plan.meshes;
     arguments->output.check_distinct(session);
     session.work = [arguments, &session] {
