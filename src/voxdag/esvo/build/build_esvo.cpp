@@ -49,7 +49,7 @@ class TaskBuilder {
     finished->voxel =
         SubtreeBuilder(options_.settings, appearance_, scratch.decider, scratch.pieces)
             .build(cell.decision, cell.shape);
-    if (options_.memory != nullptr && options_.memory->limit() != 0) scratch.pieces.free_memory();
+    scratch.finish_cell();
     finished->voxel.count_tree(options_.memory);
     const EsvoTree& tree = finished->voxel.tree;
     finished->has_blocks = needs_blocks(tree);

@@ -18,6 +18,12 @@ void PieceStack::start(int log2_size, Vec3i origin, std::size_t triangles) {
   pieces_.reserve(triangles);
 }
 
+std::uint64_t PieceStack::held_bytes() const {
+  return triangles_.capacity() * sizeof(SurfaceTriangle) + ids_.capacity() * sizeof(std::uint32_t) +
+         pieces_.capacity() * sizeof(TrianglePiece) +
+         classified_.capacity() * sizeof(ChildConditions);
+}
+
 void PieceStack::free_memory() {
   triangles_ = CountedVector<SurfaceTriangle>(triangles_.get_allocator());
   ids_ = CountedVector<std::uint32_t>(ids_.get_allocator());

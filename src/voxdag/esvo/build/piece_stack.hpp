@@ -43,7 +43,9 @@ class PieceStack {
   /// Removes all triangles and begins a cell of 2^log2_size voxels at `origin` in the grid, in
   /// voxels. `triangles` is how many are expected.
   void start(int log2_size, Vec3i origin, std::size_t triangles);
-  /// Frees the memory that it holds.
+  /// Returns the bytes that it holds, also if it is empty.
+  std::uint64_t held_bytes() const;
+  /// Removes all triangles and frees the memory.
   void free_memory();
   /// Adds a triangle, whose coordinates begin at the cell's origin. `id` is the caller's.
   void add(const SurfaceTriangle& triangle, std::uint32_t id);

@@ -137,7 +137,7 @@ class TopCellFinder {
     cell.is_task =
         cell.decision.is_leaf || log2_size(cell) <= kLeastLog2 || cell.weight < kTaskWeight;
     if (!cell.is_task) pieces.list_children(children);
-    if (memory_ != nullptr && memory_->limit() != 0) pieces.free_memory();
+    scratch.finish_cell();
   }
 
   void add_children(std::size_t parent, ChildTriangles& children) {
