@@ -74,7 +74,7 @@ TEST_F(DeviceCommands, BenchTraceMeasuresIt) {
 
 TEST_F(DeviceCommands, ADeviceThatIsNotThereIsRefused) {
   expect_failure(run_on("cuda:1", {"render", path("in.vdag"), "-o", path("none.png")}), 1,
-                 "no CUDA device: there is no number 1 among 1");
+                 "no CUDA device 1: the driver lists 1, numbered from 0");
   EXPECT_FALSE(exists("none.png"));
 }
 

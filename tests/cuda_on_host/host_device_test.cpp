@@ -42,14 +42,16 @@ TEST_F(CudaOnHost, NoDeviceIsOneLineThatSaysWhy) {
   const auto why = [] { return failure([] { choose_cuda_device(); }); };
   EXPECT_EQ(why(), "");
   host_device().count = 0;
-  EXPECT_EQ(why(), "no CUDA device: the NVIDIA driver finds none");
+  EXPECT_EQ(why(), "no CUDA device: the NVIDIA driver finds no device");
   host_device().driver_version = 0;
   EXPECT_EQ(why(), "no CUDA device: no NVIDIA driver is installed");
   host_device().driver_version = 11080;
-  EXPECT_EQ(why(), "no CUDA device: the NVIDIA driver supports CUDA 11.8, and 13.0 is needed");
+  EXPECT_EQ(why(),
+            "no CUDA device: the NVIDIA driver supports CUDA 11.8, but voxdag needs 13.0 or later");
   host_device() = {};
   host_device().compute_capability = 61;
-  EXPECT_EQ(why(), "no CUDA device: the host has compute capability 6.1, and 7.5 is needed");
+  EXPECT_EQ(why(),
+            "no CUDA device: the host has compute capability 6.1, but voxdag needs 7.5 or later");
 }
 
 TEST_F(CudaOnHost, OutOfMemorySaysHowMuchIsNeeded) {

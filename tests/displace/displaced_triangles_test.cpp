@@ -167,7 +167,7 @@ TEST(Displacement, AmountsBesideWhichTheMeshIsNothingAreRefused) {
   for (const Displacement& d : load_displacements(crate.mesh, crate.appearance, warnings))
     EXPECT_FALSE(d.moves());
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_TRUE(warnings[0].starts_with("h.png: a displacement by 1e+30 units is too much"))
+  EXPECT_TRUE(warnings[0].starts_with("h.png: a displacement by 1e+30 units is too large"))
       << warnings[0];
   EXPECT_THROW(displace_all(crate.mesh, crate.appearance, stones(), -1e30), Error);
 }

@@ -299,7 +299,7 @@ TEST(Export, TheExtensionChooses) {
   EXPECT_FALSE(Ply(run("b.ply", PlyContent::kFaces)).faces.empty());
   EXPECT_EQ(error_of([&] { run("a.xyz", PlyContent::kPoints); }),
             (dir / "a.xyz").string() +
-                ": cannot export to '.xyz': the extensions are .npy, .ply and .raw");
+                ": cannot export to '.xyz': the extension must be .npy, .ply or .raw");
 }
 
 TEST(Export, AnEmptyDagMakesEmptyFiles) {

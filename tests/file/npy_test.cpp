@@ -128,28 +128,29 @@ TEST(Npy, NamesTheFault) {
   };
   EXPECT_EQ(error_of("some text that is no array"), "byte 0: not a .npy file");
   EXPECT_EQ(error_of(std::string("\x93NUMPY\x07\x00..........", 18)),
-            "byte 8: version 7 of .npy is unknown");
+            "byte 8: .npy version 7 is unknown: only versions 1 to 3 are read");
   EXPECT_EQ(header_error("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 8), }"),
-            "byte 128: items are '<f8', expected '<f4'");
+            "byte 128: items must be '<f4', not '<f8'");
   EXPECT_EQ(header_error("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (0, 8), }"),
-            "byte 128: items are [('a', '<f4')], expected '<f4'");
-  EXPECT_EQ(header_error(rays_header("(0, 7)")), "byte 128: shape is (0, 7), expected (N, 8)");
-  EXPECT_EQ(header_error(rays_header("(8,)")), "byte 128: shape is (8,), expected (N, 8)");
-  EXPECT_EQ(header_error(rays_header("()")), "byte 128: shape is (), expected (N, 8)");
+            "byte 128: items must be '<f4', not [('a', '<f4')]");
+  EXPECT_EQ(header_error(rays_header("(0, 7)")), "byte 128: the shape must be (N, 8), not (0, 7)");
+  EXPECT_EQ(header_error(rays_header("(8,)")), "byte 128: the shape must be (N, 8), not (8,)");
+  EXPECT_EQ(header_error(rays_header("()")), "byte 128: the shape must be (N, 8), not ()");
   EXPECT_EQ(header_error("{'descr': '<f4', 'fortran_order': True, 'shape': (0, 8), }"),
-            "byte 128: array is in Fortran order, expected C order");
+            "byte 128: the array must be in C order, not in Fortran order");
   EXPECT_EQ(header_error(rays_header("(18446744073709551615, 8)")),
             "byte 128: array of 18446744073709551615 rows is too large");
   EXPECT_EQ(header_error(rays_header("(18446744073709551616, 8)")),
-            "byte 61: header is malformed: a size expected");
-  EXPECT_EQ(header_error(rays_header("(-1, 8)")), "byte 61: header is malformed: a size expected");
+            "byte 61: malformed header: expected a size");
+  EXPECT_EQ(header_error(rays_header("(-1, 8)")), "byte 61: malformed header: expected a size");
   EXPECT_EQ(header_error("{'descr': '<f4'}"),
-            "byte 64: header lacks 'descr', 'fortran_order' or 'shape'");
+            "byte 64: the header must have 'descr', 'fortran_order' and 'shape'");
   EXPECT_EQ(header_error("{'other': '<f4'}"), "byte 19: unexpected key in the header");
-  EXPECT_EQ(header_error("{'descr': '<f4"), "byte 20: header is malformed: a string does not end");
+  EXPECT_EQ(header_error("{'descr': '<f4"),
+            "byte 20: malformed header: a string has no closing quote");
   EXPECT_EQ(header_error("{'descr': [[('<f4'"),
-            "byte 64: header is malformed: a list does not end");
-  EXPECT_EQ(header_error("import os"), "byte 10: header is malformed: '{' expected");
+            "byte 64: malformed header: a list has no closing bracket");
+  EXPECT_EQ(header_error("import os"), "byte 10: malformed header: expected '{'");
 }
 
 TEST(Npy, AMissingFileIsNamed) {

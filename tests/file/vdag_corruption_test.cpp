@@ -161,13 +161,13 @@ TEST(VdagCorruption, AnUnknownChunkThatIsNotRequiredIsSkipped) {
 TEST(VdagCorruption, FaultsInTheDagAreNamed) {
   const std::string bytes = small_file();
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 2) + 4, std::uint32_t{100})),
-            "chunk NODE, level 0, word 1: pointer leaves the next level");
+            "chunk NODE, level 0, word 1: pointer points outside the next level");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 3), std::uint64_t{0})),
             "chunk LEAF, leaf block 0: leaf block without voxels");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1), std::uint64_t{1})),
             "chunk LEVL, level table: level 0 does not begin at word 0");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1) + 16, std::uint64_t{6})),
-            "chunk NODE: 7 words, but the level table says 6");
+            "chunk NODE: has 7 words, but the level table says 6");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 0), '[')),
             "chunk META, byte 8: not valid JSON");
 }

@@ -87,8 +87,10 @@ TEST(VdagMetadata, NamesTheFault) {
   EXPECT_EQ(error_of("{}"), "grid: missing");
   EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":1")),
             "grid.levels: 1 is not in the range 2 to 20");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":3.0")), "grid.levels: not a count");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":-3")), "grid.levels: not a count");
+  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":3.0")),
+            "grid.levels: not a whole number of 0 or more");
+  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":-3")),
+            "grid.levels: not a whole number of 0 or more");
   EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":4")),
             "counts.svo_nodes_per_level: not an array of 4 values");
   EXPECT_EQ(error_of(with("[-1.5,", "[")), "grid.origin: not an array of 3 values");
@@ -96,10 +98,11 @@ TEST(VdagMetadata, NamesTheFault) {
   EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":0.0")),
             "grid.voxel_size: not positive");
   EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":1e308")),
-            "grid: the grid exceeds the range of doubles");
+            "grid: the far corner of the grid is not a finite number");
   EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":4e-324")),
-            "grid.voxel_size: is too small");
-  EXPECT_EQ(error_of(with("\"voxels\":1", "\"voxels\":\"1\"")), "counts.voxels: not a count");
+            "grid.voxel_size: is too small: 1 / voxel_size is not a finite number");
+  EXPECT_EQ(error_of(with("\"voxels\":1", "\"voxels\":\"1\"")),
+            "counts.voxels: not a whole number of 0 or more");
   EXPECT_EQ(error_of(with("\"bunny.ply\"", "7")), "source.name: not a string");
   EXPECT_EQ(error_of(with("\"exact\"", "1")), "build.cover: not a string");
   EXPECT_NE(error_of(with("0.01", "1e999")).find("not valid JSON"), std::string::npos);

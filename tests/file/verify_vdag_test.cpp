@@ -53,7 +53,7 @@ TEST(VerifyVdag, FindsADagThatIsNotMinimal) {
   dag.leaf_blocks[1] = dag.leaf_blocks[0];
   EXPECT_EQ(verify(vdag_file_bytes(dag)),
             "container, checksums, metadata, structure, canonical order, minimality! "
-            "chunk LEAF, leaf block 1: leaf block equals an earlier one, counts");
+            "chunk LEAF, leaf block 1: leaf block equals an earlier leaf block, counts");
 }
 
 TEST(VerifyVdag, FindsAnotherOrder) {
@@ -72,7 +72,7 @@ TEST(VerifyVdag, FindsWrongCounts) {
   write_vdag(dir / "a.vdag", dag.view(), metadata);
   EXPECT_EQ(summary(verify_vdag(dir / "a.vdag")),
             "container, checksums, metadata, structure, canonical order, minimality, "
-            "counts! chunk META, counts.svo_nodes_per_level[1]: 3, but the DAG has 2");
+            "counts! chunk META, counts.svo_nodes_per_level[1]: is 3, but the DAG has 2");
 }
 
 }  // namespace

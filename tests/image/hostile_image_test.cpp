@@ -120,7 +120,9 @@ TEST(HostileImage, AJpegOfTooManyScansIsRefused) {
     decode_image(progressive_jpeg(64, 200), "a.jpg");
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
-    EXPECT_EQ(error.reason(), "damaged JPEG file: scan 65 of 64 x 64 pixels is beyond the limit");
+    EXPECT_EQ(error.reason(),
+              "damaged JPEG file: scan 65 of 64 x 64 pixels exceeds the limits of 64 scans and "
+              "4294967296 pixels in all scans");
   }
 }
 

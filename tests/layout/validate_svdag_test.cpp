@@ -67,20 +67,20 @@ TEST(ValidateSvdag, RefusesAPointerIntoTheMiddleOfANode) {
   Svdag dag = two_corners();
   dag.nodes[1] = 4;
   EXPECT_EQ(fault(validate_svdag, dag),
-            "level 0, word 1: pointer is not to the first word of a node");
+            "level 0, word 1: pointer does not point to the first word of a node");
 }
 
 TEST(ValidateSvdag, RefusesAPointerToTheSameLevel) {
   Svdag dag = two_corners();
   dag.nodes[1] = 0;
-  EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 1: pointer leaves the next level");
+  EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 1: pointer points outside the next level");
 }
 
 TEST(ValidateSvdag, RefusesAPointerPastTheWords) {
   Svdag dag = two_corners();
   for (const std::uint32_t pointer : {7u, 8u, 0xFFFFFFFFu}) {
     dag.nodes[2] = pointer;
-    EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 2: pointer leaves the next level");
+    EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 2: pointer points outside the next level");
   }
 }
 
@@ -100,11 +100,11 @@ TEST(ValidateSvdag, RefusesTwoRoots) {
   Svdag dag = brute_svdag(3, {{0, 0, 0}});
   dag.nodes.insert(dag.nodes.end(), {1u, 0u});
   for (int level = 1; level <= kMaxLevels; ++level) dag.level_begin[level] = 4;
-  EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 0: level 0 is not one node");
+  EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 0: level 0 must be exactly one node");
 
   Svdag blocks = brute_svdag(2, {{0, 0, 0}});
   blocks.leaf_blocks.push_back(2);
-  EXPECT_EQ(fault(validate_svdag, blocks), "level table: more than one root");
+  EXPECT_EQ(fault(validate_svdag, blocks), "level table: there is more than one root");
 }
 
 TEST(ValidateSvdag, RefusesABadLevelTable) {
@@ -119,7 +119,7 @@ TEST(ValidateSvdag, RefusesABadLevelTable) {
   EXPECT_EQ(fault(validate_svdag, dag), "level table: level 1 has no nodes");
   dag = two_corners();
   dag.level_begin[5] = 8;
-  EXPECT_EQ(fault(validate_svdag, dag), "level table: level 4 has words");
+  EXPECT_EQ(fault(validate_svdag, dag), "level table: level 4 must have no node words");
   dag = two_corners();
   dag.levels = 1;
   EXPECT_EQ(fault(validate_svdag, dag), "level table: 1 levels are not in the range 2 to 20");
@@ -151,13 +151,13 @@ TEST(CheckMinimal, RefusesEqualNodes) {
   dag.nodes[5] = dag.nodes[3];
   dag.nodes[6] = dag.nodes[4];
   EXPECT_EQ(fault(validate_svdag, dag), "");
-  EXPECT_EQ(fault(check_minimal, dag), "level 1, word 5: node equals an earlier one of its level");
+  EXPECT_EQ(fault(check_minimal, dag), "level 1, word 5: node equals an earlier node of its level");
 }
 
 TEST(CheckMinimal, RefusesEqualLeafBlocks) {
   Svdag dag = two_corners();
   dag.leaf_blocks[1] = dag.leaf_blocks[0];
-  EXPECT_EQ(fault(check_minimal, dag), "leaf block 1: leaf block equals an earlier one");
+  EXPECT_EQ(fault(check_minimal, dag), "leaf block 1: leaf block equals an earlier leaf block");
 }
 
 /// Any one bit of a canonical minimal DAG changed: either a check objects, or the words

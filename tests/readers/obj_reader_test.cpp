@@ -98,9 +98,9 @@ TEST(ObjReader, RefusalsNameTheLineAndTheReason) {
   EXPECT_EQ(refused("\nf 1 2 -5"),
             "mesh: line 6: vertex index -5 is out of range: 4 vertices so far");
   EXPECT_EQ(refused("f 1 2 99999999999999999999"),
-            "mesh: line 5: face corner '99999999999999999999' is not an index");
-  EXPECT_EQ(refused("f 1 2 x"), "mesh: line 5: face corner 'x' is not an index");
-  EXPECT_EQ(refused("v 1 2\nf 1 2 3"), "mesh: line 5: vertex with fewer than three coordinates");
+            "mesh: line 5: face corner '99999999999999999999' is not a vertex index");
+  EXPECT_EQ(refused("f 1 2 x"), "mesh: line 5: face corner 'x' is not a vertex index");
+  EXPECT_EQ(refused("v 1 2\nf 1 2 3"), "mesh: line 5: the vertex has fewer than three coordinates");
   EXPECT_EQ(refused("v 1 2 3,5\nf 1 2 3"), "mesh: line 5: coordinate '3,5' is not a number");
   EXPECT_EQ(refused("v 1 2 1e39\nf 1 2 3\nf 1 2 5"),
             "mesh: line 5: vertex is not finite and a face uses it");
@@ -136,7 +136,7 @@ TEST(ObjReader, ALargeFileReadsLikeItsParts) {
     EXPECT_EQ(mesh.materials[mesh.triangle_materials[i]],
               std::string("m").append(std::to_string((i - 1) / 1000 % 7)));
   EXPECT_EQ(refusal(read_obj, text + "f 1 2 bad\n"),
-            "mesh: line 240061: face corner 'bad' is not an index");
+            "mesh: line 240061: face corner 'bad' is not a vertex index");
 }
 
 }  // namespace

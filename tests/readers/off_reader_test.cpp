@@ -28,7 +28,8 @@ TEST(OffReader, RefusalsNameTheLine) {
   };
   EXPECT_EQ(refusal(read_off, "off\n"),
             "mesh: line 1: not an OFF file: it does not start with 'OFF'");
-  EXPECT_EQ(refused("OFF", "4OFF"), "mesh: line 1: OFF of other than three dimensions");
+  EXPECT_EQ(refused("OFF", "4OFF"),
+            "mesh: line 1: 4OFF and nOFF are not supported: vertices must have three coordinates");
   EXPECT_EQ(refused("OFF #", "OFF BINARY #"),
             "mesh: line 1: binary OFF is not supported: save it as text");
   EXPECT_EQ(refused("4 1 0", "353535235358 6 0"),
@@ -36,8 +37,9 @@ TEST(OffReader, RefusalsNameTheLine) {
   EXPECT_EQ(refused("4 1 0", "4 3 0"), "mesh: line 9: the file ends before its last face");
   EXPECT_EQ(refused("4 0 1 2 3", "4 0 1 2 4"),
             "mesh: line 8: vertex index 4 is out of range: 4 vertices");
-  EXPECT_EQ(refused("4 0 1 2 3 255 0 0", "9 0 1 2"),
-            "mesh: line 8: the face has no list of vertex indices of the length that it says");
+  EXPECT_EQ(
+      refused("4 0 1 2 3 255 0 0", "9 0 1 2"),
+      "mesh: line 8: the number of vertex indices is missing, or the row is too short for it");
   EXPECT_EQ(refused("0.5", "inf"), "mesh: line 8: vertex 2 is not finite and this face uses it");
 }
 

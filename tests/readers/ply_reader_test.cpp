@@ -125,7 +125,7 @@ TEST(PlyReader, HeaderFaultsNameTheLine) {
             "mesh: line 9: count '18446744073709551615' of element 'face' is not a number");
   EXPECT_EQ(refused("float y", "half y"), "mesh: line 7: unknown PLY type 'half'");
   EXPECT_EQ(refused("list uchar", "list float"),
-            "mesh: line 10: list count of type 'float', which is not an integer type");
+            "mesh: line 10: a list count must have an integer type, not 'float'");
   EXPECT_EQ(refused("float y", "float x"), "mesh: line 7: property 'x' is declared twice");
   EXPECT_EQ(refused("element face", "element vertex"),
             "mesh: line 9: element 'vertex' is declared twice");
@@ -149,7 +149,7 @@ TEST(PlyReader, BodyFaultsNameTheLine) {
   EXPECT_EQ(refused("4 0 1 2 3", "4 0 1 2"),
             "mesh: line 16: the row ends before property 'vertex_indices'");
   EXPECT_EQ(refused("4 0 1 2 3", "3 0 1 2 3"),
-            "mesh: line 16: the row goes on with '3' after its last property");
+            "mesh: line 16: the row has '3' after its last property");
   EXPECT_EQ(refused("4 0 1 2 3", "2 0 1"),
             "mesh: no face has three corners or more: there is no surface to read");
   EXPECT_EQ(refused("1 1 0\n", "1 nan 0\n"),

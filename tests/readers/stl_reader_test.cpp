@@ -100,7 +100,7 @@ TEST(StlReader, AGridWeldsToItsPoints) {
 TEST(StlReader, RefusalsNameThePlaceAndTheReason) {
   EXPECT_EQ(refusal(read_stl, ""), "mesh: the file is empty");
   EXPECT_EQ(refusal(read_stl, "hello"),
-            "mesh: neither an ascii STL file nor long enough for a binary one");
+            "mesh: not an STL file: it is not ASCII STL, and it is too short for binary STL");
   const std::string binary = binary_stl(kFacets, "");
   EXPECT_EQ(refusal(read_stl, binary.substr(0, 180)),
             "mesh: byte 180: the file ends after 1 of 2 facets");
@@ -115,7 +115,7 @@ TEST(StlReader, RefusalsNameThePlaceAndTheReason) {
     return text.erase(text.find(part), part.size());
   };
   EXPECT_EQ(refusal(read_stl, without("   vertex 1 1 0\n")),
-            "mesh: line 6: 'vertex' expected, not 'endloop'");
+            "mesh: line 6: expected 'vertex', not 'endloop'");
   EXPECT_EQ(refusal(read_stl, without("endsolid a facet of life\n")),
             "mesh: line 14: the file ends before 'endsolid'");
   EXPECT_EQ(refusal(read_stl, without(" 0 1 1.5e0 ENDLOOP")),

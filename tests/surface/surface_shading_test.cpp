@@ -292,10 +292,10 @@ TEST(SurfaceShading, MissingTexturesAreWarningsThatSayWhatStandsIn) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0], path.string() +
                              ": cannot open: No such file or directory: the material's "
-                             "colour stands in for the texture");
+                             "colour replaces the texture");
   EXPECT_EQ(warnings[1],
             "mesh.glb: images[1]: byte 0: neither a PNG nor a JPEG image: the mesh's own normals "
-            "stand in for the normal map");
+            "replace the normal map");
   EXPECT_EQ(shading.mean(0, kWhole).color, (Vec3f{0.2f, 0.4f, 0.6f}));
   EXPECT_EQ(shading.mean(0, kWhole).normal, (Vec3f{0, 0, 1}));
 }

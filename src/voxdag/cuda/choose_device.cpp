@@ -14,16 +14,16 @@ CudaDevice choose_cuda_device(int index) {
   const CudaDevices found = cuda_devices();
   if (found.devices.empty()) throw Error("no CUDA device: " + found.why_none);
   if (index >= static_cast<int>(found.devices.size()))
-    throw Error("no CUDA device: there is no number " + std::to_string(index) + " among " +
-                std::to_string(found.devices.size()));
+    throw Error("no CUDA device " + std::to_string(index) + ": the driver lists " +
+                std::to_string(found.devices.size()) + ", numbered from 0");
   for (const CudaDevice& device : found.devices)
     if ((index < 0 || device.index == index) &&
         device.compute_capability >= kLeastComputeCapability)
       return device;
   const CudaDevice& device = found.devices[static_cast<std::size_t>(index < 0 ? 0 : index)];
   throw Error("no CUDA device: " + device.name + " has compute capability " +
-              capability_text(device.compute_capability) + ", and " +
-              capability_text(kLeastComputeCapability) + " is needed");
+              capability_text(device.compute_capability) + ", but voxdag needs " +
+              capability_text(kLeastComputeCapability) + " or later");
 }
 
 }  // namespace voxdag

@@ -16,10 +16,10 @@ std::string why_none(cudaError_t status) {
   switch (status) {
     case cudaErrorInsufficientDriver:
       if (driver == 0) return "no NVIDIA driver is installed";
-      return "the NVIDIA driver supports CUDA " + version_text(driver) + ", and " +
-             version_text(CUDART_VERSION) + " is needed";
+      return "the NVIDIA driver supports CUDA " + version_text(driver) + ", but voxdag needs " +
+             version_text(CUDART_VERSION) + " or later";
     case cudaErrorNoDevice:
-      return "the NVIDIA driver finds none";
+      return "the NVIDIA driver finds no device";
     default:
       return cudaGetErrorString(status);
   }

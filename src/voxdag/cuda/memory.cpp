@@ -27,10 +27,10 @@ std::string current_device() {
 
 void require_device_memory(std::uint64_t bytes, const char* what) {
   std::size_t free = 0, total = 0;
-  check_cuda(cudaMemGetInfo(&free, &total), "asking for the free memory");
+  check_cuda(cudaMemGetInfo(&free, &total), "querying the free memory");
   if (bytes <= free) return;
   throw Error(current_device(), "",
-              std::string("out of memory: ") + what + " needs " + size_text(bytes) + ", " +
+              std::string("out of memory: ") + what + " needs " + size_text(bytes) + ", but only " +
                   size_text(free) + " of " + size_text(total) + " are free");
 }
 

@@ -24,7 +24,9 @@ constexpr int kSubvolumeLevels = 10;
 
 void require_32_bits(std::uint64_t nodes) {
   if (nodes * 9 >= kNoNode)
-    throw Error("the DAG is too large: one level of its sub-volumes outgrew 32-bit pointers");
+    throw Error(
+        "the DAG is too large: one level of its sub-volumes has more nodes "
+        "than 32-bit pointers can address");
 }
 
 /// Appends the nodes of `from` below those of `to`, level by level, from `level` down. Returns the

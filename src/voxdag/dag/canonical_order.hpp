@@ -31,7 +31,7 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudg
   dag.levels = levels;
   const int leaf_level = levels - 2;
   if (source.node_words() + kPlaced > 0xFFFFFFFFull)
-    throw Error("the DAG is too large: its nodes outgrew 32-bit pointers");
+    throw Error("the DAG is too large: its nodes have more words than 32-bit pointers can address");
   const MemoryReservation copy(budget, source.node_words() * sizeof(std::uint32_t) +
                                            source.leaf_blocks() * sizeof(std::uint64_t));
   dag.nodes.reserve(source.node_words());

@@ -118,7 +118,7 @@ void NodeStore::take_run(Run& run) {
   const std::uint32_t words = 1u << bits;
   // The last id plus one must fit in a slot.
   if (end_ > kNoNode - words)
-    throw Error("the DAG is too large: one level outgrew 32-bit pointers");
+    throw Error("the DAG is too large: one level has more words than 32-bit pointers can address");
   const std::size_t chunk_words = std::size_t{1} << (kFirstChunkBits + chunk);
   std::uint64_t bytes = std::uint64_t{words} * 4;
   // Large chunks become resident by whole huge pages.

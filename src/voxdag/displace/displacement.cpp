@@ -27,9 +27,11 @@ bool is_too_large(double amount, double side) {
 }
 
 std::string too_large_text(double amount, double side) {
-  char text[128];
+  char text[192];
   std::snprintf(text, sizeof text,
-                "a displacement by %.6g units is too much for a mesh of %.6g units", amount, side);
+                "a displacement by %.6g units is too large for a mesh that is %.6g units long: at "
+                "most 2^%d times its length is allowed",
+                amount, side, kMaxLevels);
   return text;
 }
 
@@ -57,7 +59,7 @@ std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance&
     if (const double most = std::max(std::fabs(base), std::fabs(base + gain));
         is_too_large(most, side)) {
       warnings.push_back(image.name + ": " + too_large_text(most, side) +
-                         ": the surface stays without displacement");
+                         ": the surface is not displaced");
       continue;
     }
     const auto [place, is_new] = loaded.try_emplace({use.image, use.wrap_u, use.wrap_v});
@@ -69,7 +71,7 @@ std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance&
       } catch (const OverMemory&) {
         throw;
       } catch (const Error& error) {
-        warnings.push_back(std::string(error.what()) + ": the surface stays without displacement");
+        warnings.push_back(std::string(error.what()) + ": the surface is not displaced");
       }
     displacements[i] = {place->second, base, gain, use.uv, 0};
   }

@@ -15,7 +15,7 @@ void export_voxels(const std::filesystem::path& path, const VoxelSet& voxels, co
   if (extension == ".ply") return export_ply_points(path, voxels, grid, options);
   throw Error(
       path.string(), "",
-      "cannot export to '" + extension.string() + "': the extensions are .npy, .ply and .raw");
+      "cannot export to '" + extension.string() + "': the extension must be .npy, .ply or .raw");
 }
 
 }  // namespace voxdag

@@ -18,8 +18,10 @@ Grid read_grid(const MetadataField& field) {
   grid.quantization_scale = field.at("quantization_scale").positive();
   const Vec3d far_corner = grid.bounds().hi;
   for (int axis = 0; axis < 3; ++axis)
-    if (!std::isfinite(far_corner[axis])) field.fail("the grid exceeds the range of doubles");
-  if (!std::isfinite(1 / grid.voxel_size)) field.at("voxel_size").fail("is too small");
+    if (!std::isfinite(far_corner[axis]))
+      field.fail("the far corner of the grid is not a finite number");
+  if (!std::isfinite(1 / grid.voxel_size))
+    field.at("voxel_size").fail("is too small: 1 / voxel_size is not a finite number");
   return grid;
 }
 

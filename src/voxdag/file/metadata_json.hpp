@@ -37,7 +37,7 @@ struct MetadataField {
       fail("not an array of " + std::to_string(size) + " values");
   }
   std::uint64_t count() const {
-    if (!value.is_number_unsigned()) fail("not a count");
+    if (!value.is_number_unsigned()) fail("not a whole number of 0 or more");
     return value.get<std::uint64_t>();
   }
   double finite() const {

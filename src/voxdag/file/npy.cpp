@@ -50,19 +50,19 @@ NpyReader::NpyReader(const std::filesystem::path& path, const std::string& dtype
   file_bytes_ = input.size;
   const NpyHeader header = read_header();
   if (header.dtype != dtype)
-    fail("items are " + dtype_literal(header.dtype) + ", expected " + dtype_literal(dtype));
+    fail("items must be " + dtype_literal(dtype) + ", not " + dtype_literal(header.dtype));
   if (header.shape.empty() || !std::equal(header.shape.begin() + 1, header.shape.end(),
                                           row_shape.begin(), row_shape.end())) {
     const std::string found =
         header.shape.empty()
             ? "()"
             : shape_literal(std::to_string(header.shape[0]), std::span(header.shape).subspan(1));
-    fail("shape is " + found + ", expected " + shape_literal("N", row_shape));
+    fail("the shape must be " + shape_literal("N", row_shape) + ", not " + found);
   }
-  if (header.fortran_order) fail("array is in Fortran order, expected C order");
+  if (header.fortran_order) fail("the array must be in C order, not in Fortran order");
   rows_ = header.shape[0];
   if (rows_ > std::numeric_limits<std::int64_t>::max() / row_bytes_ / 2)
-    fail("array of " + std::to_string(rows_) + " rows is too large");
+    fail("an array of " + std::to_string(rows_) + " rows is too large");
   check_size();
 }
 
@@ -80,7 +80,7 @@ void NpyReader::read_exactly(void* out, std::size_t bytes) {
     const ssize_t got = ::read(input_.get(), to, bytes);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail("cannot read: " + std::system_category().message(errno));
-    if (got == 0) fail("truncated: " + std::to_string(bytes) + " more bytes expected");
+    if (got == 0) fail("truncated: " + std::to_string(bytes) + " bytes are missing");
     to += got;
     bytes -= static_cast<std::size_t>(got);
     position_ += static_cast<std::uint64_t>(got);
@@ -95,10 +95,13 @@ NpyHeader NpyReader::read_header() {
     fail("not a .npy file");
   }
   const int major = static_cast<unsigned char>(magic[6]);
-  if (major < 1 || major > 3) fail("version " + std::to_string(major) + " of .npy is unknown");
+  if (major < 1 || major > 3)
+    fail(".npy version " + std::to_string(major) + " is unknown: only versions 1 to 3 are read");
   std::uint32_t length = 0;
   read_exactly(&length, major == 1 ? 2 : 4);
-  if (length > kMostHeaderBytes) fail("header of " + std::to_string(length) + " bytes is too long");
+  if (length > kMostHeaderBytes)
+    fail("the header has " + std::to_string(length) + " bytes, more than " +
+         std::to_string(kMostHeaderBytes));
   const std::uint64_t first_byte = position_;
   std::string text(length, '\0');
   read_exactly(text.data(), length);

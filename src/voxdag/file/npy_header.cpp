@@ -30,11 +30,11 @@ class Parser {
       } else {
         fail("unexpected key in the header");
       }
-      if (!accept(',') && peek() != '}') fail("header is malformed");
+      if (!accept(',') && peek() != '}') fail("malformed header: expected ',' or '}'");
     }
     if (peek() != '\0') fail("text after the header's dictionary");
     if (!has_dtype || !has_order || !has_shape)
-      fail("header lacks 'descr', 'fortran_order' or 'shape'");
+      fail("the header must have 'descr', 'fortran_order' and 'shape'");
     return header;
   }
 
@@ -54,16 +54,17 @@ class Parser {
     return true;
   }
   void expect(char c) {
-    if (!accept(c)) fail(std::string("header is malformed: '") + c + "' expected");
+    if (!accept(c)) fail(std::string("malformed header: expected '") + c + "'");
   }
 
   std::string quoted() {
     const char quote = peek();
-    if (quote != '\'' && quote != '"') fail("header is malformed: a string expected");
+    if (quote != '\'' && quote != '"') fail("malformed header: expected a string");
     const std::size_t end = text_.find(quote, at_ + 1);
-    if (end == std::string_view::npos) fail("header is malformed: a string does not end");
+    if (end == std::string_view::npos) fail("malformed header: a string has no closing quote");
     std::string value(text_.substr(at_ + 1, end - at_ - 1));
-    if (value.find('\\') != std::string::npos) fail("escapes in strings are not supported");
+    if (value.find('\\') != std::string::npos)
+      fail("malformed header: strings must not contain '\\'");
     at_ = end + 1;
     return value;
   }
@@ -74,7 +75,7 @@ class Parser {
     int depth = 0;
     do {
       const char c = peek();
-      if (c == '\0') fail("header is malformed: a list does not end");
+      if (c == '\0') fail("malformed header: a list has no closing bracket");
       if (c == '\'' || c == '"') {
         quoted();
         continue;
@@ -94,7 +95,7 @@ class Parser {
         at_ += word.size();
         return value;
       }
-    fail("header is malformed: True or False expected");
+    fail("malformed header: expected True or False");
   }
 
   std::vector<std::uint64_t> tuple() {
@@ -105,10 +106,10 @@ class Parser {
       std::uint64_t value = 0;
       const char* begin = text_.data() + at_;
       const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
-      if (error != std::errc()) fail("header is malformed: a size expected");
+      if (error != std::errc()) fail("malformed header: expected a size");
       at_ += static_cast<std::size_t>(end - begin);
       values.push_back(value);
-      if (!accept(',') && peek() != ')') fail("header is malformed: ',' or ')' expected");
+      if (!accept(',') && peek() != ')') fail("malformed header: expected ',' or ')'");
     }
     return values;
   }

@@ -142,10 +142,11 @@ SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
   const auto nodes = chunk_values<std::uint32_t>(chunks, kChunkNodes);
   const auto leaf_blocks = chunk_values<std::uint64_t>(chunks, kChunkLeafBlocks);
   if (table.size() != static_cast<std::size_t>(levels - 1))
-    fail(chunk_place(kChunkLevels), std::to_string(table.size()) + " values for a grid of " +
-                                        std::to_string(levels) + " levels");
+    fail(chunk_place(kChunkLevels), "has " + std::to_string(table.size()) +
+                                        " values, but a grid of " + std::to_string(levels) +
+                                        " levels needs " + std::to_string(levels - 1));
   if (table.back() != nodes.size())
-    fail(chunk_place(kChunkNodes), std::to_string(nodes.size()) +
+    fail(chunk_place(kChunkNodes), "has " + std::to_string(nodes.size()) +
                                        " words, but the level table says " +
                                        std::to_string(table.back()));
   SvdagView view;

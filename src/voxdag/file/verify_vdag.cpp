@@ -23,7 +23,7 @@ void run_check(VerifyReport& report, std::string name, std::initializer_list<std
   check.name = std::move(name);
   for (const std::size_t index : needed)
     if (check.detail.empty() && report.checks[index].result != Result::kPassed)
-      check.detail = "needs " + report.checks[index].name;
+      check.detail = report.checks[index].name + " did not pass";
   if (check.detail.empty()) {
     try {
       work();
@@ -39,7 +39,7 @@ void run_check(VerifyReport& report, std::string name, std::initializer_list<std
 void compare(const std::string& name, std::uint64_t stated, std::uint64_t counted) {
   if (stated != counted)
     throw Error("", ErrorPlace::chunk("META") / ("counts." + name),
-                std::to_string(stated) + ", but the DAG has " + std::to_string(counted));
+                "is " + std::to_string(stated) + ", but the DAG has " + std::to_string(counted));
 }
 
 void compare_levels(const std::string& name, const std::vector<std::uint64_t>& stated,

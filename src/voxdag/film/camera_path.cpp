@@ -75,10 +75,10 @@ void check(const std::vector<CameraKey>& keys) {
     if (i > 0 && !(keys[i].time > keys[i - 1].time))
       refuse("its time is not greater than the time of the key before");
     if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
-      refuse("a position is not finite");
-    if (view.eye == view.target) refuse("eye and target are the same point");
+      refuse("its eye, target or up is not finite");
+    if (view.eye == view.target) refuse("its eye and target are the same point");
     if (!(view.vertical_fov_degrees > 0 && view.vertical_fov_degrees < 180))
-      refuse("its angle of view is not between 0 and 180 degrees");
+      refuse("its fov must be above 0 and below 180 degrees");
   }
 }
 

@@ -49,7 +49,8 @@ bool is_frame_pattern(const std::string& pattern) {
 std::string frame_pattern_fault(const std::string& text) {
   if (is_frame_pattern(text)) return "";
   const int places = percents_of(text).places;
-  if (places > 1) return fmt::format("has {} placeholders for a number; one is allowed", places);
+  if (places > 1)
+    return fmt::format("has {} placeholders for the frame number; exactly one is allowed", places);
   if (places == 1) return "has a % that is not a placeholder such as %04d";
   return "has no placeholder for the frame number, such as %04d";
 }

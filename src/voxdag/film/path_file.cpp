@@ -53,7 +53,7 @@ PathKey key_of(const Json& json, const Place& place) {
     else if (member == "fov")
       key.fov_degrees = number(value, place, member);
     else
-      place.refuse("\"" + member + "\" is none of time, eye, target, up, fov");
+      place.refuse("unknown key \"" + member + "\": the keys are time, eye, target, up and fov");
   }
   return key;
 }
@@ -84,16 +84,17 @@ PathFile read_path_file(const std::string& path) {
   const Json json = parse(path);
   const Place place{path, ""};
   if (!json.is_object() || !json.contains("keys") || !json["keys"].is_array())
-    place.refuse("not an object with an array \"keys\"");
+    place.refuse("must be an object with an array \"keys\"");
   PathFile file;
   file.name = path;
   for (const auto& [member, value] : json.items()) {
     if (member == "sun") {
       file.sun = vector(value, place, member);
       const double length2 = dot(*file.sun, *file.sun);
-      if (!(length2 > 0 && length2 < HUGE_VAL)) place.refuse("\"sun\" is not a direction");
+      if (!(length2 > 0 && length2 < HUGE_VAL))
+        place.refuse("\"sun\" must be a direction: finite and not zero");
     } else if (member != "keys")
-      place.refuse("\"" + member + "\" is neither keys nor sun");
+      place.refuse("unknown key \"" + member + "\": the keys are keys and sun");
   }
   for (const Json& key : json["keys"])
     file.keys.push_back(key_of(key, {path, "key " + std::to_string(file.keys.size())}));

@@ -30,11 +30,11 @@ void require_writable(const std::string& file, const ImageF& image,
   };
   if (image.width <= 0 || image.height <= 0 || image.channels <= 0 ||
       image.pixels.size() != ImageF(image.width, image.height, image.channels).pixels.size())
-    fail("the image has no pixels or the wrong number");
+    fail("the number of pixels does not match the size of the image");
   const std::set<std::string> distinct(names.begin(), names.end());
   if (names.size() != static_cast<std::size_t>(image.channels) || distinct.size() != names.size() ||
       distinct.count("") != 0)
-    fail("channel names must be distinct, not empty and one for each channel");
+    fail("each channel must have a name of its own");
 }
 
 }  // namespace

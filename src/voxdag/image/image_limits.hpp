@@ -25,9 +25,9 @@ inline void check_image_size(const std::string& name, std::uint64_t width, std::
   if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide ||
       width * height > kMaxImagePixels)
     throw Error(name, "header",
-                "size " + std::to_string(width) + " x " + std::to_string(height) +
-                    " is outside of the limits: 1 to " + std::to_string(kMaxImagePixels) +
-                    " pixels");
+                "the image has " + std::to_string(width) + " x " + std::to_string(height) +
+                    " pixels; 1 to " + std::to_string(kMaxImagePixels) +
+                    " are allowed, and at most " + std::to_string(kMaxImageSide) + " a side");
 }
 
 }  // namespace voxdag

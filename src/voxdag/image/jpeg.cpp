@@ -60,8 +60,11 @@ struct JpegDecoder {
     const auto scans = static_cast<std::uint64_t>(info.input_scan_number);
     if (scans > kMaxJpegScans ||
         scans * info.image_width * info.image_height > kMaxJpegScanPixels) {
-      std::snprintf(message, sizeof message, "scan %d of %u x %u pixels is beyond the limit",
-                    info.input_scan_number, info.image_width, info.image_height);
+      std::snprintf(message, sizeof message,
+                    "scan %d of %u x %u pixels exceeds the limits of %d scans and %llu pixels in "
+                    "all scans",
+                    info.input_scan_number, info.image_width, info.image_height, kMaxJpegScans,
+                    static_cast<unsigned long long>(kMaxJpegScanPixels));
       std::longjmp(escape, 1);
     }
     try {

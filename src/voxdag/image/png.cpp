@@ -42,13 +42,13 @@ void require_whole(const std::string& file, std::span<const std::uint8_t> bytes)
 /// Checks the size in the header, which libpng does not see before.
 void require_sane_size(const std::string& file, std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 24 || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0)
-    throw Error(file, "byte 8", "damaged PNG file: the header is not first");
+    throw Error(file, "byte 8", "damaged PNG file: the first chunk is not the header");
   const std::uint64_t width = big_endian32(&bytes[16]), height = big_endian32(&bytes[20]);
   check_image_size(file, width, height);
   if (width * height / kMaxPixelsPerByte > bytes.size())
     throw Error(file, "header",
-                "size " + std::to_string(width) + " x " + std::to_string(height) +
-                    " is more than the file can hold");
+                "the file is too short for " + std::to_string(width) + " x " +
+                    std::to_string(height) + " pixels");
 }
 
 /// libpng's structures for reading, freed on every way out, and what its callbacks need.
@@ -147,7 +147,8 @@ DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& 
 void write_png(const std::filesystem::path& path, const ImageRgb8& image) {
   if (image.width <= 0 || image.height <= 0 ||
       image.pixels.size() != ImageRgb8(image.width, image.height).pixels.size())
-    throw Error(path.string(), "", "cannot write: the image has no pixels or the wrong number");
+    throw Error(path.string(), "",
+                "cannot write: the number of pixels does not match the size of the image");
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);

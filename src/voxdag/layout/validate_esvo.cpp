@@ -26,19 +26,20 @@ EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
     fail("", "its size is not a whole number of pages");
   const std::uint64_t at = slots[0];
   if (at < 2 || at % 2 != 0 || at + kInfoSlots > slots.size())
-    fail("", "its page header points to no info section");
+    fail("", "its page header does not point to an info section");
   EsvoBlockInfo info;
   std::memcpy(&info, slots.data() + at, sizeof info);
   if (info.slots != slots.size() || info.descriptor_slots != at)
-    fail("", "its info section disagrees about its size");
+    fail("", "its info section states another size");
   for (std::uint64_t page = 0; page < at; page += kEsvoPageSlots)
-    if (slots[page] != at - page) fail("", "a page header is wrong");
+    if (slots[page] != at - page) fail("", "a page header does not point to the info section");
   const auto fits = [&](std::uint64_t begin, std::uint64_t count) {
     return begin >= at + kInfoSlots && begin + count <= slots.size();
   };
   if (!fits(info.contour_begin, (std::uint64_t{info.contour_count} + 1) / 2))
-    fail("", "its contours lie outside of it");
-  if (info.attachment_count > EsvoBlockInfo::kMaxAttachments) fail("", "too many attachments");
+    fail("", "its contours extend past its end");
+  if (info.attachment_count > EsvoBlockInfo::kMaxAttachments)
+    fail("", "it has more than " + std::to_string(EsvoBlockInfo::kMaxAttachments) + " attachments");
   for (std::uint32_t i = 0; i < info.attachment_count; ++i) {
     const EsvoAttachment& attachment = info.attachments[i];
     const std::uint32_t expected = slots_per_pair(attachment.kind);
@@ -83,9 +84,9 @@ class BlockWalk {
     if (end > info_.descriptor_slots)
       fail(ErrorPlace::slot(first), "the siblings extend past the descriptors");
     if (first % kEsvoPageSlots == 0 || first / kEsvoPageSlots != (end - 1) / kEsvoPageSlots)
-      fail(ErrorPlace::slot(first), "the siblings lie across a page header");
+      fail(ErrorPlace::slot(first), "the siblings cross a page header");
     for (std::uint64_t slot = first; slot < end; ++slot) {
-      if (seen_[slot]) fail(ErrorPlace::slot(slot), "two pointers lead to this descriptor");
+      if (seen_[slot]) fail(ErrorPlace::slot(slot), "two pointers point to this descriptor");
       seen_[slot] = true;
     }
   }
@@ -108,11 +109,11 @@ class BlockWalk {
     check_contours(slot, d);
     if (d.inner_mask() == 0) return;
     if (level == view_.levels)
-      fail(ErrorPlace::slot(slot), "the voxels of the finest level have children");
+      fail(ErrorPlace::slot(slot), "a voxel of the finest level has children");
 
     const std::uint64_t pointer = slot + d.child_pointer();
     if (d.child_pointer() == 0 || pointer >= info_.descriptor_slots)
-      fail(ErrorPlace::slot(slot), "the child pointer leaves the block");
+      fail(ErrorPlace::slot(slot), "the child pointer points outside the block");
     Vec3i cells[8];
     std::size_t count = 0;
     for (int child = 0; child < 8; ++child)
@@ -140,13 +141,14 @@ class BlockWalk {
     const std::uint64_t begin = 2 * std::uint64_t{info_.contour_begin};
     const std::uint64_t first = 2 * slot + d.contour_pointer();
     if (first < begin || first + count > begin + info_.contour_count)
-      fail(ErrorPlace::slot(slot), "the contour pointer leaves the contours");
+      fail(ErrorPlace::slot(slot), "the contour pointer points outside the contours");
     for (int child = 0; child < 8; ++child) {
       if ((d.contour_mask() >> child & 1) == 0) continue;
       const Contour contour = view_.contour(slot, d, child);
-      if (contour.normal() == Vec3i{}) fail(ErrorPlace::slot(slot), "a contour has no normal");
+      if (contour.normal() == Vec3i{})
+        fail(ErrorPlace::slot(slot), "the normal of a contour is zero");
       if (contour.low() > contour.high())
-        fail(ErrorPlace::slot(slot), "a contour's planes are in the wrong order");
+        fail(ErrorPlace::slot(slot), "the low plane of a contour is above the high one");
     }
   }
 
@@ -165,7 +167,7 @@ EsvoBlockCheck check_esvo_block(std::span<const std::uint64_t> slots, const Esvo
   EsvoBlockCheck check = BlockWalk(slots, info, levels).run(entry, siblings);
   if (check.counts.descriptors != info.descriptors ||
       check.counts.far_pointers != info.far_pointers || check.counts.contours < info.contour_count)
-    fail("", "its info section disagrees with its contents");
+    fail("", "the counts in its info section differ from its contents");
   check.counts.blocks = 1;
   return check;
 }
@@ -175,13 +177,13 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
   for (std::size_t i = 0; i < directory.size(); ++i) {
     const EsvoBlockEntry& block = directory[i];
     if (block.begin != end || block.slots > view.slot_count - end || block.slots == 0)
-      fail(ErrorPlace::block(i), "is not where the directory says");
+      fail(ErrorPlace::block(i), "its place in the directory does not follow the previous block");
     if (block.reserved != 0) fail(ErrorPlace::block(i), "reserved bytes are not zero");
     end += block.slots;
   }
   if (end != view.slot_count) fail("directory", "some slots belong to no block");
   if (view.is_empty()) return {};
-  if (view.root >= view.slot_count) fail("root", "lies outside of the octree");
+  if (view.root >= view.slot_count) fail("root", "is outside the octree");
 
   const auto block_at = [&](std::uint64_t slot) {
     const auto after =
@@ -221,10 +223,10 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
       const std::int64_t target = static_cast<std::int64_t>(entry.begin) + link.target;
       const ErrorPlace from = place / ErrorPlace::slot(link.slot);
       if (target < 0 || static_cast<std::uint64_t>(target) >= view.slot_count)
-        fail(from, "the far pointer leaves the octree");
+        fail(from, "the far pointer points outside the octree");
       const std::size_t below = block_at(static_cast<std::uint64_t>(target));
       const EsvoBlockEntry& child = directory[below];
-      if (seen[below]) fail(from, "two far pointers lead to the same block");
+      if (seen[below]) fail(from, "two far pointers point to the same block");
       seen[below] = true;
       if (child.parent != entry.begin + link.slot || child.level != link.level ||
           child.cell != link.cell)
@@ -232,11 +234,12 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
       // The whole info section is checked again when the walk visits the block.
       const std::span<const std::uint64_t> slots(view.slots + child.begin, child.slots);
       if (check_info(slots).first_descriptor != static_cast<std::uint64_t>(target) - child.begin)
-        fail(from, "the far pointer does not lead to the first descriptor of a block");
+        fail(from, "the far pointer does not point to the first descriptor of a block");
       stack.push_back({below, std::move(link.siblings)});
     }
   }
-  if (counts.blocks != directory.size()) fail("directory", "no pointer leads to some block");
+  if (counts.blocks != directory.size())
+    fail("directory", "no far pointer points to one of the blocks");
   return counts;
 }
 

@@ -30,15 +30,16 @@ void validate_level_table(const SvdagView& dag) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     const std::string name = "level " + std::to_string(level);
     if (end < begin) fail_level_table(name + " ends before it begins");
-    if (level >= dag.levels - 2 && end != begin) fail_level_table(name + " has words");
+    if (level >= dag.levels - 2 && end != begin)
+      fail_level_table(name + " must have no node words");
     if (level < dag.levels - 2 && end == begin && !dag.is_empty())
       fail_level_table(name + " has no nodes");
   }
   if (dag.node_words() > kMostWords || dag.leaf_block_count > kMostWords)
-    fail_level_table("more words than 32-bit pointers can address");
+    fail_level_table("there are more words than 32-bit pointers can address");
   if (dag.is_empty() && dag.node_words() != 0)
     fail_level_table("there are nodes, but no leaf blocks");
-  if (dag.levels == 2 && dag.leaf_block_count > 1) fail_level_table("more than one root");
+  if (dag.levels == 2 && dag.leaf_block_count > 1) fail_level_table("there is more than one root");
 }
 
 /// Checks the masks of one level and marks in `starts` (bit i: word level_begin + i) where its
@@ -65,9 +66,10 @@ void check_pointers(const SvdagView& dag, int level, const std::vector<std::uint
     const int children = popcount(dag.nodes[at]);
     for (int i = 1; i <= children; ++i) {
       const std::uint64_t offset = std::uint64_t{dag.nodes[at + i]} - end;  // wraps if below `end`
-      if (offset >= below_words) fail_at_word(level, at + i, "pointer leaves the next level");
+      if (offset >= below_words)
+        fail_at_word(level, at + i, "pointer points outside the next level");
       if ((starts[offset / 64] >> (offset % 64) & 1) == 0)
-        fail_at_word(level, at + i, "pointer is not to the first word of a node");
+        fail_at_word(level, at + i, "pointer does not point to the first word of a node");
     }
     at += 1 + children;
   }
@@ -128,7 +130,7 @@ void check_minimal_level(const SvdagView& dag, int level) {
       return std::equal(node, node + words, dag.nodes + begin + other);
     };
     if (seen.has_or_add(at - begin, hash, equals))
-      fail_at_word(level, at, "node equals an earlier one of its level");
+      fail_at_word(level, at, "node equals an earlier node of its level");
     at += words;
   }
 }
@@ -139,7 +141,7 @@ void check_minimal_leaf_blocks(const SvdagView& dag) {
     const std::uint64_t block = dag.leaf_blocks[i];
     const auto equals = [&](std::uint32_t other) { return dag.leaf_blocks[other] == block; };
     if (seen.has_or_add(i, mix(0, block), equals))
-      fail_at_leaf_block(i, "leaf block equals an earlier one");
+      fail_at_leaf_block(i, "leaf block equals an earlier leaf block");
   }
 }
 
@@ -152,7 +154,7 @@ void validate_svdag(const SvdagView& dag) {
   for (int level = 0; level < dag.levels - 2; ++level) {
     if (level == 0) mark_nodes(dag, 0, starts);
     if (level == 0 && dag.level_begin[1] != 1u + static_cast<unsigned>(popcount(dag.nodes[0])))
-      fail_at_word(0, 0, "level 0 is not one node");
+      fail_at_word(0, 0, "level 0 must be exactly one node");
     if (level + 1 == dag.levels - 2) {
       check_leaf_pointers(dag, level);
     } else {

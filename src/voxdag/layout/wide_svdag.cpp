@@ -66,7 +66,7 @@ class WideMaker {
       });
     }
     if (words > std::numeric_limits<std::uint32_t>::max())
-      throw Error("too large for the wide layout: more than 2^32 words");
+      throw Error("the DAG is too large for the wide layout: it needs more than 2^32 words");
     return words;
   }
 

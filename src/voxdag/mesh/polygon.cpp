@@ -135,7 +135,7 @@ class EarClipper {
   void bound_work() {
     if (visits_ > max_visits_)
       throw Error("a polygon of " + std::to_string(points_.size()) +
-                  " corners is too intricate to be cut into triangles");
+                  " corners is too complex to be divided into triangles");
     if (visits_ < next_poll_) return;
     next_poll_ = visits_ + kVisitsPerPoll;
     if (poll_) poll_();

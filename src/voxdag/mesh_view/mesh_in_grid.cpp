@@ -63,11 +63,11 @@ void check_mesh_in_grid(const Mesh& mesh, const VoxelSet& scene, const Grid& gri
     covered += visit_nodes(scene, is_covered) ? 1 : 0;
   }
   if (inside == 0)
-    throw Error("the mesh lies elsewhere: around " + text(bounds) + ", the grid is " +
+    throw Error("the mesh is not in the grid: the mesh spans " + text(bounds) + ", the grid " +
                 text(grid.bounds()));
   if (covered * 10 < inside * 9)
-    throw Error("the voxels are not those of the mesh: " + std::to_string(inside - covered) +
-                " of " + std::to_string(inside) + " vertices looked up have no voxel");
+    throw Error("the voxels were not built from this mesh: " + std::to_string(inside - covered) +
+                " of " + std::to_string(inside) + " vertices that were looked up have no voxel");
 }
 
 }  // namespace voxdag

@@ -10,7 +10,7 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw Error(
-      "view samples from a mesh need Embree 3, which this voxdag was built without (install "
+      "to show a mesh, voxdag needs Embree 3, but this one was built without it (install "
       "libembree-dev and build again)");
 }
 

@@ -23,7 +23,7 @@ class Warnings {
   /// Returns the warnings. The last one says how many were left out, if any were.
   std::vector<std::string> take(const std::string& file) {
     if (left_out_ > 0)
-      kept_.push_back(file + ": " + std::to_string(left_out_) + " more warnings are left out");
+      kept_.push_back(file + ": " + std::to_string(left_out_) + " more warnings are not shown");
     left_out_ = 0;
     return std::exchange(kept_, {});
   }

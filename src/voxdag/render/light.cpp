@@ -16,14 +16,14 @@ void check(const LightSpec& spec) {
     if (!is_finite(v)) throw Error("a light's coordinates must be finite");
   const bool needs_radius = spec.kind == LightKind::kDisc || spec.kind == LightKind::kSphere;
   if (!(spec.radius >= 0 && spec.radius < HUGE_VAL) || (needs_radius && spec.radius == 0))
-    throw Error("a light's radius must be above zero");
+    throw Error("a light's radius must be greater than zero");
   if (spec.kind == LightKind::kSun && !(dot(spec.position, spec.position) > 0))
-    throw Error("the sun needs a direction");
+    throw Error("the direction of the sun must not be zero");
   if (spec.kind == LightKind::kDisc && !(dot(spec.normal, spec.normal) > 0))
-    throw Error("a disc of light needs a normal");
+    throw Error("the normal of a disc light must not be zero");
   const Vec3d span = cross(spec.edge_u, spec.edge_v);
   if (spec.kind == LightKind::kRectangle && !(dot(span, span) > 0))
-    throw Error("a rectangle of light needs two edges that are not parallel");
+    throw Error("the two edges of a rectangle light must not be zero or parallel");
   if (!spec.color) return;
   for (int i = 0; i < 3; ++i)
     if (!((*spec.color)[i] >= 0 && (*spec.color)[i] < HUGE_VALF))

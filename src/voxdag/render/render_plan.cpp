@@ -18,25 +18,25 @@ void check(const RenderOptions& options) {
   constexpr int kMaxSide = 1 << 16, kMaxSamples = 1 << 16;
   if (options.width < 1 || options.height < 1 || options.width > kMaxSide ||
       options.height > kMaxSide)
-    throw Error("a picture has 1 to 65536 pixels a side");
+    throw Error("a picture must have 1 to 65536 pixels a side");
   if (options.samples_per_pixel < 1 || options.samples_per_pixel > kMaxSamples)
-    throw Error("a picture has 1 to 65536 samples per pixel");
+    throw Error("a picture must have 1 to 65536 samples per pixel");
   if (options.shadow_samples < 1 || options.shadow_samples > kMaxSamples)
-    throw Error("soft shadows take 1 to 65536 rays per pixel");
+    throw Error("soft shadows must have 1 to 65536 rays per pixel");
   if (options.occlusion_samples < 0 || options.occlusion_samples > kMaxSamples)
-    throw Error("ambient occlusion takes 0 to 65536 rays per pixel");
+    throw Error("ambient occlusion must have 0 to 65536 rays per pixel");
   if (!(options.occlusion_distance >= 0 && options.occlusion_distance < HUGE_VAL))
     throw Error("the distance of ambient occlusion must be finite and not negative");
   if (!(options.occlusion_cone >= 0 && options.occlusion_cone < 2 * std::numbers::pi))
-    throw Error("a solid angle of occlusion must lie between 0 and 2 pi steradians");
+    throw Error("the solid angle of occlusion cones must be at least 0 and below 2 pi steradians");
   if (!(options.sun_degrees >= 0 && options.sun_degrees < 90))
-    throw Error("the sun's angle must lie between 0 and 90 degrees");
+    throw Error("the sun's angle must be at least 0 and below 90 degrees");
   if (!(options.sky >= 0 && options.sky < HUGE_VALF))
     throw Error("the sky's factor must be finite and not negative");
   if (options.lights.size() >= static_cast<std::size_t>(RenderSetup::kMaxLights))
-    throw Error("a picture has at most 15 lights besides the sun");
+    throw Error("a picture can have at most 15 lights besides the sun");
   if (options.tile_size < 1 || options.tile_size > 32)
-    throw Error("tiles have 1 to 32 pixels a side");
+    throw Error("tiles must have 1 to 32 pixels a side");
 }
 
 /// Returns the rays per view sample for `per_pixel` rays in a pixel of `samples_per_pixel` view
@@ -60,7 +60,8 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
   const Vec3d back = cross(right, up);
   const Vec3d sun = options.sun.value_or(up * 0.9 - right * 0.6 + back * 0.25);
   const double length2 = dot(sun, sun);
-  if (!(length2 > 0 && length2 < HUGE_VAL)) throw Error("the sun needs a direction");
+  if (!(length2 > 0 && length2 < HUGE_VAL))
+    throw Error("the direction of the sun must be finite and not zero");
   sky.up = static_cast<Vec3f>(up);
   sky.sun = static_cast<Vec3f>(normalized(sun));
   sky.fill = static_cast<Vec3f>(right);

@@ -22,7 +22,7 @@ constexpr std::array kEntries = {
           scenes::make_city,
           scenes::city_preset},
     Entry{{"courtyard", "a cloister court with arcades, vaults, curtains and a fountain",
-           "how finely curves are divided; triangles go with its square", 1, 0.1, 8},
+           "fineness of curves; the number of triangles grows with its square", 1, 0.1, 8},
           scenes::make_courtyard,
           scenes::courtyard_preset},
     Entry{{"hairball", "a ball of thin, curled, tangled hairs", "hairs, of 1440 triangles each",
@@ -50,7 +50,7 @@ const Entry& find(std::string_view name) {
     if (entry.info.name == name) return entry;
     known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
   }
-  throw Error("no scene is called '" + std::string(name) + "'; there are " + known);
+  throw Error("unknown scene '" + std::string(name) + "': the scenes are " + known);
 }
 
 std::string plain(double v) {

@@ -42,7 +42,7 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
   for (std::size_t i = 0; i < directory_.size(); ++i) {
     if (directory_[i].begin != end || directory_[i].slots == 0 ||
         directory_[i].slots % kEsvoPageSlots != 0)
-      fail(ErrorPlace::block(i), "is not where the directory says");
+      fail(ErrorPlace::block(i), "its place in the directory does not follow the previous block");
     end += directory_[i].slots;
   }
   if (directory_.empty()) return;  // no voxels
@@ -57,8 +57,8 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
       blocks_.begin());
   if (root == blocks_.size()) fail("directory", "has no root block");
   if (const std::uint64_t least = most_slots_of_a_path(); pool_.size() < least)
-    fail("", "the memory limit is less than the " + std::to_string(least * 8) +
-                 " bytes of a block and its ancestors");
+    fail("", "the memory limit is too small: a block and its ancestors need " +
+                 std::to_string(least * 8) + " bytes");
   blocks_[root].siblings = {Vec3i{}};
   load(root);
   const std::uint64_t at = blocks_[root].position;
@@ -92,7 +92,7 @@ void EsvoStream::find_children() {
         [](std::uint64_t slot, const EsvoBlockEntry& b) { return slot < b.begin; });
     const auto above = static_cast<std::size_t>(after - directory_.begin()) - 1;
     if (above == i || parent >= directory_[above].begin + directory_[above].slots)
-      fail(ErrorPlace::block(i), "its parent is not another block");
+      fail(ErrorPlace::block(i), "its parent is in no other block");
     blocks_[i].parent = static_cast<std::int64_t>(above);
     blocks_[i].parent_slot = static_cast<std::uint32_t>(parent - directory_[above].begin);
     blocks_[above].children.push_back(static_cast<std::uint32_t>(i));

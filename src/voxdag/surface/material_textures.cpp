@@ -84,7 +84,7 @@ class Loader {
     for (const Material& material : appearance_.materials) resolved.push_back(resolve(material));
     if (!has_uvs_ && has_unused_textures_)
       warnings.emplace_back(
-          "the mesh has textures but no texture coordinates: its materials' colours stand in");
+          "the mesh has textures but no texture coordinates: the materials' colours replace them");
     return resolved;
   }
 
@@ -154,7 +154,7 @@ class Loader {
   void make_normals(const TextureKey& key, LoadedTexture& loaded) const {
     const TextureWraps wraps{key.wrap_u, key.wrap_v};
     const DecodedImage pixels =
-        decode(key.image, ": the mesh's own normals stand in for the normal map", loaded);
+        decode(key.image, ": the mesh's own normals replace the normal map", loaded);
     if (pixels.is_empty()) return;
     const bool is_heights =
         key.kind == TextureKey::kHeights ||
@@ -167,7 +167,7 @@ class Loader {
   void make_color(const TextureKey& key, LoadedTexture& loaded) const {
     DecodedImage pixels;
     if (key.image >= 0)
-      pixels = decode(key.image, ": the material's colour stands in for the texture", loaded);
+      pixels = decode(key.image, ": the material's colour replaces the texture", loaded);
     if (key.alpha_image >= 0) {
       const DecodedImage alpha =
           decode(key.alpha_image, ": the material is opaque without its alpha map", loaded);

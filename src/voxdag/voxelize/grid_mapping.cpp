@@ -17,7 +17,7 @@ constexpr std::int32_t kOutOfRange = std::numeric_limits<std::int32_t>::max();
 
 void require_levels(int levels) {
   if (levels < kMinLevels || levels > kMaxLevels)
-    throw Error("a grid has 2^" + std::to_string(kMinLevels) + " to 2^" +
+    throw Error("a grid must have 2^" + std::to_string(kMinLevels) + " to 2^" +
                 std::to_string(kMaxLevels) + " voxels a side, not 2^" + std::to_string(levels));
 }
 
@@ -36,7 +36,7 @@ int levels_for(double voxels) {
   int levels = kMinLevels;
   while (levels <= kMaxLevels && static_cast<double>(std::int64_t{1} << levels) < voxels) ++levels;
   if (levels > kMaxLevels)
-    throw Error("a voxel that small needs more than the largest grid, 2^" +
+    throw Error("the voxel size is too small: the grid would have more than 2^" +
                 std::to_string(kMaxLevels) + " voxels a side");
   return levels;
 }
@@ -53,7 +53,8 @@ Grid fit_grid(const Mesh& mesh, int levels) {
   grid.levels = levels;
   grid.origin = bounds.lo;
   grid.quantization_scale = ext > 0 ? units / ext : kSubvoxels;
-  if (!std::isfinite(grid.quantization_scale)) throw Error("the mesh is too small to measure");
+  if (!std::isfinite(grid.quantization_scale))
+    throw Error("the mesh is too small: its voxel size cannot be represented");
   grid.voxel_size = kSubvoxels / grid.quantization_scale;
   return grid;
 }

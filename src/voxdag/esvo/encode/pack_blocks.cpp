@@ -199,7 +199,8 @@ class BlockWriter {
       if (is_far(node)) {
         const std::int64_t distance = target(node) - std::int64_t{slot};
         if (distance != static_cast<std::int32_t>(distance))
-          throw Error("", "", "an octree of more than 16 GiB: its far pointers do not reach");
+          throw Error("", "",
+                      "the octree is larger than 16 GiB, the most that far pointers can address");
         const std::uint32_t at = placement_.far_pointer[node];
         slots_[at] = static_cast<std::uint32_t>(static_cast<std::int32_t>(distance));
         descriptor.set_child_pointer(at - slot, true);

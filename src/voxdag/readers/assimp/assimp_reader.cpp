@@ -34,7 +34,7 @@ std::string upper_case(std::string text) {
 /// Returns assimp's message on one line.
 std::string reason(const Assimp::Importer& importer) {
   std::string text = importer.GetErrorString();
-  if (text.empty()) return "cannot read it, or a file that it refers to";
+  if (text.empty()) return "cannot read this file, or a file that it names";
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
   return text.substr(0, 200);

@@ -49,8 +49,7 @@ std::uint32_t load_index(std::uint64_t type, const char* p) {
 
 void check_index_type(std::uint64_t type, const GltfValue& user) {
   if (type != kUint8 && type != kUint16 && type != kUint32)
-    throw user.error("indices of component type " + std::to_string(type) +
-                     ", which is not unsigned");
+    throw user.error("indices must have an unsigned component type, not " + std::to_string(type));
 }
 
 /// Elements in a buffer view, all of them inside their buffer.
@@ -80,7 +79,8 @@ Elements find_elements(const GltfFile& file, const GltfValue& user, std::size_t 
 std::uint32_t gltf_count(const GltfValue& accessor) {
   const std::uint64_t count = accessor["count"].whole();
   if (count == 0 || count >= std::numeric_limits<std::uint32_t>::max())
-    throw accessor.error("accessor of " + std::to_string(count) + " elements");
+    throw accessor.error("an accessor must have 1 to 4294967294 elements, not " +
+                         std::to_string(count));
   return static_cast<std::uint32_t>(count);
 }
 
@@ -88,14 +88,16 @@ GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
     : components_(component_count(value)), changes_(file.source().options.memory) {
   type_ = value["componentType"].whole();
   component_bytes_ = voxdag::component_bytes(type_, value);
-  if (components_ == 0) throw value.error("elements that are neither scalars nor vectors");
+  if (components_ == 0) throw value.error("the elements must be scalars or vectors");
   is_normalized_ = value["normalized"].boolean(false);
   count_ = gltf_count(value);
   const bool has_view = value["bufferView"].exists();
-  if (!has_view && !value["sparse"].exists()) throw value.error("accessor without a buffer view");
+  if (!has_view && !value["sparse"].exists())
+    throw value.error("the accessor has neither a buffer view nor sparse values");
   constexpr std::size_t kMostZeros = std::size_t{1} << 24;
   if (!has_view && count_ > kMostZeros)
-    throw value.error(std::to_string(count_) + " elements without a buffer view");
+    throw value.error(std::to_string(count_) + " elements without a buffer view: at most " +
+                      std::to_string(kMostZeros) + " are read");
   if (has_view) {
     const std::size_t bytes = static_cast<std::size_t>(components_) * component_bytes_;
     const Elements dense = find_elements(file, value, count_, bytes, components_ > 1);
@@ -108,8 +110,8 @@ GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
 void GltfAccessor::read_sparse(const GltfFile& file, const GltfValue& sparse) {
   const std::uint64_t count = sparse["count"].whole();
   if (count == 0 || count > count_)
-    throw sparse.error(std::to_string(count) + " sparse values for " + std::to_string(count_) +
-                       " elements");
+    throw sparse.error("the number of sparse values must be 1 to " + std::to_string(count_) +
+                       ", the number of elements, not " + std::to_string(count));
   const std::uint64_t type = sparse["indices"]["componentType"].whole();
   check_index_type(type, sparse);
   const Elements indices =
@@ -187,18 +189,18 @@ bool GltfAccessors::is_quantized() {
 
 const GltfAccessor& GltfAccessors::positions(std::uint64_t index, const GltfValue& user) {
   const GltfValue value = file_.item(GltfArray::kAccessors, index, user);
-  if (value["type"].text() != "VEC3") throw value.error("positions that are not VEC3");
+  if (value["type"].text() != "VEC3") throw value.error("positions must be VEC3");
   const std::uint64_t type = value["componentType"].whole();
   component_bytes(type, value);
   if (type == kUint32 || (type != kFloat && !is_quantized()))
-    throw value.error("positions of component type " + std::to_string(type) +
-                      ", which is not float");
+    throw value.error("positions must have component type 5126 (float), not " +
+                      std::to_string(type));
   return find(index, user);
 }
 
 const GltfAccessor& GltfAccessors::indices(std::uint64_t index, const GltfValue& user) {
   const GltfValue value = file_.item(GltfArray::kAccessors, index, user);
-  if (value["type"].text() != "SCALAR") throw value.error("indices that are not SCALAR");
+  if (value["type"].text() != "SCALAR") throw value.error("indices must be SCALAR");
   check_index_type(value["componentType"].whole(), value);
   return find(index, user);
 }
@@ -210,7 +212,7 @@ const GltfAccessor& GltfAccessors::attributes(std::uint64_t index, const GltfVal
     return accessor;
   const auto type = [](int n) { return "VEC" + std::to_string(n); };
   throw file_.item(GltfArray::kAccessors, index, user)
-      .error(std::string(what) + " that are not " + type(components) +
+      .error(std::string(what) + " must be " + type(components) +
              (components == or_components ? "" : " or " + type(or_components)));
 }
 

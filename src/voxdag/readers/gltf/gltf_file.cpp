@@ -41,14 +41,15 @@ GltfFile::GltfFile(const MeshSource& source)
     throw source.error_at_byte(bytes.size(), "the file ends inside its header");
   if (load_u32(bytes, 4) != 2)
     throw source.error_at_byte(
-        4, "GLB version " + std::to_string(load_u32(bytes, 4)) + ": only version 2 is known");
+        4, "GLB version " + std::to_string(load_u32(bytes, 4)) + ": only version 2 is read");
   const std::string_view chunks = bytes.substr(0, load_u32(bytes, 8));
   if (load_u32(bytes, 8) > bytes.size())
-    throw source.error_at_byte(bytes.size(), "the file ends before its length of " +
-                                                 std::to_string(load_u32(bytes, 8)) + " bytes");
+    throw source.error_at_byte(bytes.size(),
+                               "the file ends before the end that its header states, byte " +
+                                   std::to_string(load_u32(bytes, 8)) + " bytes");
   const std::size_t json_bytes = load_u32(bytes, 12);
   if (chunks.size() < 20 || json_bytes > chunks.size() - 20 || chunks.substr(16, 4) != "JSON")
-    throw source.error_at_byte(12, "the first chunk is not JSON inside the file");
+    throw source.error_at_byte(12, "the first chunk must be JSON and end inside the file");
   parse(chunks.substr(20, json_bytes));
   const std::size_t second = 20 + json_bytes;
   if (chunks.size() - second < 8) {
@@ -57,7 +58,7 @@ GltfFile::GltfFile(const MeshSource& source)
   }
   const std::size_t binary_bytes = load_u32(chunks, second);
   if (binary_bytes > chunks.size() - second - 8)
-    throw source.error_at_byte(second, "the binary chunk goes beyond the file");
+    throw source.error_at_byte(second, "the binary chunk goes beyond the end of the file");
   const bool is_binary = chunks.substr(second + 4, 4) == std::string_view("BIN\0", 4);
   open_buffers(is_binary ? std::optional(chunks.substr(second + 8, binary_bytes)) : std::nullopt);
 }
@@ -79,7 +80,7 @@ void GltfFile::check_version() const {
   const std::string version = root()["asset"]["version"].text();
   if (version.empty()) throw source_.error("not glTF: 'asset.version' is missing");
   if (!version.starts_with("2."))
-    throw source_.error("glTF version " + name_in_quotes(version) + ": only version 2 is known");
+    throw source_.error("glTF version " + name_in_quotes(version) + ": only version 2 is read");
   for (const GltfValue extension : root()["extensionsRequired"].items())
     if (!is_harmless_extension(extension.text()))
       throw extension.error("extension " + name_in_quotes(extension.text()) + " is not supported");
@@ -95,7 +96,7 @@ void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
     if (!uri.empty()) {
       open_uri(value, uri, buffer);
     } else {
-      if (!binary_chunk || buffers_.size() > 1) throw value.error("buffer without a URI");
+      if (!binary_chunk || buffers_.size() > 1) throw value.error("the buffer has no URI");
       buffer.bytes = *binary_chunk;
     }
     const std::uint64_t size = value["byteLength"].whole();
@@ -121,7 +122,7 @@ void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& bu
     return;
   }
   if (uri.find("://") != uri.npos || source_.file == nullptr)
-    throw value.error("buffer in another place than beside the file");
+    throw value.error("a buffer must be in the glTF file, in a data URI or in a file beside it");
   const std::string name = decode_percent(uri);
   if (name.find('\0') != name.npos) throw value.error("malformed URI");
   const std::filesystem::path path =

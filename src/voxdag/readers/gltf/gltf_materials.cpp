@@ -54,7 +54,8 @@ std::string file_name_of(const GltfValue& image) {
   std::string unescaped;
   const std::string_view uri = image["uri"].text_view(unescaped);
   if (uri.empty() || uri.starts_with("data:")) return "";
-  if (uri.find("://") != uri.npos) throw image.error("image in another place than a file");
+  if (uri.find("://") != uri.npos)
+    throw image.error("an image must be in the glTF file, in a data URI or in a file beside it");
   std::string name = decode_percent(uri);
   if (name.find('\0') != name.npos) throw image.error("malformed URI");
   return name;
@@ -79,7 +80,8 @@ class MaterialReader {
     read_images();
     for (std::size_t i = 0; i < materials.size(); ++i) {
       poll_.step();
-      attempt([&] { read_material(materials[i], appearance_.materials[i]); }, "is left out");
+      attempt([&] { read_material(materials[i], appearance_.materials[i]); },
+              "the rest of the material is ignored");
     }
   }
 
@@ -107,13 +109,13 @@ class MaterialReader {
       TextureImage& out = appearance_.images.emplace_back();
       out.name = file_.source().name + ": " + image.path();
       std::string file_name;
-      attempt([&] { file_name = file_name_of(image); }, "the image is left out");
+      attempt([&] { file_name = file_name_of(image); }, "the image is ignored");
       if (!file_name.empty()) {
         const std::filesystem::path& folder = file_.source().folder;
         out.path = file_.named_files().find(folder, file_name, {file_.source().name, image.path()});
         out.name = printable_path(folder, file_name);
       } else {
-        attempt([&] { copy_image(image, out); }, "the image is left out");
+        attempt([&] { copy_image(image, out); }, "the image is ignored");
       }
       add_memory(out.name.size() + 3 * out.path.native().size());
     }
@@ -135,7 +137,8 @@ class MaterialReader {
       copied_bytes_ += bytes.size();
       if (copied_bytes_ / kMostCopies > file_.buffer_bytes())
         throw image.error("the images in buffer views have " + std::to_string(copied_bytes_) +
-                          " bytes, but all buffers " + std::to_string(file_.buffer_bytes()));
+                          " bytes, more than " + std::to_string(kMostCopies) +
+                          " times the bytes of all buffers");
       set_bytes(bytes, out);
     }
   }
@@ -160,9 +163,9 @@ class MaterialReader {
                                             : AlphaMode::kOpaque;
     material.alpha_cutoff = static_cast<float>(value["alphaCutoff"].number(0.5));
     attempt([&] { material.color_map = use(color_texture(value), value); },
-            "the material's colour replaces it");
+            "the material's colour replaces the texture");
     const GltfValue normal = value["normalTexture"];
-    attempt([&] { material.normal_map = use(normal, value); }, "it is ignored");
+    attempt([&] { material.normal_map = use(normal, value); }, "the normal texture is ignored");
     material.normal_scale = static_cast<float>(normal["scale"].number(1));
   }
 

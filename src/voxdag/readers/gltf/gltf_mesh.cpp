@@ -30,7 +30,7 @@ const GltfAccessor* find_attribute(const GltfFile& file, const GltfPrimitive& pr
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& error) {
-    warnings.add(std::string(error.what()) + ": " + name + " is left out");
+    warnings.add(std::string(error.what()) + ": " + name + " is ignored");
     return nullptr;
   }
 }
@@ -59,7 +59,7 @@ const GltfAccessor& find_positions(const GltfFile& file, const GltfValue& primit
   const GltfValue accessor = file.item(GltfArray::kAccessors, index, primitive);
   if (!accessor["bufferView"].exists() &&
       primitive["extensions"]["KHR_draco_mesh_compression"].exists())
-    throw primitive.error("compressed with Draco, which is not supported");
+    throw primitive.error("the primitive is compressed with Draco, which is not supported");
   return accessors.positions(index, primitive);
 }
 
@@ -78,7 +78,8 @@ GltfMesh compile_gltf_mesh(const GltfFile& file, const GltfValue& mesh, GltfAcce
     GltfPrimitive primitive{.value = value};
     primitive.mode = value["mode"].whole(kGltfTriangles);
     if (primitive.mode > kGltfFan)
-      throw value.error("mode " + std::to_string(primitive.mode) + " is unknown");
+      throw value.error("mode " + std::to_string(primitive.mode) +
+                        " is unknown: the modes are 0 to 6");
     const GltfValue position = value["attributes"]["POSITION"];
     if (primitive.mode < kGltfTriangles || !position.exists()) continue;
     const std::uint64_t index = position.whole();

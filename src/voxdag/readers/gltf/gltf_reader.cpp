@@ -78,7 +78,7 @@ class GltfReader {
       triangles += meshes_[instance.mesh].triangles;
     }
     if (triangles == 0)
-      throw source_.error("the scene shows no triangles: there is no surface to read");
+      throw source_.error("the scene has no triangles: there is no surface to read");
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
     if (vertices >= kMost)
       throw source_.error(std::to_string(vertices) +

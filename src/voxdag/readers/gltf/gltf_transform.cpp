@@ -8,7 +8,8 @@ namespace {
 /// Returns the rotation by a quaternion (x, y, z, w) of any length but zero.
 GltfTransform rotation(const std::vector<double>& q, const GltfValue& user) {
   const double length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!(length2 > 0) || !std::isfinite(length2)) throw user.error("rotation is not a quaternion");
+  if (!(length2 > 0) || !std::isfinite(length2))
+    throw user.error("the rotation must be a quaternion that is finite and not zero");
   const double s = 2 / length2;
   const double x = q[0], y = q[1], z = q[2], w = q[3];
   return {{{{1 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)},
@@ -24,7 +25,7 @@ GltfTransform gltf_node_transform(const GltfValue& node) {
   GltfTransform transform;
   if (!m.empty()) {
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-      throw node.error("matrix whose last row is not 0 0 0 1");
+      throw node.error("the last row of the matrix must be 0 0 0 1");
     for (std::size_t c = 0; c < 4; ++c)
       transform.columns[c] = {m[4 * c], m[4 * c + 1], m[4 * c + 2]};
     return transform;

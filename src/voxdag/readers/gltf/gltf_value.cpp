@@ -54,7 +54,7 @@ std::uint64_t GltfValue::whole() const {
     if (is_real && real >= 0 && real <= static_cast<double>(kLimit) && real == std::floor(real))
       return static_cast<std::uint64_t>(real);
   }
-  throw error("is not a whole number from 0 on");
+  throw error("is not a whole number of 0 or more");
 }
 
 bool GltfValue::boolean(bool absent) const {

@@ -317,7 +317,7 @@ class JsonDocument::Parser {
 
 JsonDocument::JsonDocument(const MeshSource& source, std::string_view text)
     : text_(text), nodes_(source.options.memory), unescaped_keys_(source.options.memory) {
-  if (text.size() >= kAbsent) throw source.error("not glTF: JSON of 4 GiB or more");
+  if (text.size() >= kAbsent) throw source.error("the JSON must be smaller than 4 GiB");
   Parser(source, *this).parse();
 }
 

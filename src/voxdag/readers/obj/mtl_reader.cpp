@@ -92,7 +92,7 @@ class MtlReader::Impl {
         material.alpha_mode = AlphaMode::kBlend;
     } else if (keyword == "map_kd") {
       material.color_map = {};
-      attempt("the material's colour stands in for the texture",
+      attempt("the material's colour replaces the texture",
               [&] { material.color_map = use(parse_mtl_map(line)); });
     } else if (keyword == "map_d") {
       material.alpha_map = {};
@@ -108,7 +108,7 @@ class MtlReader::Impl {
       set_normal_map(line, NormalMapKind::kEither);
     } else if (keyword == "disp" || keyword == "map_disp") {
       material.displacement_map = {};
-      attempt("the surface stays without displacement", [&] {
+      attempt("the surface is not displaced", [&] {
         const MtlMap map = parse_mtl_map(line);
         material.displacement_map = use(map);
         material.displacement_base = map.base_gain[0];
@@ -120,7 +120,7 @@ class MtlReader::Impl {
   void set_color(std::string_view line) {
     std::string_view rest = line;
     if (const std::string kind = to_lower(next_token(rest)); kind == "spectral" || kind == "xyz")
-      throw MalformedMtl("spectral curves and CIEXYZ are not read");
+      throw MalformedMtl("spectral curves and CIEXYZ are not supported");
     std::array<float, 3> kd{};
     const std::size_t count = take_numbers(line, kd);
     // One number is for all three channels.
@@ -142,7 +142,7 @@ class MtlReader::Impl {
 
   void set_normal_map(std::string_view line, NormalMapKind kind) {
     material_->normal_map = {};
-    attempt("the mesh's own normals stand in for the normal map", [&] {
+    attempt("the mesh's own normals replace the normal map", [&] {
       const MtlMap map = parse_mtl_map(line);
       material_->normal_map = use(map);
       material_->normal_kind = kind;

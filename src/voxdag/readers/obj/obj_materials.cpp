@@ -55,8 +55,8 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
   Warnings warnings;
   if (bad_references > 0)
     warnings.add(source.name + ": " + std::to_string(bad_references) +
-                 " corners of faces refer to texture coordinates or normals that do not exist: "
-                 "they have none");
+                 " corners of faces name texture coordinates or normals that do not exist: "
+                 "these corners have none");
   std::vector<Material>& materials = appearance.materials;
   const std::size_t count = std::max<std::size_t>(mesh.materials.size(), 1);
   // The material and its name, here and in the MTL reader's table.

@@ -42,7 +42,7 @@ std::uint32_t parse_vertex_index(std::string_view corner, std::size_t seen, std:
   const std::string_view reference = corner.substr(0, corner.find('/'));
   std::int64_t index = 0;
   if (!parse_int(reference, index) || corner.find_first_not_of("0123456789+-/") != corner.npos)
-    throw Fault{position, "face corner " + in_quotes(corner) + " is not an index"};
+    throw Fault{position, "face corner " + in_quotes(corner) + " is not a vertex index"};
   if (index < 0 && static_cast<std::uint64_t>(-(index + 1)) < seen)
     return static_cast<std::uint32_t>(seen - static_cast<std::uint64_t>(-(index + 1)) - 1);
   if (index > 0 && static_cast<std::uint64_t>(index) <= total)
@@ -58,7 +58,7 @@ Vec3f take_vertex(std::string_view& numbers, const char* position) {
   Vec3f vertex;
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view token = next_token(numbers);
-    if (token.empty()) throw Fault{position, "vertex with fewer than three coordinates"};
+    if (token.empty()) throw Fault{position, "the vertex has fewer than three coordinates"};
     if (!parse_float(token, vertex[axis]))
       throw Fault{position, "coordinate " + in_quotes(token) + " is not a number"};
   }

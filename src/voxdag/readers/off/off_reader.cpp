@@ -54,7 +54,8 @@ class OffReader {
     const std::string_view magic = next_token(line);
     if (!is_off(magic)) throw Fault{magic.data(), "not an OFF file: it does not start with 'OFF'"};
     if (magic.find('4') != magic.npos || magic.find('n') != magic.npos)
-      throw Fault{magic.data(), "OFF of other than three dimensions"};
+      throw Fault{magic.data(),
+                  "4OFF and nOFF are not supported: vertices must have three coordinates"};
     if (trim(line).starts_with("BINARY"))
       throw Fault{magic.data(), "binary OFF is not supported: save it as text"};
     return trim(line).empty() ? next_row() : line;
@@ -64,7 +65,7 @@ class OffReader {
     const std::string_view token = next_token(line);
     std::int64_t value = 0;
     if (!parse_int(token, value) || value < 0)
-      throw Fault{line.data(), "number of " + what + " expected, not " + in_quotes(token)};
+      throw Fault{line.data(), "expected the number of " + what + ", not " + in_quotes(token)};
     if (static_cast<std::uint64_t>(value) > source_.bytes.size() / least ||
         value >= std::numeric_limits<std::uint32_t>::max())
       throw Fault{line.data(), "the file is too short for " + std::to_string(value) + " " + what};
@@ -104,7 +105,8 @@ class OffReader {
     // A corner takes two characters at least, so a greater count is refused before it is used.
     if (!parse_int(token, corners) || corners < 0 ||
         static_cast<std::uint64_t>(corners) > row.size() / 2)
-      throw Fault{row.data(), "the face has no list of vertex indices of the length that it says"};
+      throw Fault{row.data(),
+                  "the number of vertex indices is missing, or the row is too short for it"};
     return static_cast<std::size_t>(corners);
   }
 
@@ -132,7 +134,7 @@ class OffReader {
     const std::string_view token = next_token(row);
     std::int64_t index = 0;
     if (!parse_int(token, index))
-      throw Fault{row.data(), "vertex index expected, not " + in_quotes(token)};
+      throw Fault{row.data(), "expected a vertex index, not " + in_quotes(token)};
     if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size())
       throw Fault{row.data(), "vertex index " + std::to_string(index) + " is out of range: " +
                                   std::to_string(mesh_.vertices.size()) + " vertices"};

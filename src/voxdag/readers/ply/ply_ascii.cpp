@@ -21,7 +21,8 @@ void take_property(std::string_view& row, const PlyProperty& property, CancelPol
   if (property.count_type) {
     const std::string_view count = token();
     if (!parse_int(count, items) || items < 0)
-      throw Fault{row.data(), "list count " + in_quotes(count) + " is not a number of items"};
+      throw Fault{row.data(),
+                  "list count " + in_quotes(count) + " is not a whole number of 0 or more"};
   }
   for (; items > 0; --items) {
     poll.step();
@@ -141,7 +142,7 @@ class AsciiReader {
     // A corner takes two characters at least, so a greater count is refused before it is summed.
     if (!parse_int(next_token(row), corners) || corners < 0 ||
         static_cast<std::uint64_t>(corners) > row.size() / 2 + 1)
-      throw Fault{start, "the row has no list of vertex indices of the length that it says"};
+      throw Fault{start, "the number of vertex indices is missing, or the row is too short for it"};
     return static_cast<std::size_t>(corners);
   }
 
@@ -216,8 +217,7 @@ class AsciiReader {
   static void check_row_end(std::string_view row) {
     const std::string_view extra = next_token(row);
     if (!extra.empty())
-      throw Fault{extra.data(),
-                  "the row goes on with " + in_quotes(extra) + " after its last property"};
+      throw Fault{extra.data(), "the row has " + in_quotes(extra) + " after its last property"};
   }
 
   void check_finite() {

@@ -189,7 +189,7 @@ void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& w
   const bool has_uvs = vertex_.has_uvs || face_.texcoord >= 0;
   if (!header_.textures.empty() && !has_uvs)
     warnings.push_back(source_.name + ": texture " + name_in_quotes(header_.textures[0]) +
-                       " is left out: there are no texture coordinates");
+                       " is ignored: the mesh has no texture coordinates");
   if (header_.textures.size() > 1 && has_uvs)
     warnings.push_back(source_.name + ": only the first of " +
                        std::to_string(header_.textures.size()) + " textures is used");

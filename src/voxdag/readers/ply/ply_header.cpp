@@ -106,7 +106,8 @@ class HeaderParser {
     if (!parse_int(count_text, count) || count < 0)
       fail("count " + in_quotes(count_text) + " of element " + in_quotes(name) +
            " is not a number");
-    if (header_.elements.size() >= kMaxDeclared) fail("too many elements");
+    if (header_.elements.size() >= kMaxDeclared)
+      fail("more than " + std::to_string(kMaxDeclared) + " elements");
     for (const PlyElement& known : header_.elements)
       if (known.name == name) fail("element " + in_quotes(name) + " is declared twice");
     property_names_.clear();
@@ -122,7 +123,7 @@ class HeaderParser {
       const std::string_view count_name = next_token(text);
       count_type = parse_type(count_name);
       if (!count_type || !is_integer(*count_type))
-        fail("list count of type " + in_quotes(count_name) + ", which is not an integer type");
+        fail("a list count must have an integer type, not " + in_quotes(count_name));
       type_name = next_token(text);
     }
     const auto type = parse_type(type_name);
@@ -130,7 +131,8 @@ class HeaderParser {
     const std::string_view name = next_token(text);
     if (name.empty()) fail("property without a name");
     PlyElement& element = header_.elements.back();
-    if (element.properties.size() >= kMaxDeclared) fail("too many properties");
+    if (element.properties.size() >= kMaxDeclared)
+      fail("more than " + std::to_string(kMaxDeclared) + " properties");
     if (!property_names_.insert(name).second)
       fail("property " + in_quotes(name) + " is declared twice");
     element.properties.push_back({name, *type, count_type});
@@ -162,7 +164,7 @@ class HeaderParser {
     if (indices < 0) fail("PLY faces without property 'vertex_indices'");
     const PlyProperty& list = face.properties[static_cast<std::size_t>(indices)];
     if (!list.count_type || !is_integer(list.type))
-      fail("PLY faces whose indices are no list of integers");
+      fail("the vertex indices of PLY faces must be a list of integers");
   }
 
   /// Refuses a count that the rest of the file cannot hold, before memory is taken for it.

@@ -29,7 +29,7 @@ float load_float(const char* p) {
 /// Returns the facets of a binary file in parts.
 std::vector<std::string_view> split_binary(const MeshSource& source) {
   if (source.bytes.size() < kHeaderBytes)
-    throw source.error("neither an ascii STL file nor long enough for a binary one");
+    throw source.error("not an STL file: it is not ASCII STL, and it is too short for binary STL");
   std::size_t left = binary_facet_count(source.bytes);
   const std::size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
   if (left > room)

@@ -73,7 +73,7 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
     if (tokens.take(word)) return;
     const std::string_view token = tokens.next();
     if (token.empty()) throw Fault{token.data(), "the file ends inside a facet"};
-    throw Fault{token.data(), "'" + std::string(word) + "' expected, not " + in_quotes(token)};
+    throw Fault{token.data(), "expected '" + std::string(word) + "', not " + in_quotes(token)};
   };
   const auto number = [&] {
     float value = 0;
@@ -101,7 +101,7 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
         expect("vertex");
         const float x = number(), y = number(), z = number();
         if (!is_finite(Vec3f{x, y, z}))
-          throw Fault{token.data(), "facet with a vertex that is not finite"};
+          throw Fault{token.data(), "the facet has a vertex that is not finite"};
         body(Vec3f{x, y, z});
       }
       expect("endloop");
@@ -110,8 +110,9 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
       tokens.skip_line();
       in_solid = !in_solid;
     } else {
-      throw Fault{token.data(), std::string(in_solid ? "'facet' or 'endsolid'" : "'solid'") +
-                                    " expected, not " + in_quotes(token)};
+      throw Fault{token.data(), std::string("expected ") +
+                                    (in_solid ? "'facet' or 'endsolid'" : "'solid'") + ", not " +
+                                    in_quotes(token)};
     }
   }
 }
