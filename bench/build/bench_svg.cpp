@@ -11,10 +11,12 @@ namespace voxdag {
 
 std::string bench_svg(const BenchResults& results) {
   const PlotAxis resolution = resolution_axis();
-  LineDiagram time{
-      "Seconds, all included; dashes: growth of the DAG", resolution, log_seconds_axis(), {}};
+  LineDiagram time{"Seconds of the whole process; dashed: growth of the DAG",
+                   resolution,
+                   log_seconds_axis(),
+                   {}};
   LineDiagram memory{
-      "Bytes of the DAG; dashes: peak memory of the build",
+      "Bytes of the DAG; dashed: peak memory of the build",
       resolution,
       {true, 16, [](double v) { return human_bytes(static_cast<std::uint64_t>(std::llround(v))); }},
       {}};

@@ -76,7 +76,7 @@ std::string sorting_rows(const Builds& builds, std::size_t begin, std::size_t en
   if (builds[begin].method != "sort") return "";
   const std::vector<int> widths{9, 11, 11, 11, 11, 14};
   std::string text =
-      fmt::format("  Reduction: ours in seconds of all threads together, and {}\n",
+      fmt::format("  Seconds of reduction: ours, summed over all threads; published: {}\n",
                   published::kSource) +
       row({"grid", "reduction", "sorting", "published", "sorting", "x 6 cores"}, widths);
   for (std::size_t i = begin; i < end; ++i) {
@@ -151,7 +151,7 @@ std::string bench_table(const BenchResults& results) {
     if (end == builds.size() || builds[end].scene != first.scene)
       text += rival_rows(results, first.scene);
   }
-  return text + "limit: 3 times the DAG's bytes, and the mesh, and 256 MiB; growth: per level\n";
+  return text + "of its limit: peak mem / (3 x DAG + mesh + 256 MiB); growth: factor per level\n";
 }
 
 }  // namespace voxdag

@@ -102,12 +102,12 @@ bool EsvoBenchScene::is_plain() const {
 EsvoBenchScene parse_esvo_scene(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos)
-    throw std::invalid_argument("not NAME=MESH, with options of build after it");
+    throw std::invalid_argument("must be NAME=MESH, then options of build");
   EsvoBenchScene scene;
   scene.name = text.substr(0, equals);
   const std::size_t options = std::min(text.find(" --", equals), text.size());
   scene.mesh = text.substr(equals + 1, options - equals - 1);
-  if (scene.mesh.empty()) throw std::invalid_argument("no mesh after the =");
+  if (scene.mesh.empty()) throw std::invalid_argument("has no mesh after the '='");
   std::istringstream words(text.substr(options));
   for (std::string word; words >> word;) scene.options.push_back(word);
   return scene;

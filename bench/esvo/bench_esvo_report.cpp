@@ -77,7 +77,7 @@ double paper_mrays(const EsvoRateRow& row, std::size_t form) {
 std::string rates_table(const std::vector<EsvoRateRow>& rates) {
   if (rates.empty()) return "";
   std::string text = fmt::format(
-      "\nMillion primary rays per second (in brackets: the paper's)\n  {:<16}{:>10}{:>12}", "scene",
+      "\nMillion primary rays per second (in brackets: the paper)\n  {:<16}{:>10}{:>12}", "scene",
       "grid", "size");
   for (std::size_t form = 0; form < published::kEsvoRates; ++form)
     text += fmt::format("{:>20}", name_of(kEsvoForms[form]));
@@ -103,8 +103,8 @@ std::string coarse_table(const EsvoBenchResults& results) {
                   [&](const EsvoRateRow& row) { return coarse_of(row) == 0; }))
     return "";
   std::string text = fmt::format(
-      "\nThe same where silhouettes are as good: contours on a coarser grid, as multiples of "
-      "cubes\n"
+      "\nMillion primary rays per second, on the coarsest grid of contours whose silhouettes are "
+      "as good as those of the cubes; x cubes: multiples of the cubes' rate\n"
       "  {:<16}{:>16}{:>12}{:>12}{:>18}{:>18}{:>14}\n",
       "scene", "grid of cubes", "contours", "size", "contours", "with beams", "x cubes");
   for (const EsvoRateRow& row : results.rates) {
@@ -277,12 +277,12 @@ std::string esvo_bench_table(const EsvoBenchResults& results) {
 
 std::string esvo_bench_svg(const EsvoBenchResults& results) {
   const PlotAxis resolution = resolution_axis();
-  LineDiagram memory{"Megabytes; dots: cubes, dashes: the paper's",
+  LineDiagram memory{"Megabytes; dotted: cubes, dashed: the paper",
                      resolution,
                      {true, 10, [](double v) { return fmt::format("{:.4g} MB", v); }},
                      {}};
   LineDiagram time{
-      "Seconds to build; dots: cubes, dashes: the paper's", resolution, log_seconds_axis(), {}};
+      "Seconds to build; dotted: cubes, dashed: the paper", resolution, log_seconds_axis(), {}};
   add_lines(
       results.builds, [](const EsvoBuildRun& run) { return run.megabytes(); }, memory);
   add_lines(
@@ -290,7 +290,7 @@ std::string esvo_bench_svg(const EsvoBenchResults& results) {
   add_paper_lines(results.builds, &published::EsvoScene::megabytes, memory);
   add_paper_lines(results.builds, &published::EsvoScene::seconds, time);
   std::vector<LineDiagram> diagrams{memory, time};
-  LineDiagram silhouettes{"Rays on the wrong side of a silhouette, per million; dots: cubes",
+  LineDiagram silhouettes{"Rays on the wrong side of a silhouette, per million; dotted: cubes",
                           resolution,
                           {true, 10, [](double v) { return fmt::format("{:.4g}", v); }},
                           {}};

@@ -134,11 +134,11 @@ ChildResult run_child(const std::vector<std::string>& command,
 }
 
 std::string failure_of(const ChildResult& result, double seconds_limit) {
-  if (result.timed_out) return fmt::format("ended after {} s", seconds_limit);
+  if (result.timed_out) return fmt::format("stopped at the time limit of {} s", seconds_limit);
   if (result.status == 0) return "";
   const std::string line = first_line(result.err);
   if (!line.empty()) return line.starts_with("voxdag: ") ? line.substr(8) : line;
-  return result.status > 128 ? fmt::format("ended by signal {}", result.status - 128)
+  return result.status > 128 ? fmt::format("killed by signal {}", result.status - 128)
                              : fmt::format("exit status {}", result.status);
 }
 

@@ -48,7 +48,7 @@ int start_remover(const std::string& folder, pid_t& remover, int& input) {
 
 ScratchFolder::ScratchFolder() {
   std::string pattern = std::filesystem::temp_directory_path() / "voxdag-bench-XXXXXX";
-  if (::mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "", "cannot make the folder");
+  if (::mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "", "cannot create the folder");
   path_ = pattern;
   if (const int error = start_remover(pattern, remover_, remover_input_); error != 0) {
     ::rmdir(pattern.c_str());

@@ -90,12 +90,12 @@ std::string trace_table(const TraceResults& results) {
       text += fmt::format("{}{} {}, layout {}, {}{}\n", i == 0 ? "" : "\n", row.scene,
                           resolution_of(row), row.layout, human_bytes(row.layout_bytes),
                           has_device && !row.on_cuda ? ", on the CPU" : "");
-      text += fmt::format("  {:<14}{:>12}{:>8}{:>8}{:>8}{:>10}", "rays", "count", "hit", "cells",
-                          "bytes", "Mrays/s");
+      text += fmt::format("  {:<14}{:>12}{:>8}{:>11}{:>11}{:>10}", "rays", "count", "hit",
+                          "cells/ray", "bytes/ray", "Mrays/s");
       for (const std::string& rival : rivals) text += fmt::format("{:>24}", rival);
       text += "\n";
     }
-    text += fmt::format("  {:<14}{:>12}{:>8.2f}{:>8.1f}{:>8.0f}{:>10.2f}", name_of(row.rays),
+    text += fmt::format("  {:<14}{:>12}{:>8.2f}{:>11.1f}{:>11.0f}{:>10.2f}", name_of(row.rays),
                         with_commas(row.count), row.hit_part, row.cells_per_ray, row.bytes_per_ray,
                         row.mrays_per_second);
     for (const std::string& rival : rivals) {

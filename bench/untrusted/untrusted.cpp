@@ -38,7 +38,7 @@ std::string join_lines(const std::string& text) {
 /// Returns what a run broke of the promises for untrusted files, or nothing.
 std::string broken_promise(const UntrustedCase& test, const ChildResult& result,
                            const fs::path& folder, const std::vector<fs::path>& before) {
-  if (result.timed_out) return "does not end";
+  if (result.timed_out) return "does not end in time";
   if (result.status > 1 || result.status < 0)
     return fmt::format("ends with status {}", result.status);
   if (test.status >= 0 && result.status != test.status)
@@ -46,13 +46,13 @@ std::string broken_promise(const UntrustedCase& test, const ChildResult& result,
   const auto allowed =
       static_cast<std::uint64_t>(kLimitFactor * static_cast<double>(test.memory_limit));
   if (test.memory_limit != 0 && result.cost.peak_bytes > allowed + kLimitSlack)
-    return fmt::format("uses {}", human_bytes(result.cost.peak_bytes));
+    return fmt::format("uses {} of memory", human_bytes(result.cost.peak_bytes));
   if (result.status == 0) return {};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (std::find(before.begin(), before.end(), entry.path()) == before.end())
       return "leaves " + entry.path().filename().string();
   const auto lines = std::count(result.err.begin(), result.err.end(), '\n');
-  return lines == 1 ? "" : fmt::format("prints {} lines of error", lines);
+  return lines == 1 ? "" : fmt::format("prints {} lines to stderr, not one", lines);
 }
 
 UntrustedRun run_case(const UntrustedPlan& plan, const UntrustedCase& test, Progress& progress) {

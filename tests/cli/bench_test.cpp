@@ -98,7 +98,7 @@ TEST_F(BenchBuild, ARivalThatFailsOrHangsIsRecorded) {
   const Json rivals = Json::parse(result.out).at("rivals");
   ASSERT_EQ(rivals.size(), 2u);  // the greater resolution is not tried
   EXPECT_EQ(rivals[0].at("failure"), "broken");
-  EXPECT_EQ(rivals[1].at("failure"), "ended after 0.2 s");
+  EXPECT_EQ(rivals[1].at("failure"), "stopped at the time limit of 0.2 s");
 }
 
 TEST_F(BenchBuild, AProceduralSceneIsMadeForTheRun) {

@@ -141,7 +141,7 @@ TEST_F(Build, BadUsageIsRefusedBeforeAnyWork) {
   expect_failure(build({"-r", "64", "--voxel-size", "1"}), 2, "exactly one of");
   expect_failure(build({"-r", "1000"}), 2, "nearest are 512 and 1024");
   expect_failure(build({"-r", "64", "--bounds", "0,0,0,1,1"}), 2, "6 numbers");
-  expect_failure(build({"--voxel-size", "-1"}), 2, "above zero");
+  expect_failure(build({"--voxel-size", "-1"}), 2, "greater than zero");
   expect_failure(build({"-r", "64", "--method", "magic"}), 2, "--method");
   expect_failure(build({"-r", "64", "--memory", "much"}), 2, "--memory");
   expect_failure(build({"-r", "64", "--threads", "0"}), 2, "--threads");

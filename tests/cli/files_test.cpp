@@ -194,7 +194,7 @@ TEST_F(Files, AMappedFileThatIsCutShortIsAnError) {
   Process reading(voxdag_command({"build", path("cut.stl"), "-r", "64", "-o", path("cut.vdag")}));
   reading.wait_until_it_maps(path("cut.stl"));
   write_text(path("cut.stl"), "");
-  expect_failure(reading.wait(), 1, "cut short");
+  expect_failure(reading.wait(), 1, "truncated");
   EXPECT_EQ(files_like("cut.vdag"), 0);
 }
 

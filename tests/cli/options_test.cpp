@@ -72,7 +72,7 @@ TEST_F(Options, ViewsAndLightsAreCheckedAtOnce) {
                  [](const Words& words) { return render(words); });
   Words lamps;
   for (int i = 0; i < 16; ++i) lamps.insert(lamps.end(), {"--light", "point:1,2,3"});
-  expect_failure(render(lamps), 2, "--light: there are 16; at most 15 are allowed");
+  expect_failure(render(lamps), 2, "--light: is given 16 times; at most 15 are allowed");
 }
 
 TEST_F(Options, FilesThatAreTheSameAreRefused) {
@@ -109,7 +109,7 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
                   {"--eye", "1,2,3", "--path", "keys.json"},
                   {"--target", "1,2,3", "--path", "keys.json"}},
                  [](const Words& words) { return render(words); });
-  expect_failure(render({}, "bad%d.png"), 2, "without --path");
+  expect_failure(render({}, "bad%d.png"), 2, "only --path");
   for (const Words& option : std::vector<Words>{{"--displace", "stone:1"},
                                                 {"--no-displacement"},
                                                 {"--max-error", "1"},
@@ -118,8 +118,8 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
                                                 {"--bake-ao"},
                                                 {"--no-contours"},
                                                 {"--no-attributes"}})
-    expect_failure(build(option, "bad.vdag"), 2, option[0] + ": is for an ESVO");
-  expect_failure(build({"--method", "sort"}, "bad.esvo"), 2, "--method: is for a DAG");
+    expect_failure(build(option, "bad.vdag"), 2, option[0] + ": is for ESVOs only");
+  expect_failure(build({"--method", "sort"}, "bad.esvo"), 2, "--method: is for DAGs only");
   expect_failure(build({"--ao-distance", "1"}, "bad.esvo"), 2,
                  "--ao-distance: has no effect without --bake-ao");
   expect_failure(build({"--bake-ao", "8", "--no-attributes"}, "bad.esvo"), 2, "--no-attributes");
@@ -219,7 +219,7 @@ TEST_F(Options, AFilmsUpIsThatOfItsPath) {
 }
 
 TEST_F(Options, MemoryIsForEsvos) {
-  expect_failure(render({"--memory", "1M"}), 1, "in.vdag: --memory is for an ESVO");
+  expect_failure(render({"--memory", "1M"}), 1, "in.vdag: --memory is for ESVOs only");
 }
 
 TEST_F(Options, ABenchedMeshIsThatOfTheVoxels) {
@@ -237,7 +237,7 @@ TEST_F(Options, AFolderOfScenesThatIsNotThereIsNamed) {
 TEST_F(Options, AnEsvoIsWrittenToAFile) {
   expect_failure(
       run_voxdag({"build", path("absent.ply"), "-r", "16", "-o", "/dev/null", "--as", "esvo"}), 1,
-      "/dev/null: an ESVO can only be written to a regular file");
+      "/dev/null: an ESVO needs a regular file as its output");
 }
 
 TEST_F(Options, ThePrintedViewMakesTheSamePicture) {

@@ -109,7 +109,7 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
                  "--target");
   expect_failure(run_voxdag({"render", path("sponge.ply"), "-o", out}), 1, "sponge.ply");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth"}), 2, "NAME=FILE");
-  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "albedo=a.png"}), 2, "none of");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "albedo=a.png"}), 2, "not one of");
   expect_failure(run_voxdag({"render", in, "-o", out, "--pass", "depth=z.tif"}), 2, ".png or .exr");
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "tube:1,2,3"}), 2, "sphere:");
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3"}), 2, "4 numbers");

@@ -69,12 +69,13 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
   plan.methods = {"hash"};
   plan.levels = {9, 10, 11};
   const Command command = bench_command.add(
-      "build", "Time, memory and growth of builds; every run is a process of its own",
+      "build", "Measure time, memory and growth of builds, each in a process of its own",
       "voxdag bench build sponza.obj hairball -r 2048,4096,8192 --plot growth.svg\n"
       "Other programs: --rival 'other=other-program {mesh} {resolution} {out}'\n"
       "Scratch files go to TMPDIR.");
-  command.texts("meshes", plan.meshes, "MESH...",
-                "Mesh files, or procedural scenes as NAME or NAME:SIZE (default: all scenes)");
+  command.texts(
+      "meshes", plan.meshes, "MESH...",
+      "Mesh files, or procedural scenes as NAME or NAME:SIZE (default: all procedural scenes)");
   command.list("-r,--resolution", plan.levels, parse_levels, "N,N...",
                "Voxels per side (default: 512,1024,2048)");
   command.list("--method", plan.methods, parse_method, "METHOD,METHOD",

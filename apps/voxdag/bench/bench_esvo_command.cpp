@@ -47,15 +47,17 @@ void add_bench_esvo_command(const Command& bench_command, Session& session) {
   plan.sizes = {{512, 384}, {1024, 768}, {2048, 1536}};
   const Command command = bench_command.add(
       "esvo",
-      "Size, build time, rays per second and silhouettes of ESVOs, with and without contours",
+      "Measure size, build time, rays per second and silhouettes of ESVOs, with and without "
+      "contours",
       "voxdag bench esvo Sibenik=sibenik.obj 'Sponza=sponza.obj --max-error 0.5' -r 1K,2K,4K\n"
-      "A scene with a name of the paper is compared with the paper's figures. Scratch files go to "
-      "TMPDIR.");
-  const Option scenes = command
-                            .texts("scenes", arguments->scenes, "NAME=MESH...",
-                                   "Scenes, each one argument: NAME=MESH, then options of `build`; "
-                                   "MESH is a file, or a procedural scene as NAME or NAME:SIZE")
-                            .required();
+      "For a scene with one of the paper's names, the tables also show the paper's figures. "
+      "Scratch files go to TMPDIR.");
+  const Option scenes =
+      command
+          .texts("scenes", arguments->scenes, "NAME=MESH...",
+                 "Scenes. Each is one argument: NAME=MESH, then options of `build`. "
+                 "MESH is a file or a procedural scene (NAME or NAME:SIZE)")
+          .required();
   command.list("-r,--resolution", plan.levels, parse_levels, "N,N...",
                "Voxels per side (default: 1K,2K,4K)");
   command.list("--size", plan.sizes, parse_image_size, "WxH,WxH...",

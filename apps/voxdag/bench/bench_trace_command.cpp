@@ -39,7 +39,7 @@ struct BenchTraceArguments {
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
   if (file.voxels().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
-    throw Error("--openvdb", "", "takes the voxels of a DAG, not of an ESVO");
+    throw Error("--openvdb", "", "needs a DAG, but the file is an ESVO");
   Mesh mesh;
   if (!arguments.mesh_file.empty()) {
     mesh = read_mesh_file(arguments.mesh_file, arguments.access, session);
@@ -73,7 +73,7 @@ void run(BenchTraceArguments& arguments, Session& session) {
 std::string parse_layout(const std::string& text) {
   const std::vector<std::string> known = trace_layouts();
   if (std::find(known.begin(), known.end(), text) == known.end())
-    throw std::invalid_argument(fmt::format("is none of {}", fmt::join(known, ", ")));
+    throw std::invalid_argument(fmt::format("must be one of {}", fmt::join(known, ", ")));
   return text;
 }
 
@@ -84,12 +84,13 @@ void finish_plan(BenchTraceArguments& arguments, const Session& session) {
   const char* variable = std::getenv("VOXDAG_SCENES");
   if (arguments.scenes.empty() && variable != nullptr) arguments.scenes = variable;
   if (arguments.scenes.empty())
-    throw UsageError("--scenes", "is required without a file (or the variable VOXDAG_SCENES)");
+    throw UsageError("--scenes",
+                     "is required without FILE, unless the variable VOXDAG_SCENES is set");
 }
 
 void add_ray_options(const Command& command, RayOptions& rays) {
   command.number("--shadow-samples", rays.shadow_samples, NumberRange::whole(1, 4096), "N",
-                 "Rays to the lamp per pixel");
+                 "Soft shadow rays per pixel, to points on a lamp");
   command.number("--ao", rays.occlusion_samples, NumberRange::whole(1, 4096), "N",
                  "Ambient occlusion rays per pixel");
   command.number("--ao-cone", rays.occlusion_cone, NumberRange::from(0, 6), "SR",
@@ -107,7 +108,8 @@ void add_scene_options(const Command& command, BenchTraceArguments& arguments, S
   const Option mesh =
       command.text("--mesh", arguments.mesh_file, "MESH", "The mesh of FILE, for Embree")
           .needs(file)
-          .only_if([] { return EmbreeRival::is_available(); }, "in a voxdag built without Embree");
+          .only_if([] { return EmbreeRival::is_available(); },
+                   "because this voxdag was built without Embree");
   add_mesh_access_options(command, arguments.access, &mesh);
   command
       .text("--scenes", arguments.scenes, "DIR",
@@ -125,13 +127,15 @@ void add_bench_trace_command(const Command& bench, Session& session) {
   const auto arguments = std::make_shared<BenchTraceArguments>();
   TracePlan& plan = arguments->plan;
   const Command command = bench.add(
-      "trace", "Rays per second of every kind, also of other programs that cast the same rays",
+      "trace",
+      "Measure rays per second of every kind, also with other programs that cast the same rays",
       "voxdag bench trace sponza.vdag --mesh sponza.obj --plot rays.svg\n"
       "Without a file: Crytek Sponza, Sibenik, San Miguel, Lucy and hairball, built in memory.");
   add_scene_options(command, *arguments, session);
-  command.list("--layout", plan.layouts, parse_layout, "LAYOUT,LAYOUT...",
-               "Layouts to cast rays at. Of a DAG: paper (the default), paper_scalar, wide; of an "
-               "ESVO: contours (the default), contours_scalar, cubes, cubes_scalar");
+  command.list(
+      "--layout", plan.layouts, parse_layout, "LAYOUT,LAYOUT...",
+      "Layouts to cast rays at. For a DAG: paper (the default), paper_scalar, wide; for an "
+      "ESVO: contours (the default), contours_scalar, cubes, cubes_scalar");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
                  "Size of each view in pixels (default: 1024x768)");
   command.number("--views", plan.views, NumberRange::whole(1, 64), "N", "Number of cameras");

@@ -20,14 +20,15 @@ void add_bench_untrusted_command(const Command& bench_command, Session& session)
   };
   const auto arguments = std::make_shared<Arguments>();
   const Command command = bench_command.add(
-      "untrusted", "Run hostile inputs; print their memory, time and what they break",
+      "untrusted",
+      "Run hostile inputs; print their time, their memory and the promises that they break",
       "voxdag bench untrusted\n"
-      "docs/security.md says what is promised. Exit status 1 if a case breaks a promise.");
+      "docs/security.md lists the promises. The exit status is 1 if a case breaks one.");
   command.text("--program", arguments->plan.program, "FILE",
-               "Run this voxdag instead of this program");
+               "The voxdag to test (default: this program)");
   command.text("--only", arguments->plan.only, "TEXT", "Run only cases whose names contain TEXT");
   command.number("--timeout", arguments->plan.timeout_seconds, NumberRange::from(1, 86400),
-                 "SECONDS", "End a command that runs longer");
+                 "SECONDS", "Time limit for each command, in seconds");
   command.text("-o,--output", arguments->output.json_file, "FILE.json",
                "Also write the JSON to a file");
   add_quiet_option(command, session);

@@ -29,7 +29,7 @@ void add_bake_options(const Command& command, BakeArguments& arguments,
           .in_group(group);
   command
       .parsed("--ao-distance", arguments.distance, parse_positive, "LENGTH",
-              "With --bake-ao: length of its rays, in world units (default: 0.15 of the grid's "
+              "With --bake-ao: length of the rays, in world units (default: 0.15 of the grid's "
               "side)")
       .needs(bake)
       .in_group(group);

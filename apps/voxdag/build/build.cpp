@@ -32,10 +32,11 @@ void add_grid_options(const Command& command, BuildArguments& arguments) {
   command.parsed("-r,--resolution", arguments.levels, parse_levels, "N",
                  "Voxels per side: a power of two from 4 to 1048576; 8K is 8192");
   command.parsed("--voxel-size", arguments.voxel_size, parse_positive, "SIZE",
-                 "Instead of -r: side of a voxel in the mesh's units");
-  command.parsed("--bounds", arguments.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
-                 "Place the grid, a cube, at the lower corner of this box (default: the mesh's "
-                 "bounding box)");
+                 "Instead of -r: side of a voxel, in the units of the mesh");
+  command.parsed(
+      "--bounds", arguments.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+      "Box that the grid holds: the grid, a cube, starts at its lower corner (default: the "
+      "mesh's bounding box)");
 }
 
 void add_esvo_options(const Command& command, EsvoArguments& arguments) {
@@ -44,19 +45,19 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
   const auto has_attributes = [&settings] { return settings.attributes; };
   command
       .number("--max-error", settings.max_error, NumberRange::from(0, 1e6), "VOXELS",
-              "How far the shape of a leaf may reach beyond the surface, in voxels of the finest "
-              "level")
+              "Largest distance of a leaf's shape from the surface, in voxels of the finest level")
       .only_if(has_contours, "with --no-contours")
       .in_group(kEsvoOptions);
   command
-      .number("--color-error", settings.color_error, NumberRange::from(0, 1), "DIFFERENCE",
-              "How much colours in a leaf may differ: largest difference of a channel (sRGB)")
+      .number(
+          "--color-error", settings.color_error, NumberRange::from(0, 1), "DIFFERENCE",
+          "Largest difference of the colours in a leaf, in the channel that differs most (sRGB)")
       .only_if(has_contours, "with --no-contours")
       .only_if(has_attributes, "with --no-attributes")
       .in_group(kEsvoOptions);
   command
       .number("--normal-error", arguments.normal_degrees, NumberRange::from(0, 180), "DEGREES",
-              "How much normals in a leaf may differ")
+              "Largest difference of the normals in a leaf")
       .only_if(has_contours, "with --no-contours")
       .only_if(has_attributes, "with --no-attributes")
       .in_group(kEsvoOptions);
@@ -64,23 +65,25 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
   add_no_displacement_option(command, arguments.displace).not_with(displace).in_group(kEsvoOptions);
   add_bake_options(command, arguments.bake, has_attributes, kEsvoOptions);
   command
-      .off_switch("--no-contours", settings.contours, "Cubes of the finest level only, as in a DAG")
+      .off_switch("--no-contours", settings.contours,
+                  "Store only cubes of the finest level: the voxels of the DAG")
       .in_group(kEsvoOptions);
   command
-      .off_switch("--no-attributes", settings.attributes, "The shape only: no colours, no normals")
+      .off_switch("--no-attributes", settings.attributes,
+                  "Store the shape only: no colours, no normals")
       .in_group(kEsvoOptions);
 }
 
 /// Throws UsageError for options of the other kind of output, and for wrong combinations.
 void check_build_arguments(const Command& command, BuildArguments& arguments, Session& session) {
   if (arguments.as_esvo)
-    command.refuse_group(kDagOptions, "is for a DAG, and the output is an ESVO");
+    command.refuse_group(kDagOptions, "is for DAGs only, but the output is an ESVO (see --as)");
   else
-    command.refuse_group(kEsvoOptions, "is for an ESVO, and the output is a DAG (see --as)");
+    command.refuse_group(kEsvoOptions, "is for ESVOs only, but the output is a DAG (see --as)");
   arguments.access.outputs = {{"--output", arguments.output}};
   check_distinct(arguments.access.outputs, session);
   if (arguments.levels.has_value() == arguments.voxel_size.has_value())
-    throw UsageError("exactly one of -r/--resolution and --voxel-size is needed");
+    throw UsageError("give exactly one of -r/--resolution and --voxel-size");
 }
 
 }  // namespace
@@ -103,15 +106,15 @@ void add_build_command(const Command& program, Session& session) {
   add_grid_options(command, *arguments);
   command
       .parsed("--method", arguments->method, parse_method, "hash|sort",
-              "hash: depth-first with a hash table of nodes; sort: the paper's method. The result "
-              "is the same (default: hash)")
+              "hash: depth-first with a hash table of nodes; sort: the paper's method. Both write "
+              "the same file (default: hash)")
       .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "
                  "quarters of the available memory)");
   add_mesh_access_options(command, arguments->access);
-  command.flag("--stats", arguments->stats, "Print the number of nodes of each level, too")
-      .only_if([&session] { return !session.json; }, "with --json, which has all levels")
+  command.flag("--stats", arguments->stats, "Also print the number of nodes of each level")
+      .only_if([&session] { return !session.json; }, "with --json, which always prints all levels")
       .only_if([&session] { return !session.quiet; }, "with --quiet");
   add_esvo_options(command, arguments->esvo);
   add_threads_option(command, session);

@@ -39,7 +39,7 @@ void check_regular(const std::string& path) {
   std::error_code unknown;
   if (resolve_output(path).descriptor >= 0 ||
       (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)))
-    throw Error(path, "", "an ESVO can only be written to a regular file");
+    throw Error(path, "", "an ESVO needs a regular file as its output");
 }
 
 std::map<std::string, std::string> settings_of(const BuildArguments& arguments) {

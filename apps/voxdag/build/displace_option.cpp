@@ -32,16 +32,16 @@ void parse_displace(const std::string& text, DisplaceArguments& arguments) {
   std::optional<double> last = number(parts.back());
   if (parts.size() >= 3 && last && number(parts[parts.size() - 2])) {
     arguments.scale = *last;
-    if (!(arguments.scale > 0)) throw std::invalid_argument("the scale must be positive");
+    if (!(arguments.scale > 0)) throw std::invalid_argument("the scale must be greater than zero");
     parts.pop_back();
     last = number(parts.back());
   }
-  if (parts.size() < 2 || !last) throw std::invalid_argument("is not TEXTURE:AMOUNT[:SCALE]");
+  if (parts.size() < 2 || !last) throw std::invalid_argument("must be TEXTURE:AMOUNT[:SCALE]");
   arguments.amount = *last;
   parts.pop_back();
   arguments.texture = parts[0];
   for (std::size_t i = 1; i < parts.size(); ++i) arguments.texture += ":" + parts[i];
-  if (arguments.texture.empty()) throw std::invalid_argument("is not TEXTURE:AMOUNT[:SCALE]");
+  if (arguments.texture.empty()) throw std::invalid_argument("must be TEXTURE:AMOUNT[:SCALE]");
 }
 
 Option add_displace_option(const Command& command, DisplaceArguments& arguments) {
@@ -53,9 +53,8 @@ Option add_displace_option(const Command& command, DisplaceArguments& arguments)
   return command.parsed(
       "--displace", arguments, parse, "TEXTURE:AMOUNT[:SCALE]",
       "Displace the surface by a height texture (PNG, JPEG, or \"stone\", a built-in wall) by up "
-      "to "
-      "AMOUNT world units; the texture covers SCALE world units (default: as the texture "
-      "coordinates say)");
+      "to AMOUNT world units; the texture repeats every SCALE world units (default: it follows the "
+      "texture coordinates)");
 }
 
 Option add_no_displacement_option(const Command& command, DisplaceArguments& arguments) {

@@ -88,7 +88,7 @@ void choose_work(const std::shared_ptr<SceneArguments>& arguments, Session& sess
     session.work = [&session] { print_list(session.json); };
     return;
   }
-  if (arguments->name.empty()) throw UsageError("name", "is required (or --list)");
+  if (arguments->name.empty()) throw UsageError("name", "is required, unless --list is given");
   if (arguments->view) {
     session.work = [arguments] {
       fmt::print("{}\n", view_options(scene_preset(arguments->name, arguments->options)));
@@ -107,14 +107,14 @@ void choose_work(const std::shared_ptr<SceneArguments>& arguments, Session& sess
 
 void add_scene_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<SceneArguments>();
-  const Command command = program.add("scene", "Make a procedural scene as a PLY mesh",
+  const Command command = program.add("scene", "Write a procedural scene as a PLY mesh",
                                       "voxdag scene courtyard -o courtyard.ply");
   const Option name =
-      command.text("name", arguments->name, "NAME", "The scene; --list prints their names");
+      command.text("name", arguments->name, "NAME", "Name of the scene; --list prints all names");
   const Option output =
       command.text("-o,--output", arguments->output, "FILE.ply", "The mesh to write");
-  const Option list = command.flag("--list", arguments->list,
-                                   "Only list the scenes and the meaning of their sizes");
+  const Option list =
+      command.flag("--list", arguments->list, "Only list the scenes and what their sizes mean");
   const Option view =
       command.flag("--view", arguments->view,
                    "Only print options with which `voxdag render` shows the scene well");
@@ -132,7 +132,7 @@ void add_scene_command(const Command& program, Session& session) {
   path.not_with(list).not_with(view);
   for (const Option& option : {name, size, seed}) option.not_with(list);
   seed.not_with(view).not_with(path).only_if([arguments] { return uses_seed(arguments->name); },
-                                             "on this scene");
+                                             "on this scene, which uses no random numbers");
   command.when_parsed([arguments, &session] { choose_work(arguments, session); });
 }
 

@@ -20,14 +20,14 @@ DeviceChoice parse_device(const std::string& text) {
     const auto [stop, error] = std::from_chars(text.data() + 5, end, choice.index);
     if (error == std::errc() && stop == end && choice.index >= 0) return choice;
   }
-  throw std::invalid_argument(
-      fmt::format("\"{}\" is none of cpu, cuda, cuda:NUMBER and auto", text));
+  throw std::invalid_argument(fmt::format("\"{}\" is not cpu, cuda, cuda:NUMBER or auto", text));
 }
 
 void add_device_option(const Command& command, DeviceChoice& choice) {
-  command.parsed("--device", choice, parse_device, "cpu|cuda|auto",
-                 "Where rays are cast. cuda:1 is the second CUDA device; auto is a CUDA device if "
-                 "there is one with enough memory (default: cpu)");
+  command.parsed(
+      "--device", choice, parse_device, "cpu|cuda|auto",
+      "Device that casts the rays. cuda:1 is the second CUDA device; auto is a CUDA device if "
+      "there is one with enough memory (default: cpu)");
 }
 
 std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice,

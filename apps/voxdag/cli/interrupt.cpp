@@ -31,7 +31,7 @@ extern "C" void on_bus_error(int) {
   static std::atomic_flag is_said;
   while (is_said.test_and_set()) pause();  // another thread, and the end is near
   static constexpr char kText[] =
-      "voxdag: a mapped file can no longer be read: was it cut short?\n";
+      "voxdag: cannot read a mapped file any more: another program may have truncated it\n";
   remove_unfinished_files();
   if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(1);
   _exit(1);

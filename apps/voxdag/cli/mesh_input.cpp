@@ -38,11 +38,11 @@ auto read_and_check(const std::string& file, const MeshAccess& access, Session& 
 void add_mesh_access_options(const Command& command, MeshAccess& access, const Option* mesh) {
   const Option outside = command.flag(
       "--allow-outside", access.allow_outside,
-      "Let the mesh name files outside of its own folder: textures, buffers, material libraries");
+      "Let the mesh name textures, buffers and material libraries outside its own folder");
   const Option assimp = command.parsed(
       "--assimp", access.any_importer, parse_importers, "safe|any",
-      "Formats that assimp reads: only those whose importers survive fuzzing, or any (default: "
-      "safe)");
+      "Formats that assimp may read. safe: those whose importers survived fuzzing; any: all "
+      "(default: safe)");
   if (mesh == nullptr) return;
   for (const Option& option : {outside, assimp}) option.needs(*mesh);
 }

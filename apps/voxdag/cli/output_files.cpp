@@ -44,8 +44,8 @@ void check_distinct(const std::vector<OutputFile>& outputs, const Session& sessi
     for (const std::string& input : session.inputs) check_input(output, input);
     const auto [writer, is_new] = writers.emplace(canonical_output(output.path), output.option);
     if (!is_new)
-      throw UsageError(output.option,
-                       fmt::format("would overwrite {} of {}", output.path, writer->second));
+      throw UsageError(output.option, fmt::format("would overwrite {}, which {} writes",
+                                                  output.path, writer->second));
   }
 }
 

@@ -54,7 +54,7 @@ std::array<T, N> parse_list(std::string_view text) {
   for (std::size_t i = 0; i < N; ++i) {
     const std::size_t comma = text.find(',');
     if ((comma == std::string_view::npos) != (i + 1 == N))
-      throw std::invalid_argument(fmt::format("needs {} numbers with commas between", N));
+      throw std::invalid_argument(fmt::format("must be {} numbers separated by commas", N));
     values[i] = parse_element<T>(text.substr(0, comma));
     text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
   }
@@ -67,7 +67,8 @@ Box<T> parse_box_of(const std::string& text) {
   const Box<T> box{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
   for (int axis = 0; axis < 3; ++axis)
     if (!(box.lo[axis] < box.hi[axis]))
-      throw std::invalid_argument("the second corner must lie above the first on every axis");
+      throw std::invalid_argument(
+          "each coordinate of the second corner must be greater than that of the first");
   return box;
 }
 
@@ -98,7 +99,7 @@ Vec3d parse_vec3(const std::string& text) {
 Vec3d parse_direction(const std::string& text) {
   const Vec3d direction = parse_vec3(text);
   if (!(dot(direction, direction) > 0))
-    throw std::invalid_argument(fmt::format("\"{}\" is no direction", text));
+    throw std::invalid_argument(fmt::format("\"{}\" is not a direction: its length is zero", text));
   return direction;
 }
 
@@ -108,7 +109,7 @@ Box3i parse_window(const std::string& text) { return parse_box_of<std::int32_t>(
 
 double parse_positive(const std::string& text) {
   const double value = parse_number<double>(text, "a number");
-  if (!(value > 0)) throw std::invalid_argument("must be above zero");
+  if (!(value > 0)) throw std::invalid_argument("must be greater than zero");
   return value;
 }
 
@@ -144,20 +145,22 @@ std::uint64_t parse_memory(const std::string& text) {
   if (!unit.empty()) {
     const std::size_t power = kUnits.find(static_cast<char>(unit[0] & ~0x20));
     if (unit.size() != 1 || power == std::string_view::npos)
-      throw std::invalid_argument(fmt::format("\"{}\" has no unit of K, M, G or T", text));
+      throw std::invalid_argument(
+          fmt::format("\"{}\" has an unknown unit: the units are K, M, G and T", text));
     factor = std::exp2(10.0 * static_cast<double>(power + 1));
   }
   const double bytes = value * factor;
-  if (!(bytes >= 1 && bytes < 0x1p63)) throw std::invalid_argument("must be above zero bytes");
+  if (!(bytes >= 1 && bytes < 0x1p63)) throw std::invalid_argument("must be at least one byte");
   return static_cast<std::uint64_t>(bytes);
 }
 
 ImageSize parse_image_size(const std::string& text) {
   const std::size_t x = text.find('x');
-  if (x == std::string::npos) throw std::invalid_argument("needs WIDTHxHEIGHT, such as 1920x1080");
+  if (x == std::string::npos)
+    throw std::invalid_argument("must be WIDTHxHEIGHT, such as 1920x1080");
   const std::string_view view = text;
-  const ImageSize size{parse_number<int>(view.substr(0, x), "a width"),
-                       parse_number<int>(view.substr(x + 1), "a height")};
+  const ImageSize size{parse_number<int>(view.substr(0, x), "a width in pixels"),
+                       parse_number<int>(view.substr(x + 1), "a height in pixels")};
   for (const int side : {size.width, size.height})
     if (side < 1 || side > kMaxImageSide)
       throw std::invalid_argument(fmt::format("each side must be 1 to {} pixels", kMaxImageSide));

@@ -22,7 +22,7 @@ Option add_threads_option(const Command& command, Session& session) {
 }
 
 Option add_quiet_option(const Command& command, Session& session) {
-  return command.flag("-q,--quiet", session.quiet, "Print neither progress bar nor summary");
+  return command.flag("-q,--quiet", session.quiet, "Turn the progress bar and the summary off");
 }
 
 Option add_json_option(const Command& command, Session& session) {

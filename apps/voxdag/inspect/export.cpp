@@ -32,18 +32,20 @@ void export_file(ExportArguments& arguments, Session& session) {
 
 void add_export_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ExportArguments>();
-  const Command command =
-      program.add("export", "Write the voxels as .npy, .ply or .raw, by the extension",
-                  "voxdag export scene.vdag -o voxels.npy");
+  const Command command = program.add("export", "Write the voxels as .npy, .ply or .raw",
+                                      "voxdag export scene.vdag -o voxels.npy");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
       .text("-o,--output", arguments->output, "OUT",
             ".npy: coordinates, or a dense array with --window; .ply: points, or with --faces the "
             "outer faces of the voxels; .raw: a dense array")
       .required();
-  command.parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
-                 "Export only these voxels, from the first corner up to but without the second");
-  command.flag("--faces", arguments->faces, "Write the outer faces of the voxels")
+  command.parsed(
+      "--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
+      "Export only the voxels from the first corner (included) to the second (excluded)");
+  command
+      .flag("--faces", arguments->faces,
+            "With .ply: write the outer faces of the voxels, not points")
       .only_if([arguments] { return arguments->output.ends_with(".ply"); },
                "on an output that does not end in .ply");
   add_quiet_option(command, session);

@@ -40,9 +40,9 @@ void info(const std::string& path, bool json) {
 }  // namespace
 
 void add_info_command(const Command& program, Session& session) {
-  const Command command = program.add(
-      "info", "Print what a .vdag or .esvo file holds: counts, sizes, placement, source",
-      "voxdag info scene.vdag --json");
+  const Command command =
+      program.add("info", "Print the counts, sizes, placement and source of a .vdag or .esvo file",
+                  "voxdag info scene.vdag --json");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   add_json_option(command, session);
   command.when_parsed(

@@ -53,7 +53,7 @@ void announce_samples(std::uint64_t samples, const Check& check, Session& sessio
 
 VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
-    throw Error(session.subject, "", "--displace is for an ESVO, and this is a DAG");
+    throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
   const VdagFile file(session.subject);
   const Mesh mesh = read_mesh_file(arguments.mesh, arguments.access, session);
   const auto check_samples = [&](std::uint64_t samples) {
@@ -65,7 +65,7 @@ VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
   if (cover.mismatches > 0) {
     check.result = Result::kFailed;
     check.detail =
-        fmt::format("{} of {} cells differ from {}, the first is cell ({}, {}, {}) of level {}",
+        fmt::format("{} of {} cells differ from {}; the first one is cell ({}, {}, {}) of level {}",
                     with_commas(cover.mismatches), with_commas(cover.samples), arguments.mesh,
                     cover.first_mismatch.x, cover.first_mismatch.y, cover.first_mismatch.z,
                     cover.first_mismatch_level);
@@ -115,7 +115,7 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
   const std::optional<DisplaceArguments> displace = displacement_of(file, arguments.displace);
   if (!displace)
     return {"enclosure", Result::kSkipped,
-            fmt::format("the surface is displaced: give --displace, which was {}",
+            fmt::format("the surface is displaced: give the --displace of the build, which was {}",
                         file.metadata().build.at("displace"))};
   const MeshWithAppearance source =
       read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
@@ -135,14 +135,14 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
                     fmt::format("{} points of the surface", with_commas(enclosure.points))};
   if (enclosure.points == 0 && arguments.samples > 0 && !file.view().is_empty()) {
     check.result = Result::kFailed;
-    check.detail = fmt::format("no point of {} lies in the grid", arguments.mesh);
+    check.detail = fmt::format("no point of {} is in the grid", arguments.mesh);
   }
   if (!enclosure.outside) return check;
   const Vec3d at = file.grid().to_world(enclosure.outside->point);
   check.result = Result::kFailed;
-  check.detail = fmt::format("triangle {} of {} at ({:.9g}, {:.9g}, {:.9g}) is outside at level {}",
-                             enclosure.outside->triangle, arguments.mesh, at.x, at.y, at.z,
-                             enclosure.outside->level);
+  check.detail = fmt::format(
+      "point ({2:.9g}, {3:.9g}, {4:.9g}) of triangle {0} of {1} is outside the octree at level {5}",
+      enclosure.outside->triangle, arguments.mesh, at.x, at.y, at.z, enclosure.outside->level);
   return check;
 }
 
@@ -158,7 +158,8 @@ void verify(const VerifyArguments& arguments, Session& session) {
     if (report.passed())
       report.checks.push_back(mesh_check(arguments, session));
     else
-      report.checks.push_back({"mesh", Result::kSkipped, "the file itself is damaged"});
+      report.checks.push_back(
+          {"mesh", Result::kSkipped, "not checked, because the file is damaged"});
   }
   session.bar.clear();
   if (session.json || !session.quiet) print_checks(report.checks, session.json);
@@ -176,7 +177,7 @@ void add_verify_command(const Command& program, Session& session) {
       "voxdag verify sponza.vdag --mesh sponza.obj");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   const Option mesh = command.text("--mesh", arguments->mesh, "MESH",
-                                   "Compare with this mesh, in random cells or points");
+                                   "Compare the voxels with this mesh, in random cells or points");
   command
       .number("--samples", arguments->samples, NumberRange::whole(0, kMostSamples), "N",
               "With --mesh: number of random cells or points")

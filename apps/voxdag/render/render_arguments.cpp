@@ -17,7 +17,8 @@ void check_frame_pattern(const OutputFile& output, bool is_film) {
   };
   const std::string fault = frame_pattern_fault(output.path);
   if (is_film && !fault.empty()) refuse(fault);
-  if (!is_film && fault.empty()) refuse("has a placeholder for the frame number, without --path");
+  if (!is_film && fault.empty())
+    refuse("has a placeholder for the frame number, which only --path fills in");
 }
 
 std::vector<OutputFile> pictures_of(const RenderArguments& arguments) {
@@ -64,12 +65,12 @@ void check_view(const ViewRequest& view) {
 void check_render_arguments(RenderArguments& arguments, Session& session) {
   session.inputs = {arguments.mesh.file, arguments.path.file};
   if (arguments.mesh.primary == "mesh" && arguments.mesh.file.empty())
-    throw UsageError("--primary", "mesh needs --mesh");
+    throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
   check_view(arguments.options.view);
   constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // besides the sun
   if (arguments.options.lights.size() > kMostLights)
-    throw UsageError("--light", fmt::format("there are {}; at most {} are allowed",
+    throw UsageError("--light", fmt::format("is given {} times; at most {} are allowed",
                                             arguments.options.lights.size(), kMostLights));
 }
 

@@ -21,7 +21,7 @@ void check_own_view(const PathFile& path, const ViewRequest& asked) {
   if (path.keys.empty()) return;
   const PathKey& first = path.keys.front();
   const auto refuse = [&](const char* name) {
-    throw Error(path.name, "key 0", fmt::format("has \"{0}\": --{0} has no effect", name));
+    throw Error(path.name, "key 0", fmt::format("has \"{0}\", so --{0} has no effect", name));
   };
   if (first.up && asked.up) refuse("up");
   if (first.fov_degrees && asked.vertical_fov_degrees) refuse("fov");
@@ -38,7 +38,8 @@ void check_file_names(const RenderArguments& arguments, const std::vector<Pictur
     for (const std::string& input : session.inputs)
       if (are_same_file(path, input))
         throw Error(path, "", "is both an input and an output of the film");
-    if (are_same_file(path, session.subject)) throw Error(path, "", "is the scene of the film");
+    if (are_same_file(path, session.subject))
+      throw Error(path, "", "is both the scene and an output of the film");
   };
   if (!arguments.path.timings.empty()) {
     add(arguments.path.timings);

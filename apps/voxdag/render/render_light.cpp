@@ -62,7 +62,7 @@ LightSpec parse_light(const std::string& text) {
     check(light);
     return light;
   }
-  throw std::invalid_argument("begins with none of point:, sphere:, disc:, rect:");
+  throw std::invalid_argument("must begin with point:, sphere:, disc: or rect:");
 }
 
 }  // namespace voxdag

@@ -16,13 +16,13 @@ namespace {
 /// Parses "depth=z.exr"; throws std::invalid_argument.
 PicturePass parse_pass(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) throw std::invalid_argument("needs NAME=FILE");
+  if (equals == std::string::npos) throw std::invalid_argument("must be NAME=FILE");
   const PicturePass pass{find_picture_kind(text.substr(0, equals)), text.substr(equals + 1)};
   if (pass.kind == nullptr) {
     std::vector<std::string_view> names;
     for (const PictureKind& kind : picture_kinds()) names.push_back(kind.name);
     throw std::invalid_argument(
-        fmt::format("\"{}\" is none of {}", text.substr(0, equals), fmt::join(names, ", ")));
+        fmt::format("\"{}\" is not one of {}", text.substr(0, equals), fmt::join(names, ", ")));
   }
   return pass;
 }
@@ -46,14 +46,16 @@ struct ViewOptions {
 
 ViewOptions add_view_options(const Command& command, ViewRequest& view) {
   const Option eye = command.parsed("--eye", view.eye, parse_vec3, "X,Y,Z",
-                                    "Position of the camera (default: where the scene shows well)");
-  const Option target = command.parsed("--target", view.target, parse_vec3, "X,Y,Z",
-                                       "The point in the centre of the picture");
-  command.parsed("--up", view.up, parse_direction, "X,Y,Z",
-                 "The up direction (default: y, or z if the scene lies or stands on it)");
+                                    "Position of the camera (default: chosen to show the scene)");
+  const Option target =
+      command.parsed("--target", view.target, parse_vec3, "X,Y,Z",
+                     "Point in the centre of the picture (default: chosen to show the scene)");
+  command.parsed(
+      "--up", view.up, parse_direction, "X,Y,Z",
+      "Direction that is up (default: y, or z if the shape of the scene shows that z is up)");
   command.optional_number<double>(
       "--fov", view.vertical_fov_degrees, NumberRange::half_open(kLeastFovDegrees, 180), "DEGREES",
-      "Vertical angle of view, below 180 (default: what suits the scene)");
+      "Vertical angle of view, below 180 (default: chosen to show the scene)");
   return {eye, target};
 }
 
@@ -67,7 +69,7 @@ void add_sun_options(const Command& command, RenderOptions& options) {
       .number("--sun-angle", options.sun_degrees, NumberRange::from(0, 89), "DEGREES",
               "Angular diameter of the sun; 0: hard shadows")
       .only_if(has_sun, "with --no-sun");
-  command.off_switch("--no-sun", options.with_sun, "Switch the sun off");
+  command.off_switch("--no-sun", options.with_sun, "Turn the sun off");
 }
 
 void add_light_options(const Command& command, RenderOptions& options) {
@@ -77,8 +79,9 @@ void add_light_options(const Command& command, RenderOptions& options) {
       "Add a light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
       "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
   command.number("--sky", options.sky, NumberRange::from(0, 1e6), "FACTOR",
-                 "Brightness of the sky; 0: black");
-  command.off_switch("--no-shadows", options.shadows, "Switch the shadows of sun and lights off")
+                 "Factor that scales the light of the sky; 0: black");
+  command
+      .off_switch("--no-shadows", options.shadows, "Turn the shadows of the sun and the lights off")
       .only_if([&options] { return options.with_sun || !options.lights.empty(); },
                "without sun and lights");
   command
@@ -108,19 +111,21 @@ void add_quality_options(const Command& command, RenderOptions& options) {
   command.number("--lod", options.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
                  "End rays at cells of this size in the picture; 0: always at voxels");
   command.off_switch("--no-beams", options.beams,
-                     "Cast every ray over its whole length: slower, the same picture");
+                     "Do not shorten rays by beams: slower, the same picture");
   command.optional_number<float>(
       "--exposure", options.exposure, NumberRange::positive(), "FACTOR",
-      "Factor on the light before tone mapping (default: what suits the picture)");
+      "Factor that scales the light before tone mapping (default: chosen for the picture)");
 }
 
 Option add_mesh_options(const Command& command, MeshArguments& mesh) {
   const Option file = command.text(
       "--mesh", mesh.file, "MESH",
-      "The mesh that the voxels were built from: show its triangles, with their colours, textures "
-      "and normals; the voxels still cast shadows and occlusion");
+      "Show the triangles of this mesh, with their colours, textures and normals. The voxels, "
+      "which must be built from it, cast shadows and occlusion");
   const auto is_seen = [&mesh] { return mesh.primary != "voxels"; };
-  command.flag("--grey", mesh.grey, "With --mesh: ignore its colours, textures and normals")
+  command
+      .flag("--grey", mesh.grey,
+            "With --mesh: ignore the colours, textures and normals of the mesh")
       .needs(file)
       .only_if(is_seen, "with --primary voxels");
   command.parsed("--primary", mesh.primary, parse_primary, "voxels|mesh",
@@ -140,7 +145,7 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
   const Option file = command.text(
       "--path", path.file, "KEYS.json",
       "Render a film along this camera path (see `voxdag scene NAME --path`); names of output "
-      "files then have a placeholder for the frame number, such as frame_%04d.png");
+      "files then need a placeholder for the frame number, such as frame_%04d.png");
   view.eye.not_with(file);
   view.target.not_with(file);
   command
@@ -169,22 +174,20 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   add_occlusion_options(command, options);
   add_quality_options(command, options);
   add_filter_options(command, arguments);
-  command.text("--depth", arguments.depth, "OUT", "Short for --pass depth=OUT");
-  command.text("--normal", arguments.normal, "OUT", "Short for --pass normal=OUT");
-  command.repeated(
-      "--pass", arguments.passes, parse_pass, "NAME=OUT",
-      "Also write picture, radiance, depth, normal, occlusion, shadow or steps to a .exr or .png "
-      "file; repeatable");
+  command.text("--depth", arguments.depth, "OUT", "Same as --pass depth=OUT");
+  command.text("--normal", arguments.normal, "OUT", "Same as --pass normal=OUT");
+  command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",
+                   "Also write a pass: picture, radiance, depth, normal, occlusion, shadow or "
+                   "steps to a .exr or .png "
+                   "file; repeatable");
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);
   command
       .parsed("--memory", arguments.stream_memory, parse_memory, "LIMIT",
               "Stream an ESVO: load only the parts that the picture shows, into this much memory "
-              "(512M). "
-              "A coarse picture is written at once and replaced as it becomes finer; frames of "
-              "--path are "
-              "written once")
+              "(512M). A coarse picture is written first and replaced by finer ones; with --path, "
+              "each frame is written once")
       .only_if(
           [&arguments] {
             return arguments.mesh.file.empty() &&
