@@ -89,7 +89,7 @@ int run(int argc, char** argv) {
 }  // namespace voxdag
 
 int main(int argc, char** argv) try {
-  voxdag::make_writes_fail_plainly();
+  voxdag::make_writes_return_errors();
   return voxdag::run(argc, argv);
 } catch (const std::exception& error) {
   return voxdag::report(error.what(), voxdag::kFailure);

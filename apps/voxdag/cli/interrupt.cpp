@@ -28,8 +28,8 @@ extern "C" void on_signal(int number) {
 
 /// What is mapped is gone where another program cuts the file short, or the disk fails.
 extern "C" void on_bus_error(int) {
-  static std::atomic_flag is_said;
-  while (is_said.test_and_set()) pause();  // another thread, and the end is near
+  static std::atomic_flag is_reported;
+  while (is_reported.test_and_set()) pause();  // another thread, and the end is near
   static constexpr char kText[] =
       "voxdag: cannot read a mapped file any more: another program may have truncated it\n";
   remove_unfinished_files();
@@ -39,7 +39,7 @@ extern "C" void on_bus_error(int) {
 
 }  // namespace
 
-void make_writes_fail_plainly() {
+void make_writes_return_errors() {
   for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);
   // Open for reading only, so that writes to it fail. The lowest free descriptor is taken.
   for (int stream = 0; stream <= 2; ++stream)

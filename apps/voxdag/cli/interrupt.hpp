@@ -7,7 +7,7 @@ namespace voxdag {
 /// From now on a write to a closed pipe or past the limit of a file's size is an error instead of a
 /// signal, and so is one to a standard stream that the caller closed: without this the next file
 /// opened would take its place and its text.
-void make_writes_fail_plainly();
+void make_writes_return_errors();
 
 /// From now on SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the
 /// process. A second signal removes unfinished output and ends the process at once.

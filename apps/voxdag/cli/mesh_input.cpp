@@ -29,7 +29,7 @@ auto read_and_check(const std::string& file, const MeshAccess& access, Session& 
   options.any_assimp_importer = access.any_importer;
   options.named_files = &named;
   auto result = read(options);
-  check_keeps(access.outputs, named, file);
+  check_not_overwritten(access.outputs, named, file);
   return result;
 }
 

@@ -49,8 +49,8 @@ void check_distinct(const std::vector<OutputFile>& outputs, const Session& sessi
   }
 }
 
-void check_keeps(const std::vector<OutputFile>& outputs, std::span<const fs::path> files,
-                 const std::string& namer) {
+void check_not_overwritten(const std::vector<OutputFile>& outputs, std::span<const fs::path> files,
+                           const std::string& namer) {
   for (const OutputFile& output : outputs) {
     if (output.path.empty() || is_device(output.path)) continue;
     for (const fs::path& file : files)

@@ -19,8 +19,8 @@ struct OutputFile {
 void check_distinct(const std::vector<OutputFile>& outputs, const Session& session);
 
 /// Throws Error if an output would overwrite one of `files`, which the file `namer` names.
-void check_keeps(const std::vector<OutputFile>& outputs,
-                 std::span<const std::filesystem::path> files, const std::string& namer);
+void check_not_overwritten(const std::vector<OutputFile>& outputs,
+                           std::span<const std::filesystem::path> files, const std::string& namer);
 
 /// Returns the canonical path of the file that output to `path` goes to.
 std::filesystem::path canonical_output(const std::string& path);

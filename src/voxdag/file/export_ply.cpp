@@ -56,7 +56,7 @@ class PlyFile {
   }
 
   /// Writes the last vertex's normal and colour. If there are any, call it after each vertex.
-  void write_look(const EsvoView& esvo, const EsvoVoxel& voxel) {
+  void write_appearance(const EsvoView& esvo, const EsvoVoxel& voxel) {
     Vec3f normal;
     Vec3<std::uint8_t> color;
     if (content_.normals && stored_normal(esvo, voxel, normal)) file_.write(&normal, sizeof normal);
@@ -195,7 +195,7 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
                   .colors = has_stored(*esvo, EsvoAttachmentKind::kColors)});
     std::uint64_t parts = 0;
     for_each_leaf_part(*esvo, window, [&](Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) {
-      write_voxels(file, origin, mask, [&] { file.write_look(*esvo, leaf); });
+      write_voxels(file, origin, mask, [&] { file.write_appearance(*esvo, leaf); });
       if (++parts % 16384 == 0) report_export(options, file.vertices(), count);
     });
     file.commit();

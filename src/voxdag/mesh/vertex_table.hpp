@@ -30,7 +30,7 @@ class VertexTable {
 
   /// Returns the index of the vertex with the same bits; adds it if there is none.
   std::uint32_t find_or_add(Vec3f position) {
-    std::size_t i = home(position);
+    std::size_t i = hash_slot(position);
     for (; slots_[i] != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
       if (has_bits(vertices_[slots_[i]], position)) return slots_[i];
     const auto vertex = static_cast<std::uint32_t>(vertices_.size());
@@ -59,7 +59,7 @@ class VertexTable {
     using Bits = std::array<std::uint32_t, 3>;
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
   }
-  std::size_t home(Vec3f position) const {
+  std::size_t hash_slot(Vec3f position) const {
     return static_cast<std::size_t>((hash_bits(position, seed()) >> 32) * slots_.size() >> 32);
   }
   static std::uint64_t seed() {
@@ -72,7 +72,7 @@ class VertexTable {
     std::fill(slots_.begin(), slots_.end(), kFree);
     slots_.resize(2 * slots_.size(), kFree);
     for (std::uint32_t vertex = 0; vertex < vertices_.size(); ++vertex) {
-      std::size_t i = home(vertices_[vertex]);
+      std::size_t i = hash_slot(vertices_[vertex]);
       while (slots_[i] != kFree) i = i + 1 == slots_.size() ? 0 : i + 1;
       slots_[i] = vertex;
     }

@@ -18,7 +18,8 @@ class LeafListener {
 /// Returns whether the ray ended at a leaf and would have continued into smaller voxels, if there
 /// were any.
 template <class Stop>
-bool would_go_on(const EsvoView& esvo, const GridRay& ray, const Stop& stop, const EsvoHit& hit) {
+bool would_continue(const EsvoView& esvo, const GridRay& ray, const Stop& stop,
+                    const EsvoHit& hit) {
   const ChildDescriptor descriptor = esvo.descriptor(hit.voxel.slot);
   if ((descriptor.leaf_mask() >> hit.voxel.child & 1u) == 0) return false;
   const float x = ray.plane_t(0, float_from_bits(hit.x)),
@@ -36,7 +37,7 @@ class StreamedNodes : public ContourNodes {
   /// Casters call it for each hit, with the stop of the cast.
   template <class Stop>
   void on_hit(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
-    if (would_go_on(view(), ray, stop, hit)) listener_->on_leaf(hit.voxel.slot);
+    if (would_continue(view(), ray, stop, hit)) listener_->on_leaf(hit.voxel.slot);
   }
 
  private:

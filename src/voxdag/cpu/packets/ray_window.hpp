@@ -38,7 +38,7 @@ class RayWindow {
     taken_ = size_ = 0;
     if (take(std::min(available, kAlike), on_miss, take_one)) return;
     take(std::min(available, kMaxRays), on_miss, take_one);
-    sort(by_direction && are_unlike() ? 0 : kCellBits);
+    sort(by_direction && are_incoherent() ? 0 : kCellBits);
   }
 
   /// Returns how many rays fill() took.
@@ -96,7 +96,7 @@ class RayWindow {
   }
 
   /// Returns whether neighbours are often in different octants, judged by a sample.
-  bool are_unlike() const {
+  bool are_incoherent() const {
     constexpr int kStep = 16;
     int unlike = 0, pairs = 0;
     for (int i = 1; i < size_; i += kStep, ++pairs)
