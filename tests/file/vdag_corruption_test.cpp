@@ -163,7 +163,7 @@ TEST(VdagCorruption, FaultsInTheDagAreNamed) {
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 2) + 4, std::uint32_t{100})),
             "chunk NODE, level 0, word 1: pointer points outside the next level");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 3), std::uint64_t{0})),
-            "chunk LEAF, leaf block 0: leaf block without voxels");
+            "chunk LEAF, leaf block 0: leaf block has no voxels");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1), std::uint64_t{1})),
             "chunk LEVL, level table: level 0 does not begin at word 0");
   EXPECT_EQ(error_of(repaired_with(chunk_offset(bytes, 1) + 16, std::uint64_t{6})),

@@ -48,7 +48,7 @@ TEST(ValidateSvdag, AcceptsADagWithoutVoxels) {
 TEST(ValidateSvdag, RefusesANodeWithoutChildren) {
   Svdag dag = two_corners();
   dag.nodes[3] = 0;
-  EXPECT_EQ(fault(validate_svdag, dag), "level 1, word 3: node without children");
+  EXPECT_EQ(fault(validate_svdag, dag), "level 1, word 3: node has no children");
 }
 
 TEST(ValidateSvdag, RefusesAMaskOfMoreThanEightBits) {
@@ -93,7 +93,7 @@ TEST(ValidateSvdag, RefusesAPointerPastTheLeafBlocks) {
 TEST(ValidateSvdag, RefusesALeafBlockWithoutVoxels) {
   Svdag dag = two_corners();
   dag.leaf_blocks[1] = 0;
-  EXPECT_EQ(fault(validate_svdag, dag), "leaf block 1: leaf block without voxels");
+  EXPECT_EQ(fault(validate_svdag, dag), "leaf block 1: leaf block has no voxels");
 }
 
 TEST(ValidateSvdag, RefusesTwoRoots) {
@@ -140,10 +140,10 @@ TEST(CheckCanonical, RefusesNodesThatNothingPointsTo) {
   Svdag dag = two_corners();
   dag.nodes[2] = dag.nodes[1];
   EXPECT_EQ(fault(validate_svdag, dag), "");
-  EXPECT_EQ(fault(check_canonical, dag), "level 1, word 5: node without a parent");
+  EXPECT_EQ(fault(check_canonical, dag), "level 1, word 5: node has no parent");
   dag = two_corners();
   dag.leaf_blocks.push_back(5);
-  EXPECT_EQ(fault(check_canonical, dag), "leaf block 2: leaf block without a parent");
+  EXPECT_EQ(fault(check_canonical, dag), "leaf block 2: leaf block has no parent");
 }
 
 TEST(CheckMinimal, RefusesEqualNodes) {

@@ -121,7 +121,7 @@ void add_scene_command(const Command& program, Session& session) {
   const Option path = command.flag("--path", arguments->path,
                                    "Only print a camera path for `voxdag render --path`");
   const Option size = command.parsed("--size", arguments->options.size, parse_positive, "SIZE",
-                                     "How large or fine the scene is (default: see --list)");
+                                     "Size or fineness of the scene (default: see --list)");
   const Option seed =
       command.number("--seed", arguments->options.seed, NumberRange::whole(0, 0xffff'ffff), "N",
                      "Seed of the random numbers");

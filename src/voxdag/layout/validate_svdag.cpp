@@ -49,7 +49,7 @@ void mark_nodes(const SvdagView& dag, int level, std::vector<std::uint64_t>& sta
   starts.assign((end - begin + 63) / 64, 0);
   for (std::uint64_t at = begin; at < end;) {
     const std::uint32_t mask = dag.nodes[at];
-    if (mask == 0) fail_at_word(level, at, "node without children");
+    if (mask == 0) fail_at_word(level, at, "node has no children");
     if (mask > 0xFF) fail_at_word(level, at, "child mask has more than eight bits");
     const std::uint64_t next = at + 1 + popcount(mask);
     if (next > end) fail_at_word(level, at, "node reaches past the end of its level");
@@ -163,7 +163,7 @@ void validate_svdag(const SvdagView& dag) {
     }
   }
   for (std::uint64_t i = 0; i < dag.leaf_block_count; ++i)
-    if (dag.leaf_blocks[i] == 0) fail_at_leaf_block(i, "leaf block without voxels");
+    if (dag.leaf_blocks[i] == 0) fail_at_leaf_block(i, "leaf block has no voxels");
 }
 
 void check_canonical(const SvdagView& dag) {
@@ -184,8 +184,8 @@ void check_canonical(const SvdagView& dag) {
       at += 1 + children;
     }
     if (next == below_end) continue;
-    if (above_leaf_blocks) fail_at_leaf_block(next, "leaf block without a parent");
-    fail_at_word(level + 1, next, "node without a parent");
+    if (above_leaf_blocks) fail_at_leaf_block(next, "leaf block has no parent");
+    fail_at_word(level + 1, next, "node has no parent");
   }
 }
 

@@ -92,7 +92,7 @@ void EsvoStream::find_children() {
         [](std::uint64_t slot, const EsvoBlockEntry& b) { return slot < b.begin; });
     const auto above = static_cast<std::size_t>(after - directory_.begin()) - 1;
     if (above == i || parent >= directory_[above].begin + directory_[above].slots)
-      fail(ErrorPlace::block(i), "its parent is in no other block");
+      fail(ErrorPlace::block(i), "its parent slot is not in another block");
     blocks_[i].parent = static_cast<std::int64_t>(above);
     blocks_[i].parent_slot = static_cast<std::uint32_t>(parent - directory_[above].begin);
     blocks_[above].children.push_back(static_cast<std::uint32_t>(i));

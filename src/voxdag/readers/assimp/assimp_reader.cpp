@@ -71,7 +71,7 @@ class AllowedFiles : public Assimp::DefaultIOSystem {
 void add_mesh(const MeshSource& source, const aiMesh& part, Mesh& mesh) {
   const std::size_t start = mesh.vertices.size();
   if (part.mNumVertices >= std::numeric_limits<std::uint32_t>::max() - start)
-    throw source.error("more than 4,294,967,294 vertices");
+    throw source.error("the mesh has more than 4,294,967,294 vertices");
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D& p = part.mVertices[i];
     mesh.vertices.push_back(

@@ -100,7 +100,7 @@ GltfMesh compile_gltf_mesh(const GltfFile& file, const GltfValue& mesh, GltfAcce
     if (is_new) result.vertices += primitive.positions->size();
     result.triangles += primitive.triangles;
     if (result.vertices >= 0xFFFFFFFF)
-      throw file.source().error("more than 4,294,967,294 vertices");
+      throw file.source().error("the mesh has more than 4,294,967,294 vertices");
     result.primitives.push_back(primitive);
   }
   return result;

@@ -41,7 +41,7 @@ ObjAttributes::ObjAttributes(const MeshSource& source, const ObjCounts& totals, 
       normal_references_(source.options.memory),
       results_(source.options.memory, 0) {
   if (std::max(totals.uvs, totals.normals) >= ObjReferences::kNone)
-    throw source.error("more than 4,294,967,294 texture coordinates or normals");
+    throw source.error("the mesh has more than 4,294,967,294 texture coordinates or normals");
   uvs_.resize(totals.uvs);
   normals_.resize(totals.normals);
   if (has_colors) colors_.resize(totals.vertices);

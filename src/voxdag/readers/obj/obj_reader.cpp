@@ -119,7 +119,8 @@ class ObjReader {
     }
     if (totals_.triangles == 0)
       throw source_.error("OBJ without faces: there is no surface to read");
-    if (totals_.vertices >= kNoMaterial) throw source_.error("more than 4,294,967,294 vertices");
+    if (totals_.vertices >= kNoMaterial)
+      throw source_.error("the mesh has more than 4,294,967,294 vertices");
     make_room(has_colors);
   }
 

@@ -156,7 +156,7 @@ class HeaderParser {
         fail("PLY vertex property " + in_quotes(axis) + " is a list");
     }
     if (vertex.count >= std::numeric_limits<std::uint32_t>::max())
-      fail("more than 4,294,967,294 vertices");
+      fail("the mesh has more than 4,294,967,294 vertices");
     if (header_.face < 0) fail("PLY without a 'face' element: there is no surface to read");
     const PlyElement& face = header_.elements[static_cast<std::size_t>(header_.face)];
     if (face.count == 0) fail("PLY with 0 faces: there is no surface to read");
