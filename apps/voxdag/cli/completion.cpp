@@ -36,7 +36,8 @@ complete -o filenames -F _{0} {0}
 }
 
 void check_shell(const std::string& shell) {
-  if (shell != "bash") throw UsageError("shell", fmt::format("\"{}\" is not bash", shell));
+  if (shell != "bash")
+    throw UsageError("shell", fmt::format("\"{}\" is unknown: only bash is supported", shell));
 }
 
 }  // namespace
