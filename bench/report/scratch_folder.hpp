@@ -19,10 +19,14 @@ class ScratchFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  /// Ends the keeper and waits until it has removed the folder.
+  void end_keeper();
+
   std::filesystem::path path_;
-  /// A shell that removes the folder as soon as the other end of its standard input is closed.
-  pid_t remover_ = -1;
-  int remover_input_ = -1;
+  /// A shell that creates the folder, and removes it as soon as its standard input ends: when the
+  /// other end of that pipe is closed, by this object or because this process ended.
+  pid_t keeper_ = -1;
+  int keeper_input_ = -1;
 };
 
 }  // namespace voxdag

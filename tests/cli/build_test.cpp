@@ -259,7 +259,7 @@ TEST_F(Build, VerifyFindsTheWrongMesh) {
   write_text(mesh_, "v 1001 2 3\nv 1005 2 3\nv 1001 4 3.5\nf 1 2 3\n");
   ProcessResult result = run_voxdag({"verify", octree, "--mesh", mesh_});
   result.out.clear();
-  expect_failure(result, 1, "no point of " + mesh_ + " lies in the grid");
+  expect_failure(result, 1, "no point of " + mesh_ + " is in the grid");
 }
 
 }  // namespace

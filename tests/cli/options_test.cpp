@@ -215,7 +215,7 @@ TEST_F(Options, AFilmsUpIsThatOfItsPath) {
              R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0], "up": [0,1,0]}]})");
   expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("up.json"), "-o",
                              path("bad%d.png"), "--up", "0,0,1"}),
-                 1, "up.json: key 0: has \"up\": --up has no effect");
+                 1, "up.json: key 0: has \"up\", so --up has no effect");
 }
 
 TEST_F(Options, MemoryIsForEsvos) {

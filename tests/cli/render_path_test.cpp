@@ -105,7 +105,7 @@ TEST_F(StreamedPath, FramesAreThoseOfTheWholeOctree) {
 
 TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
   expect_failure(film("{\"keys\": [}"), 1, "keys.json: byte 11: syntax error");
-  expect_failure(film("[]"), 1, "keys.json: not an object");
+  expect_failure(film("[]"), 1, "keys.json: must be an object");
   expect_failure(film(R"({"keys": []})"), 1, "keys.json: key 0");
   expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2]}]})"), 1, "key 0: \"target\"");
   expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2], "target": [0, 0, 0]}]})"), 1,
@@ -114,7 +114,7 @@ TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
                                    {"time": 0, "eye": [1, 2, 4], "target": [0, 0, 0]}]})"),
                  1, "key 1: its time");
   expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [0, 0, 0], "x": 1}]})"),
-                 1, "key 0: \"x\"");
+                 1, "key 0: unknown key \"x\"");
   expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [1, 2, 3]}]})"), 1,
                  "keys.json: key 0");
   expect_failure(film(R"({"keys": [{"time": 0, "eye": [1, 2, 3], "target": [0, 0, 0]},

@@ -139,7 +139,7 @@ TEST(Npy, NamesTheFault) {
   EXPECT_EQ(header_error("{'descr': '<f4', 'fortran_order': True, 'shape': (0, 8), }"),
             "byte 128: the array must be in C order, not in Fortran order");
   EXPECT_EQ(header_error(rays_header("(18446744073709551615, 8)")),
-            "byte 128: array of 18446744073709551615 rows is too large");
+            "byte 128: an array of 18446744073709551615 rows is too large");
   EXPECT_EQ(header_error(rays_header("(18446744073709551616, 8)")),
             "byte 61: malformed header: expected a size");
   EXPECT_EQ(header_error(rays_header("(-1, 8)")), "byte 61: malformed header: expected a size");

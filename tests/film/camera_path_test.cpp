@@ -92,7 +92,7 @@ TEST(CameraPath, RefusesKeysThatMakeNoPath) {
   refuses({key(1, {0, 0, 9}), key(1, {0, 1, 9})}, "key 1: its time");
   refuses({key(1, {0, 0, 9}), key(2, {0, NAN, 9})}, "key 1");
   refuses({key(1, {0, 0, 0})}, "same point");
-  refuses({key(1, {0, 0, 9}, {}, 180)}, "angle");
+  refuses({key(1, {0, 0, 9}, {}, 180)}, "fov");
 }
 
 }  // namespace
