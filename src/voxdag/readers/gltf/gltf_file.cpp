@@ -114,7 +114,7 @@ void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
 
 void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const {
   if (uri.starts_with("data:")) {
-    buffer.decoded = decode_data_uri(uri, source_.options.memory);
+    buffer.decoded = decode_data_uri(uri, source_.options.memory, source_.options.progress);
     if (!buffer.decoded)
       throw value.error(uri.find(',') == uri.npos ? "malformed data URI"
                                                   : "data URI is not base64");

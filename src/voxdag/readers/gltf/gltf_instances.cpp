@@ -16,9 +16,14 @@ CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
     return roots;
   }
   CountedVector<char> is_child(nodes.size(), 0, CountedAllocator<char>(roots.get_allocator()));
-  for (const GltfValue node : nodes)
-    for (const GltfValue child : node["children"].items())
+  CancelPoll poll(file.source().options.progress);
+  for (const GltfValue node : nodes) {
+    poll.step();
+    for (const GltfValue child : node["children"].items()) {
+      poll.step();
       if (child.whole() < nodes.size()) is_child[child.whole()] = 1;
+    }
+  }
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (!is_child[i]) roots.push_back(i);
   if (!nodes.empty() && roots.empty()) throw file.source().error("nodes form a cycle");

@@ -126,7 +126,8 @@ class MaterialReader {
     std::string unescaped;
     const std::string_view uri = image["uri"].text_view(unescaped);
     if (uri.starts_with("data:")) {
-      const auto decoded = decode_data_uri(uri, file_.source().options.memory);
+      const auto decoded =
+          decode_data_uri(uri, file_.source().options.memory, file_.source().options.progress);
       if (!decoded) throw image.error("malformed data URI");
       set_bytes(decoded->bytes, out);
     } else if (uri.empty()) {

@@ -5,11 +5,13 @@
 #include <string_view>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
-/// Returns a relative URI as the path of a file: resolves "%20" and the like.
-std::string decode_percent(std::string_view uri);
+/// Returns a relative URI as the path of a file: resolves "%20" and the like. Polls `progress`,
+/// which may be null. Throws Cancelled.
+std::string decode_percent(std::string_view uri, const Progress* progress = nullptr);
 
 /// Bytes that a `data:` URI holds.
 struct DecodedUri {
@@ -17,7 +19,9 @@ struct DecodedUri {
   std::string bytes;
 };
 
-/// Decodes a `data:` URI. Returns nothing if it is malformed. Throws OverMemory.
-std::optional<DecodedUri> decode_data_uri(std::string_view uri, MemoryBudget* memory);
+/// Decodes a `data:` URI. Returns nothing if it is malformed. Polls `progress`,
+/// which may be null. Throws OverMemory and Cancelled.
+std::optional<DecodedUri> decode_data_uri(std::string_view uri, MemoryBudget* memory,
+                                          const Progress* progress);
 
 }  // namespace voxdag
