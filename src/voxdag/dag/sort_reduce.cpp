@@ -1,11 +1,9 @@
 #include "voxdag/dag/sort_reduce.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 
 #include "voxdag/dag/stop_watch.hpp"
-#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/parallel/polled_sort.hpp"
 
 namespace voxdag {
 namespace {
@@ -26,16 +24,15 @@ Indirections sort_and_compact(PageVector<Key>& nodes, bool parallel, SortTimes& 
     poll_seldom(progress, i);
     entries[i] = {nodes[i], i};
   }
-  // Comparisons are all that happens often enough to poll while sorting.
-  const auto less = [progress](const Entry& a, const Entry& b) {
-    poll(progress);
-    return a.key < b.key;
-  };
+  const auto by_key = [](const Entry& a, const Entry& b) { return a.key < b.key; };
   StopWatch watch;
   if (parallel)
-    tbb::parallel_sort(entries.begin(), entries.end(), less);
+    polled_sort(entries.begin(), entries.end(), progress, by_key);
   else
-    std::sort(entries.begin(), entries.end(), less);
+    std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+      poll(progress);
+      return by_key(a, b);
+    });
   times.sort += watch.lap();
 
   Indirections indirections(&budget);

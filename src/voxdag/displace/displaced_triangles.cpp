@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "voxdag/displace/displaced_point.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
@@ -42,11 +42,8 @@ DisplacedTriangles::DisplacedTriangles(const Mesh& mesh, const Appearance& appea
     if (d.moves()) radius_ = std::max({radius_, std::abs(d.base), std::abs(d.base + d.gain)});
   if (radius_ > 0) seams_ = DisplacementSeams(mesh_, progress, memory);
   bounds_.resize(mesh.triangles.size());
-  parallel_for(bounds_.size(), 256, [&](std::size_t i) {
-    if (progress != nullptr && progress->cancelled()) return;
-    bounds_[i] = find_bounds(static_cast<std::uint32_t>(i));
-  });
-  if (progress != nullptr) progress->throw_if_cancelled();
+  polled_for(bounds_.size(), 256, progress, "displaced bounds",
+             [&](std::size_t i) { bounds_[i] = find_bounds(static_cast<std::uint32_t>(i)); });
 }
 
 const Vec3d& DisplacedTriangles::displace(const Pass& pass, PieceCorner& v) const {

@@ -1,11 +1,11 @@
 #include "voxdag/displace/displacement_seams.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
+
+#include "voxdag/parallel/polled_sort.hpp"
 
 namespace voxdag {
 namespace {
@@ -126,7 +126,7 @@ void DisplacementSeams::group_edges(const DisplacedMesh& mesh, Progress* progres
     const auto edge = static_cast<CornerIndex>(i);
     edges[i] = {key(edge), edge};
   }
-  tbb::parallel_sort(edges.begin(), edges.end());
+  polled_sort(edges.begin(), edges.end(), progress);
   edge_groups_.resize(edges.size());
   CountedVector<CornerIndex> coinciding(allocator);
   for (std::size_t first = 0; first < edges.size();) {

@@ -1,8 +1,7 @@
 #include "voxdag/esvo/build/open_edges.hpp"
 
-#include <tbb/parallel_sort.h>
-
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/parallel/polled_sort.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,7 +33,7 @@ std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh, const Index
   // The upper half of an edge's key and its number, 3 * triangle + edge. The edges of triangles
   // that do not count are all alike, so that none of them is open.
   CountedVector<std::uint64_t> edges(3 * count, memory);
-  parallel_for(count, 1024, [&](std::size_t i) {
+  polled_for(count, 4096, progress, "edges", [&](std::size_t i) {
     const QuantizedTriangle t = counts(i) ? mesh.triangle(i) : QuantizedTriangle{};
     for (int e = 0; e < 3; ++e) {
       const std::size_t edge = 3 * i + static_cast<std::size_t>(e);
@@ -46,15 +45,13 @@ std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh, const Index
     progress->throw_if_cancelled();
     progress->report("open edges", fraction, count);
   };
-  report(0.3);
-  tbb::parallel_sort(edges.begin(), edges.end());
+  polled_sort(edges.begin(), edges.end(), progress);
   std::vector<std::uint8_t> open(count);
   const auto is_same = [&](std::size_t i, std::size_t j) {
     return edges[i] >> 32 == edges[j] >> 32;
   };
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (i % (1 << 20) == 0)
-      report(0.7 + 0.3 * static_cast<double>(i) / static_cast<double>(edges.size()));
+    if (i % (1 << 20) == 0) report(static_cast<double>(i) / static_cast<double>(edges.size()));
     if ((i > 0 && is_same(i, i - 1)) || (i + 1 < edges.size() && is_same(i, i + 1))) continue;
     const std::size_t edge = edges[i] & 0xFFFFFFFF, triangle = edge / 3;
     if (counts(triangle) && mesh.source(triangle) == triangle)
