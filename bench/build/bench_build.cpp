@@ -24,35 +24,35 @@ class Bench {
 
   BenchResults run() {
     for (const std::string& mesh : plan_.meshes) {
-      const fs::path path = prepare_mesh(mesh, folder_.path(), progress_);
+      const PreparedMesh prepared = prepare_mesh(mesh, folder_.path(), progress_);
       const std::string scene = is_procedural(mesh) ? mesh : fs::path(mesh).filename().string();
-      for (const std::string& method : plan_.methods) run_builds(scene, path, method);
-      for (const auto& rival : plan_.rivals) run_rival(scene, path, *rival);
+      for (const std::string& method : plan_.methods) run_builds(scene, prepared, method);
+      for (const auto& rival : plan_.rivals) run_rival(scene, prepared.path, *rival);
     }
     return std::move(results_);
   }
 
  private:
-  void run_builds(const std::string& scene, const fs::path& path, const std::string& method) {
+  void run_builds(const std::string& scene, const PreparedMesh& mesh, const std::string& method) {
     for (const int levels : plan_.levels) {
       step(fmt::format("{} {}", scene, 1 << levels));
-      results_.builds.push_back(fastest_build(scene, path, method, levels));
+      results_.builds.push_back(fastest_build(scene, mesh, method, levels));
       if (!results_.builds.back().failure.empty()) return;
     }
   }
 
-  BuildRun fastest_build(const std::string& scene, const fs::path& path, const std::string& method,
-                         int levels) {
+  BuildRun fastest_build(const std::string& scene, const PreparedMesh& mesh,
+                         const std::string& method, int levels) {
     BuildRun fastest;
     for (int i = 0; i < plan_.repeat; ++i) {
-      BuildRun run = build(scene, path, method, levels);
+      BuildRun run = build(scene, mesh, method, levels);
       if (!run.failure.empty()) return run;
       if (i == 0 || run.cost.wall_seconds < fastest.cost.wall_seconds) fastest = std::move(run);
     }
     return fastest;
   }
 
-  BuildRun build(const std::string& scene, const fs::path& path, const std::string& method,
+  BuildRun build(const std::string& scene, const PreparedMesh& mesh, const std::string& method,
                  int levels) {
     BuildRun run;
     run.scene = scene;
@@ -64,7 +64,7 @@ class Bench {
     const ScratchFolder folder;
     std::vector<std::string> command{this_program(),
                                      "build",
-                                     path,
+                                     mesh.path,
                                      "-r",
                                      std::to_string(1 << levels),
                                      "-o",
@@ -84,6 +84,9 @@ class Bench {
       run.stage_seconds.emplace_back(stage, seconds);
     run.triangles = json.at("source").at("triangles");
     run.vertices = json.at("source").at("vertices");
+    MeshIdentity identity = mesh.identity;
+    identity.triangles = run.triangles;
+    run.paper = match_paper_scene(Paper::kSvdag, identity);
     run.voxels = json.at("voxels");
     run.svo_nodes = json.at("svo_nodes");
     run.dag_nodes = json.at("dag_nodes");

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/papers/paper_scenes.hpp"
 #include "bench/report/bench_child.hpp"
 #include "bench/rivals/rival.hpp"
 
@@ -26,6 +27,7 @@ struct BenchPlan {
 /// One build, from the mesh in the disk cache to the written file.
 struct BuildRun {
   std::string scene, method;
+  PaperMatch paper;  ///< The scene of the SVDAG paper that this one stands for.
   int levels = 0;
   int threads = 0;
   double load_before = 0;  ///< Load average when the run began.

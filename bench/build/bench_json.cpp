@@ -3,6 +3,7 @@
 
 #include "bench/build/bench_published.hpp"
 #include "bench/build/bench_report.hpp"
+#include "bench/papers/paper_json.hpp"
 #include "bench/report/bench_machine.hpp"
 
 namespace voxdag {
@@ -19,7 +20,8 @@ Json cost_json(const ProcessCost& cost) {
 }
 
 void add_published(Json& json, const BuildRun& run) {
-  const auto paper = published::reduction_of(run.scene, run.levels);
+  const auto paper = published::reduction_of(run.paper, run.levels);
+  add_paper_scene(json, run.paper);
   if (run.method != "sort" || !paper) return;
   json["published"] = {{"source", published::kSource},
                        {"scene", paper->scene},

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <span>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/io/checksum.hpp"
 #include "voxdag/scenes/scenes.hpp"
 
 namespace voxdag {
@@ -21,13 +23,17 @@ std::array<std::string, 2> split_scene(const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-/// Reads a whole file, so that the next reader finds it in the disk cache.
-void warm_up(const fs::path& path) {
+/// Reads a whole file, so that the next reader finds it in the disk cache; returns its checksum.
+std::uint64_t warm_up(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> part(1 << 20);
-  while (file.read(part.data(), static_cast<std::streamsize>(part.size()))) {
-  }
+  Xxh3Stream check;
+  do {
+    file.read(part.data(), static_cast<std::streamsize>(part.size()));
+    check.add(std::as_bytes(std::span(part.data(), static_cast<std::size_t>(file.gcount()))));
+  } while (file);
   if (!file.eof()) throw Error(path, "", "cannot be read");
+  return check.digest();
 }
 
 }  // namespace
@@ -41,19 +47,23 @@ bool is_procedural(const std::string& mesh) {
                                           [&](const SceneInfo& s) { return s.name == name; });
 }
 
-fs::path prepare_mesh(const std::string& mesh, const fs::path& folder, Progress& progress) {
-  fs::path path = fs::absolute(mesh);
+PreparedMesh prepare_mesh(const std::string& mesh, const fs::path& folder, Progress& progress) {
+  PreparedMesh prepared;
+  prepared.path = fs::absolute(mesh);
+  prepared.identity.name = prepared.path.filename();
   if (is_procedural(mesh)) {
     progress.report("making " + mesh, 0);
-    path = folder / (mesh + ".ply");
     const auto [name, size] = split_scene(mesh);
-    std::vector<std::string> command{this_program(), "scene", name, "-o", path};
+    prepared.path = folder / (mesh + ".ply");
+    prepared.identity.name = name;
+    prepared.identity.is_procedural = true;
+    std::vector<std::string> command{this_program(), "scene", name, "-o", prepared.path};
     if (!size.empty()) command.insert(command.end(), {"--size", size});
     const ChildResult made = run_child(command, folder, 0, progress);
     if (made.status != 0) throw Error(mesh, "", failure_of(made, 0));
   }
-  warm_up(path);
-  return path;
+  prepared.identity.file_check = warm_up(prepared.path);
+  return prepared;
 }
 
 }  // namespace voxdag

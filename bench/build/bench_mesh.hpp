@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "bench/papers/paper_scenes.hpp"
 #include "bench/report/bench_child.hpp"
 
 namespace voxdag {
@@ -14,10 +15,16 @@ std::string this_program();
 /// Whether `mesh` is not a file but the name of a procedural scene, NAME or NAME:SIZE.
 bool is_procedural(const std::string& mesh);
 
-/// Returns the file of the mesh, which is made in `folder` if it is procedural. Reads the file
+/// A mesh file, ready to be read from memory.
+struct PreparedMesh {
+  std::filesystem::path path;
+  MeshIdentity identity;  ///< Its `triangles` and `is_displaced` are known after a build.
+};
+
+/// Prepares the file of the mesh, which is made in `folder` if it is procedural. Reads the file
 /// once, so that the next reader finds it in memory. Throws Error if it cannot be read or made, and
 /// Cancelled.
-std::filesystem::path prepare_mesh(const std::string& mesh, const std::filesystem::path& folder,
-                                   Progress& progress);
+PreparedMesh prepare_mesh(const std::string& mesh, const std::filesystem::path& folder,
+                          Progress& progress);
 
 }  // namespace voxdag

@@ -3,12 +3,11 @@
 /// High Resolution Sparse Voxel DAGs, ACM Transactions on Graphics 32(4), SIGGRAPH 2013, Table 1:
 /// seconds to reduce an SVO to a DAG, and the part of them spent in sorting, on an Intel Core i7
 /// 3930K (six cores). Rows of Hairball and Lucy as corrected for an interleaving in the print.
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
-#include <string>
 #include <string_view>
+
+#include "bench/papers/paper_scenes.hpp"
 
 namespace voxdag::published {
 
@@ -18,16 +17,15 @@ inline constexpr int kFirstLevels = 9;  ///< The columns are 512³, 1024³, ... 
 
 struct Reduction {
   std::string_view scene;
-  std::string_view name_part;  ///< A mesh whose name holds this is taken for the scene.
   std::array<double, 5> total_seconds, sorting_seconds;
 };
 
 inline constexpr std::array<Reduction, 5> kReductions{{
-    {"Crysponza", "sponza", {.0084, .033, .3, 1.0, 4.5}, {.0019, .0055, .05, .14, .6}},
-    {"EpicCitadel", "citadel", {.0015, .005, .05, .2, .8}, {.0007, .0012, .006, .024, .1}},
-    {"SanMiguel", "sanmiguel", {.0026, .0083, .06, .23, .95}, {.0013, .0017, .008, .03, .14}},
-    {"Hairball", "hairball", {.043, .202, 2.19, 9.7, 40.6}, {.0051, .029, .23, 1.0, 4.5}},
-    {"Lucy", "lucy", {.0026, .0084, .08, .31, 1.3}, {.0007, .0016, .009, .04, .14}},
+    {"Crysponza", {.0084, .033, .3, 1.0, 4.5}, {.0019, .0055, .05, .14, .6}},
+    {"EpicCitadel", {.0015, .005, .05, .2, .8}, {.0007, .0012, .006, .024, .1}},
+    {"SanMiguel", {.0026, .0083, .06, .23, .95}, {.0013, .0017, .008, .03, .14}},
+    {"Hairball", {.043, .202, 2.19, 9.7, 40.6}, {.0051, .029, .23, 1.0, 4.5}},
+    {"Lucy", {.0026, .0084, .08, .31, 1.3}, {.0007, .0016, .009, .04, .14}},
 }};
 
 struct ReductionSeconds {
@@ -35,15 +33,12 @@ struct ReductionSeconds {
   double total, sorting;
 };
 
-/// The published figures for a scene of that name at 2^levels, if there are any.
-inline std::optional<ReductionSeconds> reduction_of(std::string name, int levels) {
-  std::erase_if(name, [](unsigned char c) { return std::isalpha(c) == 0; });
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+/// Returns the published figures of the scene at 2^levels, if there are any.
+inline std::optional<ReductionSeconds> reduction_of(const PaperMatch& paper, int levels) {
   const int column = levels - kFirstLevels;
-  if (column < 0 || column >= 5) return {};
+  if (!paper.has_figures() || column < 0 || column >= 5) return {};
   for (const Reduction& row : kReductions)
-    if (name.find(row.name_part) != std::string::npos)
+    if (row.scene == paper.scene->name)
       return ReductionSeconds{row.scene, row.total_seconds[static_cast<std::size_t>(column)],
                               row.sorting_seconds[static_cast<std::size_t>(column)]};
   return {};

@@ -74,21 +74,23 @@ std::string stage_rows(const Builds& builds, std::size_t begin, std::size_t end)
 /// Returns the table of reduction and sorting with the paper's Table 1; empty for other methods.
 std::string sorting_rows(const Builds& builds, std::size_t begin, std::size_t end) {
   if (builds[begin].method != "sort") return "";
-  const std::vector<int> widths{9, 11, 11, 11, 11, 14};
+  const std::vector<int> widths{9, 11, 11, 11, 11};
+  const PaperMatch& paper_scene = builds[begin].paper;
   std::string text =
-      fmt::format("  Seconds of reduction: ours, summed over all threads; published: {}\n",
-                  published::kSource) +
-      row({"grid", "reduction", "sorting", "published", "sorting", "x 6 cores"}, widths);
+      fmt::format(
+          "  Seconds of reduction: ours, summed over all threads; published, wall-clock time: {}\n",
+          published::kSource) +
+      (paper_scene.scene == nullptr ? "" : "  This mesh: " + paper_scene.label() + "\n") +
+      row({"grid", "reduction", "sorting", "published", "sorting"}, widths);
   for (std::size_t i = begin; i < end; ++i) {
     const BuildRun& run = builds[i];
     if (!run.failure.empty()) continue;
     std::vector<std::string> cells{resolution(run.levels),
                                    fmt::format("{:.3f}", run.stage("reduce")),
                                    fmt::format("{:.3f}", run.stage("sort"))};
-    if (const auto paper = published::reduction_of(run.scene, run.levels)) {
+    if (const auto paper = published::reduction_of(run.paper, run.levels)) {
       cells.push_back(fmt::format("{:.4g}", paper->total));
       cells.push_back(fmt::format("{:.4g}", paper->sorting));
-      cells.push_back(fmt::format("{:.3g}", paper->total * published::kCores));
     }
     text += row(cells, widths);
   }

@@ -28,8 +28,10 @@ class Bench {
   EsvoBenchResults run() {
     std::vector<fs::path> meshes;
     for (const EsvoBenchScene& scene : plan_.scenes) {
-      meshes.push_back(prepare_mesh(scene.mesh, folder_.path(), progress_));
-      build_all(scene, meshes.back());
+      PreparedMesh mesh = prepare_mesh(scene.mesh, folder_.path(), progress_);
+      mesh.identity.is_displaced = !scene.is_plain();
+      build_all(scene, mesh);
+      meshes.push_back(mesh.path);
     }
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i)
       bench_esvo_rays(plan_, plan_.scenes[i], meshes[i], progress_, results_);
@@ -37,7 +39,7 @@ class Bench {
   }
 
  private:
-  void build_all(const EsvoBenchScene& scene, const fs::path& mesh) {
+  void build_all(const EsvoBenchScene& scene, const PreparedMesh& mesh) {
     for (const int levels : plan_.levels)
       for (const bool with_contours : {true, false}) {
         progress_.report(fmt::format("building {} {}", scene.name, 1 << levels),
@@ -48,17 +50,18 @@ class Bench {
       }
   }
 
-  EsvoBuildRun build(const EsvoBenchScene& scene, const fs::path& mesh, int levels,
+  EsvoBuildRun build(const EsvoBenchScene& scene, const PreparedMesh& mesh, int levels,
                      bool with_contours) {
     EsvoBuildRun run;
     run.scene = scene.name;
+    run.paper = match_paper_scene(Paper::kEsvo, mesh.identity);
     run.levels = levels;
     run.with_contours = with_contours;
     run.load_before = load_average();
     run.file = folder_.path() / fmt::format("{}.esvo", steps_);
     std::vector<std::string> command{this_program(),
                                      "build",
-                                     mesh,
+                                     mesh.path,
                                      "-r",
                                      std::to_string(1 << levels),
                                      "--as",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/papers/paper_scenes.hpp"
 #include "bench/report/bench_child.hpp"
 #include "voxdag/image/image_size.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -15,7 +16,7 @@ namespace voxdag {
 
 /// A scene of the command line.
 struct EsvoBenchScene {
-  std::string name;                  ///< The paper's name if it is the same scene.
+  std::string name;                  ///< As the tables name it.
   std::string mesh;                  ///< A file, or a procedural scene as NAME or NAME:SIZE.
   std::vector<std::string> options;  ///< More options of `build`.
 
@@ -52,6 +53,7 @@ std::string name_of(EsvoForm form);  ///< "contours_beams".
 /// One build, from the mesh file to the octree file.
 struct EsvoBuildRun {
   std::string scene;
+  PaperMatch paper;  ///< The scene of the paper that this one stands for.
   int levels = 0;
   bool with_contours = true;
   double load_before = 0;
@@ -73,6 +75,7 @@ struct EsvoBuildRun {
 /// Primary rays of all views of a scene at one size; NaN for a form that was not measured.
 struct EsvoRateRow {
   std::string scene;
+  PaperMatch paper;  ///< As in EsvoBuildRun.
   int levels = 0;
   ImageSize size;
   std::uint64_t rays = 0;

@@ -2,12 +2,11 @@
 /// Published figures for comparison. Samuli Laine, Tero Karras, Efficient Sparse Voxel Octrees, I3D
 /// 2010, Tables 1 and 2: megabytes and seconds of builds on four cores of a
 /// Core2 Quad Q9300, and million primary rays per second on a Quadro FX 5800.
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <string>
 #include <string_view>
+
+#include "bench/papers/paper_scenes.hpp"
 
 namespace voxdag::published {
 
@@ -62,22 +61,27 @@ inline constexpr std::array<EsvoScene, 6> kEsvoScenes{{
      {{{69.1, 35.8, 97.9, 104.4}, {111.9, 43.8, 110.3, 124.3}, {134.0, 52.3, 120.2, 140.8}}}},
 }};
 
-/// Returns the paper's scene of this name, in any case, or null.
-inline const EsvoScene* esvo_scene(std::string_view name) {
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) ==
-           std::tolower(static_cast<unsigned char>(b));
-  };
+/// Returns the figures of the paper's scene, or null if none may stand beside measured ones.
+inline const EsvoScene* esvo_scene(const PaperMatch& paper) {
   for (const EsvoScene& scene : kEsvoScenes)
-    if (std::equal(name.begin(), name.end(), scene.name.begin(), scene.name.end(), same))
-      return &scene;
+    if (paper.has_figures() && scene.name == paper.scene->name) return &scene;
   return nullptr;
 }
 
-/// Returns the rates at a size of kEsvoSizes; NaN: not in the paper.
-inline std::array<double, kEsvoRates> esvo_mrays(const EsvoScene* scene, int width, int height) {
-  for (std::size_t i = 0; scene != nullptr && i < kEsvoSizes.size(); ++i)
-    if (kEsvoSizes[i] == std::array<int, 2>{width, height}) return scene->mrays[i];
+/// Returns the levels of the octree whose rates Table 2 has: the largest that fitted into 4 GB.
+inline int esvo_levels_of_rates(const EsvoScene& scene) {
+  int levels = kEsvoFirstLevels - 1;
+  for (const double megabytes : scene.megabytes) levels += std::isnan(megabytes) ? 0 : 1;
+  return levels;
+}
+
+/// Returns the rates for an octree of so many levels at a size of kEsvoSizes; NaN: not in the
+/// paper.
+inline std::array<double, kEsvoRates> esvo_mrays(const EsvoScene* scene, int levels, int width,
+                                                 int height) {
+  if (scene != nullptr && levels == esvo_levels_of_rates(*scene))
+    for (std::size_t i = 0; i < kEsvoSizes.size(); ++i)
+      if (kEsvoSizes[i] == std::array<int, 2>{width, height}) return scene->mrays[i];
   return {kNone, kNone, kNone, kNone};
 }
 

@@ -109,6 +109,7 @@ class SceneRays {
     for (const ImageSize size : plan_.sizes) {
       EsvoRateRow row;
       row.scene = scene_.name;
+      row.paper = pair.contours->paper;
       row.levels = pair.levels;
       row.size = size;
       std::array<FormSums, kEsvoForms.size()> sums;

@@ -6,6 +6,7 @@
 
 #include "bench/esvo/bench_esvo.hpp"
 #include "bench/esvo/bench_esvo_published.hpp"
+#include "bench/papers/paper_json.hpp"
 #include "bench/report/bench_machine.hpp"
 #include "voxdag/report/human.hpp"
 #include "voxdag/report/svg_plot.hpp"
@@ -28,7 +29,7 @@ std::string build_row(const EsvoBuildRun& run) {
   const std::string name = fmt::format("{:>10}  {:<9}", resolution_of(run.levels),
                                        run.with_contours ? "contours" : "cubes");
   if (!run.failure.empty()) return fmt::format("  {} failed: {}\n", name, run.failure);
-  const published::EsvoScene* scene = published::esvo_scene(run.scene);
+  const published::EsvoScene* scene = published::esvo_scene(run.paper);
   const double times_paper =
       run.voxels_per_cpu_second() / published::esvo_voxels_per_core_second(scene, run.levels);
   const published::EsvoScene* paper = run.with_contours ? scene : nullptr;
@@ -48,10 +49,12 @@ std::string builds_table(const Builds& builds) {
   std::string text;
   for (std::size_t i = 0; i < builds.size(); ++i) {
     if (i == 0 || builds[i].scene != builds[i - 1].scene) {
-      const published::EsvoScene* paper = published::esvo_scene(builds[i].scene);
-      text += fmt::format("{}{}{}\n", i == 0 ? "" : "\n", builds[i].scene,
+      const PaperMatch& match = builds[i].paper;
+      const published::EsvoScene* paper = published::esvo_scene(match);
+      text += fmt::format("{}{}{}{}\n", i == 0 ? "" : "\n", builds[i].scene,
+                          match.scene == nullptr ? "" : " (" + match.label() + ")",
                           paper == nullptr ? ""
-                                           : fmt::format(" (the paper: {:.2f} bytes per voxel)",
+                                           : fmt::format("; the paper: {:.2f} bytes per voxel",
                                                          paper->bytes_per_voxel));
       text +=
           fmt::format("  {:>10}  {:<9}{:>15}{:>10}{:>8}{:>10}{:>10}{:>14}{:>9}{:>12}{:>10}{:>9}\n",
@@ -70,15 +73,16 @@ std::string size_of(const EsvoRateRow& row) {
 /// Returns the paper's rate, or NaN.
 double paper_mrays(const EsvoRateRow& row, std::size_t form) {
   if (form >= published::kEsvoRates) return NAN;
-  return published::esvo_mrays(published::esvo_scene(row.scene), row.size.width,
+  return published::esvo_mrays(published::esvo_scene(row.paper), row.levels, row.size.width,
                                row.size.height)[form];
 }
 
 std::string rates_table(const std::vector<EsvoRateRow>& rates) {
   if (rates.empty()) return "";
   std::string text = fmt::format(
-      "\nMillion primary rays per second (in brackets: the paper)\n  {:<16}{:>10}{:>12}", "scene",
-      "grid", "size");
+      "\nMillion primary rays per second (in brackets: the paper, for octrees of its depth)\n  "
+      "{:<16}{:>10}{:>12}",
+      "scene", "grid", "size");
   for (std::size_t form = 0; form < published::kEsvoRates; ++form)
     text += fmt::format("{:>20}", name_of(kEsvoForms[form]));
   text += "\n";
@@ -159,7 +163,7 @@ void add_paper_lines(const Builds& builds, std::array<double, 7> published::Esvo
   std::size_t series = 0;
   for (std::size_t i = 0; i < builds.size(); ++i) {
     if (i > 0 && builds[i].scene == builds[i - 1].scene) continue;
-    const published::EsvoScene* paper = published::esvo_scene(builds[i].scene);
+    const published::EsvoScene* paper = published::esvo_scene(builds[i].paper);
     PlotLine line{"", plot_style(series++, "stroke-dasharray='6 3'"), {}};
     for (std::size_t k = 0; paper != nullptr && k < (paper->*values).size(); ++k)
       if (!std::isnan((paper->*values)[k]))
@@ -213,6 +217,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
                 {"levels", run.levels},
                 {"contours", run.with_contours},
                 {"load_before", run.load_before}};
+    add_paper_scene(object, run.paper);
     if (!run.failure.empty()) {
       object["failure"] = run.failure;
       json["builds"].push_back(object);
@@ -230,7 +235,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
     object["voxels_per_second"] = run.voxels_per_second();
     object["voxels_per_cpu_second"] = run.voxels_per_cpu_second();
     object["peak_memory_bytes"] = run.cost.peak_bytes;
-    const published::EsvoScene* paper = published::esvo_scene(run.scene);
+    const published::EsvoScene* paper = published::esvo_scene(run.paper);
     if (paper != nullptr && run.with_contours)
       object["paper"] = {
           {"megabytes", json_number(published::esvo_of_levels(paper->megabytes, run.levels))},

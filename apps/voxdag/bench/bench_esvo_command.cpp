@@ -50,7 +50,7 @@ void add_bench_esvo_command(const Command& bench_command, Session& session) {
       "Measure size, build time, rays per second and silhouettes of ESVOs, with and without "
       "contours",
       "voxdag bench esvo Sibenik=sibenik.obj 'Sponza=sponza.obj --max-error 0.5' -r 1K,2K,4K\n"
-      "For a scene with one of the paper's names, the tables also show the paper's figures. "
+      "For scenes of the paper, the tables also show the paper's figures (bench/README.md). "
       "Scratch files go to TMPDIR.");
   const Option scenes =
       command

@@ -36,7 +36,7 @@ Option Option::in_group(const std::string& group) const {
 }
 
 Option Option::only_if(std::function<bool()> has_effect, const std::string& why_not) const {
-  rules_->push_back({option_, std::move(has_effect), why_not});
+  rules_.lock()->push_back({option_, std::move(has_effect), why_not});
   return *this;
 }
 

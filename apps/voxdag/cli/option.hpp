@@ -22,8 +22,8 @@ using EffectRules = std::vector<EffectRule>;
 /// A handle; cheap to copy.
 class Option {
  public:
-  Option(CLI::Option* option, std::shared_ptr<EffectRules> rules)
-      : option_(option), rules_(std::move(rules)) {}
+  Option(CLI::Option* option, const std::shared_ptr<EffectRules>& rules)
+      : option_(option), rules_(rules) {}
 
   bool is_given() const;
   std::string name() const;  ///< "--output", or "file" for a positional.
@@ -32,7 +32,7 @@ class Option {
   /// Lists the option under this heading of the help.
   Option in_group(const std::string& group) const;
   /// Refuses the option where has_effect() is false once all options are parsed: "has no effect"
-  /// and `why_not`.
+  /// and `why_not`. Call it while the Command lives.
   Option only_if(std::function<bool()> has_effect, const std::string& why_not) const;
   /// Refuses the option without `other`.
   Option needs(const Option& other) const;
@@ -41,7 +41,8 @@ class Option {
 
  private:
   CLI::Option* option_;
-  std::shared_ptr<EffectRules> rules_;
+  /// The command owns the rules. Rules hold options, so that owning them here would be a cycle.
+  std::weak_ptr<EffectRules> rules_;
 };
 
 }  // namespace voxdag

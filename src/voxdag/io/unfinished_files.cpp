@@ -13,6 +13,8 @@ namespace {
 
 /// Who takes a name out of its slot owns it.
 std::atomic<char*> unfinished[64];
+/// Names of removed files. A signal handler must not free them.
+char* removed[std::size(unfinished)];
 
 }  // namespace
 
@@ -41,8 +43,11 @@ void forget_unfinished(char* name) noexcept {
 }
 
 void remove_unfinished_files() noexcept {
-  for (auto& slot : unfinished)
-    if (const char* name = slot.exchange(nullptr)) ::unlink(name);
+  for (std::size_t i = 0; i < std::size(unfinished); ++i)
+    if (char* const name = unfinished[i].exchange(nullptr)) {
+      ::unlink(name);
+      removed[i] = name;
+    }
 }
 
 }  // namespace voxdag
