@@ -10,7 +10,7 @@ template <class T>
 struct Box {
   Vec3<T> lo, hi;
 
-  /// Returns the box that contains nothing; extend() makes it the bounds of the points that follow.
+  /// Returns the empty box. After extend() with some points it is their bounds.
   static constexpr Box empty() {
     constexpr T big = std::numeric_limits<T>::max(), small = std::numeric_limits<T>::lowest();
     return {{big, big, big}, {small, small, small}};

@@ -8,8 +8,8 @@
 
 namespace voxdag {
 
-/// Bad input or a failed resource. `what()` is one line: "FILE: PLACE: REASON", empty parts left
-/// out. The library throws it and never prints; the command line reports it and exits with 1.
+/// Bad input or a failed resource. `what()` is one line: "FILE: PLACE: REASON"; empty parts are
+/// left out. The library throws it and never prints; the command line reports it and exits with 1.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& reason) : std::runtime_error(reason), reason_(reason) {}
@@ -24,9 +24,9 @@ class Error : public std::runtime_error {
   const ErrorPlace& place() const { return place_; }
   const std::string& reason() const { return reason_; }
 
-  /// Returns this error with `file` for its file's name.
+  /// Returns a copy of this error whose file name is `file`.
   Error in_file(std::string file) const { return {std::move(file), place_, reason_}; }
-  /// Returns this error with its place taken to be within `outer`.
+  /// Returns a copy of this error whose place is within `outer`: "OUTER, PLACE".
   Error within(ErrorPlace outer) const { return {file_, std::move(outer) / place_, reason_}; }
 
  private:

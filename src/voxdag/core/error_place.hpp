@@ -1,5 +1,5 @@
 #pragma once
-/// Where in a file an error is, as a value.
+/// The place of an error in a file.
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -8,8 +8,8 @@
 namespace voxdag {
 
 /// A path of steps into a file, outermost first: "byte 84", "line 12", "chunk NODE, level 3, word
-/// 17". An empty place means the file as a whole. Code that must know where an error is asks has();
-/// text() is for people.
+/// 17". An empty place means the file as a whole. Code that must know the place calls has(); text()
+/// is for people.
 class ErrorPlace {
  public:
   enum class Kind : std::uint8_t {
@@ -54,7 +54,7 @@ class ErrorPlace {
   }
 
   bool empty() const { return steps_.empty(); }
-  /// Returns whether a step of the path is of this kind.
+  /// Returns whether the path has a step of this kind.
   bool has(Kind kind) const {
     for (const Step& step : steps_)
       if (step.kind == kind) return true;

@@ -9,23 +9,23 @@ inline constexpr int kSubvoxels = 256;  ///< Mesh vertices are rounded to 1/256 
 inline constexpr int kMinLevels = 2;    ///< 4³ voxels: one leaf block.
 inline constexpr int kMaxLevels = 20;   ///< 1,048,576³ voxels.
 
-/// N³ voxels, N = 2^levels. Voxel (i,j,k) is the half-open cube that starts at
-/// origin + (i,j,k) * voxel_size in world units and is voxel_size wide.
+/// A grid of N³ voxels, N = 2^levels. Voxel (i,j,k) is a half-open cube of side voxel_size. Its
+/// lower corner is at origin + (i,j,k) * voxel_size, in world units.
 struct Grid {
   int levels = kMinLevels;
   Vec3d origin{};
   double voxel_size = 1;
-  /// The factor that quantises vertices: 1/256-voxels per world unit. Stored beside voxel_size,
-  /// because neither can be computed from the other to the last bit.
+  /// The factor that quantises vertices, in 1/256 voxel per world unit. Stored beside voxel_size,
+  /// because rounding makes it impossible to compute one exactly from the other.
   double quantization_scale = kSubvoxels / voxel_size;
 
-  /// Voxels along a side.
+  /// Returns N, the number of voxels along a side.
   VOXDAG_HD constexpr std::int64_t resolution() const { return std::int64_t{1} << levels; }
-  /// The side of a cell of `level` (0..levels), in world units.
+  /// Returns the side of a cell of `level` (0..levels), in world units.
   VOXDAG_HD constexpr double cell_size(int level) const {
     return voxel_size * static_cast<double>(std::int64_t{1} << (levels - level));
   }
-  /// The side of the whole grid, in world units.
+  /// Returns the side of the whole grid, in world units.
   VOXDAG_HD constexpr double side() const { return cell_size(0); }
   /// Returns a world position in voxel units; voxel (0,0,0) starts at 0.
   VOXDAG_HD constexpr Vec3d to_grid(Vec3d world) const {

@@ -15,17 +15,17 @@
 
 namespace voxdag {
 
-/// Thrown where work would hold more memory than its limit allows.
+/// Thrown when work would use more memory than its limit allows.
 class OverMemory : public Error {
  public:
   using Error::Error;
 };
 
-/// Counts the bytes that work holds, against a limit. Thread-safe.
+/// Counts the bytes that work allocates, up to a limit. Thread-safe.
 class MemoryBudget {
  public:
-  /// `limit` in bytes for everything counted here and the `base` bytes that the process holds
-  /// already; 0 means no limit.
+  /// `limit` is in bytes and includes `base`, the bytes that the process holds already. 0 means no
+  /// limit.
   explicit MemoryBudget(std::uint64_t limit = 0, std::uint64_t base = 0)
       : limit_(limit), base_(base) {}
 
@@ -40,7 +40,7 @@ class MemoryBudget {
     }
     raise_peak(now);
   }
-  /// Returns bytes that reserve() or add() counted.
+  /// Gives back bytes that reserve() or add() counted.
   void release(std::uint64_t bytes) noexcept { used_.fetch_sub(bytes, std::memory_order_relaxed); }
 
   /// Counts bytes that are allocated already. Sets exceeded() instead of throwing.
@@ -55,14 +55,14 @@ class MemoryBudget {
   std::uint64_t base() const { return base_; }
   std::uint64_t used() const { return used_.load(std::memory_order_relaxed); }
   std::uint64_t peak() const { return peak_.load(std::memory_order_relaxed); }
-  /// Bytes that can still be reserved.
+  /// Returns the number of bytes that can still be reserved.
   std::uint64_t left() const {
     if (limit_ == 0) return std::numeric_limits<std::uint64_t>::max();
     const std::uint64_t held = base_ + used();
     return held < limit_ ? limit_ - held : 0;
   }
-  /// Whether more than the limit was asked for at any time. Work that used add() looks between
-  /// tasks and stops.
+  /// Returns whether reserve() or add() ever went over the limit. Work that uses add() checks this
+  /// between tasks and stops.
   bool exceeded() const { return exceeded_.load(std::memory_order_relaxed); }
 
   /// Throws OverMemory: "the memory limit of A MiB is too small: at least B MiB are needed".
@@ -86,7 +86,8 @@ class MemoryBudget {
   std::atomic<bool> exceeded_{false};
 };
 
-/// Bytes reserved from a budget for as long as this lives. Move-only. A null budget counts nothing.
+/// Reserves bytes of a budget and releases them in its destructor. Move-only. A null budget counts
+/// nothing.
 class MemoryReservation {
  public:
   MemoryReservation() = default;
@@ -105,14 +106,14 @@ class MemoryReservation {
     if (budget_ != nullptr) budget_->release(bytes_);
   }
 
-  /// Reserves or releases the difference to what is reserved now. Throws OverMemory.
+  /// Changes the number of reserved bytes to `bytes`. Throws OverMemory.
   void resize(std::uint64_t bytes) {
     if (budget_ != nullptr && bytes > bytes_) budget_->reserve(bytes - bytes_);
     if (budget_ != nullptr && bytes < bytes_) budget_->release(bytes_ - bytes);
     bytes_ = bytes;
   }
   std::uint64_t bytes() const { return bytes_; }
-  /// Forgets the bytes without releasing them: somebody else will.
+  /// Gives up the bytes without releasing them; the caller must release them.
   void keep() noexcept { bytes_ = 0; }
 
  private:
@@ -120,8 +121,8 @@ class MemoryReservation {
   std::uint64_t bytes_ = 0;
 };
 
-/// An allocator that reserves from a budget what it allocates: CountedVector cannot outgrow the
-/// limit. A null budget counts nothing. Containers keep the budget when they are moved or swapped.
+/// An allocator that reserves its memory from a budget, so that a CountedVector cannot exceed the
+/// limit. A null budget counts nothing. Moved and swapped containers keep their budget.
 template <class T>
 class CountedAllocator {
  public:
@@ -147,7 +148,7 @@ class CountedAllocator {
       throw;
     }
   }
-  // Not inlined: GCC 12 takes the vector's own pointers for freed ones where it sees all of this.
+  // Not inlined: if it is, GCC 12 warns wrongly that the vector uses freed pointers.
   [[gnu::noinline]] void deallocate(T* memory, std::size_t count) noexcept {
     ::operator delete (memory, std::align_val_t{alignof(T)});
     if (budget_ != nullptr) budget_->release(count * sizeof(T));

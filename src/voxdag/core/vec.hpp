@@ -39,7 +39,7 @@ template <class T>
 VOXDAG_HD constexpr Vec3<T> operator-(Vec3<T> a) {
   return {-a.x, -a.y, -a.z};
 }
-/// Component-wise product.
+/// Returns the component-wise product.
 template <class T>
 VOXDAG_HD constexpr Vec3<T> operator*(Vec3<T> a, Vec3<T> b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};

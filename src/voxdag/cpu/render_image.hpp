@@ -8,9 +8,9 @@
 namespace voxdag {
 
 /// Renders tile by tile, on the threads of the current TBB arena; the picture does not depend on
-/// their number. The surface points are those of `source`, or of the voxels if it is null. Depth
-/// and normal are those of a pixel's first sample. The scene must be valid and have the grid's
-/// levels. Throws Error for options out of range, and Cancelled.
+/// their number. Takes the surface points from `source`, or from the voxels if it is null. Depth
+/// and normal are from a pixel's first sample. The scene must be valid and have the grid's levels.
+/// Throws Error for options out of range, and Cancelled.
 RenderedImage render_image(const CpuScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress = nullptr, const ViewSource* source = nullptr);
 

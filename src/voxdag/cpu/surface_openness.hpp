@@ -6,18 +6,17 @@
 
 namespace voxdag {
 
-/// Computes which part of the sky's light passes the voxels near a point and reaches it, like
-/// render/ambient_occlusion.hpp for a pixel. All points have the same ray directions, so that
+/// Computes the fraction of the sky's light that reaches a point past the voxels near it, as
+/// render/ambient_occlusion.hpp does for a pixel. All points have the same ray directions, so that
 /// neighbours on a wall get similar values. Thread-safe.
 class SurfaceOpenness {
  public:
-  /// Points to the voxels, which are in `grid`. Casts `rays` >= 1 rays per point. `distance` > 0 is
-  /// the reach of occlusion, in world units.
+  /// Points to `voxels`, which must outlive this object; `grid` is their grid. Casts `rays` >= 1
+  /// rays per point, of the length `distance` > 0 in world units.
   SurfaceOpenness(const VoxelSet& voxels, const Grid& grid, int rays, double distance);
 
-  /// Returns 0 (no light arrives) to 1. `point`, in world units, lies on a surface with the unit
-  /// shading normal `normal`, on a triangle with the unit normal `face`: rays run on that side of
-  /// it.
+  /// Returns 0 (no light arrives) to 1. `point`, in world units, lies on a triangle with the unit
+  /// normal `face`; rays start on that side. `normal` is the unit shading normal.
   float operator()(Vec3d point, Vec3f normal, Vec3f face) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Batches of rays on the CPU.
+/// Casts batches of rays on the CPU.
 #include <span>
 
 #include "voxdag/core/grid.hpp"
@@ -11,7 +11,7 @@
 namespace voxdag {
 
 /// Sets hits[i] to the first voxel along rays[i], which is in world units. The spans must have
-/// equal length, the scene must be valid and have the grid's levels. Runs on the threads of the
+/// equal length. The scene must be valid and have the grid's levels. Runs on the threads of the
 /// current TBB arena; the result does not depend on their number. Throws Cancelled.
 void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress = nullptr);

@@ -19,10 +19,10 @@ struct CudaDevices {
   std::string why_none;  ///< If there is no device, the reason: half a sentence.
 };
 
-/// Lists the devices. Never throws: without CUDA, driver or device, why_none says so.
+/// Lists the devices. Never throws: if there is no CUDA, driver or device, why_none has the reason.
 CudaDevices cuda_devices();
 
-/// The least compute capability that kernels are compiled for.
+/// The lowest compute capability that kernels are compiled for: 75 is 7.5.
 inline constexpr int kLeastComputeCapability = 75;
 
 /// Returns the device with this index, or for -1 the first that can run the kernels. Throws Error

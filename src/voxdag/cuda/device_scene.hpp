@@ -12,7 +12,7 @@ namespace voxdag {
 class DeviceScene {
  public:
   /// Copies the voxels to the device; `layout` is the layout of a DAG for rays. The host's voxels
-  /// must outlive this object. Throws Error if the device has not enough free memory.
+  /// must outlive this object. Throws Error if the device does not have enough free memory.
   DeviceScene(const CudaDevice& device, const VoxelSet& scene,
               DeviceLayout layout = DeviceLayout::kPaper);
 

@@ -9,8 +9,8 @@ namespace voxdag {
 
 /// Returns the picture that render_image() makes on the CPU, up to rounding. The threads of the
 /// current TBB arena find surface points of a `source` while the device renders. Ignores tile_size.
-/// Throws Error for options out of range, and if the device fails or has not enough memory;
-/// Cancelled.
+/// Throws Error for options out of range, if the device fails, and if its memory is too small.
+/// Throws Cancelled.
 RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const RenderOptions& options,
                            Progress* progress = nullptr, const ViewSource* source = nullptr);
 

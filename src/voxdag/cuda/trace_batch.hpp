@@ -1,5 +1,5 @@
 #pragma once
-/// Batches of rays on a CUDA device.
+/// Casts batches of rays on a CUDA device.
 #include <memory>
 #include <span>
 
@@ -11,16 +11,17 @@
 
 namespace voxdag {
 
-/// Casts rays from host memory in blocks. While the device traces one block, it copies the hits of
-/// the last block back and the rays of the next one there. Not thread-safe.
+/// Casts rays from host memory in blocks. While the device traces one block, the hits of the
+/// previous block are copied to the host and the rays of the next block to the device. Not
+/// thread-safe.
 class CudaTracer {
  public:
-  /// `grid.levels` must be the DAG's. Throws Error if memory is short.
+  /// `grid.levels` must be the DAG's. Throws Error if there is not enough memory.
   CudaTracer(const DeviceScene& dag, const Grid& grid);
 
-  /// Sets hits[i] to the first voxel of the DAG along rays[i], which is in world units: the same,
-  /// to the bit, as trace_batch() on the CPU. The spans must have equal length. Throws Cancelled,
-  /// and Error if the device fails.
+  /// Sets hits[i] to the first voxel of the DAG along rays[i], which is in world units. The hits
+  /// equal those of trace_batch() on the CPU, to the bit. The spans must have equal length. Throws
+  /// Cancelled, and Error if the device fails.
   void trace(std::span<const Ray> rays, std::span<Hit> hits, Progress* progress = nullptr) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// From a triangle mesh to the minimal sparse voxel DAG of its exact cover.
+/// Builds the minimal sparse voxel DAG of a triangle mesh's exact cover.
 #include <cstdint>
 
 #include "voxdag/core/grid.hpp"
@@ -11,18 +11,19 @@
 namespace voxdag {
 
 enum class BuildMethod {
-  /// Depth-first with hash-consing and the plane memo: memory and, for planar regions, time follow
-  /// the size of the DAG instead of that of the octree.
+  /// Depth-first with hash-consing and the plane memo. Memory grows with the DAG, not with the
+  /// octree; in planar regions time does too.
   kHashConsed,
-  /// The paper's: octrees of sub-volumes of at most 1024³, each reduced level by level by sorting,
-  /// then merged by one more reduction. Kept as baseline and cross-check; the result is the same.
+  /// The paper's method: builds octrees of sub-volumes of at most 1024³, reduces each level by
+  /// level by sorting, then merges all by one more reduction. Kept as baseline and cross-check; the
+  /// DAG is identical.
   kSort,
 };
 
 struct BuildOptions {
   BuildMethod method = BuildMethod::kHashConsed;
-  /// Counts the memory of the build and sets its limit. The mesh is not counted here: its owner
-  /// does that. Null: no limit.
+  /// Counts the memory of the build and limits it. The build does not count the mesh; its owner
+  /// does. Null means no limit.
   MemoryBudget* memory = nullptr;
 };
 
@@ -32,8 +33,8 @@ struct BuildReport {
   double voxelize_seconds = 0;   ///< Sub-volumes to nodes; both methods reduce them as they go.
   double merge_seconds = 0;      ///< kSort: the final reduction of all sub-volumes together.
   double canonical_seconds = 0;  ///< Numbering in canonical order.
-  /// kSort, in seconds summed over threads (the paper's Table 1): the reductions of the sub-volumes
-  /// and the final one, and the part of them spent in sorting.
+  /// Only for kSort, summed over threads, as in the paper's Table 1: the time of all reductions,
+  /// and the part of it spent in sorting.
   double reduce_seconds = 0;
   double sort_seconds = 0;
   std::uint64_t subvolumes = 0;
@@ -49,8 +50,8 @@ struct BuildResult {
 /// Builds the DAG of all voxels of `grid` that the mesh's triangles meet (design: exact cover).
 /// Runs on the current TBB arena. The result depends on mesh and grid alone: not on threads, method
 /// or machine. Throws OverMemory, with an estimate of the memory that the build needs, if the limit
-/// is too small, before the work if it is clearly too small; Error if the DAG outgrows 32-bit
-/// pointers; Cancelled if `progress` was cancelled.
+/// is too small; it does so before the work if the limit is clearly too small. Throws Error if the
+/// DAG outgrows 32-bit pointers, and Cancelled if `progress` was cancelled.
 BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options = {},
                         Progress* progress = nullptr);
 

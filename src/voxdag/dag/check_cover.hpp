@@ -13,7 +13,7 @@ struct CoverCheck {
   std::uint64_t samples = 0;     ///< Cells compared.
   std::uint64_t covered = 0;     ///< Cells that a triangle meets.
   std::uint64_t mismatches = 0;  ///< Cells where DAG and mesh disagree.
-  // Meaningful if mismatches > 0:
+  // Valid if mismatches > 0:
   Vec3i first_mismatch{};        ///< Coordinates of the first such cell.
   int first_mismatch_level = 0;  ///< Its level (L: a voxel).
 };

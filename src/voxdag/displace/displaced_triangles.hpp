@@ -1,12 +1,12 @@
 #pragma once
-/// A mesh's surface displaced by height textures, tessellated on demand, a box at a time: the
-/// tessellated mesh is never in memory as a whole.
+/// A mesh's surface displaced by height textures. It is tessellated on demand, one box at a time:
+/// the whole tessellated mesh is never in memory.
 ///
-/// Triangles are split at the midpoints of edges longer than a limit. Inside of a triangle a point
-/// moves along the triangle's own (interpolated) normal by the height at its own texture
-/// coordinates. On an edge or corner whose triangles disagree on normal, texture or coordinates, a
-/// point moves by the mean of their displacements; where one of the triangles is not displaced at
-/// all, or more than 64 displacements meet, the point stays. So there are no cracks.
+/// Triangles are split at the midpoints of edges longer than a limit. A point inside a triangle
+/// moves along the triangle's interpolated normal, by the height at the point's texture
+/// coordinates. Triangles that share an edge or corner may disagree on normal, texture or
+/// coordinates. A point there moves by the mean of their displacements. It stays if one of the
+/// triangles is not displaced, or if more than 64 displacements meet. So there are no cracks.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -25,31 +25,32 @@ namespace voxdag {
 /// A small part of a displaced triangle.
 struct MicroTriangle {
   std::array<Vec3d, 3> positions;     ///< World units, in the order of the base triangle's corners.
-  std::array<Vec2f, 3> barycentrics;  ///< Of the undisplaced corners, as in SurfaceShading.
+  std::array<Vec2f, 3> barycentrics;  ///< Before displacement, as in SurfaceShading.
 };
 
 /// Refers to mesh and appearance, which must outlive it. Immutable and thread-safe. Results depend
 /// on the mesh alone.
 class DisplacedTriangles {
  public:
-  /// `displacements` has one for each material. Counts the tables in `memory` for as long as they
-  /// live; null: no limit. Throws Cancelled and OverMemory.
+  /// `displacements` has one element for each material. Counts the tables in `memory` as long as
+  /// they live; null means no limit. Throws Cancelled and OverMemory.
   DisplacedTriangles(const Mesh& mesh, const Appearance& appearance,
                      std::vector<Displacement> displacements, Progress* progress = nullptr,
                      MemoryBudget* memory = nullptr);
 
-  /// Returns whether the inside of a triangle moves. If not, tessellate() emits it whole.
+  /// Returns whether the inside of a triangle moves. If not, tessellate() emits the triangle
+  /// unsplit.
   bool is_displaced(std::uint32_t triangle) const { return mesh_.is_displaced(triangle); }
 
   const Appearance& appearance() const { return mesh_.appearance; }
 
-  /// Returns a box that holds everything that tessellate() emits for the triangle, whatever the
-  /// region and limit.
+  /// Returns a box that contains all that tessellate() emits for the triangle, with any region and
+  /// limit.
   const Box3d& displaced_bounds(std::uint32_t triangle) const { return bounds_[triangle]; }
 
   /// Returns a bit mask: bit i is 0 only if tessellate() with regions[i] and this limit would emit
-  /// nothing. A bit may be 1 without need, because pieces smaller than `small` world units are not
-  /// split.
+  /// nothing. The test is conservative: pieces smaller than `small` world units are not split, so a
+  /// bit may be 1 for a region that is not met.
   std::uint32_t regions_met(std::uint32_t triangle, std::span<const Box3d, 8> regions,
                             double edge_limit, double small) const;
 
@@ -64,9 +65,8 @@ class DisplacedTriangles {
   }
 
   /// Calls emit(const MicroTriangle&) for the micro triangles whose bounds meet `region` (closed).
-  /// Before displacement their edges are at most `edge_limit` world units long, which must be
-  /// positive. Heights are filtered to the limit. The micro triangles depend on the limit, not on
-  /// the region.
+  /// Before displacement their edges are at most `edge_limit` > 0 world units long, and heights are
+  /// filtered to that size. The micro triangles depend on the limit, not on the region.
   template <class Emit>
   void tessellate(std::uint32_t triangle, const Box3d& region, double edge_limit,
                   Emit&& emit) const {
@@ -83,8 +83,8 @@ class DisplacedTriangles {
     if (meets(bounds_of(whole), region)) emit(whole);
   }
 
-  /// Returns the micro triangle that holds the place with these barycentric coordinates (of corners
-  /// 1 and 2) of a displaced triangle, among those that tessellate() emits with the limit.
+  /// Returns the micro triangle at a place of a displaced triangle, as tessellate() emits it with
+  /// this limit. `place` has two barycentric coordinates: the weights of corners 1 and 2.
   MicroTriangle micro_at(std::uint32_t triangle, Vec2f place, double edge_limit) const;
 
  private:
@@ -93,18 +93,18 @@ class DisplacedTriangles {
     Pass(const DisplacedTriangles& triangles, std::uint32_t base, double edge_limit);
 
     std::uint32_t triangle;
-    double limit;  ///< Of edges, world units.
+    double limit;  ///< Longest edge, world units.
     float level;   ///< Mip level of the heights inside the triangle.
-    /// No height of the triangle depends on texels farther away than this, in texture coordinates,
-    /// but for those on seams.
+    /// Heights depend only on texels at most this far away, in texture coordinates. Heights on
+    /// seams are the exception.
     Vec2f blur{};
     std::array<PieceCorner, 3> corners;
   };
 
-  /// The region to find micro triangles in.
+  /// The region in which micro triangles are wanted.
   struct Search {
     const Box3d& region;
-    bool is_inside;  ///< The piece in hand lies in the region.
+    bool is_inside;  ///< The current piece lies in the region.
   };
 
   const Vec3d& displace(const Pass& pass, PieceCorner& corner) const;
@@ -136,8 +136,8 @@ class DisplacedTriangles {
     for (const PieceCorner* corner : {&a, &b, &c}) box.extend(corner->position);
     const Vec3d size = box.hi - box.lo;
     const double longest = std::max({size.x, size.y, size.z});
-    // A tight box pays only for pieces of middle size: large ones are wider than the heights, and
-    // small ones are split into their few micro triangles in the same time.
+    // A tight box saves time only for pieces of medium size. Large pieces are wider than the
+    // heights; small ones are split into their few micro triangles just as fast.
     if (longest < radius_ && longest > 4 * pass.limit) {
       box = enclose(pass, a, b, c).box();
     } else {
@@ -183,7 +183,7 @@ class DisplacedTriangles {
   const DisplacedMesh mesh_;
   DisplacementSeams seams_;      ///< Empty if nothing moves.
   double radius_ = 0;            ///< No point moves farther than this, in world units.
-  CountedVector<Box3d> bounds_;  ///< By triangle: displaced_bounds().
+  CountedVector<Box3d> bounds_;  ///< displaced_bounds() of each triangle.
 };
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// An octree from an ESVO file.
+/// Reads an ESVO file.
 #include <filesystem>
 
 #include "voxdag/file/esvo_parse.hpp"

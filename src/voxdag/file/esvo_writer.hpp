@@ -1,5 +1,5 @@
 #pragma once
-/// Writes an ESVO file block by block, so that no more than a block need be in memory.
+/// Writes an ESVO file block by block; only one block must be in memory.
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -14,7 +14,7 @@ namespace voxdag {
 
 /// Writes the chunks ESVO, EBLK and META of docs/format.md, in this order. The file appears when it
 /// is complete; if the writer is destroyed before finish(), nothing remains. Throws Error(path,
-/// place, reason). The file must be able to seek.
+/// place, reason). The file must be seekable.
 class EsvoFileWriter {
  public:
   explicit EsvoFileWriter(const std::filesystem::path& path);
@@ -22,8 +22,8 @@ class EsvoFileWriter {
   /// Appends whole blocks.
   void append(std::span<const std::uint64_t> slots);
 
-  /// Completes the file and returns its size in bytes. `directory` names all blocks, in order; its
-  /// checksums are filled in here.
+  /// Completes the file and returns its size in bytes. `directory` has an entry for each block, in
+  /// order; finish() fills in the checksums.
   std::uint64_t finish(std::vector<EsvoBlockEntry> directory, const EsvoMetadata& metadata);
 
  private:

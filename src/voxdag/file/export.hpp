@@ -11,13 +11,14 @@
 namespace voxdag {
 
 struct ExportOptions {
-  /// Half-open box of voxel coordinates to export, inside the grid and not empty; all if absent.
+  /// The voxels to export: a half-open box of voxel coordinates, inside the grid and not empty.
+  /// Without it, all voxels.
   std::optional<Box3i> window;
   /// The greatest size of a dense array, in bytes; larger ones are refused before anything is
   /// written.
   std::uint64_t most_dense_bytes = std::uint64_t{16} << 30;
-  /// Called from time to time with the part of the work and the number of voxels that are done; may
-  /// throw (Cancelled) to stop. Counting calls it, too, with zeros.
+  /// Called from time to time with the fraction of the work and the number of voxels that are done.
+  /// It may throw (Cancelled) to stop the export. While voxels are counted, both arguments are 0.
   std::function<void(double fraction, std::uint64_t voxels)> progress;
 };
 
@@ -32,13 +33,13 @@ struct ExportOptions {
 void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& voxels,
                             const Grid& grid, const ExportOptions& options = {});
 
-/// Writes a dense uint8 array as .npy, with 1 for voxels that are set: element [a, b, c] is voxel
-/// window.lo + (a, b, c), in C order, so that z changes fastest. With PATH.json.
+/// Writes a dense uint8 array as .npy: 1 for voxels that are set, else 0. Element [a, b, c] is
+/// voxel window.lo + (a, b, c), in C order, so z changes fastest. With PATH.json.
 void export_npy_dense(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options = {});
 
-/// Writes the bytes of a dense array alone, with 1 for voxels that are set; x changes fastest, then
-/// y, then z. With PATH.json.
+/// Writes a dense array without a header, one byte per voxel: 1 for voxels that are set, else 0. x
+/// changes fastest, then y, then z. With PATH.json.
 void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Reads and writes NumPy's .npy arrays, some rows at a time.
+/// Reads and writes NumPy's .npy arrays, a few rows at a time.
 ///
 /// Format: numpy.lib.format; reads versions 1.0 to 3.0, writes 1.0; C order, little-endian. A row
 /// is one step along the first axis: 8 items for the shape (N, 8), one for a structured array (N,).
@@ -40,8 +40,8 @@ class NpyReader {
   std::uint64_t rows() const { return rows_; }  ///< N
   std::size_t row_bytes() const { return row_bytes_; }
 
-  /// Reads the next rows, at most `most_rows`, into `out` (row_bytes() each). Returns their number,
-  /// which is less than `most_rows` only at the end, and 0 after it.
+  /// Reads the next rows, at most `most_rows`, into `out` (row_bytes() each). Returns the number of
+  /// rows read: less than `most_rows` only at the end, and then 0.
   std::size_t read_rows(void* out, std::size_t most_rows);
 
  private:
@@ -52,7 +52,7 @@ class NpyReader {
 
   std::filesystem::path path_;
   Descriptor input_;
-  std::optional<std::uint64_t> file_bytes_;  ///< Of a regular file; none for a pipe.
+  std::optional<std::uint64_t> file_bytes_;  ///< Size of a regular file; none for a pipe.
   std::uint64_t position_ = 0;
   std::uint64_t rows_ = 0, rows_read_ = 0;
   std::size_t row_bytes_ = 0;
@@ -62,15 +62,14 @@ class NpyReader {
 class NpyWriter {
  public:
   /// `dtype` is as in NpyHeader, with `item_bytes` per item. A row has the product of `row_shape`
-  /// items
-  /// ({} for a structured array of shape (N,)). If `rows` is not given, N is the number of rows
-  /// written before commit(), and the output must be able to seek.
+  /// items ({} for a structured array of shape (N,)). If `rows` is not given, N is the number of
+  /// rows written before commit(), and the output must be seekable.
   NpyWriter(const std::filesystem::path& path, std::string dtype,
             std::vector<std::uint64_t> row_shape, std::size_t item_bytes,
             std::optional<std::uint64_t> rows = {});
 
   void write_rows(const void* data, std::size_t count) { write_bytes(data, count * row_bytes_); }
-  /// Writes rows in pieces: any number of bytes, which follow those of the last call.
+  /// Appends any number of bytes, also parts of a row.
   void write_bytes(const void* data, std::size_t bytes);
   std::uint64_t rows_written() const { return bytes_written_ / row_bytes_; }
 

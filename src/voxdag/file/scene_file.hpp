@@ -1,5 +1,5 @@
 #pragma once
-/// A file of voxels of either kind, DAG or ESVO, opened by what it holds.
+/// Opens a .vdag file of either kind, DAG or ESVO.
 #include <filesystem>
 #include <string>
 #include <variant>
@@ -13,10 +13,10 @@ namespace voxdag {
 /// Move-only; views stay valid when it is moved.
 class SceneFile {
  public:
-  /// Throws Error(path, place, reason) for a file that is neither, or damaged.
+  /// Throws Error(path, place, reason) if the file is neither, or is damaged.
   explicit SceneFile(const std::filesystem::path& path) : file_(open(path)) {}
 
-  /// Points into the file's bytes, which this object owns.
+  /// Returns a view of the file's bytes, which this object owns.
   VoxelSet voxels() const {
     return std::visit([](const auto& file) { return VoxelSet(file.view()); }, file_);
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// A DAG from a .vdag file.
+/// Reads a DAG from a .vdag file.
 #include <filesystem>
 
 #include "voxdag/file/vdag_parse.hpp"
@@ -7,9 +7,9 @@
 
 namespace voxdag {
 
-/// Reads the file into memory, checks every chunk, and checks that the DAG is safe to walk. Leaves
-/// canonical order, minimality and the counts to verify_vdag. Views stay valid when the object is
-/// moved, and when other programs change the file (see FileCopy).
+/// Reads the file into memory, checks every chunk, and checks that the DAG is safe to walk. Does
+/// not check canonical order, minimality and the counts; verify_vdag() does. Views stay valid when
+/// the object is moved, and when other programs change the file (see FileCopy).
 class VdagFile {
  public:
   /// Throws Error(path, place, reason) for a file that cannot be read or fails a check.

@@ -9,8 +9,7 @@ namespace voxdag {
 
 /// Writes the file, which appears under `path` when it is complete (see AtomicFile). Its bytes
 /// depend on the arguments alone. metadata.grid.levels must equal view.levels. Throws Error if the
-/// file cannot be written, or if the grid has values that no file may hold (see
-/// parse_vdag_metadata).
+/// file cannot be written, or if the grid has values that parse_vdag_metadata() would refuse.
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata);
 

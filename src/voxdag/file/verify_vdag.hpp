@@ -1,5 +1,5 @@
 #pragma once
-/// Runs all checks of a .vdag file and reports each of them.
+/// Runs all checks of a .vdag file and reports the result of each.
 #include <filesystem>
 #include <string>
 #include <vector>

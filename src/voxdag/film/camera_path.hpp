@@ -11,19 +11,20 @@ struct CameraKey {
   View view;
 };
 
-/// Passes through every key at its time. Eye and target run along centripetal Catmull-Rom curves,
-/// which have neither cusps nor loops between keys; how far along them the camera is, and the up
-/// vector and the angle of view, are monotone cubics of time, so that nothing jumps or overshoots
-/// and speeds are continuous.
+/// Passes through every key at its time. Eye and target move along centripetal Catmull-Rom curves,
+/// which have neither cusps nor loops between keys. The position along the curve, the up vector and
+/// the field of view are monotone cubics of time. So nothing jumps or overshoots, and speeds are
+/// continuous.
 class CameraPath {
  public:
-  /// Throws Error unless there is a key, times increase, numbers are finite, angles of view are in
-  /// (0,180) and eye and target differ.
+  /// Throws Error unless there is a key, times increase, numbers are finite, fields of view are in
+  /// (0,180) degrees, and eye and target differ.
   explicit CameraPath(std::vector<CameraKey> keys);
 
   double start() const { return keys_.front().time; }
   double end() const { return keys_.back().time; }
-  /// Returns the view; before the first key and after the last one it is theirs.
+  /// Returns the view at a time in seconds. Before the first key it is that key's view, after the
+  /// last key the last one's.
   View at(double time) const;
 
  private:

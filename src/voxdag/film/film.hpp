@@ -14,16 +14,16 @@ inline constexpr double kMostFrames = 1e6;
 struct Film {
   CameraPath path;
   double frames_per_second = 30;    ///< At most kMostFramesPerSecond.
-  RenderOptions options;            ///< Of each frame; the path sets the view.
-  std::vector<PicturePass> passes;  ///< What is written of each frame, to numbered files.
+  RenderOptions options;            ///< Options of each frame; the path sets the view.
+  std::vector<PicturePass> passes;  ///< Passes written for each frame, to numbered files.
 };
 
 /// Returns the times of the frames, from the path's first key to its last one, in seconds. Throws
 /// Error if there would be more than kMostFrames.
 std::vector<double> frame_times(const CameraPath& path, double frames_per_second);
 
-/// Returns about how many seconds it takes to render the film: renders a thumbnail of the first
-/// frame, measures the time, and multiplies by frames and pixels.
+/// Estimates the time to render the film, in seconds. Renders a thumbnail of the first frame,
+/// measures the time, and multiplies by frames and pixels.
 double estimate_seconds(const Film& film, const PictureRenderer& render);
 
 /// Renders and writes all frames. Throws Error if a file cannot be written, and Cancelled.

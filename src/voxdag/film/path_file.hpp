@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// A view at a time. What a key leaves out is as in the key before.
+/// A view at a time. Values that a key leaves out are those of the previous key.
 struct PathKey {
   double time = 0;  ///< Seconds.
   Vec3d eye, target;
@@ -17,20 +17,20 @@ struct PathKey {
 };
 
 struct PathFile {
-  std::string name;  ///< Of the file, for errors.
+  std::string name;  ///< The file's name, for errors.
   std::vector<PathKey> keys;
-  std::optional<Vec3d> sun;  ///< Direction towards it.
+  std::optional<Vec3d> sun;  ///< Direction towards the sun.
 };
 
 /// Reads at most 16 MiB of JSON. Throws Error with the byte or the key if the file is not a camera
-/// path. Whether times rise and views are valid is for make_camera_path() to say.
+/// path. Does not check that times increase and views are valid; make_camera_path() does.
 PathFile read_path_file(const std::string& path);
 
 /// Returns the text of a path file, one line per key.
 std::string path_json(const PathFile& path);
 
-/// Returns the camera path. `first` completes the first key; frame_scene finds the rest for a
-/// picture of `aspect` = width / height. Throws Error with the key.
+/// Returns the camera path. `first` completes the first key; frame_scene() chooses the values that
+/// are still missing, for a picture of `aspect` = width / height. Throws Error with the key.
 CameraPath make_camera_path(const PathFile& file, const VoxelSet& scene, const Grid& grid,
                             double aspect, const ViewRequest& first);
 

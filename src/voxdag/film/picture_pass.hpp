@@ -1,5 +1,5 @@
 #pragma once
-/// The passes of a picture: the values behind it that can be written as files.
+/// The passes of a picture: values per pixel that can be written to files.
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,34 +10,35 @@
 
 namespace voxdag {
 
-/// One kind of values.
+/// One kind of values, such as depth.
 struct PictureKind {
   std::string_view name;
-  std::vector<std::string> channels;         ///< Their names in an EXR.
-  ImageF (*values)(const RenderedImage&);    ///< Returns what an EXR holds.
-  ImageRgb8 (*shown)(const RenderedImage&);  ///< Returns what a PNG shows.
+  std::vector<std::string> channels;         ///< Names of the channels in an EXR.
+  ImageF (*values)(const RenderedImage&);    ///< Returns the values for an EXR.
+  ImageRgb8 (*shown)(const RenderedImage&);  ///< Returns the pixels of a PNG.
   bool needs_steps = false;                  ///< Whether RenderOptions::with_steps must be set.
 };
 
 /// The table of all kinds. EXR holds the values: "picture", tone mapped in linear light;
 /// "radiance"; "depth", world units (Z); "normal" (N.X N.Y N.Z); "occlusion", "shadow" and "steps".
 /// PNG shows them: picture and radiance in sRGB; depth from white (nearest) to dark grey, and black
-/// where nothing is; normals as (n + 1) / 2; steps as a heat map up to their maximum.
+/// for the background; normals as (n + 1) / 2; steps as a heat map up to their maximum.
 std::span<const PictureKind> picture_kinds();
 
-/// Returns the kind of that name, or null.
+/// Returns the kind with this name, or null.
 const PictureKind* find_picture_kind(std::string_view name);
 
 /// One kind of values, and the file that they are written to.
 struct PicturePass {
   const PictureKind* kind = nullptr;
-  std::string path;  ///< Of one picture; for a film a pattern (frame_names.hpp).
+  std::string path;  ///< File of one picture; for a film a pattern (frame_names.hpp).
 };
 
-/// Whether the path ends in .png or .exr.
+/// Returns whether the path ends in .png or .exr.
 bool is_picture_path(const std::string& path);
 
-/// Writes values of `image` to `path`, which is_picture_path() accepts. Throws Error.
+/// Writes the values of `kind` from `image` to `path`, which must end in .png or .exr. Throws Error
+/// if the file cannot be written.
 void write_pass(const PictureKind& kind, const std::string& path, const RenderedImage& image);
 
 }  // namespace voxdag

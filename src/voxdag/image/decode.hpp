@@ -9,14 +9,15 @@
 
 namespace voxdag {
 
-/// Decodes a PNG or a JPEG; the first bytes tell which. `name` stands for the file in errors.
-/// Memory: the pixels, and for a progressive JPEG twice as many bytes again, all counted before it
-/// is taken. Throws Error for what is truncated, damaged or beyond the limits of image_limits.hpp,
-/// OverMemory, and what `options.poll` throws.
+/// Decodes a PNG or a JPEG; the first bytes decide which. Errors call the file `name`. Counts its
+/// memory before it allocates: the pixels, and for a progressive JPEG twice as many bytes in
+/// addition. Throws Error if the image is truncated, damaged or beyond the limits of
+/// image_limits.hpp, OverMemory, and whatever `options.poll` throws.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& name,
                           const ImageOptions& options = {});
 
-/// Decodes a file of at most 1 GiB, of which it reads only the first page if that is no image.
+/// Decodes a file of at most 1 GiB. If the first page is not the start of an image, reads no more.
+/// Throws like decode_image(), and Error if the file cannot be read.
 DecodedImage read_image(const std::filesystem::path& path, const ImageOptions& options = {});
 
 }  // namespace voxdag

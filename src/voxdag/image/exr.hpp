@@ -1,5 +1,5 @@
 #pragma once
-/// Writes OpenEXR files of named float32 channels, by OpenEXR 3.
+/// Writes OpenEXR files of named float32 channels, using OpenEXR 3.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@ namespace voxdag {
 
 /// Writes scan lines with ZIP compression, 32-bit float. `channel_names[i]` names channel i of the
 /// image: "R", "Z", "N.X" (a dot separates layer and name). The file appears at `path` only when it
-/// is complete. Throws Error if it cannot be written, if the image has no pixels, or if names are
-/// not distinct, not empty and one for each channel.
+/// is complete. Throws Error if the file cannot be written or the image has no pixels. Also throws
+/// Error unless there is one name for each channel, and the names are distinct and not empty.
 void write_exr(const std::filesystem::path& path, const ImageF& image,
                const std::vector<std::string>& channel_names);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Images as plain values, for results of rendering. Rows run from top to bottom, pixels from left
-/// to right; the channels of a pixel are adjacent.
+/// Images as plain values, for rendered pictures. Rows run from top to bottom, pixels from left to
+/// right; the channels of a pixel are adjacent.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@ struct Image {
   std::vector<Sample> pixels;
 
   Image() = default;
-  /// All zeros.
+  /// Makes an image of zeros.
   Image(int w, int h, int c)
       : width(w),
         height(h),
@@ -40,7 +40,7 @@ using ImageF = Image<float>;
 /// 8-bit sRGB.
 struct ImageRgb8 : Image<std::uint8_t> {
   ImageRgb8() = default;
-  /// A black image.
+  /// Makes a black image.
   ImageRgb8(int w, int h) : Image(w, h, 3) {}
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// JPEG files, by libjpeg-turbo. Read only.
+/// Reads JPEG files, using libjpeg-turbo.
 #include <cstdint>
 #include <span>
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace voxdag {
 
-/// Returns whether the bytes begin as a JPEG does.
+/// Returns whether the bytes begin with the signature of a JPEG.
 bool is_jpeg(std::span<const std::uint8_t> bytes);
 
-/// Decodes a grey, YCbCr or RGB JPEG, baseline or progressive, to 1 or 3 channels of 8 bits. `name`
-/// stands for the file in errors. Throws Error for what is truncated, damaged, too large (see
-/// image_limits.hpp) or in another colour space, OverMemory, and what `options.poll` throws.
+/// Decodes a grey, YCbCr or RGB JPEG, baseline or progressive, to 1 or 3 channels of 8 bits. Errors
+/// call the file `name`. Throws Error if the image is truncated, damaged, too large (see
+/// image_limits.hpp) or in another colour space, OverMemory, and whatever `options.poll` throws.
 DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name,
                          const ImageOptions& options = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-/// PNG files, by libpng.
+/// Reads and writes PNG files, using libpng.
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -14,13 +14,13 @@ namespace voxdag {
 /// Error if it cannot be written or the image has no pixels.
 void write_png(const std::filesystem::path& path, const ImageRgb8& image);
 
-/// Returns whether the bytes begin as a PNG does.
+/// Returns whether the bytes begin with the signature of a PNG.
 bool is_png(std::span<const std::uint8_t> bytes);
 
-/// Decodes any PNG with its alpha. Palettes become colours, values of less than 8 bits 8 bits;
-/// gamma and colour profiles are ignored. `name` stands for the file in errors. Throws Error for
-/// what is truncated, damaged or too large (see image_limits.hpp), OverMemory, and what
-/// `options.poll` throws.
+/// Decodes any PNG with its alpha. Palette indices become colours; values of less than 8 bits are
+/// expanded to 8 bits; gamma and colour profiles are ignored. Errors call the file `name`. Throws
+/// Error if the image is truncated, damaged or too large (see image_limits.hpp), OverMemory, and
+/// whatever `options.poll` throws.
 DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
                         const ImageOptions& options = {});
 

@@ -5,9 +5,10 @@
 
 namespace voxdag {
 
-/// A colour texture holds linear light, multiplied by alpha, and alpha. A normal map holds x, y and
-/// z of unit vectors (level 0), each from -1 (0) to 1 (65535), y towards the image's upper edge;
-/// the mean of unit vectors is shorter where they disagree.
+/// A texture of 16-bit values. A colour texture holds linear light, premultiplied by alpha, and
+/// alpha. A normal map holds x, y and z: 0 stands for -1 and 65535 for 1, and y points to the
+/// image's upper edge. The vectors of level 0 have unit length; coarser levels hold means, which
+/// are shorter where the vectors differ.
 using Texture = MipPyramid<4>;
 /// Holds heights from 0 to 65535.
 using HeightTexture = MipPyramid<1>;
@@ -16,13 +17,13 @@ struct TextureWraps {
   TextureWrap u = TextureWrap::kRepeat, v = TextureWrap::kRepeat;
 };
 
-// Every function below takes memory for its result from options.memory before it fills it (16
-// bytes per pixel for a Texture, 4 for a HeightTexture) and throws OverMemory; it calls
-// options.poll once per row of pixels and throws what that throws.
+// Every function below reserves the memory of its result from options.memory (16 bytes per pixel
+// for a Texture, 4 for a HeightTexture) and throws OverMemory. It calls options.poll once per row
+// of pixels and throws whatever that throws.
 
 /// Makes a colour texture from sRGB. Texels whose alpha is at least `visible_alpha` (0..1) become
-/// opaque, the others transparent black; at 0 all become opaque. So the mean alpha of a region is
-/// the visible part of it.
+/// opaque, the others transparent black; with 0 all become opaque. So the mean alpha of a region is
+/// the fraction of it that is visible.
 Texture make_color_texture(const DecodedImage& image, float visible_alpha, TextureWraps wraps = {},
                            const ImageOptions& options = {});
 
@@ -34,16 +35,17 @@ Texture make_normal_texture(const DecodedImage& image, float scale, TextureWraps
 Texture make_bump_texture(const DecodedImage& image, float scale, TextureWraps wraps = {},
                           const ImageOptions& options = {});
 
-/// Makes heights from grey values, taken as linear; from the mean of a coloured pixel's channels.
+/// Makes heights from grey values, which it takes as linear. The height of a coloured pixel is the
+/// mean of its channels.
 HeightTexture make_height_texture(const DecodedImage& image, TextureWraps wraps = {},
                                   const ImageOptions& options = {});
 
-/// Returns whether an image holds tangent-space normals rather than heights: whether most pixels
-/// are unit vectors that point out of the surface.
+/// Returns whether an image seems to hold tangent-space normals rather than heights: most of its
+/// pixels are unit vectors that point out of the surface.
 bool looks_like_normal_map(const DecodedImage& image, const ImageOptions& options = {});
 
-/// Returns `image` with the alpha of another image, or with its grey values if that has no alpha.
-/// The smaller image is stretched to the size of the larger.
+/// Returns `image` with the alpha channel of the image `alpha`, or with its grey values if it has
+/// no alpha channel. The smaller image is stretched to the size of the larger.
 DecodedImage with_alpha_of(const DecodedImage& image, const DecodedImage& alpha,
                            const ImageOptions& options = {});
 

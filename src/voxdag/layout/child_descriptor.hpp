@@ -7,9 +7,9 @@
 ///   contours  | contour pointer 24           | contour mask 8         |    bits 31..0
 ///
 /// Child slot i (x=1, y=2, z=4) is empty, or an inner voxel (valid), or a leaf (valid and leaf).
-/// The inner voxels have descriptors of their own, stored together in the order of i; the child
-/// pointer leads to the first of them. If they are too far away for 15 bits, or in another block,
-/// `far` is set and the pointer leads to a far pointer.
+/// The inner voxels have descriptors of their own, stored together in the order of i. The child
+/// pointer leads to the first of them. If it is too far away for 15 bits, or in another block,
+/// `far` is set and the child pointer leads to a far pointer.
 #include <cassert>
 #include <cstdint>
 #include <type_traits>

@@ -6,12 +6,12 @@
 ///
 ///   | high 7 | low 7 | normal z 6 | normal y 6 | normal x 6 |     bits 31..0
 ///
-/// In the coordinates x of a voxel that fills [-1,1]³, with the integer normal n and its
-/// |n|1 = |nx| + |ny| + |nz|, the greatest that dot(n, x) can be there:
+/// Let x be the coordinates in which the voxel is [-1,1]³, n the integer normal and |n|1 = |nx| +
+/// |ny| + |nz|, the maximum of dot(n, x) in the voxel. Then the surface lies where
 ///
 ///   position(low) <= dot(n, x) <= position(high),   position(p) = |n|1 (2p - 127) / 127
 ///
-/// so that positions 0 and 127 touch corners of the cube, whatever the normal.
+/// For every normal, the planes of positions 0 and 127 touch corners of the cube.
 #include <cassert>
 #include <cstdint>
 
@@ -39,7 +39,7 @@ struct Contour {
   friend bool operator==(const Contour&, const Contour&) = default;
 
  private:
-  /// Returns the six bits below bit 32 - shift as a signed number.
+  /// Returns the six bits below bit 32 - shift as a signed integer.
   VOXDAG_HD std::int32_t component(int shift) const {
     return static_cast<std::int32_t>(bits << shift) >> 26;
   }

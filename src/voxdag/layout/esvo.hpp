@@ -16,9 +16,9 @@
 ///
 /// A far pointer is a signed 32-bit distance in slots from the descriptor that uses it to the first
 /// of its children's descriptors. Descriptors with the same parent are stored together within one
-/// page. The two descriptors of a pair of slots (2i, 2i + 1) have the same parent, so that the
-/// voxels that they describe share a compression block: child c of the descriptor in slot s has
-/// value 8 * (s & 1) + c of compression block s / 2, slots counted from the block's begin.
+/// page. The two descriptors in a pair of slots (2i, 2i + 1) have the same parent, and their
+/// children share a compression block: child c of the descriptor in slot s has value 8 * (s & 1) +
+/// c of compression block s / 2. Slots are counted from the block's begin.
 ///
 /// All references in a block are relative to their own position. Only far pointers leave a block;
 /// they lead to the first descriptors of other blocks.
@@ -34,7 +34,7 @@ namespace voxdag {
 
 inline constexpr std::uint32_t kEsvoPageSlots = 1024;
 
-/// What an attachment holds.
+/// The kind of values in an attachment.
 enum class EsvoAttachmentKind : std::uint32_t {
   kNone = 0,
   kColors = 1,   ///< layout/color_block.hpp: one slot per block.
@@ -90,7 +90,7 @@ struct EsvoView {
     return ChildDescriptor::from_slot(slots[slot]);
   }
 
-  /// Returns the slot of the first of the children's descriptors. `descriptor` is that of `slot`
+  /// Returns the slot of the first descriptor of the children. `descriptor` is the one in `slot`
   /// and must have an inner child.
   VOXDAG_HD std::uint64_t first_child(std::uint64_t slot, ChildDescriptor descriptor) const {
     const std::uint64_t to = slot + descriptor.child_pointer();
@@ -130,7 +130,7 @@ struct EsvoView {
   }
 };
 
-/// Returns which of the 16 values of its compression blocks is the voxel's.
+/// Returns the voxel's index (0..15) in its compression blocks.
 VOXDAG_HD constexpr int attachment_value(const EsvoVoxel& voxel) {
   return static_cast<int>(voxel.slot & 1) * 8 + voxel.child;
 }

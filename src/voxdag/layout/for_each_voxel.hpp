@@ -74,7 +74,7 @@ void for_each_leaf_block(const SvdagView& dag, const Box3i& window, const Fn& fn
 }
 
 /// Calls fn(Vec3i voxel) for every voxel in the half-open `window`, in the order of the view's
-/// for_each_leaf_block: Morton order for a DAG.
+/// for_each_leaf_block(): Morton order for a DAG.
 template <class View, class Fn>
 void for_each_voxel(const View& voxels, const Box3i& window, const Fn& fn) {
   for_each_leaf_block(voxels, window, [&](Vec3i origin, std::uint64_t mask) {

@@ -16,9 +16,9 @@
 ///   word 2   the steps of cu, 2 bits per value, those of value i at bit 2i: k means (2k - 3) / 3
 ///   word 3   the steps of cv in the same form
 ///
-/// The coordinates 0, 1 and -1 are exact, and with them the normals of axis-aligned and diagonal
-/// walls. Some base lies within 0.004 degrees of any direction. The axes have steps from 2^-16 up
-/// to lengths of 4, twice what a grid needs to hold a direction and its opposite.
+/// The coordinates 0, 1 and -1 are exact, so the normals of axis-aligned and diagonal walls are
+/// exact too. Every direction has a base within 0.004 degrees. Axes have steps from 2^-16 up and
+/// lengths up to 4: twice the length that a grid needs to hold a direction and its opposite.
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -30,8 +30,8 @@
 
 namespace voxdag {
 
-/// A point on the surface of the cube [-1,1]³, in steps. A U or V of 0 lies just outside: readers
-/// accept it, writers never produce it.
+/// A point on the surface of the cube [-1,1]³, in steps of U and V. A U or V of 0 is just outside
+/// the cube: readers accept it, writers never write it.
 struct CubePoint {
   int face = 0;   ///< [0, 6)
   int u = 16384;  ///< [0, 32768)
@@ -57,7 +57,7 @@ struct CubePoint {
   friend bool operator==(const CubePoint&, const CubePoint&) = default;
 };
 
-/// A vector of three small integers and a power of two.
+/// A vector of three small integers, times a power of two.
 struct GridAxis {
   int x = 0, y = 0, z = 0;  ///< [-8, 7]
   int exponent = 0;         ///< [0, 15]

@@ -15,10 +15,10 @@
 ///   node         | mask (8 of 32 bits) | pointer | ... |       1 + popcount(mask) words
 ///   pointer      of level < L-3: word index in `nodes`; of level L-3: index in `leaf_blocks`
 ///
-/// Canonical order: the nodes of each level are stored in the order in which a depth-first walk
-/// from the root, children in Morton order, first meets them. No two nodes of a level are equal, no
-/// node is empty and every node can be reached: the DAG is minimal, and its words depend on the
-/// voxel set alone. A DAG without voxels has no nodes at all.
+/// Canonical order: a depth-first walk from the root visits children in Morton order. The nodes of
+/// each level are stored in the order in which this walk first meets them. No two nodes of a level
+/// are equal, no node is empty and every node can be reached: the DAG is minimal, and its words
+/// depend on the voxel set alone. A DAG without voxels has no nodes at all.
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -72,7 +72,7 @@ VOXDAG_HD inline std::uint32_t child_pointer(const std::uint32_t* node, int inde
   return node[1 + popcount8(node[0] & ((1u << index) - 1u))];
 }
 
-/// Returns the child mask of a leaf block: bit i says whether octant i has voxels.
+/// Returns the child mask of a leaf block: bit i is set if octant i has voxels.
 VOXDAG_HD inline std::uint32_t leaf_block_child_mask(std::uint64_t block) {
   std::uint32_t mask = 0;
   for (int i = 0; i < 8; ++i) mask |= ((block >> (8 * i)) & 0xFFu) != 0 ? 1u << i : 0u;

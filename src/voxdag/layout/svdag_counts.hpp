@@ -7,8 +7,8 @@
 
 namespace voxdag {
 
-/// Levels 0..L-1, root first. The nodes of level L-1 are those of 2³ voxels. The counts of the DAG
-/// include the unique ones, although the layout stores them inside of leaf blocks.
+/// Levels 0..L-1, root first. A node of level L-1 has 2³ voxels. The counts of the DAG include the
+/// unique nodes of level L-1, although the layout stores them inside leaf blocks.
 struct SvdagCounts {
   std::uint64_t voxels = 0;
   std::vector<std::uint64_t> svo_nodes_per_level;

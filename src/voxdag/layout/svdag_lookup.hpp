@@ -5,8 +5,8 @@
 
 namespace voxdag {
 
-/// Returns the mask of the leaf block that holds `voxel`: 0 if it has no voxels or lies outside of
-/// the grid.
+/// Returns the mask of the leaf block that holds `voxel`; 0 if that block has no voxels or is
+/// outside the grid.
 VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) {
   const auto outside = [&](std::int32_t c) { return c < 0 || c >> dag.levels != 0; };
   if (dag.is_empty() || outside(voxel.x) || outside(voxel.y) || outside(voxel.z)) return 0;
@@ -22,7 +22,7 @@ VOXDAG_HD inline std::uint64_t leaf_block_at(const SvdagView& dag, Vec3i voxel) 
 }
 
 /// Returns whether `cell` of `level` in [0, L] contains a voxel that is set. A cell of that level
-/// has 2^(L-level) voxels a side, and coordinates in [0, 2^level). False outside of the grid.
+/// has 2^(L-level) voxels a side, and coordinates in [0, 2^level). Returns false outside the grid.
 VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level) {
   if (dag.is_empty() || (cell.x | cell.y | cell.z) >> level != 0) return false;
   std::uint32_t at = 0;
@@ -35,7 +35,7 @@ VOXDAG_HD inline bool svdag_contains(const SvdagView& dag, Vec3i cell, int level
       at = child_pointer(node, child);
       continue;
     }
-    // Inside of a leaf block: an octant of 2³ voxels, then one voxel of it.
+    // Inside a leaf block: first an octant of 2³ voxels, then one voxel of it.
     const std::uint64_t octant = (dag.leaf_blocks[at] >> (8 * child)) & 0xFF;
     if (level == dag.levels - 1) return octant != 0;
     const int voxel = child_index(cell, 0);

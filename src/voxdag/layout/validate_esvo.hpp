@@ -24,20 +24,21 @@ struct EsvoBlockCheck {
   std::vector<EsvoFarLink> links;
 };
 
-/// Checks one block by itself. The info section and the page headers must agree. The walk starts at
-/// the block's first group, the descriptors of the voxels at `siblings`: it must reach every
-/// descriptor once; siblings must lie on one page, between page headers; no voxel of level `levels`
-/// may have children; contours must lie in the block and have a normal. Uses the level of `entry`
-/// and whether it has a parent. Throws Error("", place, reason) at the first fault; the place is a
-/// slot of the block, or empty. O(block) time, one bit of memory per slot.
+/// Checks one block by itself. The info section and the page headers must agree. A walk starts at
+/// the block's first group, the descriptors of the voxels at `siblings`, and must reach every
+/// descriptor once. Siblings must lie on one page, between page headers. No voxel of level `levels`
+/// may have children. Contours must lie in the block and have a normal. Of `entry` only the level
+/// counts, and whether there is a parent. Throws Error("", place, reason) at the first fault; the
+/// place is a slot of the block, or empty. O(block) time, one bit of memory per slot.
 EsvoBlockCheck check_esvo_block(std::span<const std::uint64_t> slots, const EsvoBlockEntry& entry,
                                 std::span<const Vec3i> siblings, int levels);
 
 /// Checks that any code can walk the view, and look up its voxels' attributes, without further
-/// checks. The blocks of the directory must lie back to back and fill the slots. Each must be sound
-/// by itself and reached once from the root, by the descriptor and for the cell that its entry
-/// says. Returns the counts. Throws Error("", place, reason) at the first fault; the place is
-/// "block 3" or "block 3, slot 4711". O(ESVO) time. `view.slots` must have slot_count words.
+/// checks. The blocks of the directory must lie back to back and fill the slots. Each must pass
+/// check_esvo_block(), and exactly one descriptor must lead to it: the one that its entry names,
+/// for the cell that its entry names. Returns the counts. Throws Error("", place, reason) at the
+/// first fault; the place is "block 3" or "block 3, slot 4711". O(ESVO) time. `view.slots` must
+/// have slot_count words.
 EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> directory);
 
 }  // namespace voxdag

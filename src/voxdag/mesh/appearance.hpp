@@ -1,6 +1,6 @@
 #pragma once
-/// What a mesh file says of the look of its surface: normals, texture coordinates, colours,
-/// materials. Values are kept per corner: corner c of triangle t has index 3 * t + c.
+/// The appearance of a mesh's surface, as its file describes it: normals, texture coordinates,
+/// colours, materials. Values are stored per corner: corner c of triangle t has index 3 * t + c.
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace voxdag {
 
-/// A colour in linear light, straight (not premultiplied) alpha; 65535 is 1.
+/// A colour in linear light with straight (not premultiplied) alpha; 65535 stands for 1.
 struct Rgba16 {
   std::uint16_t r = 65535, g = 65535, b = 65535, a = 65535;
 
@@ -39,26 +39,26 @@ struct UvTransform {
   float xx = 1, xy = 0, yx = 0, yy = 1, x = 0, y = 0;
 
   Vec2f operator()(Vec2f uv) const { return linear(uv) + Vec2f{x, y}; }
-  /// Maps a difference of texture coordinates.
+  /// Maps a difference of texture coordinates: without the translation.
   Vec2f linear(Vec2f uv) const { return {xx * uv.x + xy * uv.y, yx * uv.x + yy * uv.y}; }
   friend bool operator==(const UvTransform&, const UvTransform&) = default;
 };
 
-/// How a material uses an image. Texture coordinates run to the right and DOWN from the
-/// image's upper left corner, (1,1) being the lower right one.
+/// How a material uses an image. Texture coordinates are (0,0) at the image's upper left corner and
+/// (1,1) at its lower right corner: v points DOWN.
 struct TextureUse {
   int image = -1;  ///< Index into Appearance::images; -1: no texture.
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
-  UvTransform uv;  ///< From the corners' texture coordinates to those of the image.
+  UvTransform uv;  ///< Maps the corners' texture coordinates to the image's.
 
   bool exists() const { return image >= 0; }
   friend bool operator==(const TextureUse&, const TextureUse&) = default;
 };
 
-/// An image file, or the bytes of one inside the mesh file (or its data URI).
+/// An image: a file of its own, or bytes inside the mesh file or a data URI.
 struct TextureImage {
-  std::string name;  ///< For messages: the file's path, or the mesh file's and the image's place.
-  std::filesystem::path path;       ///< Empty where `bytes` hold the image.
+  std::string name;                 ///< For messages: the path, or mesh file and place.
+  std::filesystem::path path;       ///< Empty if `bytes` hold the image.
   std::vector<std::uint8_t> bytes;  ///< Encoded, as in a file.
 };
 
@@ -69,10 +69,10 @@ enum class AlphaMode : std::uint8_t {
 };
 inline constexpr float kBlendCutoff = 0.1f;
 
-/// The colour of materials that nothing describes: sRGB 0.8.
+/// The colour of a material without any description: sRGB 0.8.
 inline constexpr Vec3f kDefaultColor{0.603827f, 0.603827f, 0.603827f};
 
-/// What Material::normal_map holds.
+/// The kind of values in Material::normal_map.
 enum class NormalMapKind : std::uint8_t {
   kTangentSpace,  ///< Normals, green towards the image's upper edge (OpenGL, glTF).
   kHeights,       ///< Heights from black to white.
@@ -81,7 +81,7 @@ enum class NormalMapKind : std::uint8_t {
 
 struct Material {
   std::string name;
-  Vec3f base_color{1, 1, 1};    ///< Linear light. Where there is no texture, or it cannot be read.
+  Vec3f base_color{1, 1, 1};    ///< Linear light. Used without a readable texture.
   Vec3f texture_tint{1, 1, 1};  ///< Linear light; multiplies the colour texture.
   float alpha = 1;              ///< Multiplies the alpha of texture and corners.
   AlphaMode alpha_mode = AlphaMode::kOpaque;
@@ -90,17 +90,17 @@ struct Material {
   TextureUse alpha_map;  ///< Alpha: the image's alpha channel if it has one, else its grey.
   TextureUse normal_map;
   NormalMapKind normal_kind = NormalMapKind::kTangentSpace;
-  float normal_scale = 1;       ///< Multiplies x and y of tangent-space normals, or heights.
+  float normal_scale = 1;       ///< Factor on x and y of tangent-space normals, or on heights.
   TextureUse displacement_map;  ///< Heights from black (0) to white (1).
-  float displacement_base = 0;  ///< World units along the normal at height 0 ...
-  float displacement_gain = 1;  ///< ... and what height 1 adds to that.
+  float displacement_base = 0;  ///< World units along the normal at height 0.
+  float displacement_gain = 1;  ///< World units that height 1 adds.
 };
 
 struct Appearance {
-  std::vector<Vec3f> normals;  ///< Per corner, or empty. Unit, or zero where the file gives none.
-  std::vector<Vec2f> uvs;      ///< Per corner, or empty. See TextureUse; (0,0) where there is none.
-  std::vector<Rgba16> colors;  ///< Per corner, or empty. They multiply the material's colour.
-  std::vector<Material> materials;  ///< By Mesh::triangle_materials; never empty after reading.
+  std::vector<Vec3f> normals;       ///< Per corner, or empty. Unit length; zero if unset.
+  std::vector<Vec2f> uvs;           ///< Per corner, or empty. See TextureUse; (0,0) if unset.
+  std::vector<Rgba16> colors;       ///< Per corner, or empty. They multiply the material's colour.
+  std::vector<Material> materials;  ///< Mesh::triangle_materials has indices; never empty.
   std::vector<TextureImage> images;
 
   /// Returns the index of a triangle's material: 0 if the mesh has none.
@@ -109,7 +109,7 @@ struct Appearance {
   }
 };
 
-/// What reading a mesh file with its appearance gives.
+/// A mesh and its appearance, as read from a file.
 struct MeshWithAppearance {
   Mesh mesh;
   Appearance appearance;

@@ -11,7 +11,7 @@ namespace voxdag {
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< Three indices into Mesh::vertices.
 
-/// Readers check that every index is in range and every vertex that a triangle references is
+/// A mesh from a reader has only indices in range, and every vertex that a triangle references is
 /// finite.
 struct Mesh {
   std::vector<Vec3f> vertices;  ///< World units, float32 as in the file (correctly rounded).

@@ -5,7 +5,8 @@
 
 namespace voxdag {
 
-/// Returns the bounds of the vertices that triangles reference; empty without triangles.
+/// Returns the bounds of the vertices that triangles reference; the empty box if there are no
+/// triangles.
 Box3d referenced_bounds(const Mesh& mesh);
 
 }  // namespace voxdag

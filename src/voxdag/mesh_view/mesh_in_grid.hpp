@@ -6,9 +6,9 @@
 
 namespace voxdag {
 
-/// Throws Error unless the mesh lies where the voxels are. Samples some thousand vertices, ignores
-/// those outside of the grid, which the build may have clipped, and requires that nine in ten have
-/// a voxel at most one voxel away.
+/// Throws Error unless the mesh lies where the voxels are. Samples a few thousand vertices and
+/// ignores those outside the grid, which the build may have clipped. Of the others, nine in ten
+/// must be at most one voxel away from a voxel.
 void check_mesh_in_grid(const Mesh& mesh, const VoxelSet& scene, const Grid& grid);
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// View samples from the triangles of a mesh, for deferred shading as by Kämpe, Sintorn and
+/// Takes view samples from the triangles of a mesh, for deferred shading as in Kämpe, Sintorn and
 /// Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013, section 4.
 #include <memory>
 
@@ -8,17 +8,17 @@
 
 namespace voxdag {
 
-/// Finds the triangles that pixels see with Embree, and computes the points in double: exactly on
-/// the ray, and off the triangle by at most 2^-25 of the mesh's longest side, a thousandth of a
+/// Finds the visible triangles with Embree and computes the points in double. They are exactly on
+/// the ray, and off the triangle by at most 2^-25 of the mesh's longest side: a thousandth of a
 /// voxel at 32,768³. Filters colours and normal maps over the pixel. Rays pass through alpha-masked
 /// parts. Needs no voxels.
 class MeshViewSource : public ViewSource {
  public:
   /// Takes ownership of the mesh and builds the acceleration structure on the threads of the
-  /// current TBB arena. Throws Error if memory is short, or if the library was built without
-  /// Embree.
+  /// current TBB arena. Throws Error if there is not enough memory, or if the library was built
+  /// without Embree.
   explicit MeshViewSource(Mesh mesh, const MeshViewOptions& options = {});
-  /// With the appearance from the mesh's file. For warnings see SurfaceShading.
+  /// Also takes the appearance from the mesh's file. `warnings` is as in SurfaceShading.
   MeshViewSource(Mesh mesh, Appearance appearance, const MeshViewOptions& options,
                  std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr);
   ~MeshViewSource() override;

@@ -9,12 +9,12 @@
 
 namespace voxdag {
 
-/// Passed by pointer to long operations; null: no reports, no cancellation. Reports come from any
-/// thread, one at a time.
+/// Long operations take a pointer to it; null means no reports and no cancellation. Any thread may
+/// report, but only one at a time.
 class Progress {
  public:
-  /// `fraction` of `stage` is done, 0 to 1; `items` counts the results of the stage (voxels,
-  /// triangles, bytes).
+  /// Callback. `fraction` (0 to 1) of `stage` is done; `items` counts the results of the stage
+  /// (voxels, triangles, bytes).
   using Report = std::function<void(std::string_view stage, double fraction, std::uint64_t items)>;
 
   Progress() = default;

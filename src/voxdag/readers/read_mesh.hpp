@@ -8,25 +8,25 @@
 
 namespace voxdag {
 
-/// Reads a mesh. The content decides the format where it is certain (PLY, glTF, STL, OFF), else the
-/// extension does: OBJ, PLY, STL, glTF and OFF have readers here, assimp reads other formats if the
-/// library was built with it. docs/meshes.md lists what is read from each format.
+/// Reads a mesh. The content decides the format if it is certain (PLY, glTF, STL, OFF), else the
+/// extension does. OBJ, PLY, STL, glTF and OFF have readers here; assimp reads other formats if the
+/// library was built with it. docs/meshes.md lists the features of each format that are read.
 ///
 /// Every index of the mesh is in range, every vertex that a triangle uses is finite, and there is
 /// at least one triangle. The result depends on the file alone, not on the number of threads.
 ///
-/// Memory: with ReadOptions::memory set, reads within that budget and leaves memory_bytes(mesh)
-/// reserved, which the caller releases when it frees the mesh. Pages of mapped files do not count:
+/// Memory: if ReadOptions::memory is set, reads within that budget. memory_bytes(mesh) stay
+/// reserved; the caller releases them when it frees the mesh. Pages of mapped files do not count:
 /// they are released as they are read.
 ///
 /// Throws Error with the line, byte or JSON value at fault, OverMemory with the file's name, and
 /// Cancelled.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads the mesh that read_mesh gives and its appearance, in one pass. Images are named or copied,
-/// not decoded. A missing or malformed attribute is a warning, not an error; a name of a file
-/// outside of the mesh file's folder is an error unless ReadOptions::allow_outside is set. Leaves
-/// memory_bytes of mesh and appearance reserved.
+/// Reads a mesh as read_mesh() does, and its appearance, in one pass. Image files are named,
+/// embedded images copied; none is decoded. A missing or malformed attribute is a warning, not an
+/// error. The name of a file outside the mesh file's folder is an error unless
+/// ReadOptions::allow_outside is set. memory_bytes() of mesh and appearance stay reserved.
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                              const ReadOptions& options = {});
 

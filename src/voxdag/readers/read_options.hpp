@@ -1,5 +1,5 @@
 #pragma once
-/// What readers may do and use.
+/// Options of mesh readers.
 #include <filesystem>
 #include <vector>
 
@@ -9,11 +9,11 @@
 namespace voxdag {
 
 struct ReadOptions {
-  Progress* progress = nullptr;    ///< Null: nobody listens.
-  MemoryBudget* memory = nullptr;  ///< Counts what is read and the scratch memory. Null: no limit.
-  /// Whether a mesh file may name files outside of its own folder. False: such a name is an error.
+  Progress* progress = nullptr;    ///< Null: no reports, no cancellation.
+  MemoryBudget* memory = nullptr;  ///< Counts mesh and scratch memory. Null: no limit.
+  /// Whether a mesh file may name files outside its own folder. If false, such a name is an error.
   bool allow_outside = false;
-  /// Whether assimp may use all its importers. False: only those that survive fuzzing.
+  /// Whether assimp may use all its importers. If false, it uses only those that survive fuzzing.
   bool any_assimp_importer = false;
   /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
   /// that the caller does not overwrite them. They need not exist.

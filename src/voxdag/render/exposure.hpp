@@ -1,14 +1,14 @@
 #pragma once
-/// How bright a picture is to be.
+/// The exposure of a picture.
 #include <span>
 
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
-/// The factor that gives the picture's surfaces, where depth is finite, a middling brightness on
-/// geometric average, but less where that would turn more than a few of them white. One value for
-/// each pixel.
+/// Returns the factor that brings the geometric mean of the surfaces' brightness to a medium value,
+/// or a smaller factor if more than 5% of them would become white. Pixels with infinite depth do
+/// not count. The spans have one value for each pixel.
 float automatic_exposure(std::span<const Vec3f> radiance, std::span<const float> depth);
 
 }  // namespace voxdag

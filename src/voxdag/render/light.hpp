@@ -1,5 +1,5 @@
 #pragma once
-/// Lights: as users describe them, and as kernels take them.
+/// Lights, as users describe them and as kernels read them.
 #include <optional>
 
 #include "voxdag/core/grid.hpp"
@@ -8,7 +8,7 @@ namespace voxdag {
 
 enum class LightKind : std::int32_t { kSun, kPoint, kDisc, kRectangle, kSphere };
 
-/// A light in world units. Which fields count depends on its kind.
+/// A light in world units. Its kind decides which fields are used.
 struct LightSpec {
   LightKind kind = LightKind::kSphere;
   Vec3d position{};          ///< The centre; a rectangle's corner; the direction towards the sun.
@@ -21,7 +21,7 @@ struct LightSpec {
   std::optional<Vec3f> color;
 };
 
-/// A light in units of the grid's side, the grid being [1,2]³.
+/// A light in units of the grid's side; the grid is [1,2]³.
 struct Light {
   LightKind kind = LightKind::kSphere;
   Vec3f position{};  ///< As in LightSpec; the sun's is a unit vector.
@@ -30,7 +30,7 @@ struct Light {
   float radius = 0;
   float area = 0;  ///< Disc and rectangle.
   Vec3f color{};   ///< As in LightSpec; a point's intensity is for distances in this unit.
-  /// Conservative bounds of all points of the light; for the sun, of its directions.
+  /// Conservative bounds on the points of the light; on its directions for the sun.
   Vec3f lowest{}, highest{};
 
   /// Returns whether the light casts shadows with soft edges.
@@ -38,7 +38,7 @@ struct Light {
 };
 
 /// Converts a light. Throws Error for coordinates that are not finite, a missing direction, a size
-/// that is not positive, and negative or infinite light.
+/// that is not positive, and a colour that is negative or infinite.
 Light make_light(const LightSpec& spec, const Grid& grid);
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// The options of a picture, and the picture that is rendered.
+/// The options of a picture, and the rendered picture.
 #include <optional>
 #include <vector>
 
@@ -23,13 +23,13 @@ struct RenderOptions {
   float sky = 1;            ///< Factor on the light of the sky, and on the sky in the picture.
 
   int occlusion_samples = 64;  ///< Rays of ambient occlusion per pixel; 0: none.
-  /// Longest ray of occlusion, world units; 0: 0.15 of the grid's side.
+  /// Length of occlusion rays, in world units; 0 means 0.15 of the grid's side.
   double occlusion_distance = 0;
-  /// Rays of occlusion end at cells that subtend this solid angle, in steradians; 0: at cells of
-  /// the surface's own size. The paper uses 0.07.
+  /// Occlusion rays end at cells that subtend this solid angle, in steradians; 0 means cells of the
+  /// size of the surface's cell. The paper uses 0.07.
   double occlusion_cone = 0;
 
-  float lod_pixels = 1;  ///< See RenderSettings for this and the next two.
+  float lod_pixels = 1;  ///< RenderSettings explains this field and the next two.
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
@@ -52,12 +52,12 @@ struct RenderedImage {
   std::vector<Vec3f> normal;     ///< World space, unit length; zero where nothing is.
   std::vector<float> occlusion;  ///< The part of the sky's light that arrives, 0 to 1.
   std::vector<float> shadow;     ///< The part of the lights' light that arrives, 0 to 1.
-  std::vector<float> steps;  ///< Steps of primary rays with their beams; empty unless asked for.
+  std::vector<float> steps;      ///< Steps of primary rays and beams; empty unless with_steps.
   std::vector<std::uint8_t> cell_pixels;  ///< See pack_cell_pixels(); empty without filter.
   std::uint64_t rays = 0;                 ///< Rays cast: primary, shadow, occlusion.
 };
 
-/// Returns the addresses of its values, null for those that it does not have.
+/// Returns the addresses of the image's values; null for values that it does not have.
 inline ImageBuffers buffers_of(RenderedImage& image) {
   const auto values = [](auto& pixels) { return pixels.empty() ? nullptr : pixels.data(); };
   return {values(image.radiance),   values(image.depth),  values(image.normal),

@@ -49,8 +49,8 @@ std::span<const SceneInfo> scene_list();
 Mesh make_scene(std::string_view name, const SceneOptions& options = {},
                 const Progress* progress = nullptr);
 
-/// Returns a view of the scene that make_scene() makes of these arguments. Throws Error for an
-/// unknown name or a size outside the scene's range.
+/// Returns a good view of the scene that make_scene() generates from these arguments. Throws Error
+/// for an unknown name or a size outside the scene's range.
 ScenePreset scene_preset(std::string_view name, const SceneOptions& options = {});
 
 }  // namespace voxdag

@@ -1,13 +1,13 @@
 #pragma once
 /// An ESVO file with only some of its blocks in memory.
 ///
-/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3: all references
-/// in a block are relative, so that blocks can be moved, which makes the "dynamic memory management
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3. All references
+/// in a block are relative, so blocks can be moved: this makes the "dynamic memory management
 /// necessary for out-of-core rendering" easy.
 ///
-/// While a block is not loaded, the descriptor that leads to it marks its children as leaves: the
-/// octree is complete at any time, but coarser where blocks are missing. Its leaves there contain
-/// all voxels of the missing blocks.
+/// While a block is not loaded, the descriptor that leads to it marks its children as leaves. So
+/// the octree is complete at any time, but coarser where blocks are missing: its leaves there
+/// contain all voxels of the missing blocks.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -25,19 +25,19 @@ namespace voxdag {
 struct EsvoStreamCounts {
   std::uint64_t blocks_loaded = 0;  ///< Now in memory.
   std::uint64_t bytes_loaded = 0;   ///< Now in memory.
-  std::uint64_t blocks_used = 0;    ///< Different blocks since the file was opened.
-  std::uint64_t blocks_read = 0;    ///< Since the file was opened, repeated reads included.
+  std::uint64_t blocks_used = 0;    ///< Distinct blocks read since the file was opened.
+  std::uint64_t blocks_read = 0;    ///< Reads since the file was opened, with repeated ones.
   std::uint64_t bytes_read = 0;
   std::uint64_t blocks_evicted = 0;
 };
 
-/// Not copyable or movable. Many threads may read through view() while none loads or evicts. Every
-/// block is read into memory and checked before it can be walked, so that changes of the file do no
-/// harm. Throws Error(path, place, reason).
+/// Not copyable or movable. Many threads may read through view() while no thread loads or evicts.
+/// Every block is copied into memory and checked before rays can reach it, so later changes to the
+/// file are harmless. Throws Error(path, place, reason).
 class EsvoStream {
  public:
   /// Reads the directory and loads the root's block. `memory` limits the bytes of the loaded
-  /// blocks; throws Error if some block and its ancestors need more.
+  /// blocks. Throws Error if any block with its ancestors needs more.
   EsvoStream(const std::filesystem::path& path, std::uint64_t memory);
   ~EsvoStream();
   EsvoStream(const EsvoStream&) = delete;
@@ -51,7 +51,7 @@ class EsvoStream {
   /// Returns the loaded octree, which load() and evict() change.
   EsvoView view() const { return {pool_.data(), pool_.size(), root_, metadata_.grid.levels}; }
 
-  /// Returns the block that is missing below the descriptor in `slot` of view(), or -1.
+  /// Returns the missing block to which the descriptor in `slot` of view() leads, or -1.
   /// Thread-safe.
   std::int64_t missing_block(std::uint64_t slot) const {
     if (!is_cut_[slot]) return -1;
@@ -63,10 +63,10 @@ class EsvoStream {
   std::int64_t parent(std::size_t block) const { return blocks_[block].parent; }
   /// Returns whether the block's parent is loaded, which load() requires.
   bool can_load(std::size_t block) const;
-  /// Returns whether the block fits beside the loaded ones.
+  /// Returns whether the block fits into memory with the loaded ones.
   bool has_room(std::size_t block) const;
 
-  /// Reads a block and attaches it to the octree. Its parent must be loaded, and it must have room.
+  /// Reads a block and attaches it to the octree. can_load() and has_room() must be true.
   void load(std::size_t block);
   /// Removes a loaded block. It must not be the root's, and none of its child blocks may be loaded.
   void evict(std::size_t block);
@@ -107,7 +107,7 @@ class EsvoStream {
   std::map<std::uint64_t, std::uint64_t> free_;  ///< Begin and length of the free ranges, in slots.
   std::uint64_t root_ = 0;
   std::vector<bool>
-      is_cut_;  ///< By slot of the pool: whether a block is missing below this descriptor.
+      is_cut_;  ///< Per slot of the pool: whether a block is missing below this descriptor.
   std::unordered_map<std::uint64_t, std::int64_t> cut_;
   EsvoStreamCounts counts_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// The blocks of an ESVO file as a source for pictures, loaded when rays miss them.
+/// Loads the blocks of an ESVO file when rays need them.
 #include <atomic>
 #include <filesystem>
 #include <memory>
@@ -31,18 +31,18 @@ class StreamBlocks : public BlockSource {
  private:
   /// Returns the blocks wanted since the last call, in order.
   std::vector<std::size_t> take_wanted();
-  /// Returns about how large the voxels of the block look from `eye`.
+  /// Returns the approximate apparent size of the block's voxels from `eye`.
   double apparent_size(std::size_t block, Vec3d eye) const;
-  /// Marks the ancestors of a block of this part as used by this part.
+  /// Marks the ancestors of a block as used by the current part.
   void mark_above(std::size_t block);
   /// Evicts all blocks but the root's.
   void evict_all();
-  /// Evicts blocks of earlier parts until `block` has room. Returns false if that is not enough.
+  /// Evicts blocks of earlier parts until `block` fits. Returns whether it fits.
   bool make_room(std::size_t block);
 
   EsvoStream stream_;
-  std::unique_ptr<std::atomic<bool>[]> wanted_;  ///< By block.
-  std::vector<std::uint64_t> loaded_in_;         ///< By block: the part that it was loaded for.
+  std::unique_ptr<std::atomic<bool>[]> wanted_;  ///< Per block.
+  std::vector<std::uint64_t> loaded_in_;         ///< Per block: the last part that used it.
   std::uint64_t part_ = 1;
 };
 

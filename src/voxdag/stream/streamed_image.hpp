@@ -1,5 +1,5 @@
 #pragma once
-/// Renders a picture of an ESVO while its blocks are loaded.
+/// Renders a picture of an ESVO, and loads blocks as rays need them.
 #include <functional>
 
 #include "voxdag/cpu/render_image.hpp"
@@ -7,36 +7,35 @@
 
 namespace voxdag {
 
-/// A source of blocks. Nothing is loaded while rays are cast.
+/// A source of blocks. Blocks are not loaded while rays are cast.
 class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
-  /// Returns the block that is missing below a leaf of the descriptor in `slot`, or -1.
-  /// Thread-safe.
+  /// Returns the missing block to which the descriptor in `slot` leads, or -1. Thread-safe.
   virtual std::int64_t missing_block(std::uint64_t slot) const = 0;
-  /// Notes that rays want a missing block. Thread-safe.
+  /// Records that rays want a missing block. Thread-safe.
   virtual void want(std::size_t block) const = 0;
-  /// Returns the loaded octree. The view's pointers stay valid while blocks come and go.
+  /// Returns the loaded octree. The view's pointers stay valid when blocks are loaded and evicted.
   virtual EsvoView view() const = 0;
 
   /// Loads the blocks that were wanted since the last call, in the order of their apparent size
-  /// from `eye`, while there is room; evicts blocks that were loaded before the last begin_part()
-  /// to make room. Returns how many it loaded.
+  /// from `eye`, while there is room. To make room, evicts blocks that were loaded before the last
+  /// begin_part(). Returns the number of blocks that it loaded.
   virtual std::size_t load_missing(Vec3d eye) = 0;
-  /// Begins a picture, or a part of one, for which blocks are loaded from here on.
+  /// Begins a picture or a part of one. Blocks loaded from now on are for it.
   virtual void begin_part() = 0;
   /// Loads a block and its ancestors; evicts the least recently wanted blocks to make room.
   virtual void load(std::size_t block) = 0;
 };
 
-/// Returns the picture that render_image makes of the whole octree. Works in passes. The first
-/// renders what is loaded at the start. Each further pass loads the blocks that rays missed, and
-/// renders the tiles of these rays again. When no more blocks fit, the remaining tiles load their
-/// blocks by themselves, one tile per thread at a time; if even a tile's blocks do not fit, its
-/// rays wait for one block after the other (paged_caster.hpp). Blocks that the source loaded for
-/// other pictures are used while there is room. Calls `on_pass` with each complete picture but the
-/// last. Throws like render_image and like the source.
+/// Returns the picture that render_image() makes of the whole octree, rendered in passes. The first
+/// pass uses the blocks that are loaded at the start. Each further pass loads the blocks that rays
+/// missed, and renders the tiles of these rays again. When no more blocks fit, each remaining tile
+/// loads its own blocks, one tile per thread at a time. If even the blocks of one tile do not fit,
+/// its rays wait for one block after another (paged_caster.hpp). Blocks that the source loaded for
+/// other pictures stay loaded while there is room. Calls `on_pass` with each complete picture but
+/// the last. Throws like render_image and like the source.
 RenderedImage render_streamed(BlockSource& source, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
                               Progress* progress = nullptr);

@@ -1,5 +1,5 @@
 #pragma once
-/// Colour, coverage and normal of pieces of a mesh's surface: the appearance of a voxel.
+/// Computes colour, coverage and normal of pieces of a mesh's surface: the appearance of a voxel.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -25,22 +25,22 @@ struct SurfaceSample {
 };
 
 /// Refers to mesh and appearance, which must outlive it; owns the decoded textures. Immutable and
-/// thread-safe. Polygons are convex, lie in their triangle, and are given by the barycentric
-/// coordinates (of corners 1 and 2) of their corners. They may have one, two or collinear corners,
-/// and none if the triangle has one colour and one normal.
+/// thread-safe. Polygons are convex and lie in their triangle. Each corner is given by two
+/// barycentric coordinates: the weights of the triangle's corners 1 and 2. A polygon may have one
+/// corner, two, or collinear ones. It may have none if the triangle has one colour and one normal.
 class SurfaceShading {
  public:
-  /// Decodes the textures. Each texture that cannot be read is left out, with a line in `warnings`
-  /// that names it and what replaces it. Counts the textures and tables in `memory` for as long as
-  /// they live; null: no limit. Throws Cancelled and OverMemory.
+  /// Decodes the textures. A texture that cannot be read is left out; a line in `warnings` names it
+  /// and its replacement. Counts the textures and tables in `memory` as long as they live; null
+  /// means no limit. Throws Cancelled and OverMemory.
   SurfaceShading(const Mesh& mesh, const Appearance& appearance,
                  std::vector<std::string>* warnings = nullptr, Progress* progress = nullptr,
                  MemoryBudget* memory = nullptr);
   ~SurfaceShading();
   SurfaceShading(SurfaceShading&&) noexcept;
 
-  /// Returns the means over a polygon. Textures are read through mip maps with a footprint of the
-  /// polygon's size and shape.
+  /// Returns the mean appearance of a polygon. Textures are filtered by mip maps, with a footprint
+  /// of the polygon's size and shape.
   SurfaceSample mean(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
   bool has_normal_map(std::uint32_t triangle) const;
@@ -49,20 +49,20 @@ class SurfaceShading {
   /// Returns whether all normals of the triangle are equal.
   bool has_one_normal(std::uint32_t triangle) const;
 
-  /// Returns true only if the whole polygon is visible (or, if `mean.coverage` is 0, invisible),
-  /// the colour of each point is within `color_error` of the mean's (the largest difference of a
-  /// channel, sRGB encoded, 0 to 1) and its normal within `normal_error` radians of the mean's
-  /// direction. May return false for such a polygon too.
+  /// Returns true only if the whole polygon is visible (or invisible, if `mean.coverage` is 0), and
+  /// every point has about the mean's colour and normal. Colours may differ by `color_error` in
+  /// each channel (sRGB encoded, 0 to 1), normals by `normal_error` radians. The test is
+  /// conservative: it may return false for such a polygon too.
   bool is_uniform(std::uint32_t triangle, std::span<const Vec2f> polygon, float color_error,
                   float normal_error, const SurfaceSample& mean) const;
 
-  /// Returns false only if is_uniform() is false with these errors, whatever the mean. Looks at the
-  /// bounds of the textures only: much faster than mean() and is_uniform().
+  /// Returns false only if is_uniform() returns false with these errors for every mean. Uses only
+  /// the bounds of the textures: much faster than mean() and is_uniform().
   bool may_be_uniform(std::uint32_t triangle, std::span<const Vec2f> polygon, float color_error,
                       float normal_error) const;
 
-  /// Returns true only if no point of the polygon passes the alpha test. May return false for such
-  /// a polygon too.
+  /// Returns true only if no point of the polygon passes the alpha test. The test is conservative:
+  /// it may return false for such a polygon too.
   bool is_alpha_masked(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
   /// Returns false only if is_alpha_masked() is false for every polygon of the triangle.

@@ -1,22 +1,22 @@
 #pragma once
-/// Beams: a bound on where any of many rays from one point can meet anything.
+/// Beams: a bound on t for all rays from one point within a range of directions.
 ///
 /// Sources: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.2, who shorten
 /// primary rays by a coarse distance image; Kämpe, Sintorn and Assarsson, "High Resolution Sparse
 /// Voxel DAGs", SIGGRAPH 2013, section 4, who do so for shadow rays, from both ends. They cast the
-/// corner rays of a beam, which is conservative only where cells are too wide to hide between
-/// these. Here the beam itself is cast, by interval arithmetic: its rays share an apex and at the
-/// parameter t lie in the box [apex + t * lowest, apex + t * highest], a superset of the rays. Such
-/// a box meets a cell on an interval of t that has a closed form: on each axis two inequalities
-/// that are linear in t. A depth-first walk, nearest octants first, finds the least t (or from the
-/// far end the greatest) at which the beam meets a non-empty cell.
+/// corner rays of a beam, which is conservative only if no cell fits between these rays. Here the
+/// beam itself is cast, by interval arithmetic. Its rays share an apex, and at the parameter t they
+/// lie in the box [apex + t * lowest, apex + t * highest]. The box meets a cell in an interval of t
+/// that has a closed form: each axis gives two inequalities that are linear in t. A depth-first
+/// walk, nearest octants first, finds the least t at which the beam meets a non-empty cell. A walk
+/// from the far end finds the greatest.
 ///
 /// Why the bound holds for the rays of grid_ray.hpp. At any T such a ray differs from its exact
 /// line, on each axis and in units of the grid's side, by at most 2^-24 (origin) + 2 * 2^-24
 /// (plane_t rounds twice) + 2^-24 (t_min or t_max as a T) + 2^-32 (parallel axes): less than 2^-21.
-/// Cells are widened by that much; the rounding errors of the walk itself, in double, are far
-/// smaller. The walk ends at cells no finer than those at which a ray may end, and the beam is in a
-/// cell at every t at which one of its rays is.
+/// Cells are widened by 2^-21; the rounding errors of the walk itself, in double, are far smaller.
+/// The walk never descends below the cells at which a ray may end, and whenever a ray is in a cell,
+/// its beam is in that cell too.
 #include <cmath>
 
 #include "voxdag/core/bits.hpp"
@@ -33,25 +33,26 @@ struct Beam {
   double t_min = 0, t_max = HUGE_VAL;
 };
 
-/// At which non-empty cells a beam's walk ends: small ones, where looking closer gains little, and
-/// all those at which a ray may end for its level of detail (StopBelowSize compares their side with
-/// t where the ray leaves them). The walk ends at a cell whose side, in units of the grid's, is at
-/// most the greatest of the three:
+/// The size of the non-empty cells at which a beam's walk ends. They are small cells, where
+/// descending gains little, and all cells at which a ray may end for its level of detail
+/// (StopBelowSize compares a cell's side with the t at which the ray leaves it). The walk ends at a
+/// cell whose side, in units of the grid's, is at most the maximum of at_start, per_enter * t and
+/// per_exit * t:
 struct BeamStop {
   double at_start = 0;
-  double per_enter = 0;  ///< times t where the beam enters the cell
-  double per_exit = 0;   ///< times t where the beam leaves the cell
+  double per_enter = 0;  ///< t: where the beam enters the cell
+  double per_exit = 0;   ///< t: where the beam leaves the cell
 };
 
 /// How far cells are widened, in units of the grid's side.
 inline constexpr double kBeamSlack = 0x1p-21;
 
-/// The two inequalities of an axis: t * lowest <= hi - apex and t * highest >= lo - apex.
+/// The two inequalities of one axis: t * lowest <= hi - apex and t * highest >= lo - apex.
 struct BeamAxis {
   double apex = 0, inverse_lowest = 0, inverse_highest = 0;
 
   VOXDAG_HD static double inverse(double d, double instead) {
-    // Moves a bound of zero outwards, so that the quotient is finite.
+    // Replaces a bound of zero by one slightly farther out, so that the quotient is finite.
     return 1 / (std::fabs(d) < 1e-100 ? instead : d);
   }
   VOXDAG_HD static BeamAxis make(double apex, double lowest, double highest) {
@@ -72,7 +73,7 @@ struct BeamAxis {
   }
 };
 
-/// The walk behind first_met and last_met.
+/// Implements first_met() and last_met().
 template <bool kFromEnd, class Nodes>
 VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
                                 double& bound) {
@@ -80,7 +81,7 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
   struct Entry {
     typename Nodes::Node node;
     Vec3i cell;             // in cells of the node's level
-    std::uint32_t pending;  // children not yet looked at, as index ^ order
+    std::uint32_t pending;  // children still to visit, as index ^ order
   };
   Entry stack[kMaxLevels];
   BeamAxis axes[3];
@@ -97,7 +98,7 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
     return mask;
   };
   bool is_met = false;
-  double first = beam.t_min, last = beam.t_max;  // where a cell that matters is met
+  double first = beam.t_min, last = beam.t_max;  // the t at which a better bound may lie
   int level = 0;
   stack[0] = {nodes.root(), {}, reordered(nodes.child_mask(nodes.root(), 0))};
   for (;;) {
@@ -119,7 +120,7 @@ VOXDAG_HD inline bool cast_beam(const Nodes& nodes, const Beam& beam, const Beam
       axes[axis].clip(lo - kBeamSlack, lo + side + kBeamSlack, enter, exit);
     }
     if (!(enter <= exit)) continue;
-    // `first` or `last` is the best bound so far: an equal one is no better.
+    // `first` or `last` is the best bound so far; a cell must improve it.
     if (is_met && (kFromEnd ? exit <= first : enter >= last)) continue;
     double leave = exit;
     if (!kFromEnd && stop.per_exit > 0) {
@@ -155,7 +156,8 @@ VOXDAG_HD inline bool first_met(const Nodes& nodes, const Beam& beam, const Beam
   return cast_beam<false>(nodes, beam, stop, bound);
 }
 
-/// Returns the same, but sets `bound` to a t beyond which no ray meets a cell.
+/// Returns whether any ray of the beam can meet a non-empty cell within [t_min, t_max]. If so, sets
+/// `bound` to a t after which no ray meets one.
 template <class Nodes>
 VOXDAG_HD inline bool last_met(const Nodes& nodes, const Beam& beam, const BeamStop& stop,
                                double& bound) {

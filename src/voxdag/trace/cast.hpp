@@ -2,15 +2,15 @@
 /// The ray cast: one traversal for closest hit, any hit and level of detail, on every node layout.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4 and Figure 8,
-/// simplified as by Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH
-/// 2013, section 4: voxels have no contours and are visited in ray order, so that no interval of t
-/// is kept.
+/// simplified as in Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH
+/// 2013, section 4: voxels have no contours and are visited in ray order, so the walk keeps no
+/// interval of t.
 ///
-/// The walk visits, in order of T, the cells that the ray is in as grid_ray.hpp defines it: from a
-/// present cell it descends to the child that the ray is in (PUSH), from an absent one it steps
-/// over all planes that the ray reaches at the cell's exit T (ADVANCE). If that leaves the parent,
-/// it continues at the highest level at which the positions differ (POP). Invariant: the current
-/// cell is the cell of its level that the ray is in at `t`.
+/// The walk visits, in order of T, the cells that the ray is in (grid_ray.hpp defines "in"). From a
+/// present cell it descends to the child that the ray is in (PUSH). From an absent one it steps
+/// over all planes that the ray reaches at the cell's exit T (ADVANCE). If a step leaves the
+/// parent, the walk continues at the highest level at which the positions differ (POP). Invariant:
+/// the current cell is the cell of its level that the ray is in at `t`.
 #include "voxdag/trace/cell_walk.hpp"
 #include "voxdag/trace/hit.hpp"
 
@@ -131,7 +131,8 @@ VOXDAG_HD inline Hit closest_hit(const Nodes& nodes, const Grid& grid, const Ray
   return to_hit(grid_ray, cell, nodes.levels(), ray.t_min, ray.t_max);
 }
 
-/// Returns whether there is such a voxel or cell.
+/// Returns whether there is a voxel, or a cell at which `stop` ends the cast, within the ray's
+/// range.
 template <class Nodes, class Stop = StopAtVoxels>
 VOXDAG_HD inline bool any_hit(const Nodes& nodes, const Grid& grid, const Ray& ray,
                               const Stop& stop = {}) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The ray cast at an ESVO, with contours or as cubes.
+/// The ray cast at an ESVO, with or without contours.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.1 and Figure 8,
 /// whose variables have the same names here: the active span of the ray is t <= T < t_max, and h is
@@ -60,7 +60,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   float t_maxes[kMaxLevels];
   std::uint64_t slot = esvo.root;
   ChildDescriptor parent = descriptor_at(slot);
-  ContourPlane plane;  // through which the ray came to t, if through one
+  ContourPlane plane;  // the contour plane at t, if the ray crosses one there
   CellWalk cell(ray, t);
   for (;;) {
     if constexpr (requires { nodes.on_step(); }) nodes.on_step();
@@ -115,7 +115,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     bool leaves_parent = false;
     if constexpr (kWithContours) {
       plane = {};
-      leaves_parent = exit.t >= t_max;  // never the root's: its span is the ray's range
+      leaves_parent = exit.t >= t_max;  // never true in the root: its span is the ray's range
       if (leaves_parent) {
         cell.ascend();
         exit = cell.exit();
@@ -132,7 +132,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   }
 }
 
-/// Finds the same voxel for callers that need only its cell.
+/// Finds the voxel that the overload above finds, for callers that need only its cell.
 template <EsvoLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   EsvoHit found;

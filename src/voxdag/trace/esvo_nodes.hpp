@@ -1,9 +1,9 @@
 #pragma once
 /// The node layouts for rays at an ESVO (layout/esvo.hpp), whose leaves may be of any level.
 ///
-/// They are node layouts as svdag_nodes.hpp describes them. A walk that does not know of coarse
-/// leaves sees such a leaf as full: all its cells are present, down to the voxels. A walk that does
-/// asks is_leaf().
+/// They are node layouts as svdag_nodes.hpp describes them. A walk that does not handle coarse
+/// leaves sees a full subtree: all cells below the leaf are present, down to the voxels. A walk
+/// that handles them calls is_leaf().
 #include <concepts>
 
 #include "voxdag/layout/esvo.hpp"

@@ -5,8 +5,8 @@
 namespace voxdag {
 
 /// The points origin + t * direction for t_min <= t <= t_max. The direction need not have unit
-/// length; t is in units of it. t_min may be negative or -infinity, t_max may be +infinity. A ray
-/// with a NaN, an infinite origin or direction, a direction of zero length, or t_min > t_max
+/// length; t is in units of its length. t_min may be negative or -infinity, t_max may be +infinity.
+/// A ray with a NaN, an infinite origin or direction, a direction of zero length, or t_min > t_max
 /// meets nothing. The layout is that of one row of a rays.npy (8 float32).
 struct Ray {
   Vec3f origin;

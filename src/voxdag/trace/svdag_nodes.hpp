@@ -8,8 +8,8 @@
 ///   root()              the node of level 0; not called on an empty DAG
 ///   child_mask(n, l)    the 8-bit child mask of node n of level l
 ///   child(n, l, i)      child i, which is present, of node n of level l < L-1
-/// Children of nodes of level L-1 are voxels, which have nothing but their bit in the mask. A
-/// layout may also have on_step(), called at each step of a walk: see counting_nodes.hpp.
+/// Children of nodes of level L-1 are voxels: a bit in the mask and nothing else. A layout may also
+/// have on_step(), called at each step of a walk: see counting_nodes.hpp.
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -54,8 +54,8 @@ class SvdagNodes {
   }
 
  private:
-  /// Returns a mask whose bit i says whether byte i is not zero: leaf_block_child_mask without a
-  /// loop.
+  /// Returns a mask whose bit i is set if byte i is not zero. Computes leaf_block_child_mask()
+  /// without a loop.
   VOXDAG_HD static std::uint32_t nonzero_bytes(std::uint64_t v) {
     v |= v >> 4;
     v |= v >> 2;

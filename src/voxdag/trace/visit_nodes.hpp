@@ -1,5 +1,5 @@
 #pragma once
-/// The node layout that rays are cast at, for voxels in any of the forms that files hold.
+/// Chooses the node layout for rays at voxels of either kind, DAG or ESVO.
 #include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"

@@ -3,11 +3,11 @@
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.
 ///
-/// The upper levels are decided breadth first, down to cells with about 65,000 voxels of surface or
-/// less: the tasks. Tasks are built in parallel and finish in Morton order. A large result becomes
-/// blocks at once; a small one becomes part of the tree of the cell above, which becomes blocks
-/// when it is large enough. So memory holds the mesh, the upper levels and the results of a few
-/// tasks, however large the octree is.
+/// The upper levels are built breadth first, down to the tasks: cells whose surface has at most
+/// about 65,000 voxels. Tasks are built in parallel and finish in Morton order. A large result
+/// becomes blocks at once. A small one joins the tree of the parent cell, which becomes blocks when
+/// it is large enough. So memory holds the mesh, the upper levels and the results of a few tasks,
+/// however large the octree is.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -30,7 +30,7 @@ struct EsvoOptions {
   MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
 
-/// Receives finished blocks, one after the other.
+/// Receives finished blocks, one at a time, in order.
 class EsvoSink {
  public:
   virtual ~EsvoSink() = default;
@@ -53,7 +53,7 @@ class EsvoMemory : public EsvoSink {
     }
     slots_.insert(slots_.end(), slots.begin(), slots.end());
   }
-  /// Returns the blocks, which are no longer counted.
+  /// Returns the blocks and stops counting them.
   std::vector<std::uint64_t> take() {
     memory_.resize(0);
     return std::move(slots_);
@@ -70,14 +70,13 @@ struct EsvoResult {
   EsvoCounts counts;
 };
 
-/// Builds the octree of the mesh's surface in `grid`. `shading` is the mesh's own, or null for a
-/// grey surface; `displaced`, if it is not null, moves the surface. A mesh without visible surface
-/// in the grid gives no blocks. The blocks depend on the arguments alone, not on the number of
-/// threads, the memory limit or the machine. Runs on the current TBB arena.
-/// With a memory limit fewer tasks are built at a time. Throws OverMemory before the work if even
-/// the tables of the triangles do not fit (45 bytes a triangle and 12 a vertex), or during it.
-/// Throws Error if the octree is so large (16 GiB) that far pointers do not reach, Cancelled, and
-/// what the sink throws.
+/// Builds the octree of the mesh's surface in `grid`. `shading` is the shading of this mesh, or
+/// null for a grey surface. `displaced` displaces the surface, or is null. A mesh without visible
+/// surface in the grid gives no blocks. The blocks depend on the arguments alone, not on the number
+/// of threads, the memory limit or the machine. Runs on the current TBB arena. With a memory limit
+/// fewer tasks are built at a time. Throws OverMemory before the work if even the tables of the
+/// triangles do not fit (45 bytes a triangle and 12 a vertex), or during it. Throws Error if the
+/// octree is too large for far pointers (16 GiB), Cancelled, and whatever the sink throws.
 EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& options,
                       const SurfaceShading* shading, const DisplacedTriangles* displaced,
                       EsvoSink& sink, Progress* progress = nullptr);

@@ -1,5 +1,5 @@
 #pragma once
-/// Whether an ESVO encloses the surface that it was made of.
+/// Checks that an ESVO encloses the surface that it was built from.
 #include <cstdint>
 #include <optional>
 
@@ -10,25 +10,25 @@
 
 namespace voxdag {
 
-/// A point of the surface that is in no leaf, or outside of its voxel's contours.
+/// A point of the surface that is in no leaf, or outside its voxel's contours.
 struct PointOutside {
-  std::uint32_t triangle = 0;  ///< Of the mesh.
-  Vec3d point{};               ///< In voxels.
-  int level = 0;  ///< Of the voxel that is not there or whose contour leaves the point out.
+  std::uint32_t triangle = 0;  ///< Index in the mesh.
+  Vec3d point{};               ///< In units of voxels.
+  int level = 0;               ///< Level of the voxel that is missing or excludes the point.
 };
 
 struct EnclosureCheck {
-  std::uint64_t points = 0;  ///< That were looked at.
+  std::uint64_t points = 0;  ///< Number of points checked.
   std::optional<PointOutside> outside;
 };
 
-/// Takes about `samples` random points of the mesh's triangles (rounded to 1/256 voxel, as they
-/// were built), spread by area and with every triangle and its corners in turn, and walks the
-/// octree to each: it must be in voxels and between the planes of every contour down to a leaf. A
-/// point may be in any of the voxels within 1e-6 of a voxel of it. Points outside of the grid, and
-/// points that `shading` (or null) says are cut away, are passed over. Where the mesh is
-/// `displaced` (or null) the points are those of the displaced surface in `grid`, tessellated as it
-/// was for building. Deterministic.
+/// Checks about `samples` random points of the mesh's triangles, which are rounded to 1/256 voxel
+/// as for building. Some points are spread by area; others are taken from each triangle and its
+/// corners in turn. The octree must contain each point: in voxels and between the planes of their
+/// contours, down to a leaf. Voxels are widened by 1e-6 of a voxel for this test. Skips points
+/// outside the grid, and points that `shading` masks away by alpha. If `displaced` is not null,
+/// takes the points from the displaced surface, tessellated as for building. `shading`, `displaced`
+/// and `progress` may be null. The result depends on the arguments alone.
 EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, const Grid& grid,
                                const SurfaceShading* shading, const DisplacedTriangles* displaced,
                                std::uint64_t samples, std::uint64_t seed = 1,
