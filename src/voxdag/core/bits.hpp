@@ -19,7 +19,7 @@ VOXDAG_HD inline int popcount(std::uint32_t v) {
 #endif
 }
 
-/// Returns the number of set bits of v < 256. Calls no library function where the instruction set
+/// Returns the number of set bits of v < 256. Needs no library call, even if the instruction set
 /// has no population count.
 VOXDAG_HD inline int popcount8(std::uint32_t v) {
 #if defined(__CUDA_ARCH__) || defined(__POPCNT__)

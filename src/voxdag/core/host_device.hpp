@@ -1,5 +1,5 @@
 #pragma once
-/// Functions that both the host compiler and nvcc compile carry VOXDAG_HD.
+/// VOXDAG_HD marks functions that both the host compiler and nvcc compile.
 #if defined(__CUDACC__)
 #define VOXDAG_HD __host__ __device__
 #else

@@ -1,5 +1,5 @@
 #pragma once
-/// An interval of numbers, with the arithmetic that bounds need.
+/// An interval of numbers, with arithmetic for bounds.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Vectors of four floats or integers. They are four wide on every machine, so that the results of
-/// the block encoders do not depend on the machine's vectors. They use the compilers' vector
+/// Vectors of four floats or integers. They have four lanes on every machine, so that the results
+/// of the block encoders do not depend on the instruction set. They use the compilers' vector
 /// extension: arithmetic, comparisons (-1 where true) and `mask ? a : b` work lane by lane.
 #include <cstdint>
 #include <cstring>
@@ -31,12 +31,12 @@ inline Vec3f vec_of(FloatLanes lanes) { return {lanes[0], lanes[1], lanes[2]}; }
 
 inline FloatLanes min(FloatLanes a, FloatLanes b) { return a < b ? a : b; }
 inline FloatLanes max(FloatLanes a, FloatLanes b) { return a < b ? b : a; }
-/// Toward zero; the values must be those of an int.
+/// Rounds toward zero. The values must fit into an int.
 inline FloatLanes truncated(FloatLanes v) {
   return __builtin_convertvector(__builtin_convertvector(v, IntLanes), FloatLanes);
 }
 
-/// Bit i tells whether the mask is true in lane i.
+/// Returns a bit mask: bit i is set if `mask` is true in lane i.
 inline unsigned lane_bits(IntLanes mask) {
 #if defined(__SSE__)
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));

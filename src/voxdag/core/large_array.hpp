@@ -1,5 +1,5 @@
 #pragma once
-/// Memory for hundreds of megabytes that are read in random order.
+/// Memory for large arrays (hundreds of megabytes) that are read in random order.
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -7,9 +7,8 @@
 
 namespace voxdag {
 
-/// Returns `bytes` of memory, on large pages where the system grants them: with small pages, random
-/// reads spend more time on address translation than on the reads. It begins at a multiple of 64
-/// bytes. Throws std::bad_alloc.
+/// Allocates `bytes` bytes, aligned to 64, on large pages if the system grants them. With small
+/// pages, random reads spend most of their time on address translation. Throws std::bad_alloc.
 std::shared_ptr<void> allocate_large(std::size_t bytes);
 
 /// Returns an array of `count` uninitialised elements. Throws std::bad_alloc.

@@ -1,8 +1,8 @@
 #pragma once
-/// A growing array on pages of its own, for memory that is large and short-lived.
+/// A growing array on pages of its own, for large and short-lived data.
 ///
-/// It grows in place (mremap), so that old and new contents are never held at once, and what it
-/// frees goes back to the system at once. A budget counts its pages.
+/// It grows by mremap, so the old and the new array never exist at the same time. Freed pages go
+/// back to the system immediately. A budget counts the pages.
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace voxdag {
 
-/// Like std::vector, for trivial types. Functions that grow it throw OverMemory or std::bad_alloc
-/// and then change nothing. Move-only.
+/// Like std::vector, for trivial types. Functions that grow it throw OverMemory or std::bad_alloc,
+/// and leave it unchanged if they throw. Move-only.
 template <class T>
 class PageVector {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -34,7 +34,7 @@ class PageVector {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  /// Bytes that it takes from the system.
+  /// Returns the number of bytes that it holds from the system.
   std::size_t bytes() const { return bytes_; }
   T* data() { return data_; }
   const T* data() const { return data_; }
@@ -51,19 +51,20 @@ class PageVector {
     if (size_ == capacity()) grow(size_ + 1);
     data_[size_++] = value;
   }
-  /// New elements are zero in memory that was not used before, and of any value elsewhere.
+  /// Sets the number of elements. New elements are zero in memory that was never used; elsewhere
+  /// their values are unspecified.
   void resize(std::size_t size) {
     if (size > capacity()) grow(size);
     size_ = size;
   }
-  /// Makes room for `size` elements in all.
+  /// Makes room for a total of `size` elements.
   void reserve(std::size_t size) {
     if (size > capacity()) grow(size);
   }
-  /// Keeps the memory.
+  /// Removes all elements and keeps the memory.
   void clear() { size_ = 0; }
 
-  /// Gives the pages behind the last element back.
+  /// Gives the pages after the last element back to the system.
   void shrink_to_fit() {
     const std::size_t bytes = page_bytes(size_);
     if (bytes == 0) return release();
@@ -73,7 +74,7 @@ class PageVector {
     if (budget_ != nullptr) budget_->release(bytes_ - bytes);
     bytes_ = bytes;
   }
-  /// Gives all memory back.
+  /// Gives all memory back to the system.
   void release() noexcept {
     if (data_ == nullptr) return;
     ::munmap(data_, bytes_);
@@ -99,8 +100,8 @@ class PageVector {
 
   std::size_t capacity() const { return bytes_ / sizeof(T); }
 
-  /// Makes room for `count` elements and some more: twice the memory while it is small, an eighth
-  /// more then.
+  /// Makes room for at least `count` elements: doubles a small array, and grows a large one by an
+  /// eighth.
   void grow(std::size_t count) {
     constexpr std::size_t kSmall = std::size_t{1} << 20;
     const std::size_t more = bytes_ < kSmall ? bytes_ : bytes_ / 8;

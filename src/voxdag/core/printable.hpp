@@ -30,8 +30,8 @@ inline std::string printable(std::string_view text, std::size_t longest = kLonge
   return out;
 }
 
-/// Returns the printable text in quotes, cut after `longest` bytes: a token that should have been
-/// something else.
+/// Returns the printable text in quotes, cut after `longest` bytes: for tokens that a reader did
+/// not expect.
 inline std::string in_quotes(std::string_view text, std::size_t longest = 40) {
   return std::string(1, '\'').append(printable(text, longest)).append(1, '\'');
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a texture shows outside of [0,1].
+/// How a texture continues outside [0,1].
 #include <cstdint>
 
 namespace voxdag {

@@ -26,7 +26,7 @@ template <class T>
 VOXDAG_HD constexpr Vec2<T> operator*(Vec2<T> a, T s) {
   return {a.x * s, a.y * s};
 }
-/// Twice the area of the triangle (0, a, b): positive if it turns left.
+/// Returns twice the signed area of the triangle (0, a, b): positive if it is counter-clockwise.
 template <class T>
 VOXDAG_HD constexpr T cross(Vec2<T> a, Vec2<T> b) {
   return a.x * b.y - a.y * b.x;

@@ -8,9 +8,9 @@
 
 namespace voxdag {
 
-/// Sets `starts` to RenderSetup::beam_starts of a whole picture, on all threads, for any layout
-/// that cast_beam_packet() takes (see render/primary_beams.hpp). The beams have 8×8 pixels: rays in
-/// packets gain less from finer beams than these cost. A packet holds 8×8 beams.
+/// Sets `starts` to RenderSetup::beam_starts (see render/primary_beams.hpp) of a whole picture.
+/// Runs on all threads, for any layout that cast_beam_packet() accepts. A beam has 8×8 pixels,
+/// because finer beams cost more time than they save for rays in packets. A packet holds 8×8 beams.
 template <class Nodes>
 void find_beam_starts(const Nodes& nodes, const RenderSetup& setup, std::vector<float>& starts) {
   constexpr int kSide = 8, kPixels = kCoarseBeamPixels, kParts = kPixels / kBeamPixels;

@@ -10,14 +10,15 @@
 
 namespace voxdag {
 
-/// Points to the voxels. Making it from a DAG takes time and memory: see BoundedDag.
+/// Points to the voxels, which must outlive it. Construction from a DAG takes time and memory: see
+/// BoundedDag.
 class CpuScene {
  public:
-  // NOLINTBEGIN(google-explicit-constructor): any form of voxels can be rendered.
+  // NOLINTBEGIN(google-explicit-constructor): every kind of voxels can be rendered.
   CpuScene(const SvdagView& dag) : CpuScene(VoxelSet(dag)) {}
   CpuScene(const EsvoView& esvo) : CpuScene(VoxelSet(esvo)) {}
-  /// `rays` is how many rays will be cast at most: for few of them the packets' structure costs
-  /// more than it saves, and is not made.
+  /// `rays` is an upper bound on the number of rays that will be cast. For few rays the packets'
+  /// structure would cost more time than it saves, so it is not built.
   CpuScene(const VoxelSet& voxels, std::uint64_t rays = std::numeric_limits<std::uint64_t>::max())
       : voxels_(voxels) {
     constexpr std::uint64_t kWordsPerRay = 16;

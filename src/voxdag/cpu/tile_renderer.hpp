@@ -39,7 +39,7 @@ inline std::vector<ViewTile> make_tiles(int width, int height, int size) {
   return tiles;
 }
 
-/// Calls body(x, y) for the top left pixel of each 8×8 pixels of the picture.
+/// Calls body(x, y) for the top left pixel of each block of 8×8 pixels of the picture.
 template <class Body>
 void for_each_block(const Camera& camera, const Body& body) {
   const int rows = (camera.height + kCoarseBeamPixels - 1) / kCoarseBeamPixels;
@@ -49,13 +49,14 @@ void for_each_block(const Camera& camera, const Body& body) {
   });
 }
 
-/// Renders the picture of a setup. Of the setup it sets only the starts of primary rays.
+/// Renders the picture of a setup. Sets only one field of its copy of the setup: the starts of
+/// primary rays.
 template <class Nodes, class Caster>
 class TileRenderer {
  public:
   static constexpr int kMaxTileSize = 32;
 
-  /// `source` is null for the surface points of the voxels.
+  /// If `source` is null, surface points come from the voxels.
   TileRenderer(const Nodes& nodes, const Caster& caster, const RenderSetup& setup, bool beams,
                const ViewSource* source)
       : nodes_(nodes), caster_(caster), setup_(setup), source_(source) {
@@ -84,7 +85,7 @@ class TileRenderer {
     return rays;
   }
 
-  /// Renders a tile in this thread, with any caster at the same voxels. Returns the number of rays.
+  /// Renders a tile in this thread, with any caster for these voxels. Returns the number of rays.
   template <class TileNodes, class TileCaster>
   std::uint64_t render_one(const TileNodes& nodes, const TileCaster& caster,
                            const ViewTile& tile) const {

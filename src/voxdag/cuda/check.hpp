@@ -6,8 +6,8 @@
 
 namespace voxdag {
 
-/// Throws Error unless `status` is a success. `doing` says what failed: "copying rays to the
-/// device".
+/// Throws Error unless `status` is a success. `doing` names the operation for the error: "copying
+/// rays to the device".
 inline void check_cuda(cudaError_t status, const char* doing) {
   if (status == cudaSuccess) return;
   cudaGetLastError();  // clears the error, so that later calls do not report it again

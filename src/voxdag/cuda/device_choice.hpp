@@ -1,5 +1,5 @@
 #pragma once
-/// The device that a caller wants, and the scene in its memory.
+/// The choice between CPU and CUDA device, and the scene in the device's memory.
 #include <optional>
 
 #include "voxdag/cuda/device_scene.hpp"
@@ -10,12 +10,12 @@ struct DeviceChoice {
   enum class Kind { kCpu, kCuda, kAuto };
 
   Kind kind = Kind::kCpu;
-  int index = -1;  ///< Of a CUDA device; -1: the first usable one.
+  int index = -1;  ///< Index of a CUDA device; -1: the first usable one.
 };
 
-/// Returns the voxels in the memory of the CUDA device; nothing if the CPU is to work, which with
-/// kAuto is also so without a device or without enough memory on it. `scene` must outlive the
-/// result. Throws Error if kCuda cannot be had.
+/// Copies the voxels to the memory of the CUDA device. Returns nothing if the CPU is used: by
+/// choice, or with kAuto if there is no device or not enough memory on it. `scene` must outlive the
+/// result. Throws Error if kCuda was asked for and cannot be used.
 std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelSet& scene,
                                           DeviceLayout layout = DeviceLayout::kPaper);
 

@@ -8,21 +8,22 @@ namespace voxdag {
 
 class DeviceFrame {
  public:
-  /// Allocates on the current device. Throws Error if memory is short, before it takes any.
+  /// Allocates on the current device. Throws Error if memory is short, before it allocates
+  /// anything.
   DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps);
 
-  /// Has the device's pointers; beam_starts is null without beams.
+  /// Returns the setup with pointers into device memory; beam_starts is null without beams.
   const RenderSetup& setup() const { return setup_; }
   float* beam_starts() const { return beam_starts_.data(); }
-  unsigned long long* rays() const { return rays_.data(); }  ///< Zero at first.
+  unsigned long long* rays() const { return rays_.data(); }  ///< Initially zero.
 
-  /// The filter's input; without pixels unless the plan's options ask for the filter.
+  /// Returns the filter's input; its pixels are null unless the plan's options ask for the filter.
   const FilterInput& filter_input() const { return filter_input_; }
   const FilterSample* filter_samples() const { return filter_samples_.data(); }
   Vec3f* filtered() const { return filtered_.data(); }
 
-  /// Copies the picture and the number of its rays; with `is_filtered`, the filtered colours. All
-  /// kernels must be done.
+  /// Copies the picture and its number of rays to `image`; takes the filtered colours if
+  /// `is_filtered`. All kernels must have finished.
   void copy_to(RenderedImage& image, bool is_filtered) const;
 
  private:

@@ -6,11 +6,11 @@
 
 namespace voxdag {
 
-/// The node layout at which rays are cast.
+/// The node layout for rays.
 enum class DeviceLayout { kPaper, kWide, kEsvo };
 
 /// Pointers into the memory of a device. A DAG always has the paper's layout, which beams and
-/// normals read, and the wide one only if rays are cast at it. An ESVO has only its own.
+/// normals read. It has the wide layout only if rays use it. An ESVO has only its own layout.
 struct DeviceVoxels {
   DeviceLayout layout = DeviceLayout::kPaper;
   SvdagView paper;

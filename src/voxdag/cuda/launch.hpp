@@ -8,9 +8,9 @@
 
 namespace voxdag {
 
-/// Queues kernel(arguments...) for `blocks` of `threads`, at least one of each. Throws Error on
-/// failure; `doing` says what failed: "casting rays". It is a function instead of <<< >>>, so that
-/// tests can compile kernels for the host.
+/// Queues kernel(arguments...) for `blocks` blocks of `threads` threads, at least one of each.
+/// Throws Error on failure; `doing` names the operation: "casting rays". It is a function instead
+/// of <<< >>>, so that tests can compile kernels for the host.
 template <class... Parameters, class... Arguments>
 void launch(const char* doing, void (*kernel)(Parameters...), dim3 blocks, dim3 threads,
             cudaStream_t stream, Arguments&&... arguments) {

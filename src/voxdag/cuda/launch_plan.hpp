@@ -6,14 +6,15 @@
 
 namespace voxdag {
 
-/// Samples [first_sample, last_sample) of the pixels of blocks [first_block, last_block).
+/// The work of one launch: samples [first_sample, last_sample) of the pixels of blocks
+/// [first_block, last_block).
 struct LaunchRange {
   std::uint32_t first_block = 0, last_block = 0;
   int first_sample = 0, last_sample = 0;
 };
 
-/// Covers every sample of every block once, a block's samples in order. Adapts the size of launches
-/// to the speed at which they run.
+/// Covers every sample of every block once; a block's samples come in order. Adapts the size of
+/// launches to their measured speed.
 class LaunchPlan {
  public:
   /// `work_per_sample` estimates the cost of a block's sample, in any unit; `first_work` limits the
@@ -24,10 +25,10 @@ class LaunchPlan {
 
   /// Returns the next launch, or nothing at the end.
   std::optional<LaunchRange> next();
-  /// Records how long a launch took.
+  /// Records the time that a launch took.
   void measured(const LaunchRange& range, double seconds);
 
-  /// Returns the part of the picture that the launches so far cover, 0 to 1.
+  /// Returns the fraction of the picture that the launches so far cover, 0 to 1.
   double fraction() const;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace voxdag {
 
-/// Throws Error, with the bytes needed and free, unless the current device has `bytes` of free
-/// memory. `what` names their content: "the DAG".
+/// Throws Error, with the bytes needed and free, unless the current device has `bytes` bytes of
+/// free memory. `what` names the content for the error: "the DAG".
 void require_device_memory(std::uint64_t bytes, const char* what);
 
 /// The untyped functions behind DeviceBuffer and PinnedBuffer. Allocation throws Error.
@@ -21,7 +21,7 @@ void free_pinned(void* memory) noexcept;
 void copy_to_device(void* device, const void* host, std::uint64_t bytes);
 void copy_to_host(void* host, const void* device, std::uint64_t bytes);
 
-/// Returns the bytes of an array, or the largest number if they overflow.
+/// Returns the bytes of an array, or the largest std::uint64_t if the product overflows.
 template <class T>
 constexpr std::uint64_t array_bytes(std::uint64_t count) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();

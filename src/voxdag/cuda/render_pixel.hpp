@@ -7,8 +7,8 @@
 
 namespace voxdag {
 
-/// A block of threads renders 16×8 pixels, a warp 8×4 of them in Morton order, so that threads that
-/// run together cast rays that stay together.
+/// A block of threads renders 16×8 pixels. A warp renders 8×4 of them in Morton order, so that
+/// threads of a warp cast rays that are close together.
 inline constexpr int kBlockWidth = 16, kBlockHeight = 8;
 inline constexpr std::uint32_t kBlockPixels = kBlockWidth * kBlockHeight;
 
@@ -31,8 +31,9 @@ VOXDAG_HD inline ViewTile block_tile(const Camera& camera, std::uint32_t block) 
   return tile;
 }
 
-/// Return the position of a thread's pixel in its block. The bits of the thread are, lowest first,
-/// x y x y x within the warp's 8×4 pixels, then x and y y of the warp.
+/// Return the position of a thread's pixel in its block. The lowest five bits of the thread index
+/// are x y x y x within the warp's 8×4 pixels, lowest first; the next ones are x, y and y of the
+/// warp.
 VOXDAG_HD constexpr int thread_x(std::uint32_t thread) {
   return static_cast<int>((thread & 1u) | (thread >> 1 & 2u) | (thread >> 2 & 4u) |
                           (thread >> 2 & 8u));
@@ -42,8 +43,8 @@ VOXDAG_HD constexpr int thread_y(std::uint32_t thread) {
 }
 
 /// Renders the samples of a launch for a thread's pixel. Returns the number of rays. `view_samples`
-/// holds those of all blocks of the launch, kBlockPixels for each, row by row; it is null for a
-/// picture of voxels. With view samples a launch has one sample per pixel.
+/// has the view samples of all blocks of the launch, kBlockPixels for each, row by row; it is null
+/// for a picture of voxels. With view samples a launch has one sample per pixel.
 template <class Nodes, class Caster>
 VOXDAG_HD inline std::uint64_t render_pixel(const Nodes& nodes, const Caster& caster,
                                             const RenderSetup& setup, const LaunchRange& range,

@@ -1,5 +1,5 @@
 #pragma once
-/// CUDA streams, which are queues of copies and kernels, and events in them.
+/// CUDA streams (queues of copies and kernels) and events in them.
 #include <utility>
 
 #include "voxdag/cuda/check.hpp"
@@ -11,7 +11,8 @@ class CudaStream {
   CudaStream() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "queue"); }
   CudaStream(const CudaStream&) = delete;
   CudaStream& operator=(const CudaStream&) = delete;
-  /// Waits for the stream: after an exception, its work may still use memory that is freed next.
+  /// Waits for the stream, because after an exception its work may still use memory that is about
+  /// to be freed.
   ~CudaStream() {
     cudaStreamSynchronize(stream_);
     cudaStreamDestroy(stream_);
@@ -36,7 +37,7 @@ class CudaEvent {
   void record(const CudaStream& stream) const {
     check_cuda(cudaEventRecord(event_, stream.get()), "clock");
   }
-  /// Returns the seconds between two moments that have passed.
+  /// Returns the seconds between two events, both of which must have completed.
   friend double seconds_between(const CudaEvent& begin, const CudaEvent& end) {
     float milliseconds = 0;
     check_cuda(cudaEventElapsedTime(&milliseconds, begin.event_, end.event_), "clock");

@@ -17,8 +17,8 @@ class TimedCasts {
   /// Throws Error if memory is short.
   TimedCasts(const DeviceScene& dag, std::span<const CastRay> rays);
 
-  /// Finds the first cell along each ray (closest), or whether there is one (any). Returns the
-  /// seconds from the start of the kernel to its end.
+  /// closest() finds the first cell along each ray, any() whether there is one. Both return the
+  /// time of the kernel in seconds.
   double closest() const;
   double any() const;
   /// Sets hits[i] to 1 if ray i met something in the last of these casts, else to 0.
@@ -29,13 +29,13 @@ class TimedCasts {
   std::shared_ptr<const State> state_;
 };
 
-/// The beams of a whole picture on the DAG's device.
+/// Times the beams of a whole picture on the DAG's device.
 class TimedBeams {
  public:
   /// Uses the camera, grid and settings of `setup`.
   TimedBeams(const DeviceScene& dag, const RenderSetup& setup);
 
-  /// Casts the beams and returns the device's seconds.
+  /// Casts the beams and returns the device time in seconds.
   double run() const;
   /// Casts the beams and returns their starts, as in RenderSetup::beam_starts.
   std::vector<float> starts() const;

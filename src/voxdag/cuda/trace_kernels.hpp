@@ -18,7 +18,7 @@ void launch_closest_hits(const DeviceVoxels& dag, const Grid& grid, const Ray* r
 /// meets.
 void launch_closest_cells(const DeviceVoxels& dag, const CastRay* rays, CellHit* cells,
                           std::uint8_t* hits, std::uint32_t count, cudaStream_t stream);
-/// Sets hits[i] in the same way, without the cells.
+/// Sets hits[i] to 1 if rays[i] meets anything, else to 0.
 void launch_any_hits(const DeviceVoxels& dag, const CastRay* rays, std::uint8_t* hits,
                      std::uint32_t count, cudaStream_t stream);
 

@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Calls body(nodes) with the nodes for rays.
+/// Calls body(nodes) with the node layout for rays.
 template <class Body>
 void with_nodes(const DeviceVoxels& voxels, const Body& body) {
   if (voxels.layout == DeviceLayout::kEsvo)
@@ -18,7 +18,7 @@ void with_nodes(const DeviceVoxels& voxels, const Body& body) {
     body(SvdagNodes(voxels.paper));
 }
 
-/// Calls body(nodes) with the nodes for beams and for counting steps.
+/// Calls body(nodes) with the node layout for beams and for counting steps.
 template <class Body>
 void with_beam_nodes(const DeviceVoxels& voxels, const Body& body) {
   if (voxels.layout == DeviceLayout::kEsvo)
@@ -27,7 +27,7 @@ void with_beam_nodes(const DeviceVoxels& voxels, const Body& body) {
     body(SvdagNodes(voxels.paper));
 }
 
-/// Calls body(beam_nodes, nodes) with both.
+/// Calls body(beam_nodes, nodes) with both node layouts.
 template <class Body>
 void with_all_nodes(const DeviceVoxels& voxels, const Body& body) {
   with_nodes(voxels, [&]<class Nodes>(const Nodes& nodes) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The two builders behind build_svdag(), and what they share.
+/// The two builders behind build_svdag(), and their common types.
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace voxdag {
 
-/// The input of a builder. Refers to everything; `progress` may be null.
+/// The input of a builder. Owns nothing; `progress` may be null.
 struct BuildInput {
   const Mesh& mesh;
   Grid grid;
@@ -21,33 +21,36 @@ struct BuildInput {
   Progress* progress;
 };
 
-/// Bytes that the stages of a build hold, besides the mesh. Those marked * follow the resolution.
+/// Bytes that the stages of a build hold, without the mesh. Those marked * grow with the
+/// resolution.
 struct StageBytes {
   double prepare = 0;         ///< Quantized mesh and binning.
   double voxelize_fixed = 0;  ///< Quantized mesh, lists and the threads' scratch memory.
-  double voxelize = 0;        ///< * Nodes of all sub-volumes, and what makes them.
+  double voxelize = 0;        ///< * Nodes of all sub-volumes, and their builders.
   double merge = 0;           ///< * kSort: the final reduction.
   double number = 0;          ///< * Numbering in canonical order.
 };
 
-/// The triangles of a mesh on the grid, and the lists of those that each sub-volume meets.
+/// The triangles of a mesh on the grid, and for each sub-volume the list of triangles that meet it.
 struct BinnedMesh {
   QuantizedMesh mesh;
   SubvolumeBins bins;
-  double prepare_bytes;  ///< Most bytes held while it was made.
+  double prepare_bytes;  ///< Most bytes held while this was built.
 };
 
-/// Quantizes and bins the mesh; exact duplicates of triangles are left out. Throws OverMemory and
+/// Quantises and bins the mesh; leaves out exact duplicates of triangles. Throws OverMemory and
 /// Cancelled.
 BinnedMesh bin_mesh(const BuildInput& input);
 
-/// Bytes of setups and lists that a thread holds for the sub-volume with the longest list.
+/// Returns the bytes of setups and lists that a thread needs for the sub-volume with the longest
+/// list.
 double list_scratch_bytes(const SubvolumeBins& bins);
 
-/// Threads that a loop over `items` items runs on.
+/// Returns the number of threads that run a loop over `items` items.
 std::size_t thread_count(std::size_t items);
 
-/// The unique nodes of all sub-volumes and those above them; `root` is kNoNode without voxels.
+/// The unique nodes of all sub-volumes and of the levels above them. `root` is kNoNode if there are
+/// no voxels.
 struct HashConsedNodes {
   std::vector<std::unique_ptr<NodeStore>> stores;  ///< By level.
   NodeId root;

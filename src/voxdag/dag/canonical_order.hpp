@@ -1,9 +1,10 @@
 #pragma once
-/// From unique nodes in any order to the canonical Svdag.
+/// Converts unique nodes in any order to the canonical Svdag.
 ///
-/// Source of the idea: C. J. Cheney, "A nonrecursive list compacting algorithm", CACM 1970. Copying
-/// breadth-first, level by level, and placing a node when it is first met, gives in each level the
-/// order of first visit of a depth-first walk: both are the order of the nodes' least Morton path.
+/// Source of the idea: C. J. Cheney, "A nonrecursive list compacting algorithm", CACM 1970. Nodes
+/// are copied breadth-first, level by level, and a node is placed when it is first met. In each
+/// level this gives the order in which a depth-first walk first visits the nodes, because both
+/// orders sort the nodes by their least Morton path.
 #include <cstdint>
 
 #include "voxdag/core/error.hpp"
@@ -25,7 +26,8 @@ namespace voxdag {
 template <class Source>
 Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudget* budget,
                       Progress* progress) {
-  // A placed node's mask word becomes its new place plus kPlaced, which is greater than any mask.
+  // The mask word of a placed node becomes its new place plus kPlaced, which is greater than any
+  // mask.
   constexpr std::uint64_t kPlaced = 256;
   Svdag dag;
   dag.levels = levels;
@@ -61,7 +63,7 @@ Svdag canonical_order(Source& source, int levels, std::uint32_t root, MemoryBudg
   } else {
     place_node(0, root);
   }
-  // A level's nodes are in any order in memory: their words are prefetched this far ahead.
+  // The nodes of a level are scattered in memory. Their words are prefetched this many nodes ahead.
   constexpr std::uint64_t kAhead = 24;
   constexpr std::uint64_t kWordsPerPoll = 1 << 16;
   const auto all_words = static_cast<double>(dag.nodes.capacity());

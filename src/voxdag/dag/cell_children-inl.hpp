@@ -1,7 +1,7 @@
 // Cells and their children in the depth-first builder; compiled once for each instruction set.
 //
-// A cell's node is interned by its parent, after all its siblings are known: by then the memory of
-// the table, which was prefetched when the node's words were complete, has arrived.
+// The parent interns a cell's node after all siblings are known. The memory of the table is
+// prefetched when the node's words are complete, so it has arrived by then.
 #if defined(VOXDAG_CELL_CHILDREN_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_CELL_CHILDREN_INL
 #undef VOXDAG_CELL_CHILDREN_INL
@@ -30,7 +30,7 @@ struct Cell {
   NodeId id = kNoNode;
 };
 
-/// Collects the children of one cell; each has 2^log2_size voxels a side.
+/// Collects the children of one cell. Each child has 2^log2_size voxels a side.
 template <class Sink>
 class Children {
  public:
@@ -95,8 +95,8 @@ HWY_INLINE Vec3i child_origin(Vec3i at, std::int32_t half, int child) {
           at.z + ((child >> 2) & 1) * half};
 }
 
-/// Returns a cell of 2^log2_size voxels a side from those of its grandchildren that are in `any`
-/// (Morton order): grandchild(code, log2_size - 2, first voxel) returns each.
+/// Builds a cell of 2^log2_size voxels a side from its grandchildren in the mask `any` (Morton
+/// order). grandchild(code, log2_size - 2, first voxel) returns each of them.
 template <class Sink, class Grandchild>
 HWY_INLINE Cell cell_of_grandchildren(Sink& sink, int levels, Vec3i at, int log2_size,
                                       std::uint64_t any, const Grandchild& grandchild) {
@@ -118,7 +118,7 @@ HWY_INLINE Cell cell_of_grandchildren(Sink& sink, int levels, Vec3i at, int log2
   return {octants.node(), kNoNode};
 }
 
-/// x + 4y + 16z of the block with a Morton code in a cell of 4³.
+/// Maps a Morton code in a cell of 4³ blocks to x + 4y + 16z.
 inline constexpr std::array<std::uint8_t, 64> kMortonToLinear = [] {
   std::array<std::uint8_t, 64> table{};
   for (unsigned code = 0; code < 64; ++code) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Where a hash-consed build puts its nodes.
+/// Collects the nodes of a hash-consed build.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -13,8 +13,8 @@
 
 namespace voxdag {
 
-/// Merges nodes as they are made: one store for each level 0..L-2, shared by all threads, behind
-/// this thread's plane memo and its small cache of leaf blocks.
+/// Merges nodes as they are made. There is one store for each level 0..L-2, shared by all threads.
+/// Each thread has its own plane memo and small cache of leaf blocks in front of the stores.
 class DagSink {
  public:
   static constexpr bool kMemo = true;
@@ -33,18 +33,18 @@ class DagSink {
     return PlaneMemo::bytes(log2_memo_sets) + (sizeof(CachedLeaf) << kCacheBits);
   }
 
-  /// Starts loading what leaf() or node() will read; call it early.
+  /// Starts loading the memory that leaf() or node() will read; call it early.
   void prefetch(int level, PendingNode& pending) const {
     pending.hash = hash_words(pending.words, pending.count);
     stores_[level]->prefetch(pending.hash);
   }
 
-  /// Continues prefetch(); call it when that has had time to finish.
+  /// Continues prefetch(); call it when the loads of prefetch() have had time to finish.
   void prefetch_found(int level, const PendingNode& pending) const {
     stores_[level]->prefetch_found(pending.hash);
   }
 
-  /// Stores in `ids` the ids of `count` leaf blocks, at most 64, in Morton order, none of them 0.
+  /// Sets `ids` to the ids of `count` <= 64 leaf blocks. Blocks are masks in Morton order, not 0.
   void leaves(const std::uint64_t* blocks, int count, NodeId* ids) {
     // Runs each step over all blocks, so that the waits for memory overlap.
     NodeStore& store = *stores_.back();

@@ -1,5 +1,5 @@
 #pragma once
-/// How much memory a build will need.
+/// Estimates the memory that a build will need.
 #include <cstdint>
 #include <optional>
 
@@ -7,14 +7,14 @@
 
 namespace voxdag {
 
-/// Estimates the bytes that a build holds at most, besides the mesh: two coarse builds, of which
-/// the finer has 2^-steps of the resolution, show how the DAG grows. Takes about 4^-steps of the
+/// Estimates the peak bytes of a build, without the mesh, from the growth of the DAG between two
+/// coarse builds. The finer of the two has 2^-steps of the resolution. Takes about 4^-steps of the
 /// build's time. Returns nothing if even the coarse builds exceed the budget. Throws Cancelled.
 std::optional<std::uint64_t> estimate_memory(const BuildInput& input, BuildMethod method,
                                              int steps);
 
-/// Returns an upper bound of a kind on the bytes of the DAG, from the area of the triangles alone:
-/// real DAGs are seldom above it, and most far below.
+/// Returns a rough upper bound on the bytes of the DAG, from the area of the triangles alone. Real
+/// DAGs seldom exceed it; most are much smaller.
 std::uint64_t area_bound(const Mesh& mesh, const Grid& grid);
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// The few nodes above the sub-volumes.
+/// Builds the few nodes above the sub-volumes.
 #include <algorithm>
 #include <cstdint>
 #include <vector>

@@ -29,8 +29,8 @@ class ListedCells {
 
   explicit ListedCells(Context& context) : context_(context), sink_(context.sink) {}
 
-  /// Returns the cell of 2^log2_size voxels at `at`, from `count` items on the stack at `first`.
-  /// Their conditions are those that are open in the cell, or more.
+  /// Returns the cell of 2^log2_size voxels a side at `at`, from `count` items on the stack from
+  /// `first` on. Their conditions include all that can fail in the cell.
   Cell cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
     if (count == 1) return single(at, log2_size, context_.items[first]);
     if (log2_size == 2) {
@@ -47,7 +47,8 @@ class ListedCells {
   }
 
  private:
-  /// Returns the item of a child. Where its column is inside the triangle only the plane matters.
+  /// Returns the item of a child. If the child's column is inside the triangle, only the plane can
+  /// fail.
   Item child_item(std::uint32_t triangle, std::uint64_t conditions) const {
     std::uint32_t left = static_cast<std::uint32_t>(conditions & 0xFFFF);
     const TriangleSetup& t = context_.setups[triangle];
@@ -55,7 +56,7 @@ class ListedCells {
     return {triangle, left};
   }
 
-  /// Goes down one level: a sub-volume has at most one cell size of an odd power of two.
+  /// Goes down one level. Each path needs this at most once, if log2_size is odd.
   Cell cell_by_8(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
     const std::size_t list = context_.items.size();
@@ -123,7 +124,7 @@ class ListedCells {
     return cell;
   }
 
-  /// Returns a cell whose items have the conditions of its grandparent.
+  /// Returns a cell; its items still have the conditions of its grandparent.
   Cell grandchild(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
     // BlockMasks finds the open conditions itself.
     if (log2_size == 4 && count > 1) return cell_of_blocks(at, first, count);

@@ -2,10 +2,10 @@
 /// The unique nodes of one level of a DAG under construction: hash-consing for many threads.
 ///
 /// A node is a run of 32-bit words (child mask and the ids of its children, or the two words of a
-/// leaf block). `intern` returns the same id for equal words, whichever thread asks. The table is
-/// split into shards by hash. Threads find a node that exists, the common case, without a lock; to
-/// add a node they lock its shard. Each thread writes words into runs of memory of its own, so that
-/// no lock is held while memory is allocated. The ids depend on timing; canonical_order() makes the
+/// leaf block). `intern` returns the same id for equal words in all threads. The table is split
+/// into shards by hash. Threads find an existing node (the common case) without a lock; to add a
+/// node they lock its shard. Each thread writes words into runs of memory of its own, so that no
+/// lock is held while memory is allocated. The ids depend on timing; canonical_order() makes the
 /// result independent of it.
 ///
 ///   id      | word offset (32 bits) |
@@ -29,7 +29,7 @@ namespace voxdag {
 using NodeId = std::uint32_t;
 inline constexpr NodeId kNoNode = 0xFFFFFFFFu;
 
-/// A hash of a node's words: 64-bit multiply and fold.
+/// Returns a hash of a node's words: 64-bit multiply and fold.
 inline std::uint64_t hash_words(const std::uint32_t* words, int count) {
   std::uint64_t h = 0x9E3779B97F4A7C15ull ^ static_cast<std::uint64_t>(count);
   for (int i = 0; i < count; i += 2) {
@@ -63,8 +63,8 @@ class NodeStore {
     const Table table = table_of(hash);
     if (table.slots != nullptr) __builtin_prefetch(table.slots + (tag_of(hash) & table.last));
   }
-  /// Starts loading the words that intern() compares next; reads the slot, so call it when
-  /// prefetch() has had time to finish.
+  /// Starts loading the words that intern() compares next. Reads the slot, so call it when the load
+  /// of prefetch() has had time to finish.
   void prefetch_found(std::uint64_t hash) const;
 
   /// Returns the words of a node; their address stays valid until release().
@@ -74,7 +74,8 @@ class NodeStore {
   }
   const std::uint32_t* words(NodeId id) const { return const_cast<NodeStore*>(this)->words(id); }
 
-  /// Starts loading words(id); any number is allowed. Not while nodes are added.
+  /// Starts loading words(id); any number is allowed as id. No thread may add nodes at the same
+  /// time.
   void prefetch_words(NodeId id) const {
     const int chunk = chunk_of(id);
     const auto address = reinterpret_cast<std::uintptr_t>(chunks_[chunk].data()) +
@@ -93,7 +94,7 @@ class NodeStore {
 
  private:
   // Chunk i has kFirstChunk << i words, so that small levels take little and addresses stay fixed.
-  // It is shared out in eight runs or in runs of 2^kMostRunBits words.
+  // It is divided into eight runs, or into runs of 2^kMostRunBits words.
   static constexpr int kFirstChunkBits = 9, kRunsBits = 3, kMostRunBits = 17;
   static constexpr int kChunks = 32 - kFirstChunkBits + 1;
   static constexpr int kShardBits = 4, kShards = 1 << kShardBits;
@@ -108,9 +109,9 @@ class NodeStore {
     bool growing = false;
     std::uint32_t node_count = 0;
     std::uint64_t word_count = 0;
-    // Outgrown tables keep their addresses until release_slots(), since another thread may be
-    // reading them, but not their memory: a lookup in zeros finds nothing and then looks in the
-    // newest table.
+    // Old tables keep their addresses until release_slots(), because another thread may be reading
+    // them. Their memory is freed and reads as zeros: a lookup finds nothing there and continues in
+    // the newest table.
     std::vector<PageArray<std::uint64_t>> tables;
   };
 
@@ -137,7 +138,8 @@ class NodeStore {
   void take_run(Run& run);
   void grow(std::uint32_t shard_index);
 
-  // Apart from the shards: every lookup reads these, while adding a node writes to the shards.
+  // Kept apart from the shards, because every lookup reads these while adding a node writes to the
+  // shards.
   alignas(64) std::array<std::atomic<std::uint64_t>, kShards> tables_{};
   std::array<PageArray<std::uint32_t>, kChunks> chunks_;
   std::unique_ptr<Shard[]> shards_{new Shard[kShards]};

@@ -1,7 +1,7 @@
 #pragma once
-/// An array of fixed size on pages of its own: zero at first, resident only where it was touched,
-/// given back to the system at once when freed, and on huge pages if it is large, since hash tables
-/// otherwise spend their time in TLB misses.
+/// An array of fixed size on pages of its own. It is initially zero and resident only where it was
+/// touched; freed pages go back to the system immediately. A large array uses huge pages, because
+/// hash tables on small pages spend their time in TLB misses.
 #include <sys/mman.h>
 
 #include <cstddef>
@@ -22,7 +22,8 @@ class PageArray {
   PageArray() = default;
   explicit PageArray(std::size_t count) : count_(count) {
     if (count == 0) return;
-    // Huge pages must be aligned, which mmap does not promise: maps more and unmaps the ends.
+    // Huge pages must be aligned, but mmap does not guarantee that. So this maps more and unmaps
+    // the ends.
     const std::size_t slack = bytes() >= kHugePage ? kHugePage : 0;
     void* memory = ::mmap(nullptr, mapped_bytes() + slack, PROT_READ | PROT_WRITE,
                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -51,8 +52,8 @@ class PageArray {
     if (data_ != nullptr) ::munmap(data_, mapped_bytes());
   }
 
-  /// Gives the memory back to the system; the array stays and is zero. Another thread may read it
-  /// meanwhile and sees old values or zeros.
+  /// Gives the memory back to the system. The array stays valid and becomes zero. Another thread
+  /// may read it at the same time; it sees old values or zeros.
   void discard() {
     if (data_ != nullptr) ::madvise(data_, mapped_bytes(), MADV_DONTNEED);
   }
@@ -65,7 +66,7 @@ class PageArray {
   const T* data() const { return data_; }
   std::size_t size() const { return count_; }
   std::size_t bytes() const { return count_ * sizeof(T); }
-  /// bytes() in whole pages.
+  /// Returns bytes(), rounded up to whole pages.
   std::size_t mapped_bytes() const {
     constexpr std::size_t kPage = 4096;
     return (bytes() + kPage - 1) & ~(kPage - 1);

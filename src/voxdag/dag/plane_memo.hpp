@@ -1,10 +1,10 @@
 #pragma once
 /// Caches the subtrees of cells that contain one plane and nothing else.
 ///
-/// Such a subtree depends only on the plane's normal and on its offset in the cell, and for one
-/// normal and cell size it is piecewise constant in the offset. An entry is a node and the interval
-/// of offsets for which it is right. The memo is a two-way set-associative cache of fixed size: a
-/// new entry may evict an old one, which costs time but never changes the result.
+/// Such a subtree depends only on the plane's normal and its offset in the cell. For one normal and
+/// cell size it is piecewise constant in the offset. An entry is a node and the interval of offsets
+/// for which it is correct. The memo is a two-way set-associative cache of fixed size: a new entry
+/// may evict an old one, which costs time but never changes the result.
 #include <bit>
 #include <cstdint>
 
@@ -15,7 +15,7 @@
 namespace voxdag {
 
 /// The subtree of a cell that contains a slab whose least value, relative to the cell, is `lo`. It
-/// is the same for every slab of that normal and width with lo - down <= least value <= lo + up.
+/// is valid for every slab of that normal and width with lo - down <= least value <= lo + up.
 struct SlabNode {
   NodeId id = kNoNode;
   std::uint64_t down = 0, up = 0;

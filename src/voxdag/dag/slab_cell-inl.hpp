@@ -1,5 +1,5 @@
-// Cells that contain one plane and nothing else: design, "Plane memo". Compiled once for each
-// instruction set.
+// Cells that contain one plane and nothing else (see "Plane memo" in the design). Compiled once for
+// each instruction set.
 #if defined(VOXDAG_SLAB_CELL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_SLAB_CELL_INL
 #undef VOXDAG_SLAB_CELL_INL

@@ -1,5 +1,5 @@
 #pragma once
-/// An octree, or a partly reduced DAG, as the build by sorting holds it.
+/// The octree or partly reduced DAG of the build by sorting.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// The pointers of a node's eight children, kNoNode for those that are absent: also its sort key.
+/// The pointers to a node's eight children; kNoNode for absent ones. Also the sort key of the node.
 using SortNode = std::array<std::uint32_t, 8>;
 
 /// Nodes by level; pointers are indices into the level below. Level 0 is the tree's root.

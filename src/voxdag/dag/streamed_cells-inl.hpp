@@ -1,5 +1,5 @@
-// Cells with so many triangles that their setups would take too much memory: each triangle is set
-// up where it is needed and forgotten. Compiled once for each instruction set.
+// Cells with so many triangles that their setups would take too much memory. Each setup is made
+// when it is needed and not stored. Compiled once for each instruction set.
 #if defined(VOXDAG_STREAMED_CELLS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_STREAMED_CELLS_INL
 #undef VOXDAG_STREAMED_CELLS_INL
@@ -24,11 +24,12 @@ class StreamedCells {
  public:
   using Context = SubvolumeContext<Sink>;
 
-  /// `origin`: first voxel of the sub-volume, from which cells are measured.
+  /// `origin` is the first voxel of the sub-volume; coordinates of cells are relative to it.
   StreamedCells(Context& context, Vec3i origin)
       : context_(context), sink_(context.sink), listed_(context), origin_(origin) {}
 
-  /// Returns the cell of 2^log2_size voxels at `at` from `count` triangles on the stack at `first`.
+  /// Returns the cell of 2^log2_size voxels a side at `at`, from `count` triangles on the stack
+  /// from `first` on.
   Cell cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
     if (count <= kMostSetups) return listed_cell(at, log2_size, first, count);
     if (log2_size == 2) {

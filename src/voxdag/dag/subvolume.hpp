@@ -26,7 +26,7 @@ template <class Sink>
 struct SubvolumeContext {
   struct Item {
     std::uint32_t triangle;    ///< Index in `setups`.
-    std::uint32_t conditions;  ///< Those that can fail in the current cell.
+    std::uint32_t conditions;  ///< The conditions that can fail in the current cell.
   };
   struct Classified {
     std::uint32_t triangle, conditions;
@@ -46,7 +46,8 @@ struct SubvolumeContext {
         classified(&budget),
         triangles(&budget) {}
 
-  /// What the recursion touches of a thread's stack, at most, and what malloc keeps for the thread.
+  /// The most stack that the recursion touches in a thread, with the memory that malloc keeps for
+  /// the thread.
   static constexpr std::uint64_t kStackBytes = std::uint64_t{256} << 10;
 
   const QuantizedMesh* mesh;
@@ -62,7 +63,7 @@ struct SubvolumeContext {
 };
 
 /// Returns the id of the cell's node (of level L - log2_size), or kNoNode if the cell is empty.
-/// Throws OverMemory and Cancelled; the context is then fit for other jobs, but the sink's contents
+/// Throws OverMemory and Cancelled. The context can then run other jobs, but the sink's contents
 /// are incomplete.
 NodeId build_subvolume(SubvolumeContext<DagSink>& context, const SubvolumeJob& job);
 NodeId build_subvolume(SubvolumeContext<TreeSink>& context, const SubvolumeJob& job);

@@ -24,10 +24,10 @@ struct SubvolumeBins {
   }
 };
 
-/// Bins the triangles that are not in `excluded` into the cells of `level`, <= levels - 2 and
-/// <= 10. A triangle is in the list of every cell that it meets and, except in the largest grids,
-/// of no other. The order in a list depends on timing. Time is linear in the lists; memory is 16
-/// bytes per entry at most, then 4. Throws OverMemory and Cancelled.
+/// Bins the triangles that are not in `excluded` into the cells of `level`, <= levels - 2 and <=
+/// 10. A triangle is in the list of every cell that it meets and, except in the largest grids, of
+/// no other. The order in a list depends on timing. Time is linear in the size of the lists. Memory
+/// is at most 16 bytes per entry during the call and 4 afterwards. Throws OverMemory and Cancelled.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
                             const IndexSet& excluded, MemoryBudget& budget, Progress* progress);
 

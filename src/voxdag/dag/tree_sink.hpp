@@ -1,5 +1,5 @@
 #pragma once
-/// Where a build by sorting puts its nodes.
+/// Collects the nodes of a build by sorting.
 #include <bit>
 #include <cstdint>
 
@@ -8,12 +8,12 @@
 
 namespace voxdag {
 
-/// Makes the explicit octree of one sub-volume and merges nothing: ids are indices into `tree`.
+/// Builds the explicit octree of one sub-volume. Merges no nodes: ids are indices into `tree`.
 class TreeSink {
  public:
   static constexpr bool kMemo = false;
 
-  /// `root_level` is the level of the sub-volume, `levels` that of the voxels.
+  /// `root_level` is the level of the sub-volume, `levels` the level of the voxels.
   TreeSink(int levels, int root_level, MemoryBudget& budget)
       : tree(levels - 2 - root_level, &budget), root_level_(root_level) {}
 

@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// A corner of the mesh, 3 * triangle + corner, or the edge from there to the next corner.
+/// The index 3 * triangle + corner of a corner, or of the edge from that corner to the next.
 using CornerIndex = std::uint32_t;
 
 constexpr CornerIndex next_corner(CornerIndex corner) {
@@ -22,7 +22,7 @@ constexpr CornerIndex next_corner(CornerIndex corner) {
 struct DisplacedMesh {
   const Mesh& mesh;
   const Appearance& appearance;
-  std::vector<Displacement> displacements;  ///< By material.
+  std::vector<Displacement> displacements;  ///< One per material.
 
   const Displacement& displacement(std::uint32_t triangle) const {
     return displacements[Appearance::material_index(mesh, triangle)];

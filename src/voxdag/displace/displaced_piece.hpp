@@ -1,5 +1,5 @@
 #pragma once
-/// What encloses a piece of a displaced triangle, however finely it is tessellated.
+/// A volume that encloses a piece of a displaced triangle for every tessellation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,17 +10,17 @@
 
 namespace voxdag {
 
-/// Its points are those of a flat triangle, moved along normals between those of its corners, by
-/// heights between two bounds; and by `slack` in any direction.
+/// Contains the points of a flat triangle, moved along the interpolated normals of its corners by
+/// heights between two bounds, and moved by up to `slack` in any direction.
 struct DisplacedPiece {
-  std::array<Vec3d, 3> corners;    ///< Of the flat triangle, world units.
-  std::array<double, 3> reach{};   ///< How far a corner may be moved in any direction.
+  std::array<Vec3d, 3> corners;    ///< Flat triangle, world units.
+  std::array<double, 3> reach{};   ///< Bound on how far each corner moves.
   std::array<Vec3f, 3> normals{};  ///< Unit length, or zero.
   float shortest = 1;              ///< No mean of the normals is shorter than this.
   Interval heights{0, 0};
   double slack = 0;
 
-  /// The least and the greatest dot(direction, p) that any point p can have.
+  /// Returns the least and greatest dot(direction, p) of all points p in the volume.
   Interval along(Vec3d direction) const {
     std::array<double, 3> at;
     std::array<float, 3> component;
@@ -40,11 +40,12 @@ struct DisplacedPiece {
     return {{x.lo, y.lo, z.lo}, {x.hi, y.hi, z.hi}};
   }
 
-  /// Half of the cross product of two edges of the flat triangle.
+  /// Returns the area vector of the flat triangle: half of the cross product of two edges.
   Vec3d area() const { return cross(corners[1] - corners[0], corners[2] - corners[0]) * 0.5; }
 
  private:
-  /// That of a direction of this length, along which corners and normals have these components.
+  /// Returns along() for a direction of this length. `at` and `component` are the components of
+  /// corners and normals along it.
   Interval interval_along(const std::array<double, 3>& at, const std::array<float, 3>& component,
                           double length) const {
     const auto [least, most] = std::minmax({component[0], component[1], component[2]});

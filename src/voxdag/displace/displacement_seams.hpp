@@ -1,5 +1,6 @@
 #pragma once
-/// Which corners and edges of a displaced mesh coincide, and where their displacements differ.
+/// Finds the corners and edges of a displaced mesh that coincide, and where their displacements
+/// differ.
 #include <cstdint>
 #include <span>
 
@@ -9,12 +10,12 @@
 
 namespace voxdag {
 
-/// Groups the corners at one place, and the edges between the same two places. Immutable.
+/// Groups corners at one position, and edges between the same two positions. Immutable.
 class DisplacementSeams {
  public:
   /// A set of coinciding corners or edges.
   struct Group {
-    /// One corner or edge for each different displacement; there is at least one.
+    /// One corner or edge for each distinct displacement; at least one.
     std::span<const CornerIndex> members;
     bool is_pinned;  ///< It does not move: a triangle without displacement has it too, or its
                      ///< displacements are more than kMostMembers.
@@ -23,8 +24,8 @@ class DisplacementSeams {
     bool is_seam() const { return members.size() > 1 || is_pinned; }
   };
 
-  /// A corner or edge with more different displacements is pinned: to compare and to average all of
-  /// them would take quadratic time.
+  /// A corner or edge with more distinct displacements is pinned: comparing and averaging them
+  /// would take quadratic time.
   static constexpr std::uint32_t kMostMembers = 64;
 
   DisplacementSeams() = default;
@@ -35,7 +36,7 @@ class DisplacementSeams {
   Group corner_group(CornerIndex corner) const { return group(corner_groups_[corner]); }
   Group edge_group(CornerIndex edge) const { return group(edge_groups_[edge]); }
 
-  /// Returns an edge's two ends in an order that all coinciding edges share.
+  /// The two ends of an edge, in an order that all coinciding edges share.
   struct Ends {
     CornerIndex first, last;
   };
@@ -46,7 +47,7 @@ class DisplacementSeams {
 
  private:
   struct StoredGroup {
-    std::uint32_t first = 0, count = 0;  ///< Of `members_`.
+    std::uint32_t first = 0, count = 0;  ///< Range in `members_`.
     bool is_pinned = false;
   };
 
@@ -62,8 +63,8 @@ class DisplacementSeams {
   bool edges_agree(const DisplacedMesh& mesh, CornerIndex a, CornerIndex b) const;
 
   std::size_t place_count_ = 0;
-  CountedVector<std::uint32_t> places_;  ///< By CornerIndex: equal for equal positions.
-  CountedVector<std::uint32_t> corner_groups_, edge_groups_;  ///< By CornerIndex.
+  CountedVector<std::uint32_t> places_;  ///< Per CornerIndex; equal for equal positions.
+  CountedVector<std::uint32_t> corner_groups_, edge_groups_;  ///< Per CornerIndex.
   CountedVector<StoredGroup> groups_;
   CountedVector<CornerIndex> members_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-/// Splits a triangle at the midpoints of its long edges. Both neighbours of an edge split it alike,
-/// because only the edge's length decides.
+/// Splits a triangle at the midpoints of its long edges. Only the length of an edge decides, so
+/// both of its triangles split it in the same way.
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"
@@ -11,9 +11,10 @@ namespace voxdag {
 struct PieceCorner {
   Vec3d position;  ///< Before displacement, world units.
   Vec3f normal;    ///< Interpolated, not normalised.
-  /// Barycentric coordinates, those of corners 1 and 2 of the triangle. Exact: halves of halves.
+  /// Barycentric coordinates: the weights of corners 1 and 2 of the triangle. Exact, because they
+  /// result from halving.
   float b1 = 0, b2 = 0;
-  /// The edges of the triangle that the corner lies on, as bits; two at the triangle's corners.
+  /// Bit mask of the triangle's edges that the corner lies on; two bits at the triangle's corners.
   std::uint8_t edges = 0;
   bool is_displaced = false;  ///< Whether `displaced` is known.
   Vec3d displaced;            ///< The position after displacement.
@@ -43,7 +44,7 @@ inline bool is_small(const PieceCorner& a, const PieceCorner& b, const PieceCorn
 
 namespace detail {
 
-/// Only ab is long.
+/// Splits a piece whose only long edge is ab.
 template <class Body>
 void split_one_edge(PieceCorner& a, PieceCorner& b, PieceCorner& c, const Body& body) {
   PieceCorner d = middle(a, b);
@@ -51,7 +52,7 @@ void split_one_edge(PieceCorner& a, PieceCorner& b, PieceCorner& c, const Body& 
   body(d, b, c);
 }
 
-/// Only ab is not long.
+/// Splits a piece whose only edge that is not long is ab.
 template <class Body>
 void split_two_edges(PieceCorner& a, PieceCorner& b, PieceCorner& c, const Body& body) {
   PieceCorner e = middle(b, c), f = middle(c, a);

@@ -16,8 +16,8 @@ struct BeamPacket {
   BeamStop stop;
   double lowest[3][kMaxBeams], highest[3][kMaxBeams];
   std::size_t size = 0;
-  /// A t before which no ray of the beam meets anything; +infinity if none does at all. It is the t
-  /// of first_met(), rounded down to float.
+  /// A t before which no ray of the beam meets anything; +infinity if no ray meets anything. It is
+  /// the bound of first_met(), rounded down to float.
   alignas(64) float first[kMaxBeams];
 
   void add(const Vec3d& low, const Vec3d& high) {
@@ -29,7 +29,7 @@ struct BeamPacket {
   }
 };
 
-/// Sets packet.first for its beams. There must be at least one.
+/// Sets packet.first of every beam. There must be at least one beam.
 void cast_beam_packet(const SvdagNodes& nodes, BeamPacket& packet);
 void cast_beam_packet(const EsvoNodes& nodes, BeamPacket& packet);
 

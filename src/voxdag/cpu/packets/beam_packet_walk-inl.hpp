@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 template <class Nodes>
 class BeamPacketWalk : PacketLanes {
   using Beams = Set;
-  /// A relative error greater than all rounding to float and in float.
+  /// A relative error larger than all rounding errors of float and of conversions to float.
   static constexpr float kRounding = 0x1p-20f;
 
  public:
@@ -36,7 +36,7 @@ class BeamPacketWalk : PacketLanes {
   }
 
  private:
-  /// The direction of all beams along an axis.
+  /// The direction of all beams along an axis; kEither if they differ.
   enum class Way { kUp, kDown, kEither };
 
   struct Visit {
@@ -46,7 +46,8 @@ class BeamPacketWalk : PacketLanes {
     Beams beams;
     float enter;  ///< No beam enters the cell before this t.
   };
-  /// The beams that continue into each child, nearest child first, and a bound on where.
+  /// The beams that continue into each child, nearest child first, and a bound on the t at which
+  /// they enter it.
   struct ChildBeams {
     Beams beams[8] = {};
     float enter[8];
@@ -57,7 +58,8 @@ class BeamPacketWalk : PacketLanes {
   };
 
   /// A beam overlaps [low, high], relative to the apex, while t * lowest <= high and t * highest >=
-  /// low. By the sign of its bound, each inequality gives a t at which the beam enters or leaves.
+  /// low. The sign of `lowest` or `highest` decides whether the inequality gives the t at which the
+  /// beam enters or the t at which it leaves.
   void prepare(int axis) {
     constexpr double kLeast = 1e-30;
     const double* const lowest = packet_.lowest[axis];
@@ -115,7 +117,7 @@ class BeamPacketWalk : PacketLanes {
     }
   }
 
-  /// Finds which of the visit's beams continue into which children, and sets packet_.first of those
+  /// Finds which of the visit's beams continue into which children. Sets packet_.first of the beams
   /// that end at a child.
   void intersect(const Visit& visit, ChildBeams& children) {
     const DF d;
@@ -128,7 +130,8 @@ class BeamPacketWalk : PacketLanes {
     for (int i = 0; i < 8; ++i)
       if ((mask >> i & 1u) != 0 && is_leaf_child(nodes_, visit.node, visit.level, i))
         leaves |= 1u << i;
-    // The side of the children, and the factor of the t at which a beam is wider than that.
+    // The side of the children, and the factor that gives the t at which a beam is wider than this
+    // side.
     const auto child_side = hn::Set(d, static_cast<float>(side) * (1 - kRounding));
     const auto at_start = hn::Set(d, static_cast<float>(packet_.stop.at_start));
     const auto per_enter = hn::Set(d, static_cast<float>(packet_.stop.per_enter));

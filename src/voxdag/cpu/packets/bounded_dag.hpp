@@ -10,8 +10,8 @@ namespace voxdag {
 /// A box in a cell, in 32nds of the cell's side. 30 bits: five each for the first 32nd with voxels
 /// along x, y and z, then five each for the last one. Boxes of smaller voxels are rounded outwards.
 ///
-/// A surface fills only a little of the cells that it crosses: rays that pass beside it, or start
-/// on it, meet these cells but not their boxes.
+/// A surface fills only a small part of the cells that it crosses. Rays that pass beside it, or
+/// start on it, meet these cells but not their boxes.
 struct CellBox {
   static constexpr int kBits = 5;
   static constexpr std::uint32_t kParts = 1u << kBits;
@@ -19,22 +19,22 @@ struct CellBox {
   std::uint32_t bits = 0;
 };
 
-/// Made once from a DAG, to which it points. It holds the nodes above the leaf blocks, each at
-/// twice its word index in the DAG:
+/// Built once from a DAG, to which it points. It holds the nodes above the leaf blocks; a node's
+/// index is twice its word index in the DAG:
 ///
 ///   child mask | box of the node | pointer, ... | box of the child, ...      32-bit words
 ///
 /// The pointers are those of the DAG. Copies share the words.
 class BoundedDag {
  public:
-  /// Uses all threads; O(words) time.
+  /// Builds on all threads in O(words) time.
   explicit BoundedDag(const SvdagNodes& nodes);
 
   const SvdagNodes& nodes() const { return nodes_; }
   int levels() const { return nodes_.levels(); }
-  /// From every box on, eight words may be read.
+  /// Returns the words. It is safe to read eight words from every box on.
   const std::uint32_t* words() const { return words_.get(); }
-  /// Returns the bytes that it takes beside the DAG.
+  /// Returns the bytes that it takes in addition to the DAG.
   std::uint64_t bytes() const { return word_count() * sizeof(std::uint32_t); }
 
  private:

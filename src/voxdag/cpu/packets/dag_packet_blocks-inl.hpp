@@ -17,9 +17,9 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Casts rays at the 4³ voxels of a block: if there are many rays per voxel, vectors of rays at one
-/// voxel after the other, else single rays at all voxels. Ends the rays that meet a voxel, or an
-/// octant at which they end.
+/// Casts rays at the 4³ voxels of a block. With many rays per voxel it tests vectors of rays
+/// against one voxel after the other, else single rays against all voxels. Ends the rays that meet
+/// a voxel, or an octant at which the level of detail ends them.
 inline void DagPacketWalk::cast_in_block(const Visit& visit) {
   const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
   Rays others = visit.rays;
@@ -46,7 +46,8 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
   const hn::RebindToUnsigned<DF> du;
   const hn::RebindToSigned<DF> di;
   const std::uint32_t size = 1u << (23 - nodes_.levels());
-  // T at which rays enter and leave the slabs of voxels: by axis, then by coordinate, then by ray.
+  // T at which rays enter and leave the slabs of voxels, indexed by axis, then by coordinate, then
+  // by ray.
   alignas(64) float enter[12 * kWidth], exit[12 * kWidth];
   const auto t_min = hn::Load(d, rays_.t_min + first), t_end = hn::Load(d, rays_.t_end + first);
   for (int axis = 0; axis < 3; ++axis) {
@@ -60,7 +61,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
       if (i < 4) hn::Store(axis == 0 ? hn::Min(t, t_end) : t, d, exit + at);
     }
   }
-  // For each voxel, by axis: the index at which the lanes of its slab begin.
+  // The index at which the lanes of a voxel's slab begin, for each voxel and axis.
   static constexpr auto kLanes = [] {
     std::array<std::array<std::uint8_t, 3>, 64> lanes{};
     for (std::uint32_t voxel = 0; voxel < 64; ++voxel)
@@ -68,7 +69,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
         lanes[voxel][axis] = static_cast<std::uint8_t>((4 * axis + place_of(voxel, axis)) * kWidth);
     return lanes;
   }();
-  // Tests the farthest voxel first, so that the nearest one remains.
+  // Tests the farthest voxel first: nearer voxels overwrite the result, so the nearest one remains.
   auto nearest = hn::Set(di, -1);
   for (std::uint64_t rest = block; rest != 0; rest &= rest - 1) {
     const auto voxel = static_cast<std::uint32_t>(lowest_bit64(rest));
@@ -104,7 +105,7 @@ inline void DagPacketWalk::cast_one_by_one_in_block(const Visit& visit, std::uin
   const int levels = nodes_.levels();
   const std::uint32_t* corner = visit.corner;
   const bool may_end_at_octants = (visit.skipped & kOctantsMayEnd) != 0;
-  // A ray that meets an octant meets the cube of one of its voxels, set or not.
+  // A ray that meets an octant meets one of its 2³ voxels, which may be set or not.
   const std::uint64_t octants = may_end_at_octants ? filled_octants(block) : block;
   const hn::CappedTag<float, 8> d;
   constexpr std::size_t kBlockLanes = hn::MaxLanes(d);

@@ -15,8 +15,8 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Sets the planes of the boxes of the children of the node of `level` at `corner`, one box per
-/// lane, rounded outwards to the cells at which rays may end.
+/// Sets the planes of the children's boxes, one box per lane, for the node of `level` at `corner`.
+/// Rounds the boxes outwards to the cells at which rays may end.
 HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int level,
                                           hn::Vec<DU8> boxes) {
   const DU8 d;
@@ -45,8 +45,9 @@ HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int lev
   }
 }
 
-/// Sets the children at which rays end. The rays enter and leave the children in these ranges of T;
-/// `start` and `per_t` are the least and greatest values of their levels of detail.
+/// Sets the children at which rays end. `enter` and `exit` bound the T at which the rays enter and
+/// leave the children; `start` and `per_t` are the least and greatest values of their levels of
+/// detail.
 HWY_INLINE void DagPacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
                                         const float start[2], const float per_t[2],
                                         Children& children) const {
@@ -202,7 +203,7 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     const bool may_end = (children.some_end >> child & 1u) != 0;
     Visit& next = stack[top];
     if (are_few) {
-      // Without branches on the number of rays, which is hard to predict.
+      // Has no branches on the number of rays, because they would be hard to predict.
       next.rays = 0;
       for (int at = 0; at < kFew; ++at) next.rays |= few[at] & (0 - Rays{met_by[at] >> child & 1u});
     } else {
@@ -231,7 +232,7 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
   }
 }
 
-/// Ends rays at the children `met`, at which all rays end that meet them.
+/// Ends rays at the children in the mask `met`: all rays that meet one of them end there.
 inline void DagPacketWalk::end_at_children(const Visit& visit, std::uint32_t met) {
   const auto end_at = [&](std::uint32_t child, Rays hits) {
     Cell cell;

@@ -1,4 +1,4 @@
-// Finds where the walk of a packet may begin: the lowest cells that hold all of its rays.
+// Finds where the walk of a packet may begin: the finest cells that hold all its rays.
 #if defined(VOXDAG_DAG_PACKET_STARTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_DAG_PACKET_STARTS_INL
 #undef VOXDAG_DAG_PACKET_STARTS_INL
@@ -14,13 +14,13 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// Finds the lowest cell, of level `finest` at most, that holds the starts of all rays (`starts`),
-/// and the lowest that holds their starts and ends (`reach`). By the voxel rule, a position p is in
-/// the cell with lower < p <= upper.
+/// Finds two cells: the finest cell, of level `finest` at most, that holds the starts of all rays
+/// (`starts`), and the finest cell that holds all starts and ends (`reach`). By the voxel rule, a
+/// position p is in the cell with lower < p <= upper.
 inline void DagPacketWalk::common_cells(CommonCell& starts, CommonCell& reach, int finest) const {
   const DF d;
   const hn::RebindToUnsigned<DF> du;
-  // More than the rounding errors of T and of the calculation here.
+  // Larger than the rounding errors of T and of this calculation.
   const auto slack = hn::Set(d, 0x1p-21f);
   const auto zero = hn::Zero(d), least = hn::Set(d, 1 + 0x1p-23f), two = hn::Set(d, 2);
   std::uint32_t start_differs = 0, reach_differs = 0;
@@ -70,8 +70,8 @@ inline void DagPacketWalk::common_cells(CommonCell& starts, CommonCell& reach, i
   finish(reach, reach_differs);
 }
 
-/// Returns the finest level above the leaf blocks at which no ray may end at the cell in which it
-/// starts. A ray leaves that cell by t_min + side, because T grows by 1 across the grid.
+/// Returns the finest level above the leaf blocks at which no ray may end in its first cell. A ray
+/// leaves that cell at t_min + side at the latest, because T grows by 1 across the grid.
 inline int DagPacketWalk::finest_without_stop() const {
   int level = 0;
   for (; level < nodes_.levels() - 2; ++level) {

@@ -41,25 +41,25 @@ class DagPacketWalk : PacketRays {
     std::uint32_t
         skipped;  ///< Mask of the children to skip, by mirrored index, and the flags below.
   };
-  /// Flags in Visit::skipped. The rays end at this cell; for a leaf block: the rays end at its
-  /// octants; some rays may end at its octants.
+  /// Flags in Visit::skipped: the rays end at this cell; all rays end at the octants of this leaf
+  /// block; some rays may end at its octants.
   static constexpr std::uint32_t kEndsHere = 0x100, kOctantsEnd = 0x200, kOctantsMayEnd = 0x400;
   /// Masks of the children of a node, by their mirrored index.
   struct Children {
     std::uint32_t met;       ///< Children that any ray can meet.
-    std::uint32_t all_end;   ///< Children at which all rays end that meet them.
+    std::uint32_t all_end;   ///< Children where every ray that meets them ends.
     std::uint32_t some_end;  ///< Children at which any ray can end.
     std::uint32_t octants_end,
-        octants_may_end;  ///< Leaf blocks at whose octants all rays end, or any can.
+        octants_may_end;  ///< Leaf blocks at whose octants rays end or may end.
   };
-  /// A cell, given by the bits that all positions in it share.
+  /// A cell, defined by the bits that all positions in it share.
   struct CommonCell {
     std::uint32_t corner[3];
     int level;  ///< The level of the finest cell that holds all positions.
   };
 
-  /// The number of children stored before a child, by `mirrored`, the node's child mask and the
-  /// mirrored child index.
+  /// The number of children stored before a child. Indexed by `mirrored`, the node's child mask and
+  /// the mirrored child index.
   using RankTable = std::array<std::array<std::array<std::uint8_t, 8>, 256>, 8>;
   static constexpr RankTable ranks() {
     RankTable table{};
@@ -74,7 +74,7 @@ class DagPacketWalk : PacketRays {
     alignas(64) static constexpr RankTable kRanks = ranks();
     return kRanks[rays_.mirrored][mask].data();
   }
-  /// Returns the block with all voxels set in octants that have any.
+  /// Returns the block with every octant filled that has a voxel.
   static std::uint64_t filled_octants(std::uint64_t block) {
     block |= block >> 4 & 0x0F0F0F0F0F0F0F0Fu;
     block |= block >> 2 & 0x3333333333333333u;
@@ -123,8 +123,8 @@ class DagPacketWalk : PacketRays {
   void end_at_octants(const Visit& visit);
   HWY_INLINE void set_ends(int child_level, hn::Vec<DF8> enter, hn::Vec<DF8> exit,
                            const float start[2], const float per_t[2], Children& children) const;
-  /// Returns whether ray i ends at the cell of this level with the lower corner `low`, which it
-  /// meets.
+  /// Returns whether ray i ends at the cell of `level` with the lower corner `low`. The ray must
+  /// meet the cell.
   bool ends_at(int i, const float low[3], int level) const {
     if (level < rays_.coarsest) return false;
     float exit = HUGE_VALF;

@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-/// PacketHits with the further fields of EsvoHit.
+/// PacketHits with the additional fields of EsvoHit.
 struct EsvoHits : PacketHits {
   std::uint64_t slot[RayPacket::kMaxRays];  ///< EsvoVoxel::slot.
   std::uint8_t child[RayPacket::kMaxRays];  ///< EsvoVoxel::child.

@@ -26,7 +26,8 @@ HWY_INLINE VInt EsvoPacketWalk<kWithContours, kOneOrigin>::slack_of(VInt length1
   return hn::ShiftRight<ContourSlab::kReachShift>(hn::Mul(length1, hn::Add(reach, hn::Set(di, 1))));
 }
 
-/// Computes ContourRay::span(): where rays with n.O = position and n.d = speed are between planes.
+/// Computes ContourRay::span(): the T between the planes, for rays with n.O = position and n.d =
+/// speed.
 template <bool kWithContours, bool kOneOrigin>
 template <class VFloat, class VInt>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::cut(VInt position, VInt speed,
@@ -46,8 +47,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::cut(VInt position, VI
   leave = hn::Max(t_high, t_low);
 }
 
-/// Returns which of `rays` meet the voxel's shape, and, with kWithStop, which of these end at it.
-/// With kCut the voxel has a contour: sets the spans of its level.
+/// Returns which of `rays` meet the voxel's shape and, with kWithStop, which of these end at it.
+/// kCut means that the voxel has a contour: then sets the spans of its level.
 template <bool kWithContours, bool kOneOrigin>
 template <bool kCut, bool kWithStop>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays

@@ -50,7 +50,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   const DI8 di;
   const int bit = 22 - static_cast<int>(visit.level);
   ChildContours& contours = child_contours_[visit.level];
-  // Moves the contours, which are stored without gaps, to the lanes of their children.
+  // Moves the contours, which are stored contiguously, to the lanes of their children.
   const std::uint32_t with_contour = descriptor.contour_mask();
   const auto* const words = reinterpret_cast<const std::int32_t*>(esvo_.slots) + 2 * visit.slot +
                             descriptor.contour_pointer();
@@ -61,7 +61,7 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   const auto w = hn::TableLookupLanes(listed, hn::IndicesFromVec(di, places));
   hn::Store(w, di, contours.words);
 
-  // ContourSlab::make(), and the voxels' centres.
+  // Computes ContourSlab::make() and the voxels' centres.
   const VI8 normal[3] = {hn::ShiftRight<26>(hn::ShiftLeft<26>(w)),
                          hn::ShiftRight<26>(hn::ShiftLeft<20>(w)),
                          hn::ShiftRight<26>(hn::ShiftLeft<14>(w))};
@@ -91,8 +91,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::set_child_contours(
   hn::Store(hn::Add(plane(twice_high), wider), di, contours.high);
 }
 
-/// Sets the spans of the visited voxel's level to those that end_at_children() found for its
-/// parent. Leaves out the span of all rays together, which is not used with few rays.
+/// Copies the spans that end_at_children() found for the parent to the visited voxel's level. Does
+/// not set the common span of all rays, which is not used with few rays.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Visit& visit,
                                                                         Rays rays) {

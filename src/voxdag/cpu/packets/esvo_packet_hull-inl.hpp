@@ -39,9 +39,9 @@ inline std::uint32_t EsvoPacketWalk<kWithContours, kOneOrigin>::cubes_met_by_hul
 /// of O, d and T. If that interval is above or below both planes of the contour, no ray comes
 /// between them.
 ///
-/// Why rounding does not matter: the planes are those of ContourRay::span for the ray that leaves
-/// the cube last, at T = cube_exit, or farther out, moved outwards once more by s + 1 with s > 8
-/// |n| T + |n| / 256 - 1, in units of 2^-23. The rounding errors are smaller: those of
+/// Why rounding does not matter: the planes are at least as far out as those of ContourRay::span
+/// for the ray that leaves the cube last, at T = cube_exit. They are moved outwards again by s + 1
+/// with s > 8 |n| T + |n| / 256 - 1, in units of 2^-23. The rounding errors are smaller. Those of
 /// ContourRay::span are 2 |n| T for the quotient and T / 2 for n.d, which is made odd; those of
 /// this function are 2 |n| T for two conversions and two products.
 template <bool kWithContours, bool kOneOrigin>

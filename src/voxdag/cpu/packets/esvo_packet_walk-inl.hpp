@@ -22,7 +22,7 @@ namespace HWY_NAMESPACE {
 
 #if VOXDAG_PACKET_LANES
 
-/// With kOneOrigin all rays start at one point: the distance of a plane is the same for all of
+/// kOneOrigin means that all rays start at one point, so that a plane has one distance for all of
 /// them.
 template <bool kWithContours, bool kOneOrigin>
 class EsvoPacketWalk : PacketRays {
@@ -47,14 +47,14 @@ class EsvoPacketWalk : PacketRays {
     std::uint64_t slot;   ///< Slot of its descriptor, or kLeaf.
     std::uint32_t known;  ///< Flags, see below.
   };
-  /// Flags of a visit: the rays meet the voxel's cube; they also meet its shape, as
-  /// end_at_children() found; the level of detail may end some here; the voxel has a contour.
+  /// Flags of a visit: the rays meet the voxel's cube; they also meet its shape (found by
+  /// end_at_children()); the level of detail may end some rays here; the voxel has a contour.
   static constexpr std::uint32_t kMeetCube = 1, kMeetShape = 2, kMayStop = 4, kHasContour = 8;
-  /// The ranges of T that contours leave of each ray, and of all rays together.
+  /// The ranges of T that remain after cuts by contours: per ray, and for all rays together.
   struct Spans {
     alignas(64) float enter[RayPacket::kMaxRays], leave[RayPacket::kMaxRays];
-    /// Level of the voxel through whose contour the ray came to `enter`; 0: through the side of a
-    /// cube, or none.
+    /// The level of the voxel whose contour the ray crosses at `enter`; 0 if it crosses the side of
+    /// a cube or nothing.
     alignas(64) std::int32_t enter_level[RayPacket::kMaxRays];
     float first, last;
   };
@@ -69,16 +69,16 @@ class EsvoPacketWalk : PacketRays {
     alignas(32) std::int32_t words[8];  ///< Contour::bits.
     alignas(32) std::int32_t normal[3][8], length1[8], low[8], high[8];
   };
-  /// The results of end_at_children() for each of its rays, by child.
+  /// The results of end_at_children(), per ray and child.
   struct Tried {
     alignas(32) float enter[kFew][8], leave[kFew][8];
-    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< How the ray comes to `enter`, by child.
+    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< What the ray crosses at `enter`, by child.
     Rays rays;
   };
 
   using ByteTable = std::array<std::array<std::uint8_t, 8>, 256>;
   alignas(32) static constexpr std::int32_t kChildBits[8] = {1, 2, 4, 8, 16, 32, 64, 128};
-  /// The number of bits of a mask before the child's, by mask and child.
+  /// Returns the table of the number of set bits below a child's bit, indexed by mask and child.
   static constexpr ByteTable bits_before() {
     ByteTable table{};
     for (std::size_t mask = 0; mask < 256; ++mask)
@@ -99,8 +99,8 @@ class EsvoPacketWalk : PacketRays {
     const int child = child_index({word(0), word(1), word(2)}, static_cast<int>(23 - level));
     return static_cast<std::uint32_t>(child) ^ rays_.mirrored;
   }
-  /// Returns the argument of distance() for a plane at the float bits `position`: its distance from
-  /// the origin of all rays, or its position.
+  /// Returns the argument of distance() for a plane at the float bits `position`: the plane's
+  /// distance from the common origin, or its position if there is none.
   HWY_INLINE VF to_plane(DF d, int axis, std::uint32_t position) const {
     const float at = float_from_bits(position);
     return hn::Set(d, kOneOrigin ? origins_.least[axis] - at : at);
@@ -141,17 +141,17 @@ class EsvoPacketWalk : PacketRays {
   EsvoHits* hits_;
   /// Positions and directions in the form of ContourRay, by axis, then by ray.
   alignas(64) std::int32_t position_[3][RayPacket::kMaxRays], direction_[3][RayPacket::kMaxRays];
-  /// The least and greatest of them, by axis.
+  /// The least and greatest positions and directions, by axis.
   std::int32_t position_range_[3][2], direction_range_[3][2];
   std::int32_t sign_[3];  ///< By axis: -1 where mirrored, else 0.
   std::size_t top_ = 0;
   Visit stack_[8 * kMaxLevels];
-  /// The path to the visited voxel, by level: the slots of its descriptors, and the indices of the
-  /// spans that its contours leave. spans_[0] are the rays' own.
+  /// The path to the visited voxel, by level: the slots of the descriptors, and the indices of the
+  /// spans that remain after the contours. spans_[0] has the uncut rays.
   std::uint64_t slots_[kMaxLevels + 1];
   std::uint32_t span_at_[kMaxLevels + 1];
   Spans spans_[kWithContours ? kMaxLevels + 1 : 1];
-  /// By the level of the parent.
+  /// Indexed by the level of the parent.
   ChildContours child_contours_[kWithContours ? kMaxLevels : 1];
   Tried tried_[kWithContours ? kMaxLevels : 1];
 };

@@ -10,8 +10,8 @@
 namespace voxdag {
 
 /// A caster (see trace/scalar_caster.hpp) at a BoundedDag, EsvoNodes, ContourNodes or
-/// StreamedNodes. It is fast if rays that are a few thousand apart in the stream are near each
-/// other in space, as those of a tile of a picture are.
+/// StreamedNodes. It is fast if rays within a few thousand places in the stream are also near each
+/// other in space, like the rays of a tile of a picture.
 template <class Target>
 class PacketCaster {
  public:
@@ -40,7 +40,7 @@ class PacketCaster {
  private:
   using Hits = typename PacketTarget<Target>::Hits;
   using Hit = decltype(std::declval<const Hits&>()[0]);
-  /// Whether the target wants to know of hits.
+  /// Whether the target must be told about hits.
   static constexpr bool kTells =
       requires(const Target& target, const CastRay& ray, const Hit& hit) {
     target.on_hit(ray.ray, ray.stop, hit);
@@ -62,7 +62,7 @@ class PacketCaster {
           cast_packet(target_, packet, hits);
         else
           hits.met = cast_packet_any(target_, packet);
-        // Copies, so that the compiler knows that writes of results do not change them.
+        // Copies the values, so that the compiler knows that writing results does not change them.
         const std::size_t size = packet.size;
         const std::uint64_t met = hits.met;
         for (std::size_t at = 0; at < size; ++at, ++place) {

@@ -1,4 +1,4 @@
-// Sets of rays or beams, and vectors of their values: the base of all walks of packets. Included
+// Sets of rays or beams, and vectors of their values: the base class of all packet walks. Included
 // once for each instruction set.
 #if defined(VOXDAG_PACKET_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_PACKET_LANES_INL

@@ -1,15 +1,14 @@
-// The rays of a packet with bounds on all of them: the base of the walks at DAGs and ESVOs.
-// Included once for each instruction set.
+// The rays of a packet with bounds on all of them: the base class of the packet walks at DAGs and
+// ESVOs. Included once for each instruction set.
 //
 // Source: I. Wald, P. Slusallek, C. Benthin and M. Wagner, "Interactive Rendering with Coherent Ray
 // Tracing", Eurographics 2001, for packets; A. Reshetov, A. Soupikov and J. Hurley, "Multi-Level
 // Ray Tracing Algorithm", SIGGRAPH 2005, for bounds on a packet by interval arithmetic.
 //
-// All rays of a packet run down along every axis (they are mirrored alike), so that the least and
-// greatest origin and inverse direction per axis bound the T at which any of the rays crosses a
-// plane. Near the packet's start, where the rays are close together compared with the cells, a walk
-// tests a cell with these bounds alone. Where the rays have spread, it tests them one vector at a
-// time.
+// All rays of a packet are mirrored on the same axes and run down along every axis. So the least
+// and greatest origin and inverse direction per axis bound the T at which any ray crosses a plane.
+// While the rays are close together, compared with the cells, a walk tests a cell with these bounds
+// alone. After they have spread, it tests them one vector at a time.
 #if defined(VOXDAG_PACKET_RAYS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_PACKET_RAYS_INL
 #undef VOXDAG_PACKET_RAYS_INL
@@ -33,9 +32,9 @@ class PacketRays : protected PacketLanes {
   using DF8 = hn::CappedTag<float, 8>;  ///< Lanes are the children of a node.
   using DU8 = hn::RebindToUnsigned<DF8>;
   static_assert(hn::MaxLanes(DF8()) == 8);
-  /// Rays that are closer together than this many sides of a cell count as one wide ray.
+  /// Rays whose distance is less than this many sides of a cell are tested as one wide ray.
   static constexpr float kNarrow = 1.0f;
-  /// Up to this many rays are tested one at a time, each with all children of a node at once.
+  /// Up to this many rays are tested one at a time, each against all children of a node at once.
   static constexpr int kFew = 6;
   static constexpr std::uint32_t kOne = 0x3F800000u;  ///< The bits of 1.0f.
 
@@ -56,7 +55,7 @@ class PacketRays : protected PacketLanes {
   /// Computes the bounds on the rays. `levels` is L, or more.
   void bound(int levels);
   /// Returns whether the rays are so close together, compared with the children of this cell, that
-  /// it is not worth testing them separately. No ray enters the cell before `enter`.
+  /// testing them separately does not pay. No ray enters the cell before `enter`.
   bool are_narrow(const Cell& cell, float enter) const;
   /// Returns a T at which all rays that meet the cell have left it.
   float last_exit(const Cell& cell) const;
@@ -108,9 +107,9 @@ class PacketRays : protected PacketLanes {
   static HWY_INLINE float side_of(Level level) {
     return float_from_bits((127u - static_cast<std::uint32_t>(level)) << 23);
   }
-  /// All bits of the first three words.
+  /// Mask of the first three words.
   alignas(16) static constexpr std::uint32_t kAxes[4] = {~0u, ~0u, ~0u, 0};
-  /// By axis: all bits set for the children in the upper half.
+  /// Mask, by axis and child: all bits set for children in the upper half.
   alignas(32) static constexpr std::uint32_t kUpper[3][8] = {{0, ~0u, 0, ~0u, 0, ~0u, 0, ~0u},
                                                              {0, 0, ~0u, ~0u, 0, 0, ~0u, ~0u},
                                                              {0, 0, 0, 0, ~0u, ~0u, ~0u, ~0u}};
@@ -121,7 +120,7 @@ class PacketRays : protected PacketLanes {
     hn::StoreU(words, D4(), reinterpret_cast<std::uint32_t*>(&cell));
   }
   static HWY_INLINE void set_child(const Cell& parent, std::uint32_t child, Cell& cell) {
-    // By child: whether its side is added to the corner, per axis.
+    // By child and axis: whether the child's side is added to the corner.
     alignas(16) static constexpr std::uint32_t kBits[8][4] = {
         {0, 0, 0, 0},   {~0u, 0, 0, 0},   {0, ~0u, 0, 0},   {~0u, ~0u, 0, 0},
         {0, 0, ~0u, 0}, {~0u, 0, ~0u, 0}, {0, ~0u, ~0u, 0}, {~0u, ~0u, ~0u, 0}};

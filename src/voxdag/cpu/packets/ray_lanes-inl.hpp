@@ -35,12 +35,13 @@ inline bool have_one_origin(const RayPacket& packet) {
 }
 
 struct RayLanes {
-  static constexpr std::size_t kWidth = hn::MaxLanes(hn::CappedTag<float, 16>());  ///< Of a vector.
+  static constexpr std::size_t kWidth =
+      hn::MaxLanes(hn::CappedTag<float, 16>());  ///< Lanes of a vector.
 
-  /// By axis, then by ray. The last vector is filled up with copies of the last ray.
+  /// Indexed by axis, then by ray. The last vector is padded with copies of the last ray.
   alignas(64) float origin[3][RayPacket::kMaxRays], inverse[3][RayPacket::kMaxRays];
   alignas(64) float t_min[RayPacket::kMaxRays];
-  /// The next float after t_max: a cell is met if it is entered before that.
+  /// The next float after t_max: a ray meets a cell only if it enters before t_end.
   alignas(64) float t_end[RayPacket::kMaxRays];
   alignas(64) float stop_start[RayPacket::kMaxRays], stop_per_t[RayPacket::kMaxRays];
   std::size_t size;
@@ -113,7 +114,7 @@ inline void RayLanes::load(const RayPacket& packet) {
     hn::Store(per_t, d, stop_per_t + first);
     stops = hn::Max(stops, hn::Max(start, per_t));
   }
-  // Fills up the last of wider vectors.
+  // Pads the last vector if vectors are wider.
   for (std::size_t i = (packet.size + 7) / 8 * 8; i % kWidth != 0; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       origin[axis][i] = origin[axis][packet.size - 1];

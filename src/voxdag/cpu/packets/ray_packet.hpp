@@ -15,8 +15,8 @@ struct RayPacket {
   std::size_t size = 0;
 };
 
-/// The hits of a packet. Arrays are indexed by ray; values of rays that met nothing are undefined,
-/// except that levels are always those of some cell.
+/// The hits of a packet. Arrays are indexed by ray. Values of rays that met nothing are undefined,
+/// but `level` is always a valid level.
 struct PacketHits {
   std::uint64_t met = 0;  ///< Bit i: ray i met a cell.
   alignas(64) float t[RayPacket::kMaxRays];
@@ -37,7 +37,7 @@ struct PacketHits {
   }
 };
 
-/// Casts the packet's rays one at a time, for machines with small vectors. Returns which meet
+/// Casts the packet's rays one at a time, for machines with small vectors. Returns which rays meet
 /// anything, in the form of PacketHits::met; `hits` may be null.
 template <class Nodes, class Hits>
 std::uint64_t cast_one_by_one(const Nodes& nodes, const RayPacket& packet, Hits* hits) {
@@ -52,7 +52,7 @@ std::uint64_t cast_one_by_one(const Nodes& nodes, const RayPacket& packet, Hits*
 }
 
 /// Traits of a target of packets. Hits is its type of PacketHits. kByDirection says which packets
-/// of incoherent rays are better: rays of similar direction from many neighbouring points (true),
+/// of incoherent rays are faster: rays of similar direction from many neighbouring points (true),
 /// or all rays of a few points (false).
 template <class Target>
 struct PacketTarget {};

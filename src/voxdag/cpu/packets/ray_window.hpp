@@ -12,9 +12,9 @@ namespace voxdag {
 
 /// Up to kMaxRays rays. The rays of a packet must have the same GridRay::mirrored; the more similar
 /// they are, the faster the packet is. Neighbours in a stream of primary or shadow rays are
-/// similar: the window takes few of them, so that they stay in the nearest cache. Rays of ambient
-/// occlusion are not: the window may sort them by direction, in cells of about a hundredth of the
-/// sphere, so that a packet has rays of many neighbouring pixels with similar directions.
+/// similar. The window takes few of them, so that they stay in the L1 cache. Rays of ambient
+/// occlusion are not similar. The window can sort them by direction, in cells of about a hundredth
+/// of the sphere, so that a packet has rays of many neighbouring pixels with similar directions.
 class RayWindow {
  public:
   static constexpr int kMaxRays = 4096;
@@ -23,10 +23,10 @@ class RayWindow {
   RayWindow(const RayWindow&) = delete;
   RayWindow& operator=(const RayWindow&) = delete;
 
-  /// Takes make_ray(0), make_ray(1) and so on: at least one, at most `available`. References that
-  /// it returns must outlive the window's content. Calls on_miss(i, ray) for rays that miss. Sorts
-  /// the others by their octant (GridRay::mirrored), and with `by_direction` by their direction
-  /// too.
+  /// Takes make_ray(0), make_ray(1) and so on: at least one, at most `available`. If make_ray
+  /// returns references, they must stay valid while the window holds the rays. Calls on_miss(i,
+  /// ray) for rays that miss. Sorts the others by their octant (GridRay::mirrored) and, with
+  /// `by_direction`, by their direction too.
   template <class MakeRay, class OnMiss>
   void fill(int available, bool by_direction, const MakeRay& make_ray, const OnMiss& on_miss) {
     const auto take_one = [&](int i) {
@@ -43,11 +43,11 @@ class RayWindow {
 
   /// Returns how many rays fill() took.
   int taken() const { return taken_; }
-  /// Returns how many of them do not miss: these are in the window.
+  /// Returns the number of rays in the window: those that did not miss.
   int size() const { return size_; }
-  /// Returns the i of the ray at this place, 0 <= place < size().
+  /// Returns the argument i of make_ray() for the ray at this place, 0 <= place < size().
   int index(int place) const { return order_[place]; }
-  /// Fills a packet with the rays from this place on that have the same octant.
+  /// Fills a packet with the rays from this place on that share its octant.
   void set_packet(int place, RayPacket& packet) const {
     const int most = std::min(size_ - place, static_cast<int>(RayPacket::kMaxRays));
     const std::uint32_t mirrored = rays_[order_[place]]->ray.mirrored;
@@ -61,14 +61,14 @@ class RayWindow {
 
  private:
   static constexpr int kCellBits = 6, kKeys = 8 << kCellBits;
-  /// How many rays the window takes if they are similar.
+  /// The number of rays that the window takes if they are similar.
   static constexpr int kAlike = 256;
 
-  /// Takes rays with take_one(i) until there are `end`. Returns whether all that it took have the
-  /// same octant.
+  /// Takes rays with take_one(i) until the window has taken `end` rays. Returns whether the new
+  /// rays all have the same octant.
   template <class OnMiss, class TakeOne>
   bool take(int end, const OnMiss& on_miss, const TakeOne& take_one) {
-    std::uint32_t octants = 0;  // bit m: there is a ray with `mirrored` m
+    std::uint32_t octants = 0;  // bit m is set if a ray has `mirrored` == m
     for (; taken_ < end; ++taken_) {
       take_one(taken_);
       const GridRay& taken = rays_[taken_]->ray;
@@ -87,7 +87,7 @@ class RayWindow {
   static std::uint32_t key_of(const GridRay& ray) {
     std::uint32_t key = ray.mirrored << kCellBits;
     for (int axis = 0; axis < 3; ++axis) {
-      // 1 / component in steps of 1, 1.5, 2, 3.
+      // Quantises 1 / component in steps of 1, 1.5, 2, 3.
       const std::uint32_t steps = (bits_of_float(ray.inverse[axis]) - bits_of_float(1.0f)) >> 22;
       const std::uint32_t cell = steps < 3 ? steps : 3;
       key |= ((cell & 1u) | (cell & 2u) << 2) << axis;
@@ -118,7 +118,8 @@ class RayWindow {
     std::copy_n(sorted, size_, order_);
   }
 
-  alignas(CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // rays that come as values
+  alignas(
+      CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // rays that make_ray returns by value
   const CastRay* rays_[kMaxRays];
   std::uint16_t order_[kMaxRays];
   int taken_ = 0, size_ = 0;

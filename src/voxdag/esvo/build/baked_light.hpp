@@ -7,9 +7,9 @@
 
 namespace voxdag {
 
-/// Returns the mean of `light` over the pieces of a cell, of which there is at least one. Returns
-/// nothing if the cell is larger than a voxel and the light differs in it by more than
-/// `color_error` (sRGB encoded).
+/// Returns the mean of `light` over the pieces of a cell; there must be at least one. Returns
+/// nothing if the cell is larger than a voxel and the light in it varies by more than `color_error`
+/// (sRGB encoded).
 std::optional<float> baked_light(const SurfaceLight& light, const Cell& cell,
                                  const PieceSampler& sampler, float color_error);
 

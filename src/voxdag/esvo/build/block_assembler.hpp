@@ -1,6 +1,6 @@
 #pragma once
-/// Puts finished tasks in order: large trees go to the sink as blocks, small ones become part of
-/// the tree of the cell above.
+/// Collects finished tasks in order. Large trees go to the sink as blocks; small ones join the tree
+/// of the parent cell.
 #include <vector>
 
 #include "voxdag/esvo/build/build_esvo.hpp"
@@ -22,7 +22,7 @@ bool needs_blocks(const EsvoTree& tree);
 
 class BlockAssembler {
  public:
-  /// Refers to its arguments; finishes the cells.
+  /// Refers to its arguments, and finishes the cells.
   BlockAssembler(TopCells& cells, const EsvoOptions& options, EsvoSink& sink)
       : cells_(cells), options_(options), sink_(sink) {}
 

@@ -11,12 +11,12 @@
 namespace voxdag {
 
 struct BuiltVoxel {
-  bool exists = false;  ///< False: no surface, or the alpha test removes all of it.
+  bool exists = false;  ///< False if there is no surface left by the alpha test.
   bool is_leaf = false;
   std::optional<Contour> contour;
   SurfaceSum sum;
   EsvoTree tree;             ///< Node 0 is the voxel; empty if the voxel is a leaf.
-  MemoryReservation memory;  ///< Of the tree.
+  MemoryReservation memory;  ///< Memory of the tree.
 
   /// Counts the tree in a budget (null: no limit). Throws OverMemory.
   void count_tree(MemoryBudget* budget);

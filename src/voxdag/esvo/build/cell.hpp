@@ -1,5 +1,5 @@
 #pragma once
-/// A cell of an ESVO in the making: its size, its place and the surface in it.
+/// A cell of an ESVO under construction: its size, its position and the surface in it.
 #include <cstdint>
 #include <span>
 
@@ -15,7 +15,7 @@ struct TrianglePiece {
 
   std::uint32_t triangle;    ///< Index into Cell::triangles.
   std::uint32_t conditions;  ///< The triangle's conditions that are open in the cell, as bits.
-  double area;               ///< In the cell's own coordinates, in which its side is 2.
+  double area;               ///< In the cell's own coordinates: its side is 2.
   SurfacePolygon polygon;
 };
 
@@ -23,21 +23,21 @@ struct TrianglePiece {
 struct Cell {
   int log2_size = 0;  ///< The cell's side is 2^log2_size voxels.
   Vec3i origin{};     ///< The cell's lower corner in the coordinates of the triangles, in voxels.
-  Vec3i frame_origin{};  ///< Where the triangles' coordinates begin in the grid, in voxels.
+  Vec3i frame_origin{};  ///< Origin of the triangles' coordinates, in voxels of the grid.
   std::span<const SurfaceTriangle> triangles;
   std::span<const TrianglePiece> pieces;
 
   const SurfaceTriangle& triangle_of(const TrianglePiece& piece) const {
     return triangles[piece.triangle];
   }
-  /// Half of the side, in voxels.
+  /// Returns half of the side, in voxels.
   double half_size() const { return 0.5 * static_cast<double>(std::int64_t{1} << log2_size); }
-  /// The centre, in the coordinates of the triangles.
+  /// Returns the centre, in the coordinates of the triangles.
   Vec3d centre() const {
     const double half = half_size();
     return static_cast<Vec3d>(origin) + Vec3d{half, half, half};
   }
-  /// The area of a piece in voxels².
+  /// Returns the area of a piece in voxels².
   double area(const TrianglePiece& piece) const {
     const double half = half_size();
     return piece.area * half * half;

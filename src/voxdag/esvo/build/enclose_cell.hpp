@@ -1,5 +1,5 @@
 #pragma once
-/// Contours of cells that are too large to tessellate their displaced surface.
+/// Decides the contours of cells that are too large to tessellate their displaced surface.
 #include <span>
 
 #include "voxdag/esvo/build/decide_cell.hpp"

@@ -9,8 +9,8 @@
 
 namespace voxdag {
 
-/// Starts the cell of a level (`cell` counts cells of that level) with those of `triangles` that
-/// meet it. Displaced triangles are tessellated to the size of a voxel.
+/// Starts a cell with those of `triangles` that meet it. `cell` is in cells of `level`. Displaced
+/// triangles are tessellated to the size of a voxel.
 void load_pieces(PieceStack& pieces, const PieceSampler& sampler, const TriangleSource& source,
                  int level, Vec3i cell, std::span<const std::uint32_t> triangles);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Lets threads build at the same time only as long as the memory for it is left.
+/// Lets threads build at the same time only while enough memory is left.
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -10,14 +10,15 @@ namespace voxdag {
 
 class MemoryGate {
  public:
-  /// `budget` may be null: then nobody waits.
+  /// If `budget` is null, no thread waits.
   explicit MemoryGate(MemoryBudget* budget) : budget_(budget) {}
 
-  /// Held while memory is in use that was promised by the gate.
+  /// A thread holds a pass while it uses memory that the gate promised.
   class Pass {
    public:
-    /// Waits until the budget has `bytes` left beside those promised to the holders of other
-    /// passes, or until there is no other holder. A holder must not wait for other holders.
+    /// Waits until the budget has `bytes` left in addition to the bytes promised to other passes,
+    /// or until there is no other pass. A thread with a pass must not wait for threads with other
+    /// passes.
     Pass(MemoryGate& gate, std::uint64_t bytes) : gate_(gate), bytes_(bytes) {
       std::unique_lock lock(gate_.mutex_);
       gate_.left_.wait(lock, [&] { return gate_.holders_ == 0 || gate_.has_left(bytes_); });

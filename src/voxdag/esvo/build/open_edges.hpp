@@ -1,5 +1,5 @@
 #pragma once
-/// Which edges bound a surface.
+/// Finds the edges that bound a surface.
 #include <cstdint>
 #include <vector>
 

@@ -10,7 +10,7 @@ namespace voxdag {
 struct SurfacePlace {
   Vec3d point;     ///< In voxels of the finest level, from the grid's lower corner.
   Vec3f normal{};  ///< Unit length; the shading normal.
-  Vec3f face{};    ///< Unit length; the triangle's own normal, on the side of `normal`.
+  Vec3f face{};    ///< Unit length; triangle normal, on the side of `normal`.
 };
 
 /// Returns the part of the light that reaches a place, 0 to 1. Several threads call it at a time;

@@ -17,7 +17,7 @@ namespace voxdag {
 
 struct SurfaceSum {
   Vec3f color{};         ///< Linear light times area.
-  Vec3f normal{};        ///< Normals times area; the two sides of something thin cancel.
+  Vec3f normal{};        ///< Normals times area; two opposite sides cancel.
   float area = 0;        ///< Visible area, in voxels² of the finest level.
   float length = 0;      ///< Lengths of the normals times area.
   OuterProductSum axes;  ///< Outer products of the normals, divided by their lengths, times area.

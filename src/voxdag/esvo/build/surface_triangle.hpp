@@ -18,9 +18,9 @@ struct SurfaceTriangle {
   // What every level reads comes first.
   TriangleSetup setup;
   Vec3d normal{};               ///< Unit length; zero for a triangle without area.
-  ContourDirection across;      ///< `normal` as a contour stores it; none likewise.
+  ContourDirection across;      ///< `normal` as a contour stores it; none if it is zero.
   std::uint32_t source = 0;     ///< Triangle of the mesh.
-  bool is_displaced = false;    ///< Its normal is its own, not that of the source.
+  bool is_displaced = false;    ///< Its normal differs from the source's.
   std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
   /// The sample of every point, if they are all the same.
   std::optional<SurfaceSample> constant_sample;

@@ -16,14 +16,14 @@ struct TopCell {
   int level = 0;
   Vec3i cell{};  ///< In cells of the level.
   std::uint32_t parent = kNoParent;
-  int child = 0;           ///< Which of the parent's children it is.
-  TriangleList triangles;  ///< Those that may meet it. Empty if it is no task.
+  int child = 0;           ///< Child index in the parent.
+  TriangleList triangles;  ///< Triangles that may meet it. Empty unless a task.
   ConvexPolyhedron shape;  ///< Already cut by the cell's own contour.
   CellDecision decision;
   double weight = 0;              ///< See PieceStack::weight(); an estimate if `is_displaced`.
-  bool is_displaced = false;      ///< Has displaced triangles: a task decides it when it is built.
-  bool is_task = false;           ///< Its children are not among the cells.
-  int children_left = 0;          ///< Children that are cells and not finished.
+  bool is_displaced = false;      ///< Has displaced triangles; tasks with them are decided later.
+  bool is_task = false;           ///< A task: its children are not among the cells.
+  int children_left = 0;          ///< Children among the cells that are not finished.
   std::vector<BuiltVoxel> built;  ///< The finished children.
 };
 

@@ -19,12 +19,12 @@ inline double displaced_edge_limit(const Grid& grid) { return std::sqrt(2.0) * g
 struct TriangleSource {
   const Grid& grid;
   const QuantizedMesh& mesh;
-  const std::vector<std::uint8_t>& open_edges;  ///< By triangle of the quantised mesh.
+  const std::vector<std::uint8_t>& open_edges;  ///< Per triangle of the quantised mesh.
   const DisplacedTriangles* displaced;          ///< Null if nothing is displaced.
   /// Triangles of the mesh that are not built, because they repeat others.
   const IndexSet& duplicates;
 
-  /// Takes a triangle of the quantised mesh.
+  /// Returns whether a triangle of the quantised mesh is a duplicate.
   bool is_duplicate(std::size_t triangle) const {
     return duplicates.contains(mesh.source(triangle));
   }

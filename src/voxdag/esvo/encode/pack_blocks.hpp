@@ -27,7 +27,7 @@ struct PackOptions {
 
 /// A far pointer to children that were packed before.
 struct PackedLink {
-  std::uint64_t child;   ///< As tree.packed gives it.
+  std::uint64_t child;   ///< As in tree.packed.
   std::uint64_t parent;  ///< The descriptor with the far pointer, as a slot among these blocks.
 };
 

@@ -19,7 +19,7 @@ namespace voxdag {
 /// A direction as contours store it.
 struct ContourDirection {
   Vec3i normal{};
-  float length = 0;  ///< Of `normal`; 0 if there is no direction.
+  float length = 0;  ///< Length of `normal`; 0 if there is no direction.
 
   ContourDirection() = default;
   explicit ContourDirection(Vec3i n)
