@@ -56,7 +56,7 @@ class ListedCells {
     return {triangle, left};
   }
 
-  /// Goes down one level. Each path needs this at most once, if log2_size is odd.
+  /// Goes down one level, for an odd log2_size. A path needs this at most once.
   Cell cell_by_8(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
     const std::size_t list = context_.items.size();

@@ -1,6 +1,6 @@
 #pragma once
-/// Parses the bytes of an ESVO file, step by step. The container and the rules for errors are those
-/// of vdag_parse.hpp.
+/// Parses the bytes of an ESVO file, step by step. vdag_parse.hpp describes the container and the
+/// rules for errors.
 #include <span>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// Returns whether these are the chunks of an ESVO: other files have no ESVO chunk.
+/// Returns whether these are the chunks of an ESVO file: whether one of them is the chunk ESVO.
 bool is_esvo(const std::vector<VdagChunk>& chunks);
 
 struct EsvoContents {
@@ -23,7 +23,7 @@ struct EsvoContents {
 
 EsvoMetadata read_esvo_metadata(const std::vector<VdagChunk>& chunks);
 std::span<const EsvoBlockEntry> read_esvo_directory(const std::vector<VdagChunk>& chunks);
-/// Returns the byte of the file at which the blocks begin.
+/// Returns the offset of the blocks in the file, in bytes.
 std::uint64_t esvo_chunk_offset(const std::vector<VdagChunk>& chunks);
 /// Returns all chunks but ESVO, whose blocks have checksums of their own.
 std::vector<VdagChunk> chunks_but_blocks(const std::vector<VdagChunk>& chunks);
@@ -32,7 +32,7 @@ EsvoView read_esvo_view(const std::vector<VdagChunk>& chunks, const EsvoMetadata
 /// Runs validate_esvo and compares the counts with those of `metadata`. Errors name the chunk.
 void check_esvo_contents(const EsvoContents& contents);
 
-/// Runs all the steps. The result is safe to walk.
+/// Runs all steps. The result is safe to walk.
 EsvoContents parse_esvo(std::span<const std::byte> file);
 
 }  // namespace voxdag

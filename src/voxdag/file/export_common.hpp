@@ -11,23 +11,24 @@ namespace voxdag {
 Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
                     const ExportOptions& options);
 
-/// Returns the number of voxels in the window. Throws Error(path, ...) if `bytes_per_voxel` for
-/// each of them do not fit on the disk that `path` is on.
+/// Returns the number of voxels in the window. Throws Error(path, ...) if that number times
+/// `bytes_per_voxel` does not fit on the disk of `path`.
 std::uint64_t count_for_export(const std::filesystem::path& path, const VoxelSet& voxels,
                                const Box3i& window, std::uint64_t bytes_per_voxel,
                                const ExportOptions& options);
 
-/// Throws Error(path, ...) if a file of so many bytes does not fit on the disk that `path` is on.
-/// Pipes and devices have no limit.
+/// Throws Error(path, ...) if a file of this many bytes does not fit on the disk of `path`. Pipes
+/// and devices have no limit.
 void check_disk_space(const std::filesystem::path& path, std::uint64_t bytes);
 
-/// Reports to options.progress, if there is any, that `done` of `count` voxels are done.
+/// Reports that `done` of `count` voxels are done to options.progress, if it is set.
 inline void report_export(const ExportOptions& options, std::uint64_t done, std::uint64_t count) {
   if (options.progress)
     options.progress(count == 0 ? 1 : static_cast<double>(done) / static_cast<double>(count), done);
 }
 
-/// Runs for_each_leaf_block and reports the number of voxels done, of `count`, to options.progress.
+/// Runs for_each_leaf_block(), and reports the voxels that are done (of `count`) to
+/// options.progress.
 template <class Fn>
 void export_leaf_blocks(const VoxelSet& voxels, const Box3i& window, std::uint64_t count,
                         const ExportOptions& options, const Fn& fn) {

@@ -1,5 +1,5 @@
 #pragma once
-/// How many voxels an export has, known before it is written.
+/// Counts the voxels of an export before it is written.
 #include <cstdint>
 #include <functional>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Reading and writing the JSON of metadata: values with errors that name their place, and the
-/// members that all scene files have.
+/// Reads and writes the JSON of metadata: values whose errors name their place, and the members
+/// that all scene files have.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -71,7 +71,7 @@ MetadataJson begin_metadata_json(const SceneMetadata& metadata);
 /// Adds "source", "program" and "build", the last members of the document.
 void finish_metadata_json(MetadataJson& json, const SceneMetadata& metadata);
 
-/// Reads these members from the document's root.
+/// Reads "grid", "source", "program" and "build" from the document's root.
 void read_scene_metadata(const MetadataField& root, SceneMetadata& metadata);
 
 }  // namespace voxdag

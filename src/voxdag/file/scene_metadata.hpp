@@ -16,8 +16,8 @@ struct VdagSource {
   friend bool operator==(const VdagSource&, const VdagSource&) = default;
 };
 
-/// Depends on the input alone, so that equal inputs make equal files: it must not contain times,
-/// folders, thread counts, or which of two equivalent methods ran.
+/// Must depend on the input alone, so that equal inputs make equal files. So it contains no times,
+/// folders or thread counts, and does not say which of two equivalent methods ran.
 struct SceneMetadata {
   Grid grid;
   VdagSource source;

@@ -8,7 +8,7 @@
 ///   ...  chunk 1, ...
 ///
 /// Everything is little-endian. Chunks are stored in the table's order, with only padding between
-/// them, and the file ends with the padding of the last one.
+/// them. The file ends with the padding of the last chunk.
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -45,7 +45,8 @@ struct VdagChunkEntry {
 };
 static_assert(sizeof(VdagChunkEntry) == 32 && offsetof(VdagChunkEntry, checksum) == 24);
 
-/// A reader must refuse a file with an unknown chunk that has this flag; it skips unknown others.
+/// A reader must refuse a file with an unknown chunk that has this flag. It skips unknown chunks
+/// without the flag.
 inline constexpr std::uint32_t kVdagChunkRequired = 1;
 
 constexpr std::uint32_t vdag_chunk_id(const char (&name)[5]) {

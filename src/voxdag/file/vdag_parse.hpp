@@ -16,7 +16,7 @@ namespace voxdag {
 struct VdagChunk {
   std::uint32_t id = 0;
   bool required = false;
-  std::uint64_t offset = 0;    ///< In the file.
+  std::uint64_t offset = 0;    ///< Byte in the file.
   std::uint64_t checksum = 0;  ///< From the chunk table.
   std::span<const std::byte> bytes;
 };
@@ -27,12 +27,13 @@ struct VdagContents {
   SvdagView view;  ///< Points into the bytes that were parsed.
 };
 
-/// Reads header and chunk table. Checks the magic, version, size and table checksum, that every
-/// chunk is where it must be, that ids are unique and no required one is unknown, and that the
-/// padding is zero. Does not look into chunks. `file` must be aligned to 8 bytes or more.
+/// Reads header and chunk table. Checks magic, version, size and table checksum. Checks that every
+/// chunk has the right offset, that ids are unique, that no unknown chunk is required, and that the
+/// padding is zero. Does not read the contents of chunks. `file` must be aligned to 8 bytes or
+/// more.
 std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file);
 
-/// Throws Error if the bytes of a chunk do not have the checksum of the table.
+/// Throws Error if the checksum of a chunk's bytes differs from the one in the table.
 void check_vdag_checksums(const std::vector<VdagChunk>& chunks);
 
 /// Returns the chunk's bytes. Throws Error if it is missing, or if its length is not a multiple of
@@ -44,7 +45,7 @@ std::string_view metadata_chunk_text(const std::vector<VdagChunk>& chunks);
 
 VdagMetadata read_vdag_metadata(const std::vector<VdagChunk>& chunks);
 
-/// Returns parse(text of META). Errors name the chunk.
+/// Returns parse(text), where text is the JSON of META. Errors name the chunk.
 template <class Parse>
 auto read_metadata_chunk(const std::vector<VdagChunk>& chunks, const Parse& parse) {
   const std::string_view text = metadata_chunk_text(chunks);
@@ -55,7 +56,8 @@ auto read_metadata_chunk(const std::vector<VdagChunk>& chunks, const Parse& pars
   }
 }
 
-/// Returns the chunk as values. Throws Error if it is missing, or if its length does not fit.
+/// Returns the chunk as an array of T. Throws Error if it is missing, or if its length is not a
+/// multiple of sizeof(T).
 template <class T>
 std::span<const T> chunk_values(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
   const std::span<const std::byte> bytes = chunk_bytes(chunks, id, sizeof(T));
@@ -68,7 +70,7 @@ SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels);
 /// Runs validate_svdag, check_canonical or check_minimal. Errors name the chunk.
 void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&));
 
-/// Runs all the steps and validate_svdag. The result is safe to walk.
+/// Runs all steps and validate_svdag(). The result is safe to walk.
 VdagContents parse_vdag(std::span<const std::byte> file);
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// The exposure of a film's frames, which adapts over time as an eye does.
+/// The exposure of a film's frames. It adapts over time, like an eye.
 #include <functional>
 #include <span>
 #include <vector>
@@ -13,12 +13,13 @@ namespace voxdag {
 /// Renders a picture; `progress` may be null.
 using PictureRenderer = std::function<RenderedImage(const RenderOptions&, Progress* progress)>;
 
-/// Returns the options of a small, coarse picture of the same scene: enough to know its brightness.
+/// Returns the options of a small, coarse picture of the scene, which is enough to measure its
+/// brightness.
 RenderOptions thumbnail_options(const RenderOptions& options);
 
-/// Returns the exposure of the frame at each of the ascending `times` (seconds): the automatic
-/// exposure of a thumbnail, in the geometric mean over about a second around the frame. Every frame
-/// has options.exposure if that is not 0.
+/// Returns the exposures of the frames at the ascending `times` (seconds). An exposure is the
+/// geometric mean of the automatic exposures of thumbnails over about a second around the frame. If
+/// options.exposure is not 0, every frame has that exposure.
 std::vector<float> film_exposures(const CameraPath& path, std::span<const double> times,
                                   const RenderOptions& options, const PictureRenderer& render,
                                   Progress& progress);

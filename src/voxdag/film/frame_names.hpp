@@ -4,10 +4,11 @@
 
 namespace voxdag {
 
-/// Whether the text has exactly one placeholder for a number: %d, or %0Nd for N digits (1 to 9).
+/// Returns whether the text has exactly one placeholder for a number: %d, or %0Nd for N digits (1
+/// to 9).
 bool is_frame_pattern(const std::string& pattern);
 
-/// Returns why the text is not a pattern, or an empty text if it is one.
+/// Returns the reason why the text is not a pattern, or an empty text if it is one.
 std::string frame_pattern_fault(const std::string& text);
 
 /// Returns the pattern with the number in it. A text that is not a pattern is returned unchanged.

@@ -8,7 +8,7 @@ namespace voxdag {
 
 struct FrameTiming {
   int frame = 0;
-  double time = 0;       ///< Of the film, seconds.
+  double time = 0;       ///< Time in the film, seconds.
   double render_ms = 0;  ///< Casting and shading.
   double write_ms = 0;   ///< Encoding and writing the picture.
   std::uint64_t rays = 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// sRGB in the 8-bit codes of image files, and by table for many values. core/srgb.hpp has the
-/// exact curves.
+/// Converts linear light to the 8-bit sRGB codes of image files, and to sRGB by a fast table.
+/// core/srgb.hpp has the exact curves.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -26,7 +26,7 @@ VOXDAG_HD inline float srgb8_to_linear(std::uint8_t code) {
 /// clamped, NaN becomes 0.
 inline float linear_to_srgb_fast(float linear) {
   constexpr std::size_t kSteps = 1024;
-  // Over the square root the curve is nearly straight.
+  // As a function of the square root, the curve is nearly linear.
   static const std::array<float, kSteps + 2> table = [] {
     std::array<float, kSteps + 2> values{};
     for (std::size_t i = 0; i <= kSteps; ++i) {

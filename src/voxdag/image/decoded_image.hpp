@@ -1,5 +1,5 @@
 #pragma once
-/// The pixels of an image file, in as few bytes as the file's values need.
+/// The pixels of an image file, with no more channels and bits than the file has.
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace voxdag {
 
-/// What decoding images and making textures may use.
+/// Options for decoding images and making textures.
 struct ImageOptions {
-  /// Counts pixels and texels for as long as they live, so it must outlive them. Null: no limit.
+  /// Counts pixels and texels as long as they live, so it must outlive them. Null: no limit.
   MemoryBudget* memory = nullptr;
   /// If not empty: called at least every 0.2 s; throws to stop the work.
   std::function<void()> poll = {};
@@ -31,7 +31,7 @@ class DecodedImage {
   using Rgba = std::array<std::uint16_t, 4>;
 
   DecodedImage() = default;
-  /// All zeros. Throws OverMemory.
+  /// Makes an image of zeros. Throws OverMemory.
   DecodedImage(int width, int height, int channels, int bytes_per_sample, MemoryBudget* memory)
       : width_(width),
         height_(height),
@@ -47,7 +47,7 @@ class DecodedImage {
   int height() const { return height_; }
   int channels() const { return channels_; }
   bool is_empty() const { return width_ == 0; }
-  /// Whether the file has an alpha channel or transparent colours.
+  /// Returns whether the file has an alpha channel or transparent colours.
   bool has_alpha() const { return channels_ % 2 == 0 && channels_ > 0; }
   std::size_t bytes() const { return bytes_.size(); }
 
@@ -55,14 +55,14 @@ class DecodedImage {
     return static_cast<std::size_t>(width_) * static_cast<std::size_t>(channels_) *
            static_cast<std::size_t>(bytes_per_sample_);
   }
-  /// Samples of 16 bits are in the machine's byte order.
+  /// Returns the samples of a row. Samples of 16 bits are in the machine's byte order.
   std::uint8_t* row(int y) { return bytes_.data() + static_cast<std::size_t>(y) * row_bytes(); }
   const std::uint8_t* row(int y) const {
     return bytes_.data() + static_cast<std::size_t>(y) * row_bytes();
   }
 
-  /// Returns a pixel: 8-bit values times 257, grey in all three colours, alpha 65535 if there is
-  /// none.
+  /// Returns a pixel. 8-bit values are multiplied by 257, grey is copied to all three colours, and
+  /// alpha is 65535 if there is none.
   Rgba pixel(int x, int y) const {
     const auto count = static_cast<std::size_t>(channels_);
     const std::size_t first = static_cast<std::size_t>(x) * count;

@@ -1,12 +1,12 @@
 #pragma once
-/// Rounding to 8-bit codes that keeps smooth gradients smooth.
+/// Rounds to 8-bit codes by dithering, which keeps gradients smooth.
 #include <cmath>
 #include <cstdint>
 
 namespace voxdag {
 
-/// Returns the fraction between two codes from which on pixel (x, y) rounds up, in [0,1). Fractions
-/// of neighbouring pixels are spread evenly.
+/// Returns the rounding threshold of pixel (x, y), in [0,1): a fraction between two codes is
+/// rounded up if it is at least that. Thresholds of neighbouring pixels are spread evenly.
 ///
 /// Source: J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare",
 /// SIGGRAPH 2014 courses: interleaved gradient noise.

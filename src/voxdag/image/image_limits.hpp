@@ -1,5 +1,5 @@
 #pragma once
-/// Limits on image files: what a hostile file may cost.
+/// Limits on the cost of a hostile image file.
 #include <cstdint>
 #include <string>
 
@@ -8,16 +8,17 @@
 
 namespace voxdag {
 
-/// Larger image files are refused.
+/// The maximum size of an image file.
 inline constexpr SizeLimit kMaxImageFile{std::uint64_t{1} << 30, "an image"};
 
-/// Images of more pixels are refused: 16,384 x 16,384.
+/// The maximum number of pixels: 16,384 x 16,384.
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 28;
 inline constexpr std::uint32_t kMaxImageSide = 1'000'000;
 
-/// A progressive JPEG is decoded once per scan. Usual files have about 10.
+/// The maximum number of scans of a progressive JPEG, which is decoded once per scan. Usual files
+/// have about 10 scans.
 inline constexpr int kMaxJpegScans = 64;
-/// Scans times pixels: as much work as 16 scans of the largest image.
+/// The maximum of scans times pixels: 16 scans of the largest image.
 inline constexpr std::uint64_t kMaxJpegScanPixels = std::uint64_t{1} << 32;
 
 /// Throws Error if an image has no pixels or too many.

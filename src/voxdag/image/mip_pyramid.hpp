@@ -1,9 +1,9 @@
 #pragma once
-/// Images at all sizes: means and bounds of regions in constant time.
+/// An image with its mip levels: means and bounds of regions in constant time.
 ///
 /// Mip maps after L. Williams, "Pyramidal Parametrics" (1983). Elongated regions take several taps
-/// along their long axis. The taps match the region's centre and covariance: the variance of the
-/// mip level's own filter is subtracted from that of the taps.
+/// along their long axis. The taps match the region's centre and covariance; so the variance of the
+/// mip level's own filter is subtracted from the variance of the taps.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,8 +26,8 @@ struct UvRegion {
 };
 
 /// `channels` values of 16 bits per texel. Level 0 is the image, sampled bilinearly; each level
-/// after it has half the width and height, rounded down, to 1 x 1. Texture coordinates run over the
-/// image from its upper left to its lower right corner.
+/// after it has half the width and height, rounded down, to 1 x 1. Texture coordinates are (0,0) at
+/// the image's upper left corner and (1,1) at its lower right corner.
 template <std::size_t channels>
 class MipPyramid {
  public:
@@ -38,8 +38,9 @@ class MipPyramid {
     Texel lo, hi;
   };
 
-  /// Makes the levels of an image, whose at least one texel come by rows. Memory: as much again as
-  /// `texels`, from the budget of `texels`; throws OverMemory. Calls poll() once per row.
+  /// Makes the levels of an image with at least one texel; `texels` has its rows. Needs as much
+  /// memory again as `texels` and takes it from the budget of `texels`. Throws OverMemory. Calls
+  /// poll() once per row.
   template <class Poll>
   MipPyramid(int width, int height, Texels texels, TextureWrap wrap_u, TextureWrap wrap_v,
              const Poll& poll)
@@ -57,7 +58,7 @@ class MipPyramid {
   int height() const { return levels_[0].height; }
   int level_count() const { return static_cast<int>(levels_.size()); }
 
-  /// Returns the bilinear value of a level.
+  /// Returns the bilinearly interpolated value of a level.
   Value sample(int level, Vec2f uv) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
     return bilinear(l, reduced(uv.x, wrap_u_) * static_cast<float>(l.width) - 0.5f,
@@ -86,7 +87,7 @@ class MipPyramid {
     const float spread = std::sqrt((a - c) * (a - c) / 4 + b * b);
     const float major = middle + spread, minor = std::max(middle - spread, 0.0f);
     // A region of variance s^2 / 12 is s wide. The level's texels are s / 3.46 to s / 1.73 wide, so
-    // that the filter alone is never wider than the region.
+    // the filter alone is never wider than the region.
     const float texel =
         std::max(std::sqrt(4 * minor), std::sqrt(12 * major) / (kMaxTaps * kTapDistance));
     if (major < 0.05f) return sample(0, region.center);
@@ -130,12 +131,12 @@ class MipPyramid {
     return sum;
   }
 
-  /// Returns bounds, not tight, of the values of level 0 at all points of a box. A box that is not
+  /// Returns conservative bounds on the values of level 0 at all points of a box. A box that is not
   /// finite stands for the whole image.
   Bounds bounds(Vec2f lo, Vec2f hi) const {
     Range x = texels_between(lo.x, hi.x, width(), wrap_u_);
     Range y = texels_between(lo.y, hi.y, height(), wrap_v_);
-    // The level that is read has at most three texels per side of the box.
+    // Chooses the level in which the box covers at most three texels per side.
     const auto extent = static_cast<unsigned>(std::max(x.last - x.first, y.last - y.first));
     const int wanted = extent > 2 ? static_cast<int>(std::bit_width((extent - 1) / 2)) : 0;
     const int level = std::min(wanted, level_count() - 1);
@@ -165,17 +166,17 @@ class MipPyramid {
   struct Level {
     int width = 0, height = 0;
     Texels texels;
-    CountedVector<Bounds> bounds;  ///< Of the texels of level 0 under each texel; empty at level 0.
+    CountedVector<Bounds> bounds;  ///< Bounds of level 0 under each texel; empty at level 0.
 
     const Texel* row(int y) const {
       return texels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
     }
   };
-  /// Texels from first to last, before wrapping.
+  /// The texels from first to last, before wrapping.
   struct Range {
     int first, last;
   };
-  /// The texels of a finer level that a texel covers, and how much of each.
+  /// The texels of the next finer level that a texel covers, and the fraction of each.
   struct Cover {
     int first = 0;
     std::vector<float> weights;
@@ -187,7 +188,8 @@ class MipPyramid {
     return texel;
   }
 
-  /// Returns the value at (x, y), in texels from the centre of the first; both fit an int.
+  /// Returns the value at (x, y), in texels from the centre of texel (0, 0); x and y must fit into
+  /// an int.
   Value bilinear(const Level& l, float x, float y) const {
     const int ix = floor_int(x), iy = floor_int(y);
     const int x0 = wrapped(ix, l.width, wrap_u_), x1 = wrapped(ix + 1, l.width, wrap_u_);
@@ -210,7 +212,7 @@ class MipPyramid {
     return value;
   }
 
-  /// Four floats, by the vector extension that g++ and clang share.
+  /// Four floats, in the vector extension of g++ and clang.
   using Lanes [[gnu::vector_size(16)]] = float;
   static Lanes lanes_of(const Texel& texel) {
     using Words [[gnu::vector_size(8)]] = std::uint16_t;
@@ -232,8 +234,8 @@ class MipPyramid {
     return std::abs(x) < 1e6f ? static_cast<float>(floor_int(x)) : std::floor(x);
   }
 
-  /// Returns the same place within one period, small enough for an index, also if `u` is not
-  /// finite.
+  /// Returns the equivalent coordinate within one period, small enough for an index, even if `u` is
+  /// not finite.
   static float reduced(float u, TextureWrap wrap) {
     if (wrap == TextureWrap::kClamp) return u > -1 ? std::min(u, 2.0f) : -1.0f;
     const float rest = wrap == TextureWrap::kRepeat ? u - floor_of(u) : u - 2 * floor_of(u / 2);
@@ -251,7 +253,7 @@ class MipPyramid {
     return rest < size ? rest : 2 * size - 1 - rest;
   }
 
-  /// Returns the texels of level 0 on which values between lo and hi depend: at most one period.
+  /// Returns the texels of level 0 that the values between lo and hi depend on: at most one period.
   static Range texels_between(float lo, float hi, int size, TextureWrap wrap) {
     const int period = wrap == TextureWrap::kMirror ? 2 * size : size;
     const float start = reduced(lo, wrap);
@@ -284,8 +286,8 @@ class MipPyramid {
     }
   }
 
-  /// Returns which texels of a finer level each texel covers. An odd size does not halve evenly:
-  /// texels then cover parts of texels.
+  /// Returns the texels of the next finer level that each texel covers. If that level's size is
+  /// odd, texels cover parts of finer texels.
   static std::vector<Cover> covers(int size, int half) {
     std::vector<Cover> covers(static_cast<std::size_t>(half));
     const double ratio = static_cast<double>(size) / half;

@@ -13,27 +13,28 @@ namespace voxdag {
 
 /// Writes to a file without a name (nameless_file.hpp) in the output's folder. commit() gives it
 /// the name. Where the file system has no nameless files, it writes to NAME.voxdag-PID-N, which
-/// commit() renames. If it is destroyed before commit(), also by an exception, it removes what it
-/// wrote, and an older file of the name stays as it is. A replaced file passes on its permissions,
-/// but no set-user-ID or set-group-ID bit.
+/// commit() renames. If it is destroyed before commit(), also by an exception, it removes its file,
+/// and an older file of that name stays unchanged. The new file gets the permissions of a file that
+/// it replaces, without set-user-ID and set-group-ID bits.
 ///
-/// A killed process (SIGKILL) leaves no part of an output under its name. It can leave a file
-/// NAME.voxdag-PID-N: a complete one if it was killed between naming a nameless file and renaming
-/// it over an older output, a partial one where there are no nameless files. The next AtomicFile
-/// for the same output removes such files (remove_leftovers in temporary_file.hpp).
+/// A killed process (SIGKILL) never leaves a partial output under the output's name. It can leave a
+/// file NAME.voxdag-PID-N. This file is complete if the process was killed between naming a
+/// nameless file and renaming it over an older output. It is partial on file systems without
+/// nameless files. The next AtomicFile for the same output removes such files (remove_leftovers in
+/// temporary_file.hpp).
 ///
 /// An output that exists and is neither a regular file nor a directory (a pipe, /dev/null) is
 /// written directly. So is a descriptor of this process (/dev/stdout, /dev/fd/3), of any kind, from
 /// its current position. A symbolic link stays; the file that it points to is created or replaced.
-/// Data is not forced to the disk (no fsync): after a power cut the file may be damaged, which
-/// formats with checksums detect.
+/// Data is not forced to the disk (no fsync). After a power cut the file may be damaged; formats
+/// with checksums detect that.
 ///
-/// Every failure throws Error(path, "byte N", the system's reason). A process that may run under a
-/// file size limit has to ignore SIGXFSZ, and one that writes to pipes SIGPIPE, to get the error
-/// instead of the signal. Not thread-safe.
+/// Every failure throws Error(path, "byte N", the system's reason). To get the error instead of a
+/// signal, a process that may run under a file size limit must ignore SIGXFSZ, and a process that
+/// writes to pipes must ignore SIGPIPE. Not thread-safe.
 class AtomicFile {
  public:
-  /// Creates the file, so that an unwritable place is an error before the work begins.
+  /// Creates the file, so that an unwritable folder is an error before the work begins.
   explicit AtomicFile(const std::filesystem::path& path);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
@@ -48,10 +49,10 @@ class AtomicFile {
   void write_zeros(std::size_t bytes);
 
   /// Overwrites bytes already written, e.g. a count in a header. [offset, offset + bytes) must lie
-  /// below position(). Throws if the output cannot seek (a pipe, a file opened for appending).
+  /// below position(). Throws if the output is not seekable (a pipe, a file opened for appending).
   void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
 
-  /// Bytes written so far.
+  /// Returns the number of bytes written so far.
   std::uint64_t position() const { return flushed_ + buffer_.size(); }
   const std::filesystem::path& path() const { return path_; }
 
@@ -68,10 +69,10 @@ class AtomicFile {
   void discard() noexcept;
   [[noreturn]] void fail(std::uint64_t at, int error) const;
 
-  std::filesystem::path path_;       ///< As given; errors name it.
+  std::filesystem::path path_;       ///< The caller's path; errors name it.
   std::filesystem::path target_;     ///< With symbolic links resolved.
   std::filesystem::path temporary_;  ///< Empty if the target is written directly.
-  char* noted_ = nullptr;            ///< Handle of that name in unfinished_files.hpp.
+  char* noted_ = nullptr;            ///< Its handle in unfinished_files.hpp.
   bool is_nameless_ = false;         ///< The temporary name is not in use yet.
   int descriptor_ = -1;
   off_t start_ = 0;  ///< Offset in the file at which the output starts.

@@ -21,7 +21,7 @@ class Descriptor {
 
   int get() const { return value_; }
   bool is_open() const { return value_ >= 0; }
-  /// Returns the descriptor, which the caller then has to close.
+  /// Gives up the descriptor and returns it; the caller must close it.
   int release() noexcept { return std::exchange(value_, -1); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// A file's bytes in memory of this process.
+/// A file's bytes, copied into this process's memory.
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -9,13 +9,13 @@
 
 namespace voxdag {
 
-/// A copy of a regular file, read once. Unlike a mapping it does not change when other programs
-/// rewrite or truncate the file: what a reader has checked stays true. Memory: the bytes of the
-/// file, on large pages where the system grants them. Copies of this object share the bytes.
+/// A copy of a regular file, read once. Unlike a mapping, it does not change when other programs
+/// rewrite or truncate the file, so bytes that a reader has checked stay valid. Memory: the bytes
+/// of the file, on large pages if the system grants them. Copies of this object share the bytes.
 class FileCopy {
  public:
   /// Throws the errors of open_input, std::bad_alloc, and Error(path, place, reason) if the file
-  /// cannot be read, or is truncated meanwhile.
+  /// cannot be read or is truncated during the read.
   explicit FileCopy(const std::filesystem::path& path, SizeLimit limit = {});
 
   /// Aligned to 64 bytes or more; empty for an empty file.

@@ -9,15 +9,14 @@
 
 namespace voxdag {
 
-/// A regular file's bytes, read by the system when they are first touched. Move-only; the bytes
-/// stay at their address when it is moved.
+/// A regular file's bytes, which the system reads when they are first touched. Move-only; the bytes
+/// keep their address when it is moved.
 ///
-/// A process that reads a page of a mapping whose file another process has cut short gets SIGBUS.
-/// Files that are replaced by renaming, as AtomicFile does, are safe; files edited in place are
-/// not.
+/// If another process truncates the file, reading a page beyond its new end raises SIGBUS.
+/// Replacing a file by renaming, as AtomicFile does, is safe; editing it in place is not.
 class MappedFile {
  public:
-  /// How the bytes will be read: a hint for the system's read-ahead.
+  /// The order in which the bytes will be read: a hint for the system's read-ahead.
   enum class Access {
     kSequential,  ///< Once, from the first byte to the last.
     kSoon,        ///< All of it, soon, in any order.
@@ -37,8 +36,9 @@ class MappedFile {
     return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
   }
 
-  /// Drops the resident pages that lie wholly inside `part` of the bytes: they no longer count as
-  /// this process's memory. The system reads them again when they are touched again. Thread-safe.
+  /// Drops the resident pages that lie completely inside `part` of the bytes, so that they no
+  /// longer count as this process's memory. The system reads them again when they are touched
+  /// again. Thread-safe.
   void release(std::string_view part) const;
 
  private:

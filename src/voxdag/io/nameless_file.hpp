@@ -1,5 +1,5 @@
 #pragma once
-/// Files without a name (O_TMPFILE): the system frees them however the process ends.
+/// Files without a name (O_TMPFILE). The system frees them when the process ends, however it ends.
 #include <filesystem>
 
 namespace voxdag {

@@ -1,5 +1,5 @@
 #pragma once
-/// Opens input files: the library opens every input here, so that errors read alike.
+/// Opens input files. The library opens every input here, so that all errors have the same form.
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -15,7 +15,7 @@ enum class InputKind {
   kFileOrPipe,  ///< A regular file, a pipe or a socket; never a device such as /dev/zero.
 };
 
-/// The largest input of one kind that is read.
+/// The maximum size of one kind of input.
 struct SizeLimit {
   std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
   const char* kind = "";  ///< For the error, with its article: "a camera path".
@@ -27,8 +27,8 @@ struct OpenInput {
   std::optional<std::uint64_t> size;  ///< Bytes of a regular file; none for a pipe.
 };
 
-/// Opens a file for reading. A named pipe without a writer is refused as kRegularFile and waited
-/// for as kFileOrPipe.
+/// Opens a file for reading. With kRegularFile, refuses a named pipe; with kFileOrPipe, waits until
+/// the pipe has a writer.
 ///
 /// Throws Error(path, "", reason) with the reason "cannot open: ...", "is a directory", "is not a
 /// regular file", "is neither a regular file nor a pipe", or "N bytes are more than the limit of M
@@ -36,8 +36,8 @@ struct OpenInput {
 OpenInput open_input(const std::filesystem::path& path, InputKind kind = InputKind::kRegularFile,
                      SizeLimit limit = {});
 
-/// Reads a whole input of at most `limit.bytes`. Memory: the bytes of the input; a larger one is
-/// refused before more than the limit is read. Throws the errors of open_input, and "cannot read:
+/// Reads a whole input of at most `limit.bytes`. Memory: the bytes of the input. Refuses a larger
+/// input before it reads more than the limit. Throws the errors of open_input, and "cannot read:
 /// ...".
 std::string read_input(const std::filesystem::path& path, SizeLimit limit,
                        InputKind kind = InputKind::kRegularFile);

@@ -1,6 +1,6 @@
 #pragma once
-/// Temporary files beside an output: their names, their locks, and the ones that killed processes
-/// left behind.
+/// Temporary files beside an output: their names, their locks, and the removal of those that killed
+/// processes left behind.
 #include <filesystem>
 
 namespace voxdag {
@@ -9,13 +9,13 @@ namespace voxdag {
 /// serial number. NAME is cut to 200 bytes.
 std::filesystem::path temporary_name(const std::filesystem::path& target);
 
-/// Locks a file of this process (flock) for as long as its open file description lives. The lock
-/// tells remove_leftovers() of other processes, also in other containers, that its writer lives.
-/// File systems without locks are left alone.
+/// Locks a file of this process (flock) as long as its open file description lives. The lock tells
+/// remove_leftovers() in other processes, also in other containers, that the writer is alive. Does
+/// nothing on file systems without locks.
 void lock_temporary(int descriptor) noexcept;
 
-/// Removes temporary files of `target` whose writer was killed: regular files with a name that
-/// temporary_name() makes, of this user, of no running process, which no process locks. Lists each
+/// Removes temporary files of `target` whose writer was killed: regular files of this user, with a
+/// name from temporary_name(), whose process does not run and which no process locks. Lists each
 /// folder once per process. Never throws.
 void remove_leftovers(const std::filesystem::path& target) noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How many values an attribute block holds, of colours and of normals alike.
+/// The number of values in an attribute block, for colours and for normals.
 
 namespace voxdag {
 

@@ -11,13 +11,13 @@ namespace voxdag {
 struct EsvoBytes {
   std::uint64_t descriptors = 0;
   std::uint64_t far_pointers = 0;
-  /// Slots among the descriptors that hold none: unpaired slots, page headers, ends of pages.
+  /// Descriptor slots without a descriptor: unpaired slots, page headers, ends of pages.
   std::uint64_t gaps = 0;
   std::uint64_t info = 0;
   std::uint64_t contours = 0;
   std::uint64_t colors = 0;
   std::uint64_t normals = 0;
-  std::uint64_t padding = 0;  ///< To the end of the last page.
+  std::uint64_t padding = 0;  ///< Zeros up to the end of the last page.
 
   std::uint64_t total() const {
     return descriptors + far_pointers + gaps + info + contours + colors + normals + padding;

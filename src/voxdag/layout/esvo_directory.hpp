@@ -1,13 +1,14 @@
 #pragma once
-/// The directory of an ESVO's blocks: what streaming must know about a block before loading it.
+/// The directory of an ESVO's blocks: the data that streaming needs about a block before it loads
+/// it.
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 
-/// One block. It holds what lies below one voxel: the descriptors of the voxel's inner children and
-/// their descendants. The root's block holds the root's own descriptor.
+/// One block. It holds the octree below one voxel: the descriptors of the voxel's inner children
+/// and their descendants. The root's block holds the root's own descriptor.
 struct EsvoBlockEntry {
   static constexpr std::uint64_t kNoParent = ~std::uint64_t{0};
 

@@ -1,9 +1,9 @@
 #pragma once
-/// An ESVO's leaves as voxels of the finest level.
+/// Iteration over an ESVO's leaves as voxels of the finest level.
 ///
-/// A leaf of the finest level is one voxel. A coarser leaf stands for those of its voxels whose
-/// cubes meet the slab of every contour that cuts the leaf, the leaf's own and its ancestors'.
-/// These are all voxels that the leaf's shape touches, so that none of the exact cover is missing.
+/// A leaf of the finest level is one voxel. A coarser leaf stands for the finest voxels in it whose
+/// cubes meet the slabs of all contours that cut the leaf: its own and its ancestors'. These
+/// include all voxels that the leaf's shape touches, so no voxel of the exact cover is missing.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -43,7 +43,7 @@ class LeafPartWalk {
   }
 
  private:
-  /// low <= dot(normal, p) <= high, p in voxels.
+  /// The points p, in voxels, with low <= dot(normal, p) <= high.
   struct Slab {
     Vec3d normal;
     double low, high, half_of_voxel;
@@ -79,7 +79,7 @@ class LeafPartWalk {
 
   void walk_leaf(Vec3i at, int log2_size) {
     if (!meets_window(at, log2_size)) return;
-    // A leaf of the finest level counts, even if its slabs miss it by a rounding error.
+    // A leaf of the finest level always counts, even if a rounding error puts it outside its slabs.
     if (log2_size > 0 && !meets_slabs(at, log2_size)) return;
     if (log2_size <= 2) return emit(at, log2_size);
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
@@ -109,15 +109,15 @@ class LeafPartWalk {
 }  // namespace detail
 
 /// Calls fn(Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) with the voxels in the
-/// half-open `window` that each leaf stands for, in blocks of 4³, in Morton order. A large leaf
-/// comes once for each of its blocks; a block comes once for each of its leaves. The view must be
-/// valid.
+/// half-open `window` that each leaf stands for, in blocks of 4³ voxels, in Morton order. Calls it
+/// once for each pair of a block and a leaf that has voxels in it. The view must be valid.
 template <class Fn>
 void for_each_leaf_part(const EsvoView& esvo, const Box3i& window, const Fn& fn) {
   if (!esvo.is_empty()) detail::LeafPartWalk<Fn>(esvo, window, fn).walk(esvo.root, 0, {});
 }
 
-/// Calls fn(Vec3i origin, std::uint64_t mask) once for each block of 4³ with voxels, as for a DAG.
+/// Calls fn(Vec3i origin, std::uint64_t mask) once for each block of 4³ voxels that has any, in
+/// Morton order, as for a DAG.
 template <class Fn>
 void for_each_leaf_block(const EsvoView& esvo, const Box3i& window, const Fn& fn) {
   Vec3i block{};

@@ -1,5 +1,5 @@
 #pragma once
-/// The colour and the normal that an ESVO stores for a voxel.
+/// Reads the colour and the normal that an ESVO stores for a voxel.
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/layout/color_block.hpp"
 #include "voxdag/layout/esvo.hpp"
@@ -7,12 +7,14 @@
 
 namespace voxdag {
 
-/// Returns whether the octree stores values of this kind. It has them for all voxels or for none.
+/// Returns whether the octree stores values of this kind. It stores them for all voxels or for
+/// none.
 VOXDAG_HD inline bool has_stored(const EsvoView& esvo, EsvoAttachmentKind kind) {
   return !esvo.is_empty() && esvo.attachment(esvo.root, kind) != nullptr;
 }
 
-/// Sets `color` to the voxel's as stored: sRGB-encoded, in [0,1]. Returns false if none is stored.
+/// Sets `color` to the voxel's colour as stored: sRGB-encoded, in [0,1]. Returns false if the ESVO
+/// stores no colours.
 VOXDAG_HD inline bool stored_srgb(const EsvoView& esvo, const EsvoVoxel& voxel, Vec3f& color) {
   const std::uint64_t* block = esvo.attachment(voxel.slot, EsvoAttachmentKind::kColors);
   if (block == nullptr) return false;
@@ -20,8 +22,8 @@ VOXDAG_HD inline bool stored_srgb(const EsvoView& esvo, const EsvoVoxel& voxel, 
   return true;
 }
 
-/// Sets `color` to the voxel's as image files hold it: sRGB, 8 bits a channel. Returns false if
-/// none is stored.
+/// Sets `color` to the voxel's colour as in image files: sRGB, 8 bits per channel. Returns false if
+/// the ESVO stores no colours.
 VOXDAG_HD inline bool stored_srgb8(const EsvoView& esvo, const EsvoVoxel& voxel,
                                    Vec3<std::uint8_t>& color) {
   Vec3f encoded;
@@ -30,7 +32,8 @@ VOXDAG_HD inline bool stored_srgb8(const EsvoView& esvo, const EsvoVoxel& voxel,
   return true;
 }
 
-/// Sets `color` to the voxel's as linear light in [0,1]. Returns false if none is stored.
+/// Sets `color` to the voxel's colour in linear light, in [0,1]. Returns false if the ESVO stores
+/// no colours.
 VOXDAG_HD inline bool stored_color(const EsvoView& esvo, const EsvoVoxel& voxel, Vec3f& color) {
   Vec3f encoded;
   if (!stored_srgb(esvo, voxel, encoded)) return false;
@@ -38,7 +41,8 @@ VOXDAG_HD inline bool stored_color(const EsvoView& esvo, const EsvoVoxel& voxel,
   return true;
 }
 
-/// Sets `normal` to the voxel's: world space, unit length. Returns false if none is stored.
+/// Sets `normal` to the voxel's normal: world space, unit length. Returns false if the ESVO stores
+/// no normals.
 VOXDAG_HD inline bool stored_normal(const EsvoView& esvo, const EsvoVoxel& voxel, Vec3f& normal) {
   const std::uint64_t* block = esvo.attachment(voxel.slot, EsvoAttachmentKind::kNormals);
   if (block == nullptr) return false;

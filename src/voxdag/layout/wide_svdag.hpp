@@ -1,10 +1,10 @@
 #pragma once
 /// The wide DAG: 4³ cells per node, so that one step of a ray covers two levels of the octree.
 ///
-/// A wide node represents a node of the octree together with its children. From the voxels up,
-/// every second level has wide nodes: levels L-2 (leaf blocks), L-4, ... down to 0, or to -1 if L
-/// is odd. In that case the root lies one level above the grid, and each of its eight octants is a
-/// copy of the grid: a walk may start in any of them. Everything is one array of 32-bit words:
+/// A wide node represents a node of the octree together with its children. Every second level has
+/// wide nodes: L-2 (leaf blocks), L-4 and so on up to level 0, or level -1 if L is odd. A root of
+/// level -1 lies one level above the grid. Each of its eight octants is a copy of the grid, so a
+/// walk may start in any of them. Everything is one array of 32-bit words:
 ///
 ///   inner node   | mask, low word | mask, high word | pointer | ... |   2 + popcount(mask) words
 ///   leaf block   | mask, low word | mask, high word |
@@ -41,11 +41,11 @@ struct WideSvdag {
 };
 
 /// Returns the voxels of `dag` in wide nodes. The DAG must be valid (see validate_svdag). Takes one
-/// pass over it, and up to half of its bytes of memory beside the result. Throws Error if the
+/// pass over the DAG, and scratch memory of up to half of the DAG's bytes. Throws Error if the
 /// result needs 2^32 words or more.
 WideSvdag make_wide_svdag(const SvdagView& dag);
 
-/// Returns the bit in a wide node's mask of child `inner` of child `outer`.
+/// Returns the bit in a wide node's mask that stands for child `inner` of child `outer`.
 VOXDAG_HD constexpr int wide_cell(int outer, int inner) {
   const int x = (outer & 1) << 1 | (inner & 1);
   const int y = (outer & 2) | (inner >> 1 & 1);

@@ -1,6 +1,6 @@
 #pragma once
-/// Points of the plane in a k-d tree (J. L. Bentley, "Multidimensional Binary Search Trees", 1975)
-/// from which points can be removed: it answers which of those left lie in a triangle.
+/// A k-d tree of points of the plane (J. L. Bentley, "Multidimensional Binary Search Trees", 1975).
+/// Points can be added and removed; the tree finds points that lie in a triangle.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -14,16 +14,16 @@ struct PlanePoint {
   friend bool operator==(const PlanePoint&, const PlanePoint&) = default;
 };
 
-/// Returns twice the area of a triangle: positive if it turns left.
+/// Returns twice the signed area of a triangle: positive if it is counter-clockwise.
 inline double signed_area(PlanePoint a, PlanePoint b, PlanePoint c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// A k-d tree of distinct points. Each point is present or absent; searches cost nothing for parts
-/// of the tree that are absent altogether.
+/// A k-d tree of distinct points. Each point is present or absent. A search skips subtrees without
+/// present points.
 class PointTree {
  public:
-  /// All points are absent at first.
+  /// Builds the tree. All points are absent at first.
   explicit PointTree(std::vector<PlanePoint> points)
       : points_(std::move(points)), slot_of_(points_.size()), present_(points_.size(), 0) {
     std::vector<std::uint32_t> order(points_.size());
@@ -47,8 +47,8 @@ class PointTree {
     }
   }
 
-  /// Returns whether is_hit(p) is true for a present point in the closed triangle, which turns
-  /// left. Adds the number of nodes that it looked at to `visits`.
+  /// Returns whether is_hit(p) is true for a present point p in the closed, counter-clockwise
+  /// triangle. Adds the number of visited nodes to `visits`.
   template <class IsHit>
   bool any_in(PlanePoint a, PlanePoint b, PlanePoint c, std::uint64_t& visits,
               const IsHit& is_hit) const {
@@ -78,8 +78,8 @@ class PointTree {
     build(order, middle + 1, last, 1 - axis);
   }
 
-  /// Searches the slots from `first` to `last`. `box` holds all of the triangle that can contain
-  /// their points.
+  /// Searches the slots from `first` to `last`. `box` contains the part of the triangle in which
+  /// their points can lie.
   template <class IsHit>
   bool search(const PlanePoint (&corners)[3], const Box& box, std::size_t first, std::size_t last,
               int axis, std::uint64_t& visits, const IsHit& is_hit) const {
@@ -112,10 +112,10 @@ class PointTree {
   }
 
   std::vector<PlanePoint> points_;
-  std::vector<std::uint32_t> order_;    ///< Points by slot: a subtree's root is its middle slot.
-  std::vector<std::uint32_t> slot_of_;  ///< By point.
-  std::vector<std::uint32_t> present_;  ///< By slot: present points of the subtree rooted there.
-  std::vector<bool> is_present_;        ///< By slot.
+  std::vector<std::uint32_t> order_;  ///< Point of each slot; a subtree's root is its middle slot.
+  std::vector<std::uint32_t> slot_of_;  ///< Slot of each point.
+  std::vector<std::uint32_t> present_;  ///< Per slot: number of present points in its subtree.
+  std::vector<bool> is_present_;        ///< Per slot.
 };
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// Polygons with more than three corners, cut into triangles.
+/// Cuts polygons with more than three corners into triangles.
 #include <functional>
 #include <span>
 
@@ -10,14 +10,15 @@ namespace voxdag {
 /// Makes the fan of one polygon cover that polygon. `fan` holds {c0, c1, c2}, {c0, c2, c3}, ... for
 /// the corners c; every index is in range of `vertices`.
 ///
-/// A fan that covers the polygon already stays, as that of every convex polygon does. Any other fan
-/// is replaced by as many triangles, cut off as ears in a projection along the polygon's normal. A
-/// polygon that crosses itself or has no area gets triangles over its corners nevertheless. One
-/// with a corner that is not finite keeps its fan. The result depends on the corners alone.
+/// If the fan covers the polygon, it stays unchanged; every convex polygon keeps its fan. Any other
+/// fan is replaced by the same number of triangles, cut off as ears in a projection along the
+/// polygon's normal. A polygon that crosses itself or has no area also gets triangles over its
+/// corners. A polygon with a corner that is not finite keeps its fan. The result depends on the
+/// corners alone.
 ///
 /// Time: n log n for n corners. `poll`, if not empty, is called at least every 0.1 s and may throw
 /// to stop the work. Throws Error, without a place, for contrived polygons that would cost more.
-/// Memory while it runs: about 70 bytes per corner of a polygon whose fan does not stay.
+/// Scratch memory: about 70 bytes per corner, if the fan is replaced.
 void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices,
                  const std::function<void()>& poll = {});
 

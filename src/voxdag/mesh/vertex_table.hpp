@@ -1,5 +1,5 @@
 #pragma once
-/// A hash table that gives vertices with equal bits one index.
+/// A hash table that gives vertices with equal bits the same index.
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -18,12 +18,12 @@ inline std::uint64_t hash_bits(Vec3f position, std::uint64_t seed = 0) {
   return (h ^ h >> 29) * 0x9E3779B97F4A7C15ull;
 }
 
-/// Vertices with distinct bits, numbered in the order in which they were added. The seed of the
-/// hash is random, so that no file can be made of vertices that collide; the numbers do not depend
-/// on it.
+/// Vertices with distinct bits, numbered in the order in which they were added. The hash has a
+/// random seed, so that nobody can construct a file whose vertices collide. The numbers do not
+/// depend on the seed.
 class VertexTable {
  public:
-  /// Makes room for `vertices` vertices and `slots` slots; both grow when they are full.
+  /// Makes room for `vertices` vertices and `slots` slots. Both arrays grow when they are full.
   explicit VertexTable(std::size_t vertices = 0, std::size_t slots = 64) : slots_(slots, kFree) {
     vertices_.reserve(vertices);
   }
@@ -47,7 +47,7 @@ class VertexTable {
   std::uint64_t bytes_with(std::size_t more) const {
     const std::uint64_t count = vertices_.size() + more;
     const std::uint64_t vertices = vertices_.capacity(), slots = slots_.size();
-    // Arrays that grow double, and are copied from the old ones.
+    // Arrays grow by doubling; the old array exists until it is copied.
     return sizeof(Vec3f) * (count <= vertices ? vertices : vertices + 2 * count) +
            sizeof(std::uint32_t) * (count <= slots / 16 * 15 ? slots : slots + 4 * count);
   }

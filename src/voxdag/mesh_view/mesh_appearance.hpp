@@ -1,6 +1,6 @@
 #pragma once
-/// The colours and normals at points of a mesh's triangles: those of its file, or else a grey
-/// surface with smooth normals.
+/// The colours and normals at points of a mesh's triangles. They come from its file, or else the
+/// surface is grey with smooth normals.
 #include <array>
 #include <optional>
 #include <span>
@@ -14,7 +14,8 @@ namespace voxdag {
 
 struct MeshViewOptions {
   Vec3f albedo{0.62f, 0.60f, 0.57f};  ///< Linear, in [0,1], of surfaces without a colour.
-  /// If a mesh has no normals, edges whose faces differ by less are smoothed (see corner_normals).
+  /// If a mesh has no normals, edges between faces with a smaller angle are smoothed (see
+  /// corner_normals).
   float crease_degrees = 40;
 };
 
@@ -22,7 +23,8 @@ struct MeshViewOptions {
 /// corners 1 and 2.
 class MeshAppearance {
  public:
-  /// For a mesh without an appearance. Reads the mesh only during this call.
+  /// Makes the appearance of a mesh that has none in its file. Reads the mesh only during this
+  /// call.
   MeshAppearance(const Mesh& mesh, const MeshViewOptions& options);
   /// `mesh` must outlive this object. Decodes the textures; those that cannot be read are ignored,
   /// with a warning (see SurfaceShading). Throws Cancelled.
@@ -32,13 +34,14 @@ class MeshAppearance {
   MeshAppearance(const MeshAppearance&) = delete;
   MeshAppearance& operator=(const MeshAppearance&) = delete;
 
-  /// Returns the mean colour, linear, in [0,1], over a convex polygon in the triangle.
+  /// Returns the mean colour over a convex polygon in the triangle: linear light, in [0,1].
   Vec3f albedo(std::uint32_t triangle, std::span<const Vec2f> footprint) const;
-  /// Returns the normal at a point or, from a texture, its mean over the polygon around the point.
-  /// It has any length and points to either side of the surface; it is zero if there is none.
+  /// Returns the normal at a point. If it comes from a texture, returns its mean over the polygon
+  /// around the point. It may have any length and point to either side; it is zero if there is no
+  /// normal.
   Vec3f normal(std::uint32_t triangle, Vec2f point, std::span<const Vec2f> footprint) const;
 
-  /// Return whether there may be alpha-masked parts, and whether a point is in one.
+  /// Returns whether there may be alpha-masked parts.
   bool has_holes() const { return has_holes_; }
   bool is_hole(std::uint32_t triangle, Vec2f point) const;
 

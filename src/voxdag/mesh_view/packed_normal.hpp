@@ -1,8 +1,8 @@
 #pragma once
 /// A unit vector packed into 32 bits.
 ///
-/// Source: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal Vectors",
-/// EGSR 2010: the octahedron |x| + |y| + |z| = 1 with its lower half folded outwards is a square.
+/// Source: Meyer, Süßmuth, Sußner, Stamminger and Greiner, "On Floating-Point Normal Vectors", EGSR
+/// 2010. The octahedron |x| + |y| + |z| = 1 becomes a square if its lower half is folded outwards.
 #include <cmath>
 #include <cstdint>
 
@@ -10,13 +10,13 @@
 
 namespace voxdag {
 
-/// The low 16 bits hold x, the high ones y, as signed integers: +-32767 is +-1. The error is at
-/// most 0.004 degrees. The default is the vector (0,0,1).
+/// The low 16 bits hold x, the high 16 bits y, as signed integers: +-32767 stands for +-1. The
+/// error is at most 0.004 degrees. The default is the vector (0,0,1).
 class PackedNormal {
  public:
   constexpr PackedNormal() = default;
 
-  /// `v` must be finite and not zero; its length does not matter.
+  /// Packs `v`, which must be finite and not zero; its length does not matter.
   explicit PackedNormal(Vec3f v) {
     const float scale = 1 / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
     float x = v.x * scale, y = v.y * scale;

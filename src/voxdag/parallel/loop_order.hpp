@@ -28,7 +28,7 @@ class LoopOrder {
   LoopOrder(const LoopOrder&) = delete;
   LoopOrder& operator=(const LoopOrder&) = delete;
 
-  /// Each task holds one around its items, also if an item throws.
+  /// Each task keeps one alive while its items run, also if an item throws.
   class Items {
    public:
     explicit Items(LoopOrder& order) : order_(order) { __tsan_acquire(&order.begin_); }

@@ -21,7 +21,8 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
                     });
 }
 
-/// Calls body(i) for every i in [0, count) with one item per task: for few, expensive items.
+/// Calls body(i) for every i in [0, count), one item per task. For a small number of expensive
+/// items.
 template <class Body>
 void parallel_for(std::size_t count, const Body& body) {
   LoopOrder order;

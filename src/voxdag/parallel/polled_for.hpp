@@ -1,5 +1,5 @@
 #pragma once
-/// Loops that can be cancelled and that report how far they are.
+/// Loops that can be cancelled and report their progress.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -16,14 +16,14 @@ inline void poll(const Progress* progress) {
   if (progress != nullptr) progress->throw_if_cancelled();
 }
 
-/// Calls poll() for one `i` in 65,536: for serial loops over small items.
+/// Calls poll() for one in 65,536 values of `i`. For serial loops over small items.
 inline void poll_seldom(const Progress* progress, std::uint64_t i) {
   if ((i & 0xFFFF) == 0) poll(progress);
 }
 
 /// Calls body(i) for every i in [0, count), in any order, on the threads of the current TBB arena;
-/// polls `progress`, which may be null, and reports to it as `stage` after each `grain` items.
-/// Throws Cancelled, or what body throws first.
+/// polls `progress`, which may be null, and reports to it as `stage` after every `grain` items.
+/// Throws Cancelled, or the first exception of body.
 template <class Body>
 void polled_for(std::size_t count, std::size_t grain, Progress* progress, std::string_view stage,
                 const Body& body) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Vertices that no triangle may use.
+/// Finds vertices that no triangle may use.
 #include <cstdint>
 #include <optional>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// A file split into chunks that threads parse independently. The error is the first one in the
-/// file, whichever thread finds it first.
+/// Splits a file into chunks that threads parse independently. The reported error is the first one
+/// in the file, not the first one that a thread finds.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -16,15 +16,15 @@ namespace voxdag {
 
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
-/// Splits `text` into runs of whole lines of about `chunk_bytes`, but not after a backslash at the
-/// end of a line. The chunks depend on the text alone.
+/// Splits `text` into chunks of whole lines, of about `chunk_bytes` each. Does not split after a
+/// line that ends with a backslash. The chunks depend on the text alone.
 std::vector<std::string_view> split_lines(std::string_view text, char line_end,
                                           std::size_t chunk_bytes = kChunkBytes);
 
-/// Instead of a line end: the file is binary, and errors name the byte.
+/// A value for `line_end`: the file is binary, and errors name the byte.
 inline constexpr char kBinary = '\0';
 
-/// What is wrong at `position`, which points into the file's bytes.
+/// A fault at `position`, which points into the file's bytes.
 struct Fault {
   const char* position;
   std::string reason;

@@ -1,5 +1,5 @@
 #pragma once
-/// Polygons cut into triangles, together with the attributes of their corners.
+/// Cuts polygons into triangles, together with the attributes of their corners.
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace voxdag {
 
-/// Cuts one polygon after the other; keeps its scratch memory between them.
+/// Cuts one polygon after the other and reuses its scratch memory.
 class FaceCutter {
  public:
   explicit FaceCutter(const MeshSource& source)
@@ -25,7 +25,7 @@ class FaceCutter {
         }) {}
 
   /// Cuts the polygon with the given fan, as cut_polygon() does. Throws Error with the file's name
-  /// if it would cost too much, OverMemory, Cancelled.
+  /// if the polygon would cost too much, OverMemory and Cancelled.
   void cut(std::span<Triangle> fan, std::span<const Vec3f> vertices) {
     if (fan.size() < 2) return;
     const MemoryReservation scratch(memory_, scratch_bytes(fan.size()));
@@ -38,8 +38,8 @@ class FaceCutter {
     }
   }
 
-  /// Cuts the polygon and finds out which of its corners the corners of the triangles are.
-  /// move_attributes() then applies to the arrays of this face.
+  /// Cuts the polygon, and finds the corner of the polygon for each corner of the triangles. Then
+  /// move_attributes() applies to the arrays of this face.
   void cut_and_match(std::span<Triangle> fan, std::span<const Vec3f> vertices) {
     is_cut_ = false;
     if (fan.size() < 2) return;
@@ -62,16 +62,17 @@ class FaceCutter {
   }
 
  private:
-  /// What cut_polygon() needs for a large polygon; that of a small one is not worth counting.
+  /// Returns the scratch memory that cut_polygon() needs for a large polygon. For a small polygon
+  /// it is too little to count, and the result is 0.
   static std::uint64_t scratch_bytes(std::size_t triangles) {
     return triangles < 4096 ? 0 : std::uint64_t{80} * triangles;
   }
 
-  /// Vertex of corner `i` of the polygon.
+  /// Returns the vertex of corner `i` of the polygon.
   std::uint32_t vertex(std::size_t i) const { return i < 2 ? old_fan_[0][i] : old_fan_[i - 2][2]; }
 
-  /// A triangle keeps the polygon's corners that it had in the fan. Its other corners are the first
-  /// ones of the polygon with their vertices.
+  /// Matches corners of triangles to corners of the polygon. A corner that a triangle had in the
+  /// fan stays. Any other corner gets the first corner of the polygon with its vertex.
   void match(std::span<const Triangle> triangles) {
     CountedVector<std::pair<std::uint32_t, std::uint32_t>> by_vertex(memory_);
     by_vertex.reserve(old_fan_.size() + 2);
@@ -93,7 +94,8 @@ class FaceCutter {
   const MeshSource& source_;
   MemoryBudget* memory_;
   CountedVector<Triangle> old_fan_;
-  CountedVector<std::uint32_t> corners_;  ///< Of each triangle's corners, that of the polygon.
+  CountedVector<std::uint32_t>
+      corners_;  ///< The polygon's corner, for each corner of the triangles.
   bool is_cut_ = false;
   std::function<void()> poll_;
 };

@@ -21,7 +21,7 @@ struct MeshSource {
   const MappedFile* file = nullptr;  ///< The mapping that `bytes` views. Null: plain memory.
   ReadOptions options;
 
-  /// Drops the mapped pages of `part`, which has been read, from memory. Reports progress. Throws
+  /// Drops the mapped pages of `part` from memory after it has been read. Reports progress. Throws
   /// Cancelled.
   void done_with(std::string_view part, std::string_view stage) const {
     if (file != nullptr) file->release(part);
@@ -38,11 +38,11 @@ struct MeshSource {
   }
 };
 
-/// Polls cancellation once in 65,536 steps, for loops inside of one very long line or array.
+/// Polls cancellation once in 65,536 steps, for loops inside one very long line or array.
 class CancelPoll {
  public:
   explicit CancelPoll(const Progress* progress) : progress_(progress) {}
-  /// Call once per step. Throws Cancelled.
+  /// Counts one step; call it in each iteration. Throws Cancelled.
   void step() {
     if ((++steps_ & 0xFFFF) == 0 && progress_ != nullptr) progress_->throw_if_cancelled();
   }

@@ -35,7 +35,7 @@ class NameTable {
   bool empty() const { return names_.empty(); }
 
  private:
-  static constexpr std::size_t kInlineBytes = 15;  ///< Longer strings have memory of their own.
+  static constexpr std::size_t kInlineBytes = 15;  ///< Longer strings allocate memory.
   using Entry = std::pair<const std::string, std::uint32_t>;
 
   std::map<std::string, std::uint32_t, std::less<>, CountedAllocator<Entry>> ids_;

@@ -24,7 +24,7 @@ namespace voxdag {
 
 /// What the first pass over a soup finds.
 struct SoupSize {
-  std::vector<std::size_t> first_triangles;  ///< By part and, last, the number of all.
+  std::vector<std::size_t> first_triangles;  ///< Per part, and then the number of all triangles.
   std::size_t vertices = 0;                  ///< Estimated number of distinct vertices.
 };
 

@@ -25,7 +25,7 @@ inline constexpr float kFilterRadius = 24.0f;  ///< Pixels.
 /// A pixel of the disc, relative to its centre.
 struct FilterSample {
   int x, y;
-  float distance;  ///< From (0, 0).
+  float distance;  ///< Distance from (0, 0).
   float weight;    ///< Number of the disc's pixels that are closest to this sample.
 };
 

@@ -21,7 +21,7 @@ struct Point2f {
 /// A ray of ambient occlusion around the normal (0,0,1).
 struct HemisphereSample {
   Vec3f direction;  ///< Unit length; cosine-weighted.
-  float reach = 0;  ///< Length of the ray as a fraction of the longest.
+  float reach = 0;  ///< Length of the ray, as a fraction of the longest.
 };
 
 /// `sets` * `count` points each; point i of set s is at s * count + i.

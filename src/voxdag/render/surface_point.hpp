@@ -15,9 +15,9 @@
 namespace voxdag {
 
 struct SurfacePoint {
-  GridPoint start;    ///< Outside of the surface's own cells: rays start here.
+  GridPoint start;    ///< Outside the surface's own cells: rays start here.
   GridPoint surface;  ///< The view sample's point, at which light arrives.
-  Vec3f normal{};     ///< The view sample's.
+  Vec3f normal{};     ///< Normal of the view sample.
   Vec3f face{};
   float cell_side = 0;  ///< Side of the cell hit, in units of the grid's; 0 where nothing was hit.
 

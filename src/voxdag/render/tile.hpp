@@ -8,7 +8,7 @@ namespace voxdag {
 struct ViewTile {
   int x = 0, y = 0;           ///< The top left pixel.
   int width = 0, height = 0;  ///< Pixels; the tile lies within the picture.
-  int sample_index = 0;       ///< Which of a pixel's samples.
+  int sample_index = 0;       ///< Index of the sample in its pixel.
   double dx = 0.5, dy = 0.5;  ///< In [0,1): the sample of pixel (i,j) is at (i + dx, j + dy).
 
   /// Pixels are numbered down the columns of strips of 8 rows, so that 8 or 64 consecutive ones lie

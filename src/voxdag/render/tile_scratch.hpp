@@ -15,14 +15,14 @@ struct TileScratch {
   std::int32_t active[kPixels];  ///< Pixels that cast rays, in order.
   PixelSamples pixels[kPixels];  ///< For the current light, or for occlusion.
 
-  std::int32_t open[kPixels];  ///< Rays of occlusion that met nothing.
+  std::int32_t open[kPixels];  ///< Occlusion rays that met nothing.
 
-  LightInterval intervals[kPixels];  ///< Of the active pixels, for the current light.
+  LightInterval intervals[kPixels];  ///< Per active pixel, for the current light.
   std::uint64_t visible[kPixels];    ///< Bit i: ray i of the current batch met nothing.
-  float lit[kPixels];                ///< Sum of the weights of the light's samples that arrive,
-  float unhindered[kPixels];         ///< and of all its samples.
+  float lit[kPixels];                ///< Weights of the light's unoccluded samples, summed.
+  float unhindered[kPixels];         ///< Weights of all its samples, summed.
 
-  Vec3f irradiance[kPixels];  ///< From all lights.
+  Vec3f irradiance[kPixels];  ///< Irradiance from all lights.
   float lit_sum[kPixels],
       unhindered_sum[kPixels];  ///< Luminance from all lights, and without occluders.
 };

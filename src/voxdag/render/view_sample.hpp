@@ -10,7 +10,7 @@ namespace voxdag {
 struct ViewSample {
   Vec3d point{};   ///< World space.
   Vec3f normal{};  ///< For shading: unit length, towards the viewer; zero where nothing was hit.
-  Vec3f face{};    ///< Normal of the flat piece of surface itself, in the same form.
+  Vec3f face{};    ///< Normal of the face: unit length, towards the viewer.
   Vec3f albedo{};  ///< Linear, in [0,1].
   float depth = HUGE_VALF;  ///< World units along the camera's axis.
   float cell_size = 0;      ///< Side of the cell hit, world units: the error of the voxels.

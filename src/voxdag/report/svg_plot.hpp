@@ -10,8 +10,7 @@ namespace voxdag {
 /// How values become a scale with ticks.
 struct PlotAxis {
   bool is_log = false;
-  double step =
-      0;  ///< From tick to tick: a factor where is_log, else a difference, 0 for some ten.
+  double step = 0;  ///< Between ticks: a factor if is_log, else a difference; 0: about ten ticks.
   std::function<std::string(double value)> tick;
 };
 
@@ -21,9 +20,9 @@ PlotAxis resolution_axis();
 PlotAxis log_seconds_axis();
 
 struct PlotLine {
-  std::string name;  ///< In the legend, or empty.
+  std::string name;  ///< Name in the legend, or empty.
   std::string style;
-  std::vector<std::array<double, 2>> points;  ///< x and y; above zero on logarithmic axes.
+  std::vector<std::array<double, 2>> points;  ///< x and y; positive on logarithmic axes.
 };
 
 struct LineDiagram {

@@ -15,7 +15,7 @@ Footprint rectangle(double x0, double x1, double z0, double z1);
 struct Style {
   double storey, bay;                  ///< Metres.
   double window_width, window_height;  ///< Fractions of a bay and of a storey.
-  double recess;                       ///< Metres from the wall back to the pane.
+  double recess;                       ///< Depth of the pane behind the wall, in metres.
   bool sills, fins, balconies, cornices;
   const char* wall;  ///< Material.
 };
@@ -43,8 +43,8 @@ void building(Builder& b, Random& random, double x0, double x1, double z0, doubl
               double centrality);
 
 void tree(Builder& b, Random& random, double height);
-void street_lamp(Builder& b);          ///< Its arm reaches over +z.
-void car(Builder& b, Random& random);  ///< Drives towards +x.
+void street_lamp(Builder& b);          ///< Its arm points to +z.
+void car(Builder& b, Random& random);  ///< Its front points to +x.
 void park(Builder& b, Random& random, double half_x, double half_z);
 
 }  // namespace voxdag::scenes::city

@@ -10,7 +10,7 @@ namespace voxdag {
 
 struct PolygonMoments {
   Vec2f center;
-  float xx = 0, xy = 0, yy = 0;  ///< Covariance of its points.
+  float xx = 0, xy = 0, yy = 0;  ///< Covariance of the polygon's points.
 };
 
 /// Returns the moments of a convex polygon with at least one corner. A polygon without area counts

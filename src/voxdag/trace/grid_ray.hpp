@@ -51,7 +51,7 @@ struct GridRay {
   std::uint32_t mirrored = 7;  ///< Bit a: axis a is mirrored (the ray runs up or is parallel).
   std::uint32_t parallel = 0;  ///< Bit a: the ray does not move along axis a.
   double t_start = 0;          ///< The parameter t of the world ray at T = 0.
-  double t_scale = 1;          ///< How much t grows as T grows by 1.
+  double t_scale = 1;          ///< Growth of t as T grows by 1.
 
   VOXDAG_HD bool misses() const { return !(t_min <= t_max); }
 

@@ -9,7 +9,7 @@
 namespace voxdag {
 
 /// The corners of a piece in the triangle's barycentric coordinates, as SurfaceShading takes them.
-/// Empty where the triangle has one colour and one normal.
+/// Empty if the triangle has one colour and one normal.
 struct PieceCorners {
   PieceCorners() {}
   operator std::span<const Vec2f>() const { return {points, count}; }
@@ -22,14 +22,14 @@ struct PieceCorners {
 
 class PieceSampler {
  public:
-  /// Without `shading` (null) surfaces are grey and have the normals of their triangles.
+  /// If `shading` is null, surfaces are grey and have the normals of their triangles.
   explicit PieceSampler(const SurfaceShading* shading) : shading_(shading) {}
 
-  /// Returns the sample of every point of a triangle if they are all the same.
+  /// Returns the common sample of all points of a triangle, or nothing if they differ.
   std::optional<SurfaceSample> constant_sample(const SurfaceTriangle& triangle) const;
 
   PieceCorners corners(const Cell& cell, const TrianglePiece& piece) const;
-  /// Returns the mean over a piece whose corners() are known.
+  /// Returns the mean over a piece; `corners` is corners() of the piece.
   SurfaceSample sample(const Cell& cell, const TrianglePiece& piece,
                        const PieceCorners& corners) const;
   SurfaceSample sample(const Cell& cell, const TrianglePiece& piece) const {
@@ -39,7 +39,7 @@ class PieceSampler {
   /// Returns whether the alpha test removes every point of a piece.
   bool is_alpha_masked(const Cell& cell, const TrianglePiece& piece) const;
 
-  /// Returns whether a triangle has its own plane's normal instead of that of `shading`.
+  /// Returns whether a triangle has the normal of its plane, not the normal from `shading`.
   bool has_own_normal(const SurfaceTriangle& triangle) const {
     return shading_ == nullptr || triangle.is_displaced;
   }

@@ -1,9 +1,10 @@
 #pragma once
-/// The pieces of triangles in a cell and in the cells on the path below it, one list on top of the
-/// other.
+/// A stack of lists: the pieces of triangles in a cell, and in the cells on the current path below
+/// it.
 ///
-/// Each level of the recursion cuts the pieces of the cell above at the cell's middle planes. Which
-/// children a triangle meets is exact (design: exact cover): the polygons are only its shape.
+/// Each level of the recursion cuts the pieces of the parent cell at its middle planes. The
+/// children that a triangle meets are computed exactly (see "Exact cover" in the design); the
+/// polygons only approximate its shape.
 #include <algorithm>
 #include <cstdint>
 
@@ -14,7 +15,7 @@
 
 namespace voxdag {
 
-/// Names a cell whose pieces are on a PieceStack; stays valid while lists are pushed and popped
+/// Refers to a cell whose pieces are on a PieceStack. Stays valid while lists are pushed and popped
 /// above it.
 struct StackedCell {
   int log2_size = 0;
@@ -30,24 +31,24 @@ class PieceStack {
   explicit PieceStack(MemoryBudget* budget = nullptr)
       : triangles_(budget), ids_(budget), pieces_(budget), classified_(budget) {}
 
-  /// Which children the pieces of a cell meet.
+  /// The children that the pieces of a cell meet.
   struct Split {
     std::uint32_t children = 0;  ///< Bit mask of the children that some piece meets.
-    std::size_t first = 0;       ///< Of `classified_`.
+    std::size_t first = 0;       ///< First index in `classified_`.
   };
 
-  /// The bytes that a cell takes for each of its triangles, with those of the cells below it.
+  /// The bytes that a cell and the cells below it take for each triangle of the cell.
   static constexpr std::uint64_t kBytesPerTriangle =
       sizeof(SurfaceTriangle) + 2 * (sizeof(TrianglePiece) + sizeof(ChildConditions));
 
-  /// Removes all triangles and begins a cell of 2^log2_size voxels at `origin` in the grid, in
-  /// voxels. `triangles` is how many are expected.
+  /// Removes all triangles and begins a cell of 2^log2_size voxels a side at `origin` in the grid,
+  /// in voxels. `triangles` is the expected number of triangles.
   void start(int log2_size, Vec3i origin, std::size_t triangles);
   /// Returns the bytes that it holds, also if it is empty.
   std::uint64_t held_bytes() const;
   /// Removes all triangles and frees the memory.
   void free_memory();
-  /// Adds a triangle, whose coordinates begin at the cell's origin. `id` is the caller's.
+  /// Adds a triangle, whose coordinates are relative to the cell's origin. The caller chooses `id`.
   void add(const SurfaceTriangle& triangle, std::uint32_t id);
 
   /// Returns the cell that start() began.
@@ -57,12 +58,12 @@ class PieceStack {
             std::span(pieces_).subspan(cell.begin, cell.end - cell.begin)};
   }
 
-  /// Returns the area of the root's surface in voxels², and one for each triangle.
+  /// Returns the area of the root's surface in voxels² plus the number of triangles.
   double weight() const;
   /// Lists the ids of the triangles that meet each child of the root.
   void list_children(ChildTriangles& children) const;
 
-  /// Removes those pieces of the topmost cell for which `is_removed(view, piece)` is true.
+  /// Removes the pieces of the topmost cell for which `is_removed(view, piece)` is true.
   template <class Predicate>
   void remove_if(StackedCell& cell, const Predicate& is_removed) {
     const Cell cell_view = view(cell);
@@ -77,9 +78,9 @@ class PieceStack {
   /// Classifies the pieces of the topmost cell. Each begin_split() needs an end_split().
   Split begin_split(const StackedCell& cell);
   void end_split(const Split& split) { classified_.resize(split.first); }
-  /// Pushes the pieces of `cell` that lie in one of its children; returns that child.
+  /// Pushes the pieces of `cell` that lie in child `child`, and returns the child.
   StackedCell push_child(const StackedCell& cell, const Split& split, int child);
-  /// Removes a child's pieces, which push_child() pushed last.
+  /// Removes the pieces of the child that push_child() pushed last.
   void pop(const StackedCell& child) { pieces_.resize(child.begin); }
 
  private:
@@ -92,7 +93,7 @@ class PieceStack {
   CountedVector<SurfaceTriangle> triangles_;
   CountedVector<std::uint32_t> ids_;
   CountedVector<TrianglePiece> pieces_;
-  CountedVector<ChildConditions> classified_;  // by piece of the cells that are being split
+  CountedVector<ChildConditions> classified_;  // per piece of the cells that are being split
 };
 
 }  // namespace voxdag

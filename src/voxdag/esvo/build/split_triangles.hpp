@@ -1,5 +1,5 @@
 #pragma once
-/// Which children of a cell its triangles may meet.
+/// Finds the children of a cell that its triangles may meet.
 #include <cstdint>
 #include <span>
 
@@ -8,9 +8,10 @@
 
 namespace voxdag {
 
-/// Lists the triangles that each child of the cell may meet: exactly those that meet it where they
-/// are not displaced. For cells whose triangles are too many, or displaced, to load them all. Runs
-/// in parallel. Counts the lists in `memory`; null: no limit. Throws OverMemory.
+/// Lists for each child of the cell the triangles that may meet it. The lists are exact for
+/// triangles that are not displaced. For cells with too many triangles to load them all, or with
+/// displaced ones. Runs in parallel. Counts the lists in `memory`; null: no limit. Throws
+/// OverMemory.
 ChildTriangles split_triangles(const TriangleSource& source, int level, Vec3i cell,
                                std::span<const std::uint32_t> triangles, MemoryBudget* memory);
 

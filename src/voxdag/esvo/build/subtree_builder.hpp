@@ -3,9 +3,9 @@
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.4.
 ///
-/// Which voxels exist is exact (design: exact cover); contours enclose the polygons that the
-/// triangles leave in a voxel. The colour and normal of a leaf are the means over its polygons,
-/// those of another voxel the means over its leaves, by area.
+/// The set of voxels is exact (see "Exact cover" in the design). Contours enclose the parts of
+/// triangles in a voxel. The colour and normal of a leaf are the means over its polygons; those of
+/// an inner voxel are the means over its leaves, weighted by area.
 #include <optional>
 
 #include "voxdag/esvo/build/built_voxel.hpp"
@@ -16,13 +16,14 @@ namespace voxdag {
 
 class SubtreeBuilder {
  public:
-  /// Refers to all arguments; those that are not const are scratch memory of the caller's thread.
+  /// Refers to all arguments. Arguments that are not const are scratch memory of the caller's
+  /// thread.
   SubtreeBuilder(const EsvoSettings& settings, const CellAppearance& appearance,
                  CellDecider& decider, PieceStack& pieces)
       : settings_(settings), appearance_(appearance), decider_(decider), pieces_(pieces) {}
 
-  /// Builds the root cell of the pieces with all that is below it. `decision` is the cell's, and
-  /// `shape` what the contours of the cell and its ancestors leave of it.
+  /// Builds the root cell of the pieces and everything below it. `decision` is the cell's decision.
+  /// `shape` is the cell, cut by its own contour and those of its ancestors.
   BuiltVoxel build(const CellDecision& decision, const ConvexPolyhedron& shape);
 
  private:
@@ -35,9 +36,9 @@ class SubtreeBuilder {
   };
 
   void remove_alpha_masked(StackedCell& cell);
-  /// `is_near` is that of the parent's decision.
+  /// Visits a cell. `is_near` is from the parent's decision.
   Visited visit(StackedCell& cell, bool is_near, ConvexPolyhedron& shape);
-  /// `is_near` is that of the cell's own decision.
+  /// Visits the children of a cell. `is_near` is from the cell's own decision.
   Visited visit_children(const StackedCell& cell, bool is_near, const ConvexPolyhedron& shape);
   Visited join(const Visited (&children)[8]);
 
@@ -45,7 +46,7 @@ class SubtreeBuilder {
   const CellAppearance& appearance_;
   CellDecider& decider_;
   PieceStack& pieces_;
-  // In reverse order: children before parents, siblings from last to first.
+  // Nodes are in reverse order: children before parents, siblings from last to first.
   EsvoTree tree_;
 };
 

@@ -6,15 +6,15 @@
 
 namespace voxdag {
 
-/// A place on the surface.
+/// A point on the surface.
 struct SurfacePlace {
   Vec3d point;     ///< In voxels of the finest level, from the grid's lower corner.
   Vec3f normal{};  ///< Unit length; the shading normal.
   Vec3f face{};    ///< Unit length; triangle normal, on the side of `normal`.
 };
 
-/// Returns the part of the light that reaches a place, 0 to 1. Several threads call it at a time;
-/// the result depends on the place alone.
+/// Returns the fraction of the light that reaches a point, 0 to 1. Several threads call it
+/// concurrently; the result must depend on the argument alone.
 using SurfaceLight = std::function<float(const SurfacePlace&)>;
 
 }  // namespace voxdag

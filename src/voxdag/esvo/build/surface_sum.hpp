@@ -2,11 +2,11 @@
 /// Area-weighted sums over the surface in a voxel: the stored colour and normal are their means.
 ///
 /// A voxel has one normal, even if it holds both sides of something thin or a crumpled surface.
-/// Rule: where the normals agree well enough, so that their mean is at least half as long as they
-/// are, the voxel stores the mean's direction. Otherwise it stores the axis along which the normals
-/// lie (the principal axis of their outer products), and the side with the larger area decides the
-/// sign. Where both sides have equal areas the normal points up: z, then y, then x is positive.
-/// So neither the order of the triangles nor a sliver among them decides the side.
+/// Rule: if the normals agree well enough, so that their mean is at least half as long as they are,
+/// the voxel stores the mean's direction. Otherwise it stores the axis along which the normals lie
+/// (the principal axis of their outer products); the side with the larger area decides the sign. If
+/// both sides have equal areas, the normal points up: z, then y, then x is positive. So the side
+/// does not depend on the order of the triangles or on a sliver.
 #include <cmath>
 
 #include "voxdag/core/vec.hpp"
@@ -41,8 +41,8 @@ struct SurfaceSum {
     axes.add(other.axes);
   }
 
-  /// Returns the vector along which the stored normal points, by the rule above: the sum of the
-  /// normals, or the axis, as long as all normals together; zero if no surface has a normal.
+  /// Returns a vector in the direction of the stored normal, by this rule: the sum of the normals,
+  /// or the axis scaled to the sum of their lengths. Returns zero if no surface has a normal.
   Vec3f direction() const;
 };
 

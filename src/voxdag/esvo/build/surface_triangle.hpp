@@ -1,6 +1,5 @@
 #pragma once
-/// A triangle as the ESVO builder needs it: which voxels it meets, where it runs, what it looks
-/// like.
+/// A triangle for the ESVO builder: the voxels that it meets, its position and its appearance.
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -13,25 +12,25 @@
 
 namespace voxdag {
 
-/// Coordinates are voxels relative to the origin of the cell in hand.
+/// Coordinates are in voxels, relative to the origin of the current cell.
 struct SurfaceTriangle {
-  // What every level reads comes first.
+  // Data that every level reads comes first.
   TriangleSetup setup;
   Vec3d normal{};               ///< Unit length; zero for a triangle without area.
   ContourDirection across;      ///< `normal` as a contour stores it; none if it is zero.
   std::uint32_t source = 0;     ///< Triangle of the mesh.
   bool is_displaced = false;    ///< Its normal differs from the source's.
   std::uint8_t open_edges = 0;  ///< Bit e: no other triangle has the edge that begins at corner e.
-  /// The sample of every point, if they are all the same.
+  /// The common sample of all points, if they do not differ.
   std::optional<SurfaceSample> constant_sample;
-  ContourDirection across_edges[3];  ///< In the plane and perpendicular to the open edges.
+  ContourDirection across_edges[3];  ///< In the plane, perpendicular to each open edge.
   Vec3d corners[3];
-  /// The barycentric coordinates of a point p of corners 1 and 2 of the source triangle:
-  /// base + (dot(u, p), dot(v, p)).
+  /// The barycentric coordinates of a point p, for corners 1 and 2 of the source triangle, are base
+  /// + (dot(u, p), dot(v, p)).
   Vec2d base;
   Vec3d u{}, v{};
 
-  /// `origin` in voxels.
+  /// Makes a triangle that is not displaced. `origin` is in voxels.
   static SurfaceTriangle make(const QuantizedTriangle& triangle, Vec3i origin, std::uint32_t source,
                               std::uint8_t open_edges) {
     SurfaceTriangle t;
@@ -58,7 +57,8 @@ struct SurfaceTriangle {
     return t;
   }
 
-  /// A piece of a displaced triangle. `barycentrics` are those of its corners in the source.
+  /// Makes a piece of a displaced triangle. `barycentrics` are the coordinates of its corners in
+  /// the source triangle.
   static SurfaceTriangle make_displaced(const QuantizedTriangle& triangle, Vec3i origin,
                                         std::uint32_t source, const Vec2f (&barycentrics)[3]) {
     SurfaceTriangle t = make(triangle, origin, source, 0);
@@ -75,7 +75,8 @@ struct SurfaceTriangle {
     return t;
   }
 
-  /// In the coordinates of the cell at `cell` of 2^log2_size voxels; still to be clipped to it.
+  /// Returns the triangle in the coordinates of the cell at `cell`, of 2^log2_size voxels a side.
+  /// Does not clip it to the cell.
   SurfacePolygon polygon(Vec3i cell, int log2_size) const {
     const double half = 0.5 * static_cast<double>(std::int64_t{1} << log2_size);
     const Vec3d centre = static_cast<Vec3d>(cell) + Vec3d{half, half, half};

@@ -1,5 +1,5 @@
 #pragma once
-/// The upper levels of an ESVO in the making: cells with too much surface for one task.
+/// The upper levels of an ESVO under construction: cells with too much surface for one task.
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +31,8 @@ using TopCells = CountedVector<TopCell>;
 
 /// Decides the cells down to tasks, parents before children. The first cell is the root, which is
 /// never a leaf. Small cells with displaced triangles are tasks; larger ones get contours around
-/// what encloses the triangles. Cells with very many triangles get no contours. Counts
-/// the cells and scratch memory in `memory`; null: no limit. Throws Cancelled and OverMemory.
+/// volumes that enclose the triangles. Cells with very many triangles get no contours. Counts the
+/// cells and scratch memory in `memory`; null: no limit. Throws Cancelled and OverMemory.
 TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
                         const SurfaceShading* shading, Progress* progress,
                         MemoryBudget* memory = nullptr);

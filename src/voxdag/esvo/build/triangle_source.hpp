@@ -12,8 +12,8 @@
 
 namespace voxdag {
 
-/// Returns the longest edge, in world units before displacement, that tessellation leaves. Edges
-/// are between half of it and all of it: about a voxel long.
+/// Returns the longest edge that tessellation leaves, in world units before displacement. Edges are
+/// about a voxel long: from half of this length to all of it.
 inline double displaced_edge_limit(const Grid& grid) { return std::sqrt(2.0) * grid.voxel_size; }
 
 struct TriangleSource {
@@ -38,7 +38,7 @@ struct TriangleSource {
 };
 
 /// Returns the box of a cell of 2^log2_size voxels in world units, with a margin for rounding.
-/// `cell` counts cells of that size.
+/// `cell` is in cells of that size.
 inline Box3d world_box(const Grid& grid, Vec3i cell, int log2_size) {
   const double size = static_cast<double>(std::int64_t{1} << log2_size), margin = 1.0 / kSubvoxels;
   const Vec3d lo = static_cast<Vec3d>(cell) * size;

@@ -1,5 +1,5 @@
 #pragma once
-/// The contours of a block: one list for each set of siblings, equal runs stored once.
+/// The contours of a block: one list for each set of siblings. Equal runs are stored once.
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -10,8 +10,8 @@
 namespace voxdag {
 
 /// Walls along an axis repeat the same contours voxel after voxel. So equal lists are stored once,
-/// and a list that is part of another one takes no place of its own. Long lists must be added first
-/// to share the most.
+/// and a list that is part of another list needs no memory of its own. Add long lists first to
+/// share the most.
 class ContourPool {
  public:
   /// Returns the index in contours() at which `list` (1 to 8 contours) begins.
@@ -21,7 +21,7 @@ class ContourPool {
 
  private:
   std::vector<Contour> contours_;
-  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // by hash of a run: its index
+  std::unordered_map<std::uint64_t, std::uint32_t> places_;  // hash of a run to its index
 };
 
 }  // namespace voxdag

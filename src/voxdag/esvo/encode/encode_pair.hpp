@@ -6,7 +6,7 @@
 
 namespace voxdag {
 
-/// The 16 values of a pair of slots; `mask` tells which of them a voxel has.
+/// The 16 values of a pair of slots. Bit i of `mask` is set if value i belongs to a voxel.
 struct PairValues {
   std::uint32_t mask = 0;
   std::uint32_t leaves = 0;  ///< Bit i: value i belongs to a leaf.

@@ -18,7 +18,7 @@ struct VoxelValue {
 /// An inner voxel: the contents of its child descriptor. Lists are in the order of the children.
 struct EsvoNode {
   /// Index of the first inner child among the nodes; greater than this node's index. If
-  /// `is_packed`, the children are in a block already: an index into EsvoTree::packed.
+  /// `is_packed`, the children are in a block already, and this is an index into EsvoTree::packed.
   std::uint32_t first_child = 0;
   std::uint32_t first_contour = 0;  ///< In EsvoTree::contours; one per bit of contour_mask.
   std::uint32_t first_value = 0;    ///< In EsvoTree::values; one per bit of valid_mask.

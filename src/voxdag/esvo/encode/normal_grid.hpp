@@ -1,6 +1,6 @@
 #pragma once
-/// A grid of normals while it is fitted: its normals, its error, and the stored forms nearest to
-/// its parts.
+/// The data of fitting a grid to normals: the normals, a grid, its error, and rounding of a grid to
+/// its stored form.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +23,7 @@ struct NormalValues {
   float x[kValuesPerBlock] = {}, y[kValuesPerBlock] = {}, z[kValuesPerBlock] = {};
 };
 
-/// Collects the used normals in `values`, which must be new.
+/// Collects the used normals in `values`, which must be empty.
 void gather_normals(std::span<const Vec3f, kValuesPerBlock> normals, std::uint32_t used,
                     const float* weights, NormalValues& values);
 
@@ -46,15 +46,16 @@ struct NormalFit {
 void fit_points(const NormalValues& values, NormalFit& fit);
 
 inline Vec3f unit_vector(Vec3f v) { return v * (1.0f / std::sqrt(dot(v, v))); }
-/// Returns the greatest absolute value of the components.
+/// Returns the largest absolute value of the components.
 float longest_side(Vec3f v);
 
 /// Returns the stored cube point nearest to a direction, which is not zero.
 CubePoint nearest_cube_point(Vec3f direction);
 
-/// Returns the stored axis nearest to `target` as seen along `base`, a unit vector. Components
-/// along the base only lengthen the grid's normals; leaving them free makes the other components
-/// finer. `bend` is the cost of their square relative to the square of the error across.
+/// Returns the stored axis nearest to `target`, seen along the unit vector `base`. A component
+/// along the base only makes the grid's normals longer, so it may have an error; that allows finer
+/// steps of the other components. `bend` is the cost of the squared error along the base, relative
+/// to the squared error across it.
 GridAxis nearest_axis(Vec3f target, Vec3f base, float bend);
 
 }  // namespace voxdag

@@ -5,10 +5,10 @@
 /// depth-first order within a block, siblings together, gaps so that pairs of descriptors have one
 /// parent.
 ///
-/// A subtree of more than `max_slots` is cut below its root: the largest groups of siblings, with
-/// their descendants, become blocks of their own until the rest is small enough. So no block is
-/// much smaller than an eighth of the largest one. Within a block every child pointer reaches; only
-/// pointers between blocks are far.
+/// A subtree of more than `max_slots` is divided below its root: the largest groups of siblings,
+/// with their descendants, become blocks of their own until the rest is small enough. So no block
+/// is much smaller than an eighth of the largest block. Within a block, 15 bits are enough for
+/// every child pointer; only pointers between blocks are far.
 #include <cstdint>
 #include <vector>
 
@@ -20,7 +20,8 @@
 namespace voxdag {
 
 struct PackOptions {
-  /// Approximate number of descriptor slots of a block, up to 2^14. 8192 make about 200 KB.
+  /// The approximate number of descriptor slots of a block, up to 2^14. 8192 slots make about 200
+  /// KB.
   std::uint32_t max_slots = 8192;
   bool with_colors = true, with_normals = true;  ///< Attachments, if the tree has values.
 };
@@ -37,7 +38,7 @@ struct PackedBlocks {
   /// Slots of `begin` and `parent` count from the first of these blocks.
   std::vector<EsvoBlockEntry> blocks;
   std::vector<PackedLink> links;
-  /// The first descriptor of the children of node 0, as a slot among these.
+  /// The slot of the first descriptor of node 0's children, counted from the first of these blocks.
   std::uint64_t first_child = 0;
   /// Counts of the descriptors in these blocks and of the voxels that they describe.
   EsvoCounts counts;
@@ -48,9 +49,9 @@ std::uint64_t packed_slots(const EsvoTree& tree);
 
 /// Packs the descendants of node 0, which must have inner children that are not packed yet. If
 /// `tree` refers to packed children, `position` is the first slot of these blocks, counted like
-/// those in tree.packed; far pointers reach 16 GiB in both directions. `level` and `cell` are those
-/// of node 0's voxel. The block with the children of node 0 comes last; its entry has no parent.
-/// The result depends on the arguments alone.
+/// those in tree.packed; far pointers reach 16 GiB in both directions. `level` and `cell` name node
+/// 0's voxel. The block with the children of node 0 comes last; its entry has no parent. The result
+/// depends on the arguments alone.
 PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint64_t position,
                          const PackOptions& options);
 

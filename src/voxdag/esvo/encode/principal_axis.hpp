@@ -1,5 +1,5 @@
 #pragma once
-/// The axis along which a set of vectors has most of its length.
+/// Finds the axis along which most vectors of a set lie.
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
@@ -20,8 +20,8 @@ struct OuterProductSum {
     yy += other.yy, yz += other.yz, zz += other.zz;
   }
 
-  /// Returns an eigenvector, of any length, of nearly the greatest eigenvalue. The matrix must not
-  /// be zero.
+  /// Returns an eigenvector, of any length, of the greatest eigenvalue (approximately). The matrix
+  /// must not be zero.
   Vec3f principal_axis() const {
     // Squaring the matrix three times almost makes it the projection onto the axis: its longest row
     // then lies along the axis.

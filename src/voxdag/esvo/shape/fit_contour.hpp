@@ -1,9 +1,9 @@
 #pragma once
-/// Finds the contour that cuts most from the part of a voxel's shape that lies beyond its surface.
+/// Finds the contour that removes most of the part of a voxel's shape that lies beyond its surface.
 ///
-/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.4. Of some
-/// candidate directions, takes the one in which the shape's extent exceeds the surface's most. The
-/// planes across it are rounded outwards to positions that can be stored.
+/// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 3.4. Chooses, from
+/// some candidate directions, the one along which the shape's extent exceeds the surface's most.
+/// Rounds the two planes outwards to positions that can be stored.
 #include <array>
 #include <cmath>
 #include <optional>
@@ -25,20 +25,20 @@ struct ContourDirection {
   explicit ContourDirection(Vec3i n)
       : normal(n), length(std::sqrt(static_cast<float>(dot(n, n)))) {}
 
-  /// Returns the direction nearest to `direction` or its opposite, whichever points up; none for
-  /// zero.
+  /// Returns the stored direction nearest to `direction` or to its opposite, whichever points up.
+  /// Returns none for zero.
   static ContourDirection nearest(Vec3d direction);
 
   bool exists() const { return length > 0; }
 };
 
-/// A few candidate directions that differ well from each other.
+/// A few candidate directions that are not similar to each other.
 class ContourCandidates {
  public:
   static constexpr int kMost = 8;
 
   /// Adds a direction. If a similar one (or its opposite) exists, adds to its weight instead. If
-  /// there is no room, replaces the direction of least weight.
+  /// the set is full, replaces the direction of least weight.
   void add(const ContourDirection& direction, double weight);
 
   std::span<const ContourDirection> directions() const { return {directions_.data(), count_}; }
@@ -51,11 +51,12 @@ class ContourCandidates {
 
 struct FittedContour {
   Contour contour;
-  /// Thickness that it cuts from the shape, in the voxel's coordinates: the side is 2.
+  /// The thickness that the contour removes from the shape, in the voxel's coordinates: its side is
+  /// 2.
   double gain = 0;
 
-  /// A contour with less gain is not worth its four bytes, unless it makes the voxel a leaf: else
-  /// each child would need a contour.
+  /// A contour with less gain is not worth its four bytes, unless it makes the voxel a leaf;
+  /// without it each child would need a contour.
   static constexpr double kLeastGain = 0.15;
   bool pays() const { return gain > kLeastGain; }
 };
@@ -63,7 +64,7 @@ struct FittedContour {
 /// Returns the least and the greatest dot(normal, p) of the shape's points p.
 Interval extent_of(const ConvexPolyhedron& shape, Vec3i normal);
 
-/// The least and the greatest dot(normal, p) of a surface's points p, by candidate direction.
+/// The least and the greatest dot(normal, p) of a surface's points p, for each candidate direction.
 using ContourExtents = std::array<Interval, ContourCandidates::kMost>;
 
 /// Returns the extents of a surface of at least one polygon.
@@ -71,8 +72,8 @@ ContourExtents extents_of(std::span<const PlanarPolygon> surface,
                           const ContourCandidates& candidates);
 
 /// Returns the best contour for a surface with these extents along the candidates, or none if the
-/// shape nowhere exceeds the surface. The surface lies between the planes with a margin that
-/// exceeds all rounding here and in the ray casts.
+/// shape exceeds the surface along no candidate. The margin between surface and planes is larger
+/// than all rounding errors here and in the ray casts.
 std::optional<FittedContour> fit_contour(const ConvexPolyhedron& shape,
                                          const ContourCandidates& candidates,
                                          const ContourExtents& extents);

@@ -17,9 +17,9 @@ struct PlanarPolygon {
 /// Largest number of polygons that is_near_surface() tests.
 inline constexpr std::size_t kMostNearPolygons = 24;
 
-/// Returns whether the shape's vertices and their mean are each within `distance` of one of the
-/// polygons: always true for an empty shape, however many polygons there are; otherwise false if
-/// there are more than kMostNearPolygons or the distance is 0.
+/// Returns whether each vertex of the shape, and the mean of the vertices, is within `distance` of
+/// one of the polygons. Returns true for an empty shape. Otherwise returns false if there are more
+/// than kMostNearPolygons polygons or the distance is 0.
 bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
                      float distance);
 

@@ -2,10 +2,10 @@
 /// The part of a triangle in a cell: a convex polygon, in the coordinates in which the cell is
 /// [-1,1]³.
 ///
-/// Each level cuts the polygons of the level above (Sutherland and Hodgman, "Reentrant Polygon
-/// Clipping", 1974) and doubles their coordinates, which is exact. A point lost by rounding at one
-/// level would leave a hole in the levels below. So a corner within 1e-9 outside of the cutting
-/// plane counts as inside, and is moved onto the plane.
+/// Each level cuts the polygons of the parent level (Sutherland and Hodgman, "Reentrant Polygon
+/// Clipping", 1974) and doubles their coordinates, which is exact. If rounding lost a point at one
+/// level, the levels below would have a hole. So a corner outside the cutting plane, but within
+/// 1e-9 of it, counts as inside and is moved onto the plane.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -38,8 +38,8 @@ struct SurfacePolygon {
   union {
     Vec3d corners[kMaxCorners];  // uninitialised
   };
-  /// The origin of the edge from corner i to the next: 0, 1 or 2 for the triangle's edge that
-  /// begins at that corner of the triangle, or kCutEdge.
+  /// The source of the edge from corner i to the next: the number of the triangle's edge (0, 1 or
+  /// 2, the corner at which it begins), or kCutEdge.
   std::uint8_t edges[kMaxCorners];
 
   static SurfacePolygon triangle(Vec3d a, Vec3d b, Vec3d c) {
@@ -80,8 +80,8 @@ struct SurfacePolygon {
     };
     count = 0;
     if (inside == 0) return;
-    // Corners whose predecessors are outside. A convex polygon has at most one, except for
-    // rounding.
+    // The corners whose predecessors are outside. Without rounding, a convex polygon has at most
+    // one.
     const unsigned after = (inside << 1 | inside >> (n - 1)) & ((1u << n) - 1);
     unsigned entries = inside & ~after;
     if (entries == 0)
@@ -103,7 +103,7 @@ struct SurfacePolygon {
   }
 
   /// Becomes the part of `whole`, another polygon, in octant `child` (x=1, y=2, z=4), enlarged to
-  /// [-1,1]³. `axes` (x=1, y=2, z=4) are those along which `whole` may be in both halves. If
+  /// [-1,1]³. `axes` (x=1, y=2, z=4) are the axes along which `whole` may be in both halves. If
   /// rounding loses the whole part, a point remains.
   void become_octant(const SurfacePolygon& whole, int child, std::uint32_t axes) {
     SurfacePolygon parts[2];
@@ -164,8 +164,8 @@ struct SurfacePolygon {
   struct Octants {
     std::uint32_t first, last;
   };
-  /// Returns the octants that contain the polygon; nothing if there are more than two, or if
-  /// rounding leaves a doubt.
+  /// Returns the octants that contain the polygon. Returns nothing if there are more than two, or
+  /// if rounding could change the result.
   std::optional<Octants> octants() const {
     // A corner moves by at most kSlack, and each of twenty levels doubles that.
     constexpr double kDoubt = kSlack * (1 << 20);

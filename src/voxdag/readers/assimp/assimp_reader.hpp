@@ -9,12 +9,12 @@ namespace voxdag {
 /// points and lines. `extension` (".dxf") chooses the importer; without one the content does.
 ///
 /// Unless options.any_assimp_importer is set, only the importers of importer_choice.hpp are used.
-/// Of the files that the mesh names, assimp sees those inside its folder, or all if
-/// options.allow_outside is set. Memory: reserves 64 bytes per byte of the file for assimp, whose
-/// memory is not counted otherwise, and the mesh. Cannot be cancelled while assimp works.
+/// Assimp may open only files inside the mesh's folder, or any file if options.allow_outside is
+/// set. Memory: reserves 64 bytes per byte of the file, because assimp's own memory cannot be
+/// counted, and the mesh. Cannot be cancelled while assimp works.
 ///
-/// Throws Error for formats that are unknown or need options.any_assimp_importer, for files that
-/// assimp refuses, with its reason, and if this library was built without assimp; and OverMemory.
+/// Throws Error if the format is unknown or needs options.any_assimp_importer, if assimp refuses
+/// the file (with its reason), or if this library was built without assimp. Throws OverMemory.
 Mesh read_with_assimp(const MeshSource& source, const std::string& extension);
 
 }  // namespace voxdag

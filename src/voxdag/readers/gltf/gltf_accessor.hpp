@@ -10,8 +10,8 @@
 
 namespace voxdag {
 
-/// Decodes elements one at a time from the file's bytes, so that no array of them is in memory and
-/// the number of accessors that primitives use costs nothing. Refers to the file.
+/// Decodes elements one at a time from the file's bytes. So it needs no array of elements, and
+/// using many accessors needs no memory. Refers to the file.
 class GltfAccessor {
  public:
   /// Checks that every element is inside its buffer. Throws Error, OverMemory.
@@ -37,7 +37,7 @@ class GltfAccessor {
   using Change = std::pair<std::uint32_t, const char*>;
 
   void read_sparse(const GltfFile& file, const GltfValue& sparse);
-  /// Returns the bytes of an element; null: it is zero.
+  /// Returns the bytes of an element, or null if the element is zero.
   const char* find(std::size_t i) const;
   float load_component(const char* p) const;
 
@@ -57,15 +57,16 @@ class GltfAccessors {
   explicit GltfAccessors(const GltfFile& file)
       : file_(file), accessors_(file.source().options.memory) {}
 
-  /// Return the accessor that `user` refers to, for one purpose. The references stay valid. Throw
-  /// Error, OverMemory.
+  /// The functions below return the accessor that `user` refers to, for one purpose. The references
+  /// stay valid. They throw Error and OverMemory.
   ///
-  /// Positions: VEC3 of float, or of 8- or 16-bit integers if the asset uses KHR_mesh_quantization.
+  /// Returns positions: VEC3 of float, or of 8- or 16-bit integers if the asset uses
+  /// KHR_mesh_quantization.
   const GltfAccessor& positions(std::uint64_t index, const GltfValue& user);
-  /// Indices: SCALAR of unsigned 8, 16 or 32 bits, whose values are not checked.
+  /// Returns indices: SCALAR of unsigned 8, 16 or 32 bits. Does not check their values.
   const GltfAccessor& indices(std::uint64_t index, const GltfValue& user);
-  /// Attributes with a number of components: VEC2 texture coordinates, VEC3 normals, VEC3 or VEC4
-  /// colours. `what` names them in errors.
+  /// Returns attributes: VEC2 texture coordinates, VEC3 normals, VEC3 or VEC4 colours. `what` names
+  /// them in errors.
   const GltfAccessor& attributes(std::uint64_t index, const GltfValue& user, int components,
                                  int or_components, const char* what);
 

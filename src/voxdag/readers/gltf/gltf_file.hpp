@@ -43,10 +43,10 @@ class GltfFile {
   GltfValue item(GltfArray array, std::uint64_t index, const GltfValue& user) const;
 
   /// Returns the bytes of the buffer view that `user` refers to, which lie inside their buffer.
-  /// `view` receives the view, for its stride. Throws Error.
+  /// Sets `view` to the buffer view, which has the stride. Throws Error.
   std::string_view view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const;
 
-  /// Returns the size of all buffers together, in bytes.
+  /// Returns the total size of all buffers, in bytes.
   std::uint64_t buffer_bytes() const { return buffer_bytes_; }
   /// Drops the pages of mapped buffers from memory.
   void release_pages() const;

@@ -1,5 +1,5 @@
 #pragma once
-/// Which meshes a glTF scene shows, and where.
+/// Finds the meshes that a glTF scene shows, and their transforms.
 #include <cstdint>
 
 #include "voxdag/readers/gltf/gltf_file.hpp"
@@ -12,9 +12,9 @@ struct GltfInstance {
   GltfTransform transform;
 };
 
-/// Returns the instances of the default scene; without one, of the first scene; without scenes, of
-/// all root nodes; without nodes, every mesh once. Throws Error if nodes do not form trees,
-/// OverMemory, Cancelled.
+/// Returns the instances of the default scene. Without a default scene, returns those of the first
+/// scene; without scenes, those of all root nodes; without nodes, every mesh once. Throws Error if
+/// nodes do not form trees, OverMemory, Cancelled.
 CountedVector<GltfInstance> find_gltf_instances(const GltfFile& file);
 
 }  // namespace voxdag

@@ -6,8 +6,8 @@
 
 namespace voxdag {
 
-/// Returns which TEXCOORD_n a primitive's material looks up: that of its colour texture, else of
-/// its normal texture, else 0.
+/// Returns the n of the TEXCOORD_n that a primitive's material uses: the one of its colour texture,
+/// else of its normal texture, else 0.
 std::uint64_t gltf_uv_set(const GltfFile& file, const GltfValue& primitive);
 
 /// Fills materials and images: baseColorFactor and -Texture, alphaMode and alphaCutoff,

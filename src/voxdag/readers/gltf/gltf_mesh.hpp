@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// The ways in which corners make triangles; smaller modes make points and lines.
+/// The modes in which corners make triangles. Smaller modes make points and lines.
 enum GltfMode : std::uint64_t { kGltfTriangles = 4, kGltfStrip = 5, kGltfFan = 6 };
 
 struct GltfPrimitive {
@@ -17,14 +17,14 @@ struct GltfPrimitive {
   const GltfAccessor* positions = nullptr;
   const GltfAccessor* indices = nullptr;  ///< Null: the corners are the positions in order.
   std::uint64_t triangles = 0;
-  std::uint32_t first_vertex = 0;  ///< Its positions in the mesh: primitives may share them.
-  bool adds_vertices = false;      ///< It is the first one with its positions.
+  std::uint32_t first_vertex = 0;  ///< Its first position in the mesh; may be shared.
+  bool adds_vertices = false;      ///< It is the first primitive with its positions.
   std::uint32_t material = 0;      ///< The number of materials if it has none.
-  /// Attributes, if they are read; null: the primitive has none.
+  /// The attributes, if they are read. Null if the primitive has none.
   const GltfAccessor *normals = nullptr, *uvs = nullptr, *colors = nullptr;
 };
 
-/// The primitives that add vertices or triangles, and their sums.
+/// The primitives that add vertices or triangles, and their totals.
 struct GltfMesh {
   explicit GltfMesh(MemoryBudget* memory) : primitives(memory) {}
 

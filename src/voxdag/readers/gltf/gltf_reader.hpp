@@ -6,19 +6,20 @@
 namespace voxdag {
 
 /// Reads the triangles (lists, strips and fans, indexed or not) of every mesh that the default
-/// scene shows, once per node that shows it, under the product of the nodes' transforms: computed
-/// in double, then rounded to float32. find_gltf_instances() says what is shown without a default
-/// scene. Resolves sparse and quantised positions. Ignores points, lines, skins, morph targets and
-/// animations. Buffers are in the file, in `data:` URIs or in files in the same folder. A mesh
-/// without any material has none; else triangles without a material have the unnamed one.
+/// scene shows, once per node that shows it. Applies the product of the nodes' transforms in
+/// double, then rounds to float32. find_gltf_instances() describes files without a default scene.
+/// Resolves sparse and quantised positions. Ignores points, lines, skins, morph targets and
+/// animations. Buffers are in the file, in `data:` URIs or in files in the same folder. If no
+/// primitive has a material, the mesh has none; else triangles without a material get a material
+/// without a name.
 ///
 /// With its appearance: reads NORMAL, TEXCOORD_n (the set that the material's colour texture uses),
 /// COLOR_0 and the materials; opens no images.
 ///
 /// Throws Error with the byte of malformed JSON or the path of the JSON value at fault: accessors
-/// beyond their buffers, indices out of range, vertices that are used and not finite, nodes that do
-/// not form trees, missing buffers, required extensions that change geometry (Draco, meshopt), no
-/// triangles, or 2^32 corners or vertices and more, which instances of a small file can make.
+/// beyond their buffers, indices out of range, used vertices that are not finite, nodes that do not
+/// form trees, missing buffers, required extensions that change geometry (Draco, meshopt), no
+/// triangles, or at least 2^32 corners or vertices, which even a small file can make by instances.
 MeshWithAppearance read_gltf(const MeshSource& source, ReadParts parts);
 
 }  // namespace voxdag

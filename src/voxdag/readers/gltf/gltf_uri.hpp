@@ -13,7 +13,7 @@ namespace voxdag {
 /// which may be null. Throws Cancelled.
 std::string decode_percent(std::string_view uri, const Progress* progress = nullptr);
 
-/// Bytes that a `data:` URI holds.
+/// The bytes of a `data:` URI.
 struct DecodedUri {
   MemoryReservation memory;
   std::string bytes;

@@ -13,9 +13,8 @@ namespace voxdag {
 
 class GltfItems;
 
-/// A JSON value that knows its place for error messages, or a member that is absent. A JSON null
-/// counts as absent. Cheap to copy. Throws Error where the value has another type than is asked
-/// for.
+/// A JSON value that knows its place for error messages, or an absent member. A JSON null counts as
+/// absent. Cheap to copy. Its functions throw Error if the value has another type.
 class GltfValue {
  public:
   GltfValue(const MeshSource& source, const JsonDocument& document, std::uint32_t node)
@@ -27,9 +26,9 @@ class GltfValue {
   GltfItems items() const;
   bool exists() const { return absent_count_ == 0 && json().kind != JsonKind::kNull; }
 
-  /// Returns a whole number from 0 to 2^53. `absent` replaces an absent one.
+  /// Returns a whole number from 0 to 2^53, or the argument `absent` if the value is absent.
   std::uint64_t whole(std::uint64_t absent) const;
-  /// Throws Error if it is absent.
+  /// Returns a whole number from 0 to 2^53. Throws Error if it is absent.
   std::uint64_t whole() const;
   bool boolean(bool absent) const;
   std::string text(const std::string& absent = "") const;
@@ -38,7 +37,7 @@ class GltfValue {
   std::string_view text_view(std::string& unescaped) const;
   /// Returns `count` finite numbers, or nothing if absent.
   std::vector<double> numbers(std::size_t count) const;
-  /// Returns a finite number.
+  /// Returns a finite number, or the argument `absent` if the value is absent.
   double number(double absent) const;
 
   /// Returns the place of the value: "accessors[3].sparse".

@@ -21,8 +21,9 @@ struct JsonNode {
   bool has_unescaped_key = false;  ///< The key is in the document's own text.
 };
 
-/// The values of a JSON text, which must stay valid. Members of objects are sorted by key; the last
-/// of several with one key counts. Strings stay in the text, so memory is about 32 bytes per value.
+/// The values of a JSON text, which must stay valid. Members of objects are sorted by key; if
+/// several have the same key, the last one counts. Strings stay in the text, so memory is about 32
+/// bytes per value.
 class JsonDocument {
  public:
   /// Parses `text`, which is part of source.bytes. Throws Error with the byte, OverMemory,
@@ -39,7 +40,7 @@ class JsonDocument {
   /// Returns the index of a member of an object, or kAbsent.
   std::uint32_t member(const JsonNode& object, std::string_view key) const;
 
-  /// Returns where a value is in the document: "accessors[3].sparse". Empty for the root.
+  /// Returns the place of a value in the document: "accessors[3].sparse". Empty for the root.
   std::string path(std::uint32_t index) const;
 
  private:

@@ -43,7 +43,7 @@ struct ObjChunk {
   NameTable materials, libraries;   ///< Arguments of `usemtl` and `mtllib`.
   std::uint32_t last_material = 0;  ///< Index into `materials` of the last `usemtl`.
   bool faces_before_material = false;
-  bool has_colors = false;  ///< A vertex has six numbers.
+  bool has_colors = false;  ///< Some vertex has six numbers.
 };
 
 /// Number of triangles in the fan of a face line.

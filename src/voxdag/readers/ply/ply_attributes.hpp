@@ -22,12 +22,12 @@ struct PlyRowValues {
   explicit PlyRowValues(MemoryBudget* memory) : texcoord(memory) {}
 
   std::array<float, kSlots> scalars{};
-  CountedVector<float> texcoord;  ///< Of a face: u and v of its corners.
+  CountedVector<float> texcoord;  ///< u and v of the corners of a face.
 };
 
 /// Which properties of an element make the appearance.
 struct PlyColumns {
-  std::vector<int> slots;  ///< Of each property its PlyRowValues::Slot, or -1.
+  std::vector<int> slots;  ///< PlyRowValues::Slot of each property, or -1.
   int texcoord = -1;       ///< Index of the list `texcoord`, or -1.
   int color_components = 0;
   bool has_normals = false, has_uvs = false;
@@ -69,7 +69,7 @@ class PlyAttributes {
   const MeshSource& source_;
   const PlyHeader& header_;
   PlyColumns vertex_, face_;
-  std::array<float, 4> color_scales_{};  ///< From the components' type to 0..1.
+  std::array<float, 4> color_scales_{};  ///< Factors that map the components' type to 0..1.
   CountedVector<Rgba16> vertex_colors_;
   CountedVector<Vec3f> vertex_normals_;
   CountedVector<Vec2f> vertex_uvs_;

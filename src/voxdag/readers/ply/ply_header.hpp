@@ -30,7 +30,7 @@ constexpr bool is_integer(PlyType type) { return type < PlyType::kFloat; }
 struct PlyProperty {
   std::string_view name;
   PlyType type;                       ///< Type of the value, or of the items of a list.
-  std::optional<PlyType> count_type;  ///< Type of a list's number of items. None: no list.
+  std::optional<PlyType> count_type;  ///< Type of a list's item count. None: not a list.
 };
 
 struct PlyElement {

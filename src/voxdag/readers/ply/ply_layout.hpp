@@ -47,7 +47,7 @@ inline float load_float(PlyType type, const char* p, bool swap) {
 struct Run {
   std::size_t fixed_bytes = 0;
   PlyType count_type = PlyType::kUint8;
-  std::size_t item_bytes = 0;  ///< 0: no list.
+  std::size_t item_bytes = 0;  ///< 0: not a list.
 };
 
 /// The place of a property: its run, and its offset in bytes in the run. A list follows the run's
@@ -59,7 +59,7 @@ struct Place {
 /// The layout of one element's rows.
 struct RowLayout {
   std::vector<Run> runs{1};
-  std::vector<Place> places;  ///< By property.
+  std::vector<Place> places;  ///< Per property.
 
   explicit RowLayout(const PlyElement& element) {
     for (const PlyProperty& property : element.properties) {
