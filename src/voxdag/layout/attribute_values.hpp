@@ -3,7 +3,7 @@
 
 namespace voxdag {
 
-/// Values per block: one for each of the eight child slots of two consecutive descriptors.
+/// One value for each of the eight child slots of two consecutive descriptors.
 inline constexpr int kValuesPerBlock = 16;
 
 }  // namespace voxdag

@@ -1,8 +1,8 @@
 #pragma once
-/// Annotates for ThreadSanitizer the order that TBB guarantees: the items of a loop run after
+/// Tells ThreadSanitizer about the order that TBB guarantees: the items of a loop run after
 /// everything that the caller did before the loop, and before everything that it does after the
-/// loop. Debian's TBB is not built with ThreadSanitizer, which therefore does not see this order.
-/// Without ThreadSanitizer these types are empty.
+/// loop. ThreadSanitizer cannot see this order, because Debian's TBB is not built with it. Without
+/// ThreadSanitizer these types are empty.
 
 #if defined(__SANITIZE_THREAD__)
 #define VOXDAG_TSAN 1
@@ -20,7 +20,7 @@ namespace voxdag {
 
 #ifdef VOXDAG_TSAN
 
-/// The caller holds one around the loop.
+/// The caller keeps one alive during the loop.
 class LoopOrder {
  public:
   LoopOrder() { __tsan_release(&begin_); }

@@ -1,5 +1,5 @@
 #pragma once
-/// Distinct names with numbers.
+/// Gives numbers to distinct names.
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -18,7 +18,7 @@ class NameTable {
   /// A null budget counts nothing.
   explicit NameTable(MemoryBudget* memory) : ids_(memory), names_(memory), long_names_(memory, 0) {}
 
-  /// Throws OverMemory.
+  /// Returns the number of a name; adds the name if it is new. Throws OverMemory.
   std::uint32_t find_or_add(std::string_view name) {
     if (const auto known = find(name)) return *known;
     if (name.size() > kInlineBytes) long_names_.resize(long_names_.bytes() + name.size() + 1);

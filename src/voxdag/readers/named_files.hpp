@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// Where a name stands, for error messages.
+/// The place of a name, for error messages.
 struct NamePlace {
   std::string file;  ///< The mesh file, or the MTL file that it names.
   ErrorPlace place;  ///< "line 3", "buffers[0]".
@@ -20,11 +20,11 @@ class NamedFiles {
   explicit NamedFiles(const MeshSource& source);
 
   /// Returns `folder` / `name` and adds it to ReadOptions::named_files. The file need not exist.
-  /// Throws Error if the path, with symbolic links resolved, is outside of the mesh file's folder,
+  /// Throws Error if the path, with symbolic links resolved, is outside the mesh file's folder,
   /// unless ReadOptions::allow_outside is set.
   std::filesystem::path find(const std::filesystem::path& folder, std::string_view name,
                              const NamePlace& place) const;
-  /// Adds a name that the reader does not open to ReadOptions::named_files.
+  /// Adds a file that the reader does not open to ReadOptions::named_files.
   void report(const std::filesystem::path& path) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Text parsing that OBJ, MTL, OFF, ascii PLY and ascii STL share.
+/// Functions that parse text for OBJ, MTL, OFF, ascii PLY and ascii STL.
 #include <fast_float/fast_float.h>
 
 #include <charconv>
@@ -42,13 +42,14 @@ inline const char* parse_float_prefix(const char* first, const char* last, float
   return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
 }
 
-/// Parses the whole token like parse_float_prefix. Returns false if it is not a number.
+/// Parses the whole token like parse_float_prefix(). Returns false if it is not a number.
 inline bool parse_float(std::string_view token, float& value) {
   const char* const last = token.data() + token.size();
   return parse_float_prefix(token.data(), last, value) == last;
 }
 
-/// Parses the whole token as a decimal integer with or without a sign. Returns false if it is none.
+/// Parses the whole token as a decimal integer with or without a sign. Returns false if it is not
+/// an integer.
 inline bool parse_int(std::string_view token, std::int64_t& value) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   const char* const last = token.data() + token.size();

@@ -17,10 +17,10 @@ class Warnings {
     else
       ++left_out_;
   }
-  /// Whether add() will only count.
+  /// Returns whether kMost warnings are kept, so that add() only counts.
   bool is_full() const { return kept_.size() >= kMost; }
 
-  /// Returns the warnings. The last one says how many were left out, if any were.
+  /// Returns the warnings. If some were left out, the last one says how many.
   std::vector<std::string> take(const std::string& file) {
     if (left_out_ > 0)
       kept_.push_back(file + ": " + std::to_string(left_out_) + " more warnings are not shown");

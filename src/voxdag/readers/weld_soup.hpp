@@ -1,11 +1,11 @@
 #pragma once
-/// Welding of a triangle soup: corners with equal bits become one vertex, in the order in which the
-/// soup first has them.
+/// Welds a triangle soup: corners with equal bits become one vertex. Vertices are in the order of
+/// their first corners in the soup.
 ///
 /// A first pass over the soup counts its triangles and estimates its vertices from a sample, so
 /// that the arrays have their final size from the start. A second pass reads a batch of parts at a
-/// time: threads weld each part on its own; then the vertices of the parts, far fewer than their
-/// corners, are welded in order. A hash table takes at most 0.27 times the size of the finished
+/// time. Threads weld each part by itself. Then the vertices of the parts, which are far fewer than
+/// the corners, are welded in order. A hash table takes at most 0.27 times the size of the finished
 /// mesh.
 #include <tbb/task_arena.h>
 
@@ -22,7 +22,7 @@
 
 namespace voxdag {
 
-/// What the first pass over a soup finds.
+/// The result of the first pass over a soup.
 struct SoupSize {
   std::vector<std::size_t> first_triangles;  ///< Per part, and then the number of all triangles.
   std::size_t vertices = 0;                  ///< Estimated number of distinct vertices.
@@ -54,7 +54,7 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
     counted.resize(sample.bytes_with(samples[part].size()));
     for (const Vec3f position : samples[part]) sample.find_or_add(position);
   }
-  // Four standard deviations above the estimate are hardly ever exceeded.
+  // The true number hardly ever exceeds the estimate by four standard deviations.
   const auto sampled = static_cast<double>(sample.vertices().size());
   size.vertices = static_cast<std::size_t>(kOneIn * (sampled + 4 * std::sqrt(sampled) + 4));
   size.vertices = std::min(size.vertices, 3 * size.first_triangles.back());
@@ -69,7 +69,7 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
   Mesh mesh;
   const std::vector<std::size_t>& starts = size.first_triangles;
   const std::size_t triangles = starts.back();
-  // A full table is slow, so it is full only where nearly no corners are shared.
+  // A full table is slow. This one is full only if almost no corners are shared.
   const std::size_t slots =
       64 + std::min(size.vertices * 8 / 5, (triangles + size.vertices) / 5 * 4);
   const std::uint64_t triangle_bytes = triangles * sizeof(Triangle);
@@ -86,7 +86,7 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
     const auto at = [&](std::size_t part) {
       return parts.begin() + static_cast<std::ptrdiff_t>(part);
     };
-    // For each corner: the vertex and its slot in a table of the part, which both may double.
+    // Each corner may need a vertex and a slot in the part's table; both arrays may double.
     const MemoryReservation scratch(
         source.options.memory,
         3 * (starts[last] - starts[first]) * (2 * sizeof(Vec3f) + 5 * sizeof(std::uint32_t)));

@@ -1,13 +1,14 @@
 #pragma once
-/// Ambient occlusion: how much of the sky's light passes a point's surroundings and reaches it.
+/// Ambient occlusion: the fraction of the sky's light that reaches a point past its surroundings.
 ///
 /// Source: S. Laine and T. Karras, "Two Methods for Fast Ray-Cast Ambient Occlusion", EGSR 2010, as
 /// used by Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
-/// section
-/// 4. The occlusion by a surface at distance d has the weight (1 - d/longest)². Instead of the
-/// closest hits of rays of equal length, the method tests whether rays of random length hit
-/// anything; the distribution of the lengths makes the mean the same. Rays may end at cells that
-/// subtend a given solid angle: the result is darker, but near contacts stay exact.
+/// section 4.
+///
+/// The occlusion by a surface at distance d has the weight (1 - d/longest)². Instead of the closest
+/// hits of rays of equal length, the method tests whether rays of random length hit anything; the
+/// lengths are distributed so that the mean is equal. Rays may end at cells that subtend a given
+/// solid angle: the result is darker, but exact near contacts.
 #include "voxdag/render/basis.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
@@ -15,8 +16,8 @@
 
 namespace voxdag {
 
-/// Returns ray `i` of a point. The directions are distributed around the shading normal; those
-/// below the plane of the surface itself, which can differ from it, are mirrored at that plane.
+/// Returns ray `i` of a point. The directions are distributed around the shading normal. Directions
+/// below the plane of the surface itself, whose normal may differ, are mirrored at that plane.
 /// `longest` is in units of the grid's side; `cone` as in RenderSettings::occlusion_cone.
 VOXDAG_HD inline CastRay occlusion_ray(const SampleTables& tables, float longest, float cone,
                                        const SurfacePoint& point, const PixelSamples& pixel,

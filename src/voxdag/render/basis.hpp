@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-/// Two unit vectors that with `normal` make a right-handed frame.
+/// Two unit vectors that form a right-handed frame with `normal`.
 template <class T>
 struct Basis {
   Vec3<T> u, v;

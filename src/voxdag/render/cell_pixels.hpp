@@ -2,7 +2,7 @@
 /// The size of the cell that a pixel shows, in one byte: its logarithm in 3.5 fixed point.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.3. Uses no
-/// library logarithm: those of host and device differ in the last bit.
+/// library logarithm, because host and device differ in its last bit.
 #include <cstdint>
 
 #include "voxdag/core/bits.hpp"
@@ -10,7 +10,7 @@
 namespace voxdag {
 
 /// Returns 32 log2(side), rounded to the nearest integer, for a side of 1 to 250 pixels. Returns 0
-/// for smaller sides and NaN, and 255 for larger ones. Pixels that show no cell have 0, too.
+/// for smaller sides and NaN, and 255 for larger sides. Pixels that show no cell also have 0.
 VOXDAG_HD inline std::uint8_t pack_cell_pixels(float side) {
   if (!(side > 1.0f)) return 0;
   if (!(side < 256.0f)) return 255;

@@ -26,13 +26,14 @@ class CoarseCells {
   int level() const { return level_; }
   std::int32_t side() const { return 1 << level_; }
   const std::vector<Vec3i>& cells() const { return cells_; }
-  /// Half-open, in cells; empty() if there are none.
+  /// Returns the half-open bounds of the cells, in cells; the empty box if there are none.
   const Box3i& bounds() const { return bounds_; }
-  /// Returns false outside of the grid.
+  /// Returns whether a cell is not empty; false outside the grid.
   bool contains(Vec3i cell) const;
 
-  /// Returns the part, 0 to 1, of one side of the bounds that cells cover within `depth` cells of
-  /// that side, seen along `axis` (from below if `from_below`).
+  /// Returns the fraction (0 to 1) of one side of the bounds that cells cover. Counts only cells
+  /// within `depth` cells of that side: the lower side along `axis` if `from_below`, else the
+  /// upper.
   double side_cover(int axis, bool from_below, std::int32_t depth) const;
 
  private:
@@ -47,7 +48,7 @@ class CoarseCells {
     for (int i = 0; i < 8; ++i) {
       if ((mask >> i & 1u) == 0) continue;
       const Vec3i child = cell * 2 + child_offset(i);
-      // Nodes of this level are not read, and voxels are no nodes.
+      // Children of the last level are not read as nodes, because voxels have no nodes.
       const bool is_last = level + 1 == level_;
       collect(nodes, is_last ? node : nodes.child(node, level, i), level + 1, child);
     }

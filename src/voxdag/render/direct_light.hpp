@@ -1,10 +1,10 @@
 #pragma once
-/// Light from sun and lamps, with hard and soft shadows.
+/// Computes the light from sun and lamps, with hard and soft shadows.
 ///
 /// Source: Kämpe, Sintorn and Assarsson, "High Resolution Sparse Voxel DAGs", SIGGRAPH 2013,
-/// section 4: shadow rays run from each view sample to points on the light. A beam between them
-/// shortens the rays to the interval in which the beam meets anything; if it meets nothing, no ray
-/// is cast.
+/// section 4: shadow rays run from each view sample to points on the light. A beam from the sample
+/// to the light shortens the rays to the interval in which the beam meets anything. If the beam
+/// meets nothing, no ray is cast.
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/light_sample.hpp"
 #include "voxdag/render/tile.hpp"
@@ -13,13 +13,13 @@
 
 namespace voxdag {
 
-/// Samples [begin, begin + count) of each pixel for light `index`.
+/// The samples [begin, begin + count) of each pixel, for light `index`.
 struct LightBatch {
   int index = 0, begin = 0, count = 0;
 };
 
-/// Sets scratch.active to the pixels that need rays to the light, scratch.intervals for these, and
-/// scratch.pixels for all. Returns how many are active.
+/// Sets scratch.active to the pixels that need rays to the light, scratch.intervals for these
+/// pixels, and scratch.pixels for all pixels. Returns the number of active pixels.
 template <class Nodes, class Scratch>
 VOXDAG_HD inline int find_shadowed_pixels(const Nodes& nodes, const RenderSetup& setup, int index,
                                           const ViewTile& tile, Scratch& scratch) {
@@ -62,7 +62,8 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
         if (!(sample.weight > 0)) return ray;
         const LightInterval& interval = scratch.intervals[pixel];
         ray.ray = make_grid_ray(point.start, sample.direction, interval.first, interval.last);
-        // Ends at cells of the size that the picture shows, so that shadows and picture agree.
+        // The ray ends at cells of the size that the picture shows, so that shadows and picture
+        // agree.
         ray.stop.at_start = point.cell_side;
         return ray;
       },

@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Returns the deepest contour among those of the voxel that was hit and its ancestors, if any.
+/// Returns the deepest contour of the hit voxel and its ancestors, if there is one.
 VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRay& ray,
                                               const EsvoHit& hit) {
   ContourPlane deepest;
@@ -25,13 +25,14 @@ VOXDAG_HD inline ContourPlane deepest_contour(const EsvoView& esvo, const GridRa
   }
 }
 
-/// Returns the surface where a primary ray hit a shape. `direction` is the ray's, in world units.
+/// Returns the view sample at which a primary ray hit a shape. `direction` is the ray's direction,
+/// in world units.
 template <EsvoLayout Nodes>
 VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSetup& setup,
                                              Vec3d direction, const GridRay& ray,
                                              const EsvoHit& hit) {
-  // How far the shapes of neighbours may rise above the visible plane, in units of the thickness of
-  // the plane's slab and of the cells that represent a surface at this depth.
+  // The height to which the shapes of neighbours may rise above the visible plane: in units of the
+  // slab's thickness, and in units of the cells that represent a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;
   constexpr float kLeaning = 0.2f, kOpposite = 0.8f, kTrusted = 0.5f;  // cosines
   const EsvoView& esvo = nodes.view();
@@ -51,16 +52,17 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   stored_color(esvo, hit.voxel, sample.albedo);
   sample.normal = plane;
   if (stored_normal(esvo, hit.voxel, sample.normal)) {
-    // Surfaces are visible from both sides. The entered side of a cube hardly tells which one is
-    // seen. At outlines, where most cube sides are visible, the normal may lean away from the
-    // viewer a little, but may not point straight into the cube from the entered side.
+    // Surfaces are visible from both sides. The entered side of a cube does not tell reliably which
+    // side of the surface is seen. At outlines, where most cube sides are visible, the normal may
+    // point away from the viewer a little. It may not point straight into the cube from the entered
+    // side.
     const float facing = dot(sample.normal, view), through = dot(sample.normal, plane);
     const bool is_back = hit.is_through_contour()
                              ? through < 0
                              : facing < -kLeaning || (facing < 0 && through < -kOpposite);
     if (is_back) sample.normal = -sample.normal;
-    // The mean normal of both sides of a cloth fits neither side: the less it agrees with the
-    // visible plane, the less it counts.
+    // The mean normal of the two sides of a cloth fits neither side. So its weight falls with its
+    // angle to the visible plane.
     if (hit.is_through_contour()) {
       const float trust = smooth_step(0, kTrusted, dot(sample.normal, plane));
       sample.normal = normalized(mix(plane, sample.normal, trust));
@@ -80,11 +82,11 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
     const bool is_cube = deepest.contour.bits == 0;
     sample.face = is_cube ? normalized(mix(sample.normal, plane, cube)) : sample.normal;
   }
-  // As with the cubes of a DAG, this side of the cube may lie below the surface's plane.
+  // As for the cubes of a DAG, this side of the cube may lie below the surface's plane.
   const float below = cube_height(sample.face) - dot(sample.face, plane);
   sample.lift = (cube_height(sample.face) + (below > 0 ? below : 0.0f) + kCells) * voxel_size;
-  // The contours' slabs may be thinner. The visible plane may be that of an ancestor with a thick
-  // slab, but nothing in the ancestor's cube rises above it.
+  // The contours' slabs may be thinner. The visible plane may belong to an ancestor with a thick
+  // slab, but nothing in the ancestor's cube rises above that plane.
   for (const ContourPlane& slab : {hit.plane, deepest}) {
     if (slab.contour.bits == 0) continue;
     const float above = kSlabs * thickness(slab) * side + kCells * sample.detail_size;
@@ -93,7 +95,7 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   return sample;
 }
 
-/// See trace_view_samples() in voxel_view_samples.hpp.
+/// Does for an ESVO what trace_view_samples() in voxel_view_samples.hpp does for a DAG.
 template <EsvoLayout Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
                                         const RenderSetup& setup, const ViewTile& tile,

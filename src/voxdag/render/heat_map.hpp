@@ -1,5 +1,5 @@
 #pragma once
-/// A colour scale for values. Its brightness grows evenly, so that it can be read in grey, too.
+/// A colour scale for values. Its brightness grows evenly, so that it is readable in grey too.
 #include <cmath>
 #include <numbers>
 
@@ -7,9 +7,9 @@
 
 namespace voxdag {
 
-/// Returns the display colour, as codes from 0 to 1, for a value from 0 to 1. Source: D. A. Green,
-/// "A colour scheme for the display of astronomical intensity images", 2011 ("cubehelix"), here
-/// from black over blue, red and yellow to white.
+/// Returns the display colour (sRGB, 0 to 1) for a value from 0 to 1. Source: D. A. Green, "A
+/// colour scheme for the display of astronomical intensity images", 2011 ("cubehelix"), here from
+/// black over blue, red and yellow to white.
 inline Vec3f heat_color(float value) {
   constexpr float kStart = 0.5f, kRotations = -1.2f, kHue = 1.3f,
                   kTwoPi = 2 * std::numbers::pi_v<float>;

@@ -1,5 +1,5 @@
 #pragma once
-/// Views from inside of a scene.
+/// Views from inside a scene.
 #include <vector>
 
 #include "voxdag/render/coarse_cells.hpp"
@@ -8,13 +8,14 @@
 
 namespace voxdag {
 
-/// The best direction at a roomy place inside of a scene. Better views have a greater score.
+/// A view from a roomy place inside a scene, in the best direction. Better views have a greater
+/// score.
 struct InsideView {
   double score = 0;
   View view;
 };
 
-/// Returns the best view of each roomy place, best first; none if there is no roomy place.
+/// Returns the best view from each roomy place, best first; no views if there is no such place.
 /// `fov` is vertical, in degrees, `aspect` = width / height.
 std::vector<InsideView> inside_views(const CoarseCells& scene, const SceneExplorer& explorer,
                                      const Grid& grid, const Compass& compass, double fov,

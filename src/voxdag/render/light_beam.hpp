@@ -1,5 +1,5 @@
 #pragma once
-/// The part of the way to a light in which shadow rays can meet anything.
+/// Finds the interval on the way to a light in which shadow rays can meet anything.
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/trace/beam.hpp"
@@ -8,14 +8,14 @@ namespace voxdag {
 
 struct LightInterval {
   float first = 0,
-        last = 0;         ///< In t of a shadow ray. The light is at t = 1, the sun at kSunEnd.
+        last = 0;         ///< In t of a shadow ray. A lamp is at t = 1, the sun at kSunEnd.
   bool is_clear = false;  ///< No ray meets anything.
 };
 
-/// By this t, a ray along the sun's direction has left the grid.
+/// A ray along the sun's direction has left the grid at this t.
 inline constexpr float kSunEnd = 4;
 
-/// Bounds per axis of the directions from a point to the points of a light.
+/// Bounds, per axis, on the directions from a point to the points of a light.
 struct DirectionBounds {
   Vec3f lowest, highest;
 };
@@ -36,7 +36,7 @@ VOXDAG_HD inline LightInterval light_interval(const Light& light) {
   return {0, light.kind == LightKind::kSun ? kSunEnd : 1.0f, false};
 }
 
-/// Finds the interval by a beam from the point to the light, and one back.
+/// Finds the interval with two beams: from the point to the light, and back.
 template <class Nodes>
 VOXDAG_HD inline LightInterval cast_light_beam(const Nodes& nodes, const Light& light,
                                                const SurfacePoint& point) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Points on lights: the direction of a shadow ray, and the light that comes back along it.
+/// Samples points on lights: the direction of a shadow ray, and the light that arrives along it.
 ///
 /// Discs and rectangles are sampled by area, spheres by the solid angle that they subtend
 /// (P. Shirley, C. Wang and K. Zimmerman, "Monte Carlo Techniques for Direct Lighting
@@ -14,9 +14,10 @@
 namespace voxdag {
 
 struct LightSample {
-  /// From the start of the rays: the light is at start + direction, the sun at any multiple of it.
+  /// The direction from the start of the rays: a lamp is at start + direction, the sun infinitely
+  /// far along it.
   Vec3f direction;
-  /// Irradiance of the surface per unit of the light's colour; 0 if none can arrive.
+  /// The irradiance of the surface per unit of the light's colour; 0 if no light can arrive.
   float weight = 0;
 };
 
@@ -28,7 +29,8 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
   const Vec3f to_light = light.position - point.surface.position;
   const int at = pixel.set * tables.light_count + i;
   LightSample sample;
-  float emitted = 1;  // multiplied below by the cosine at the surface over the squared distance
+  float emitted =
+      1;  // multiplied below by the cosine at the surface, divided by the squared distance
   switch (light.kind) {
     case LightKind::kSun: {
       const Point2f p = pixel.rotated(tables.disc[at]);
@@ -83,7 +85,7 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
   if (!is_above()) return sample;
   const float above = dot(point.normal, sample.direction);
   if (light.kind != LightKind::kSun) {
-    // Rays start a little above the surface; a very near light may lie below their start.
+    // Rays start a little above the surface. A very near light may lie below their start.
     sample.direction = sample.direction + (point.surface.position - point.start.position);
     if (!is_above()) return sample;
   }

@@ -1,14 +1,15 @@
 #pragma once
-/// A filter that smooths voxels larger than pixels, which would be blocks of one colour.
+/// A filter that smooths voxels larger than pixels. Without it they would be blocks of one colour.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4.3 and Figure 11.
 /// Each pixel becomes the average of a disc of its voxel's size. The disc shrinks to the sizes of
-/// the voxels that it covers, from the centre outwards: regions of different sizes agree where they
-/// touch, and pixels without a voxel, whose size is one pixel, neither blur nor bleed.
+/// the voxels that it covers, from the centre outwards. So regions of different sizes agree at
+/// their borders. Pixels without a voxel have a size of one pixel: they stay sharp, and their
+/// colour does not spread.
 ///
-/// Beyond the paper: its pictures had no shadows, and its voxels are small at outlines. Here a flat
-/// wall may be one voxel up to its edge, so that the average leaves out pixels of other surfaces
-/// and in other light.
+/// This filter does more than the paper's. The paper's pictures had no shadows, and its voxels are
+/// small at outlines. Here one voxel may cover a flat wall up to its edge. So the average leaves
+/// out pixels of other surfaces and pixels in other light.
 #include <array>
 #include <cstddef>
 
@@ -29,14 +30,14 @@ struct FilterSample {
   float weight;    ///< Number of the disc's pixels that are closest to this sample.
 };
 
-/// Sorted by distance, from zero. All others but one come with their opposites, so that the filter
-/// does not shift the picture.
+/// The samples of the disc, sorted by distance; the first is the centre. All others but one come in
+/// opposite pairs, so that the filter does not shift the picture.
 using FilterTable = std::array<FilterSample, kFilterSamples>;
 
 /// Returns the table. The density of its samples falls with the square root of the distance.
 const FilterTable& filter_table();
 
-/// The buffers that tell surfaces and light apart; see ImageBuffers.
+/// The buffers that distinguish surfaces and light; see ImageBuffers.
 struct FilterGuides {
   const float* depth = nullptr;  ///< Null: there are no guides.
   const Vec3f* normal = nullptr;
@@ -45,7 +46,7 @@ struct FilterGuides {
   Camera camera;
 };
 
-/// The picture to filter: width * height values each, rows from top to bottom.
+/// The picture to filter. Each buffer has width * height values, rows from top to bottom.
 struct FilterInput {
   const Vec3f* color = nullptr;
   const std::uint8_t* cell_pixels = nullptr;  ///< See pack_cell_pixels().
@@ -62,14 +63,14 @@ VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camer
           {image.depth, image.normal, image.occlusion, image.shadow, camera}};
 }
 
-/// Tells which pixels show the same surface as one pixel does, in the same light.
+/// Decides whether a pixel shows the surface that a given pixel shows, in equal light.
 class SameSurface {
  public:
-  /// Compares with the pixel (x, y), of index `at`, whose voxel has a side of `pixels`.
+  /// Sets the given pixel: (x, y), with index `at`, whose voxel has a side of `pixels` pixels.
   VOXDAG_HD SameSurface(const FilterGuides& guides, int x, int y, std::size_t at, float pixels)
       : guides_(guides), center_(at) {
     if (guides.depth == nullptr) return;
-    // For the steps of contours, and for the sample's position in its pixel.
+    // Tolerances for the steps between contours, and for the sample's position in its pixel.
     constexpr double kPixels = 1.0, kCells = 0.25;
     const auto depth = static_cast<double>(guides.depth[at]);
     normal_ = static_cast<Vec3d>(guides.normal[at]);
@@ -78,9 +79,9 @@ class SameSurface {
         (kPixels + kCells * static_cast<double>(pixels)) * guides.camera.pixel_size() * depth;
   }
 
-  /// Returns whether the pixel (x, y), of index `at`, shows the same surface in the same light.
+  /// Returns whether the pixel (x, y), with index `at`, shows that surface in equal light.
   VOXDAG_HD bool has(int x, int y, std::size_t at) const {
-    constexpr float kNormal = 0.9f, kLight = 0.2f;  // cosine; part of the light
+    constexpr float kNormal = 0.9f, kLight = 0.2f;  // cosine; fraction of the light
     if (guides_.depth == nullptr || at == center_) return true;
     const auto differ = [&](const float* part) {
       return std::fabs(part[at] - part[center_]) > kLight;
@@ -99,8 +100,8 @@ class SameSurface {
   double plane_ = 0, tolerance_ = 0;  ///< Distance of the surface's plane from the eye.
 };
 
-/// Returns the filtered colour of a pixel. `samples` are those of a FilterTable. Ignores samples
-/// outside of the picture.
+/// Returns the filtered colour of a pixel. `samples` is a FilterTable's data. Ignores samples
+/// outside the picture.
 VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSample* samples,
                                       int pixel_x, int pixel_y) {
   const auto index = [&input](int x, int y) {
@@ -111,7 +112,7 @@ VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSamp
   float radius = unpack_cell_pixels(input.cell_pixels[center]);
   if (radius <= 1.0f) return input.color[center];
   const SameSurface same(input.guides, pixel_x, pixel_y, center, radius);
-  // A pixel with at most one similar neighbour is noise: it is mixed with all.
+  // A pixel with at most one similar neighbour is noise: it is averaged with all neighbours.
   constexpr int kFewest = 2;
   int alike = 0;
   for (int i = 0; i < 9 && alike < kFewest; ++i) {

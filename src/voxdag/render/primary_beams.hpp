@@ -24,10 +24,10 @@ VOXDAG_HD inline Beam pixel_beam(const RenderSetup& setup, int x, int y, int siz
   return beam;
 }
 
-/// Returns the hook that ends at cells narrower than the beam, and where a ray of the picture may
-/// end.
+/// Returns the BeamStop of a beam: it ends at cells narrower than the beam, and at cells at which a
+/// ray of the picture may end.
 VOXDAG_HD inline BeamStop pixel_beam_stop(const RenderSetup& setup, int size) {
-  constexpr double kRounding = 1 + 1e-6;  // in the float test of the rays themselves
+  constexpr double kRounding = 1 + 1e-6;  // for rounding in the rays' own float test
   const double pixel = setup.camera.pixel_size() / setup.side();
   BeamStop stop;
   stop.per_enter = size * pixel;
@@ -36,7 +36,7 @@ VOXDAG_HD inline BeamStop pixel_beam_stop(const RenderSetup& setup, int size) {
 }
 
 /// Returns whether any ray through the 8×8 pixels at (x,y) meets anything. If so, sets `start` to a
-/// t before which none does.
+/// t before which no ray does.
 template <class Nodes>
 VOXDAG_HD inline bool cast_coarse_beam(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                        double& start) {
@@ -44,8 +44,8 @@ VOXDAG_HD inline bool cast_coarse_beam(const Nodes& nodes, const RenderSetup& se
                    pixel_beam_stop(setup, kCoarseBeamPixels), start);
 }
 
-/// Returns a t before which no ray through the 4×4 pixels at (x,y) meets anything; +infinity if
-/// none meets anything at all. `coarse` is the start of the 8×8 pixels around them.
+/// Returns a t before which no ray through the 4×4 pixels at (x,y) meets anything; +infinity if no
+/// ray meets anything. `coarse` is the start of the 8×8 pixels that contain them.
 template <class Nodes>
 VOXDAG_HD inline float cast_fine_beam(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                       double coarse) {
@@ -70,8 +70,8 @@ VOXDAG_HD inline void cast_primary_beams(const Nodes& nodes, const RenderSetup& 
   }
 }
 
-/// Sets these starts in the array of a whole picture: beams_across(width) * beams_across(height)
-/// values, see beam_index.
+/// Sets the starts of the 8×8 pixels at (x,y) in the array of a whole picture. The array has
+/// beams_across(width) * beams_across(height) values; see beam_index().
 template <class Nodes>
 VOXDAG_HD inline void set_beam_starts(const Nodes& nodes, const RenderSetup& setup, int x, int y,
                                       float* picture) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Converts a picture's options to the setup that kernels take, and their output to the picture.
+/// Converts a picture's options to the setup of the kernels, and their output to the picture.
 #include <utility>
 
 #include "voxdag/render/render_options.hpp"
@@ -16,10 +16,10 @@ class RenderPlan {
   RenderPlan(const RenderPlan&) = delete;
   RenderPlan& operator=(const RenderPlan&) = delete;
 
-  /// Points to the plan's tables and image; beam_starts is null.
+  /// Returns the setup. It points to the plan's tables and image; beam_starts is null.
   const RenderSetup& setup() const { return setup_; }
   const SampleSets& samples() const { return samples_; }
-  /// Renderers fill it through setup().image, and set `rays`.
+  /// Returns the image. Renderers fill it through setup().image, and set `rays`.
   RenderedImage& image() { return image_; }
 
   /// Exposes and tone maps an image's radiance.

@@ -1,5 +1,5 @@
 #pragma once
-/// The description of a picture that kernels take: plain values and pointers.
+/// The description of a picture for kernels: plain values and pointers.
 #include <type_traits>
 
 #include "voxdag/core/grid.hpp"
@@ -10,37 +10,38 @@
 
 namespace voxdag {
 
-/// What is computed, and how finely.
+/// The effects of a picture and their quality.
 struct RenderSettings {
   int samples_per_pixel = 1;
   bool shadows = true;
   int light_samples = 1;            ///< Shadow rays per view sample and light with soft edges.
   int occlusion_samples = 0;        ///< Rays of ambient occlusion per view sample; 0: no occlusion.
   float occlusion_distance = 0.1f;  ///< Longest ray, in units of the grid's side.
-  /// Rays of occlusion end at cells of this side at distance 1; 0: at cells of the surface's own
-  /// size.
+  /// Occlusion rays end at cells of this side at distance 1; 0 means cells of the size of the
+  /// surface's cell.
   float occlusion_cone = 0;
-  /// Casts end at cells of at most this many pixels, so that voxels finer than pixels do not make
-  /// noise; 0: always at voxels.
+  /// Casts end at cells of at most this many pixels, so that voxels smaller than pixels do not
+  /// cause noise; 0 means always at voxels.
   float lod_pixels = 1;
-  /// Cells look like cubes from this many pixels on, and like a smooth surface up to half as many;
-  /// 0: always cubes.
+  /// Cells of at least this many pixels are shaded as cubes, cells of at most half as many as a
+  /// smooth surface; 0 means always cubes.
   float cube_pixels = 24;
   bool beams = true;  ///< Shorten rays by beams. The picture does not depend on it.
   Vec3f albedo{0.62f, 0.60f, 0.57f};
 };
 
-/// The buffers of a picture: width * height values each, rows from top to bottom. Null if not
-/// wanted.
+/// The buffers of a picture: width * height values each, rows from top to bottom. A null buffer is
+/// not filled.
 struct ImageBuffers {
   Vec3f* radiance = nullptr;  ///< Mean over the samples, linear, before exposure.
-  float* depth = nullptr;     ///< Of the first sample, world units; +infinity where it hit nothing.
-  Vec3f* normal = nullptr;    ///< Of the first sample; zero where it hit nothing.
+  float* depth = nullptr;     ///< First sample's depth, world units; +infinity if it hit nothing.
+  Vec3f* normal = nullptr;    ///< First sample's normal; zero if it hit nothing.
   float* occlusion =
       nullptr;              ///< Mean part of the sky's light that arrives; 1 where nothing was hit.
   float* shadow = nullptr;  ///< Mean part of the lights' light that arrives; 1 where there is none.
-  float* steps = nullptr;  ///< Steps of the first sample's primary ray and its share of its beams'.
-  /// Size of the first sample's cell, see pack_cell_pixels(); 0 where it hit nothing.
+  float* steps =
+      nullptr;  ///< Steps of the first sample's primary ray, and its share of the beams' steps.
+  /// Size of the first sample's cell, see pack_cell_pixels(); 0 if the sample hit nothing.
   std::uint8_t* cell_pixels = nullptr;
 };
 

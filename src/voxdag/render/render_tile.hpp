@@ -1,9 +1,9 @@
 #pragma once
 /// Renders a tile of a picture in stages: view samples, the light of each lamp, occlusion, shading.
-/// Each of the first three casts one long stream of rays.
+/// Each stage but shading casts one long stream of rays.
 ///
-/// Every value depends on its pixel alone, and sums have a fixed order, so that pictures depend
-/// neither on the size of the tiles nor on the number of threads.
+/// Every value depends on its pixel alone, and sums have a fixed order. So pictures do not depend
+/// on the size of the tiles or on the number of threads.
 #include "voxdag/render/ambient_occlusion.hpp"
 #include "voxdag/render/cell_pixels.hpp"
 #include "voxdag/render/direct_light.hpp"
@@ -11,15 +11,16 @@
 
 namespace voxdag {
 
-/// Returns the sky's light on a surface. `open` is the part that occlusion lets through.
+/// Returns the sky's light on a surface. `open` is the fraction of light that is not occluded, 0 to
+/// 1.
 VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
                                  float open) {
   const Vec3f light = sky_ambient(setup.sky, sample.normal);
-  // A part of the directions without near surfaces is hidden by far ones.
+  // Far surfaces hide the sky in some of the directions without near surfaces.
   constexpr float kSky = 0.7f;
   if (setup.settings.occlusion_samples > 0) return light * (kSky * open);
-  // Without occlusion, the sky's light alone would leave shadows flat: soft light from the viewer
-  // and from the viewer's right adds shape.
+  // Without occlusion, shadows that only the sky lights would look flat. Soft light from the viewer
+  // and from the viewer's right shows their shape.
   const float facing = dot(sample.normal, view), aside = dot(sample.normal, setup.sky.fill);
   const float fill = 0.40f + 0.35f * facing + 0.25f * aside;
   return light * (fill > 0 ? fill : 0.0f);

@@ -1,10 +1,10 @@
 #pragma once
-/// Sample points of areas and hemispheres. The host makes them once: kernels call neither sine nor
-/// cosine, so that every machine casts the same rays.
+/// Sample points of areas and hemispheres. The host computes them once. Kernels call neither sine
+/// nor cosine, so that all machines cast identical rays.
 ///
-/// Each set is a prefix of the Sobol sequence with an Owen scrambling of its own, so that its first
-/// 2^k points are well distributed for every k. A hash of the pixel's coordinates selects a set and
-/// a rotation or shift: neighbouring pixels differ, and the remaining error looks like grain.
+/// Each set is a prefix of the Sobol sequence with its own Owen scrambling, so that its first 2^k
+/// points are well distributed for every k. A hash of the pixel's coordinates selects a set and a
+/// rotation or shift: neighbouring pixels differ, and the remaining error looks like grain.
 /// Sources: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; T. Kollig and A.
 /// Keller, "Efficient Multidimensional Sampling", 2002.
 #include <cstdint>
@@ -36,7 +36,7 @@ struct SampleTables {
   const Point2f* rotations = nullptr;  ///< kRotations unit vectors around the circle.
 };
 
-/// One pixel's choice from the tables.
+/// The set and rotation that one pixel uses.
 struct PixelSamples {
   int set = 0;
   Point2f rotation{1, 0};
@@ -60,7 +60,7 @@ VOXDAG_HD inline std::uint32_t hash_bits(std::uint32_t v) {
   return v ^ v >> 16;
 }
 
-/// Returns a pixel's choice for a `purpose`: 0 is occlusion, 1 + i is light i.
+/// Returns the set and rotation of a pixel for a `purpose`: 0 is occlusion, 1 + i is light i.
 VOXDAG_HD inline PixelSamples pixel_samples(const SampleTables& tables, int x, int y, int purpose) {
   const std::uint32_t column = hash_bits(static_cast<std::uint32_t>(x));
   const std::uint32_t row = hash_bits(column + static_cast<std::uint32_t>(y));

@@ -18,7 +18,7 @@ struct Sky {
 
 VOXDAG_HD inline Vec3f mix(Vec3f a, Vec3f b, float t) { return a * (1 - t) + b * t; }
 
-/// Returns 0 below `low`, 1 above `high`, and a smooth curve between.
+/// Returns 0 below `low`, 1 above `high`, and a smooth curve in between.
 VOXDAG_HD inline float smooth_step(float low, float high, float x) {
   const float t = (x - low) / (high - low);
   const float s = t < 0 ? 0.0f : t > 1 ? 1.0f : t;
@@ -32,7 +32,7 @@ VOXDAG_HD inline Vec3f sky_radiance(const Sky& sky, Vec3f direction) {
   const float haze = 1 - (height > 0 ? height : 0);
   const float haze2 = haze * haze;
   Vec3f radiance = mix(sky.zenith, sky.horizon, haze2 * haze2);
-  // The glow around the sun, without its disc, which is a light of its own.
+  // The glow around the sun. The sun's disc is a light of its own.
   const float glow = towards_sun > 0 ? towards_sun * towards_sun : 0.0f;
   radiance = radiance + sky.sun_light * (0.10f * glow * glow * glow * glow);
   return mix(radiance, sky.ground * 1.3f, smooth_step(0.03f, -0.75f, height));

@@ -12,8 +12,8 @@ inline void find_source_samples(const ViewSource& source, const RenderSetup& set
                                 const ViewTile& tile, std::span<ViewSample> samples) {
   std::fill(samples.begin(), samples.end(), ViewSample{});
   source.sample(setup.camera, tile, samples);
-  // Points are exact, so that cells need not be coarser than voxels, which would show at edges and
-  // contacts.
+  // Points are exact, so rays can use cells as fine as voxels; coarser cells would be visible at
+  // edges and contacts.
   for (ViewSample& sample : samples)
     if (sample.is_hit()) sample.cell_size = static_cast<float>(setup.grid.voxel_size);
 }

@@ -1,12 +1,13 @@
 #pragma once
-/// A smooth normal for a cell, estimated from the cells around it.
+/// Estimates a smooth normal for a cell from the cells around it.
 ///
 /// The voxels of a surface form a layer. Let C be the covariance of the occupied cells within 4.5
 /// cells, with weights that fall to zero at that distance. Its eigenvalues are small across the
-/// layer and large along it, so that a power of its inverse turns any vector into the layer's
-/// normal: C^-4 v, with v half way between the direction to the viewer and the face that the ray
-/// entered. This needs no eigenvectors, stays on v's side, rounds edges over a few cells, gives
-/// hair a normal across its axis, and falls back to v where there is no layer.
+/// layer and large along it. So a power of its inverse turns a vector v towards the layer's normal:
+/// the result is C^-4 v, normalised. Here v is half way between the direction to the viewer and the
+/// normal of the entered face. This method needs no eigenvectors and stays on v's side. It rounds
+/// edges over a few cells, gives hair a normal across its axis, and falls back to v if there is no
+/// layer.
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/render/camera.hpp"
@@ -51,7 +52,7 @@ template <class Nodes>
 VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, Vec3f offset,
                                     Vec3f front) {
   constexpr float kRadius2 = 4.5f * 4.5f;
-  // On each axis two blocks of 4³ cells cover at least 4 cells to either side of the cell.
+  // On each axis two blocks of 4³ cells cover at least 4 cells on both sides of the cell.
   const auto first = [](std::int32_t i) { return (i >> 2) - ((i & 3) < 2 ? 1 : 0); };
   const Vec3i block{first(cell.x), first(cell.y), first(cell.z)};
   const CellBlocks blocks = cell_blocks(nodes, level, block);
@@ -95,9 +96,9 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
 
 /// Returns the unit normal of the surface at `cell` of `level` (2..L). `view` is the unit vector to
 /// the viewer, `face` the normal of the face that the ray entered (or `view`). At outlines these
-/// two can lie on different sides of the layer. Then the side on which the cell lies is taken for
-/// the outer one, as outlines are convex. Where an edge turns away from the viewer, the result is
-/// the face.
+/// two can lie on different sides of the layer. Then the side on which the cell lies counts as the
+/// outer side, because outlines are convex. Where an edge turns away from the viewer, returns
+/// `face`.
 template <class Nodes>
 VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
                                       Vec3f face) {

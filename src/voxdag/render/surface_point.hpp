@@ -1,10 +1,10 @@
 #pragma once
-/// The points at which the rays of shadow and occlusion start.
+/// The points at which shadow and occlusion rays start.
 ///
 /// Every set voxel contains a point of the surface. So all voxels of a plane with the normal n lie
-/// within s = |nx| + |ny| + |nz| <= sqrt(3) voxels of it, and a ray that starts higher and runs
-/// upwards meets none of them. The same holds for cells of any size. Starting even higher would
-/// lose contact shadows, and could start behind another surface.
+/// within s = |nx| + |ny| + |nz| <= sqrt(3) voxels of it. A ray that starts higher and runs upwards
+/// meets none of them. This holds for cells of any size. A higher start would lose contact shadows,
+/// and could lie behind another surface.
 #include <cmath>
 
 #include "voxdag/render/render_setup.hpp"
@@ -24,14 +24,14 @@ struct SurfacePoint {
   VOXDAG_HD bool is_hit() const { return cell_side > 0; }
 };
 
-/// Returns how far at most the corner of a unit cube lies above a plane with this normal that meets
+/// Returns the maximum height of a unit cube's corners above a plane with this normal that meets
 /// the cube.
 VOXDAG_HD inline float cube_height(Vec3f normal) {
   return std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
 }
 
-/// Returns whether a cell of the surface's own size lies at the point or right before it, as the
-/// viewer sees it. `to_viewer` has unit length.
+/// Returns whether a cell of the surface's own size lies at the point, or right in front of it as
+/// seen by the viewer. `to_viewer` has unit length.
 template <class Nodes>
 VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const SurfacePoint& point, Vec3f to_viewer) {
   constexpr float kCells = 4;
@@ -50,8 +50,8 @@ VOXDAG_HD inline float cell_size_at(const RenderSetup& setup, double depth) {
   return static_cast<float>(size);
 }
 
-/// Returns the point for a view sample that is hit and lies on its surface or above. `direction` is
-/// that of the camera's ray to the sample.
+/// Returns the point for a view sample that hit something and lies on the surface or above it.
+/// `direction` is the direction of the camera's ray to the sample.
 template <class Nodes>
 VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const RenderSetup& setup,
                                                  const ViewSample& sample, Vec3d direction) {
@@ -73,9 +73,9 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
     return !is_hidden(nodes, point, to_viewer);
   };
   if (can_start_at(lifted)) return point;
-  // In corners, in gaps and at the edges of thin things, that point may lie inside of or behind a
-  // cell of another surface: the viewer sees the sample, but not the point. The line of sight is
-  // free: of voxels everywhere, of a mesh's cells from a few cells on.
+  // In corners, in gaps and at the edges of thin objects, that point may lie inside or behind a
+  // cell of another surface: the viewer sees the sample, but not the point. So move the point along
+  // the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few cells.
   constexpr int kTries = 3, kFarthest = 9;  // cells
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
@@ -84,8 +84,8 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   };
   for (int i = 1; i <= kTries; ++i)
     if (can_start_at(cells_before(i))) return point;
-  // The line of sight may graze the other surface of a corner. Steps along the axes, by the longest
-  // component of the direction first, do not.
+  // The line of sight may graze the other surface of a corner. Steps along the axes do not; the
+  // axis of the longest component comes first.
   Vec3f left = to_viewer;
   for (int i = 0; i < 3; ++i) {
     const Vec3f size{std::fabs(left.x), std::fabs(left.y), std::fabs(left.z)};
@@ -97,7 +97,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
     }
     left[axis] = 0;
   }
-  // In geometry finer than cells, light at a point a little before it is better than none.
+  // In geometry finer than cells, light at a point slightly in front of it is better than no light.
   for (int i = kTries + 1; i <= kFarthest; i += i / 2)
     if (can_start_at(cells_before(i))) return point;
   return point;

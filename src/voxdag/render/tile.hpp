@@ -11,8 +11,8 @@ struct ViewTile {
   int sample_index = 0;       ///< Index of the sample in its pixel.
   double dx = 0.5, dy = 0.5;  ///< In [0,1): the sample of pixel (i,j) is at (i + dx, j + dy).
 
-  /// Pixels are numbered down the columns of strips of 8 rows, so that 8 or 64 consecutive ones lie
-  /// close together: their rays are cast together.
+  /// Returns the number of pixels. Pixels are numbered down the columns of strips of 8 rows, so
+  /// that 8 or 64 consecutive pixels are close together: their rays are cast together.
   VOXDAG_HD constexpr int pixels() const { return width * height; }
   VOXDAG_HD constexpr int column(int pixel) const {
     return pixel % (kStripRows * width) / strip_height(pixel);
@@ -33,7 +33,7 @@ struct ViewTile {
 /// The sides in pixels of a beam, and of the coarse beam that finds its start.
 inline constexpr int kBeamPixels = 4, kCoarseBeamPixels = 8;
 
-/// Returns the number of beams in a row of a picture, a whole number of coarse ones.
+/// Returns the number of beams in a row of a picture; their coarse beams are whole.
 VOXDAG_HD constexpr int beams_across(int pixels) {
   return (pixels + kCoarseBeamPixels - 1) / kCoarseBeamPixels * (kCoarseBeamPixels / kBeamPixels);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Tone mapping: from the light of a scene to the range of a display.
+/// Tone mapping: maps the light of a scene to the range of a display.
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {

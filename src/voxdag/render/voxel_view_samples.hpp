@@ -32,8 +32,8 @@ VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& t
   return ray;
 }
 
-/// Returns the surface where a primary ray hit a cell. `direction` is the ray's; `hit` and `depth`
-/// are where it ended.
+/// Returns the view sample at which a primary ray hit a cell. `direction` is the ray's direction;
+/// the ray ended at `hit`, at depth `depth`.
 template <class Nodes>
 VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSetup& setup,
                                               Vec3d direction, const Hit& hit, double depth) {
@@ -55,7 +55,7 @@ VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSe
   sample.albedo = settings.albedo;
   sample.depth = static_cast<float>(depth);
   sample.cell_size = static_cast<float>(cell_size);
-  // The surface's plane meets the cell, so that the entered face lies at most this far below it.
+  // The surface's plane meets the cell, so the entered face lies at most this far below the plane.
   const float below = cube_height(sample.face) - dot(sample.face, face);
   const double lift = below > 0 ? static_cast<double>(below) * cell_size : 0.0;
   sample.point = setup.camera.eye + direction * depth + static_cast<Vec3d>(sample.face) * lift;

@@ -1,5 +1,5 @@
 #pragma once
-/// What an ESVO holds and takes, as a table and as JSON: `build` and `info` show the same.
+/// Reports the counts and sizes of an ESVO as tables and as JSON, for `build` and `info`.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -23,13 +23,13 @@ struct EsvoReport {
 /// Returns the report of an octree that was parsed from a file of `file_bytes` bytes.
 EsvoReport report_of(const EsvoContents& contents, std::uint64_t file_bytes);
 
-/// The keys of `info --json`; docs/cli.md lists them.
+/// Returns the keys of `info --json`; docs/cli.md lists them.
 nlohmann::ordered_json esvo_json(const EsvoReport& report);
 
-/// Grid and placement, counts, and what the bytes are for.
+/// Returns a table of grid and placement, counts, and bytes by purpose.
 std::string esvo_table(const EsvoReport& report);
 
-/// Voxels and leaves of each level.
+/// Returns a table of the voxels and leaves of each level.
 std::string esvo_level_table(const EsvoReport& report);
 
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// Diagrams as SVG: lines over an axis, and groups of bars.
+/// Draws diagrams as SVG: line diagrams, and groups of bars.
 #include <array>
 #include <functional>
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace voxdag {
 
-/// How values become a scale with ticks.
+/// The scale of an axis and its ticks.
 struct PlotAxis {
   bool is_log = false;
   double step = 0;  ///< Between ticks: a factor if is_log, else a difference; 0: about ten ticks.
   std::function<std::string(double value)> tick;
 };
 
-/// Of the log2 of resolutions: "1,024".
+/// Returns an axis for the log2 of resolutions, with ticks such as "1,024".
 PlotAxis resolution_axis();
-/// By powers of ten: "10 s".
+/// Returns a logarithmic axis for seconds, with ticks at powers of ten: "10 s".
 PlotAxis log_seconds_axis();
 
 struct PlotLine {
@@ -31,10 +31,10 @@ struct LineDiagram {
   std::vector<PlotLine> lines;
 };
 
-/// SVG attributes that tell series of lines apart.
+/// Returns SVG attributes (colour, dashes) that distinguish the lines of different series.
 std::string plot_style(std::size_t series, const char* more = "stroke-width='2'");
 
-/// A file with the diagrams beside each other.
+/// Returns an SVG file with the diagrams side by side.
 std::string line_svg(const std::vector<LineDiagram>& diagrams);
 
 struct BarSeries {
@@ -42,7 +42,7 @@ struct BarSeries {
   std::vector<double> values;  ///< One for each group; NaN for none.
 };
 
-/// Groups of bars, one bar of each series in each group, from 0 up.
+/// Groups of bars: each group has one bar of each series. Values must not be negative.
 struct BarDiagram {
   std::string title;
   std::function<std::string(double value)> tick;
@@ -50,7 +50,7 @@ struct BarDiagram {
   std::vector<BarSeries> series;
 };
 
-/// A file with the diagrams below each other.
+/// Returns an SVG file with the diagrams one below the other.
 std::string bar_svg(const std::vector<BarDiagram>& diagrams);
 
 }  // namespace voxdag

@@ -19,7 +19,7 @@ using Profile = std::vector<Point2>;
 
 class Builder {
  public:
-  /// triangle() throws Cancelled if `progress` is cancelled.
+  /// If `progress` (may be null) is cancelled, triangle() throws Cancelled.
   explicit Builder(const Progress* progress = nullptr) : progress_(progress) {}
 
   /// Sets the material of the next triangles, by name; adds a new name to the mesh.
@@ -44,7 +44,7 @@ class Builder {
   void quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d);
 
   /// Adds the surface f(i, j), 0 <= i <= nu, 0 <= j <= nv; df/di x df/dj points outside. In a
-  /// closed direction the last row is the first one.
+  /// closed direction the last row equals the first one.
   template <class F>
   void surface(int nu, int nv, bool closed_u, bool closed_v, const F& f) {
     const int rows = closed_u ? nu : nu + 1, columns = closed_v ? nv : nv + 1;
@@ -61,8 +61,9 @@ class Builder {
   void box(Vec3d lo, Vec3d hi);
   /// Adds a box without a bottom, whose upper edges are cut at 45 degrees by `bevel`.
   void bevelled_slab(Vec3d lo, Vec3d hi, double bevel);
-  /// Adds the surface of a profile (radius, height) that turns about the y axis. The profile goes
-  /// from bottom to top along its outside. The first side begins `phase` turns from the x axis.
+  /// Adds the surface of revolution of a profile (radius, height) about the y axis. The profile
+  /// goes from bottom to top along its outside. The first side begins `phase` turns from the x
+  /// axis.
   void lathe(const Profile& profile, int sides, double phase = 0);
   /// Adds a square block with this profile; x is half its width.
   void square(const Profile& profile);
@@ -91,7 +92,7 @@ class Builder {
   void fan(const std::vector<Vec3d>& corners);
   void torus(double radius, double thickness, int sides, int ring_sides);
   /// Adds the surface at distance radius(direction) from the origin: a cube of cells x cells quads
-  /// per side, blown up to a sphere.
+  /// per side, projected to a sphere.
   template <class F>
   void ball(int cells, const F& radius);
 

@@ -22,11 +22,11 @@ void square_pier(Builder& b, double height, double half_width);
 void baluster(Builder& b, const Detail& d, double height);
 
 // arches
-/// A wall from the springing at y = 0 to `top`, `width` wide from x = 0, as thick as `thickness`
-/// about z = 0, with a round arch of `radius` cut from its lower edge.
+/// A wall over x from 0 to `width` and y from 0 (the springing) to `top`, `thickness` thick and
+/// centred on z = 0. A round arch of `radius` is cut from its lower edge.
 void arch_wall(Builder& b, const Detail& d, double width, double top, double radius,
                double thickness);
-/// The moulding around such an arch, centred on x = 0, on the wall face z = 0.
+/// The moulding around the arch of an arch_wall(), centred on x = 0, on the wall face z = 0.
 void archivolt(Builder& b, const Detail& d, double radius, double band);
 /// A groin vault over [0,width] x [-depth,0] that springs at y = 0 and rises by `rise`, seen from
 /// below, with ribs along its diagonals.
@@ -37,7 +37,7 @@ void groin_vault(Builder& b, const Detail& d, double width, double depth, double
 void tied_curtains(Builder& b, const Detail& d, Random& random, double width, double top);
 /// A curtain that hangs straight, from x = 0 to `width`.
 void drawn_curtain(Builder& b, const Detail& d, Random& random, double width, double top);
-/// A banner hung from y = 0 down, centred on x = 0, with a pointed end.
+/// A banner that hangs down from y = 0, centred on x = 0, with a pointed end.
 void banner(Builder& b, const Detail& d, Random& random, double width, double drop);
 
 // ornaments
@@ -59,8 +59,8 @@ void shuttered_window(Builder& b, double width, double height);
 void tiled_roof(Builder& b, const Detail& d, Random& random, double width, double run, double rise);
 /// Slabs on a square lattice of `pitch` that cover x in [x0,x1], z in [z0,z1]; their top is y = 0.
 void paving(Builder& b, Random& random, double x0, double x1, double z0, double z1, double pitch);
-/// Ashlar with sunk joints over x in [0,width], y in [0,height], on the wall face z = 0; rectangles
-/// `gap` (x, width) up to `gap_height` are left free.
+/// Ashlar with sunk joints over x in [0,width], y in [0,height], on the wall face z = 0; the
+/// rectangle `gap` (x, width) up to `gap_height` is left free.
 void ashlar(Builder& b, Random& random, double width, double height, Point2 gap, double gap_height);
 
 /// A wall with three hanging bells under a pediment, facing +z.

@@ -1,6 +1,6 @@
 #pragma once
-/// The generators behind make_scene(), one file each. `size` is in the range of the scene's entry.
-/// `progress` may be null; a generator throws Cancelled if it is cancelled.
+/// The generators behind make_scene(), one file each. `size` must be in the range of the scene's
+/// SceneInfo. `progress` may be null; if it is cancelled, a generator throws Cancelled.
 #include <cstdint>
 
 #include "voxdag/mesh/mesh.hpp"

@@ -9,8 +9,8 @@
 
 namespace voxdag::scenes {
 
-/// Returns the sine of 2 pi t, by its Taylor polynomial on a quarter turn; absolute error below
-/// 1e-15.
+/// Returns the sine of 2 pi t, by the Taylor polynomial on a quarter turn. The absolute error is
+/// below 1e-15.
 inline double sin_turns(double t) {
   t -= std::floor(t + 0.5);
   if (t > 0.25) t = 0.5 - t;
@@ -28,7 +28,7 @@ inline double cos_turns(double t) { return sin_turns(t + 0.25); }
 inline double lerp(double a, double b, double t) { return a + (b - a) * t; }
 inline Vec3d lerp(Vec3d a, Vec3d b, double t) { return a + (b - a) * t; }
 inline double clamp01(double v) { return v < 0 ? 0 : v > 1 ? 1 : v; }
-/// Returns 0 below a, 1 above b, and a smooth value between.
+/// Returns 0 below a, 1 above b, and a smooth curve in between.
 inline double smoothstep(double a, double b, double v) {
   const double t = clamp01((v - a) / (b - a));
   return t * t * (3 - 2 * t);

@@ -10,7 +10,7 @@ namespace voxdag::scenes {
 /// Algorithms for Random Number Generation", 2014 (XSH-RR 64/32).
 class Random {
  public:
-  /// Streams of one seed are independent: the numbers drawn from one do not change another.
+  /// Streams of one seed are independent: drawing numbers from one stream does not change another.
   explicit Random(std::uint32_t seed, std::uint64_t stream = 0) : increment_(stream * 2 + 1) {
     next();
     state_ += seed;
@@ -46,8 +46,8 @@ class Random {
 /// Source: Perlin, "Improving Noise", SIGGRAPH 2002, with hashed lattice gradients.
 double noise(Vec3d p, std::uint32_t seed);
 
-/// Returns the sum of `octaves` noises, each of twice the frequency and `gain` times the height of
-/// the one before.
+/// Returns the sum of `octaves` noises. Each has twice the frequency of the previous one and `gain`
+/// times its height.
 double fractal_noise(Vec3d p, std::uint32_t seed, int octaves, double gain = 0.5);
 
 }  // namespace voxdag::scenes

@@ -1,9 +1,9 @@
 #pragma once
-/// Casts rays at an ESVO of which only a few blocks fit into memory.
+/// Casts rays at an ESVO that has only a few blocks in memory.
 ///
 /// Source: M. Pharr et al., "Rendering Complex Scenes with Memory-Coherent Ray Tracing", SIGGRAPH
-/// 1997: rays that reach a missing block wait there, and a block that is loaded serves all rays
-/// that wait for it.
+/// 1997: rays that reach a missing block wait there; when a block is loaded, all rays that wait for
+/// it continue.
 #include <algorithm>
 #include <map>
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace voxdag {
 
-/// ContourNodes that load the blocks that a ray misses, for one thread.
+/// ContourNodes that find the missing block of a ray and load blocks. For one thread.
 class PagedNodes : public ContourNodes {
  public:
   explicit PagedNodes(BlockSource& source) : ContourNodes(source.view()), source_(&source) {}
@@ -30,10 +30,10 @@ class PagedNodes : public ContourNodes {
   BlockSource* source_;
 };
 
-/// Moves the start of a ray to where it met a voxel. From there on it meets the same voxels, to the
-/// bit.
+/// Moves the start of a ray to where it met a voxel. The ray meets the same voxels from there on,
+/// to the bit.
 inline void begin_at(const EsvoHit& hit, GridRay& ray) {
-  // A ray that starts on a contour's plane would not enter through it.
+  // The ray must start before the contour's plane, or it would not enter through it.
   const float before = float_from_bits(bits_of_float(hit.t) - 1);
   ray.t_min = hit.is_through_contour() && hit.t > ray.t_min ? std::max(before, ray.t_min) : hit.t;
 }

@@ -1,6 +1,5 @@
 #pragma once
-/// The node layout for walks of the upper levels of an ESVO of which only a few blocks fit into
-/// memory.
+/// The node layout for walks of the upper levels of an ESVO that has only a few blocks in memory.
 #include <cstdint>
 
 #include "voxdag/core/morton.hpp"
@@ -9,7 +8,7 @@
 namespace voxdag {
 
 /// A node layout (trace/svdag_nodes.hpp) that loads the blocks that a walk reaches. Its nodes are
-/// cells, looked up from the root each time, because blocks move. For one thread.
+/// cells. Each access looks the cell up from the root, because blocks move. For one thread.
 class PagedCells {
  public:
   struct Node {

@@ -1,21 +1,22 @@
 #pragma once
-/// The node layout for rays at an ESVO with only some blocks loaded; it reports the blocks they
-/// miss.
+/// The node layout for rays at an ESVO with only some blocks loaded. It reports the leaves where
+/// blocks are missing.
 #include <algorithm>
 
 #include "voxdag/trace/esvo_cast.hpp"
 
 namespace voxdag {
 
-/// Receives the leaves at which casts end. Many threads call it at once.
+/// Receives the leaves at which casts end. Many threads call it concurrently.
 class LeafListener {
  public:
   virtual ~LeafListener() = default;
-  /// A ray that would have gone on into smaller voxels ended at a leaf of the descriptor in `slot`.
+  /// Called when a ray that would have continued into smaller voxels ended at a leaf of the
+  /// descriptor in `slot`.
   virtual void on_leaf(std::uint64_t slot) const = 0;
 };
 
-/// Returns whether the ray ended at a leaf and would have continued into smaller voxels, if there
+/// Returns whether the ray ended at a leaf but would have continued into smaller voxels if there
 /// were any.
 template <class Stop>
 bool would_continue(const EsvoView& esvo, const GridRay& ray, const Stop& stop,
@@ -34,7 +35,7 @@ class StreamedNodes : public ContourNodes {
   StreamedNodes(const EsvoView& esvo, const LeafListener& listener)
       : ContourNodes(esvo), listener_(&listener) {}
 
-  /// Casters call it for each hit, with the stop of the cast.
+  /// Reports a hit; casters call it for each hit, with the stop of the cast.
   template <class Stop>
   void on_hit(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
     if (would_continue(view(), ray, stop, hit)) listener_->on_leaf(hit.voxel.slot);

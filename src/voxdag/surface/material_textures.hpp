@@ -17,15 +17,17 @@ struct ResolvedMaterial {
   UvTransform color_uv;
   std::shared_ptr<const Texture> normal_texture;
   UvTransform normal_uv;
-  /// Where the corners' alpha is less, the surface is masked out: everywhere if this exceeds 1.
+  /// The alpha test of corners: the surface is masked out where the corners' alpha is less, so
+  /// everywhere if this exceeds 1.
   float least_corner_alpha = 0;
   bool is_alpha_textured = false;  ///< Some texels of the colour texture are masked out.
 };
 
 /// Decodes the textures of the materials, each texture once, in parallel. A texture that cannot be
-/// read is left out, with a line in `warnings` that names the file, the reason and what replaces
-/// it. Without texture coordinates (`has_uvs`) all textures are left out. Throws Cancelled, and
-/// OverMemory with the name of an image that does not fit even when it is decoded alone.
+/// read is left out; a line in `warnings` names the file, the reason and the replacement. If
+/// `has_uvs` is false, there are no texture coordinates and all textures are left out. Throws
+/// Cancelled, and OverMemory with the name of an image that does not fit even when it is decoded
+/// alone.
 std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool has_uvs,
                                              std::vector<std::string>& warnings, Progress* progress,
                                              MemoryBudget* memory);

@@ -1,5 +1,5 @@
 #pragma once
-/// The centre and the spread of convex polygons in the plane.
+/// The centre and the covariance of convex polygons in the plane.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -14,7 +14,7 @@ struct PolygonMoments {
 };
 
 /// Returns the moments of a convex polygon with at least one corner. A polygon without area counts
-/// as the segment or point that it is.
+/// as a segment or a point.
 inline PolygonMoments polygon_moments(std::span<const Vec2f> polygon) {
   const Vec2f origin = polygon[0];
   float area = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, extent = 0;
@@ -39,7 +39,7 @@ inline PolygonMoments polygon_moments(std::span<const Vec2f> polygon) {
   for (const Vec2f p : polygon) m.center = m.center + (p - origin) * (1 / n);
   for (const Vec2f p : polygon) {
     const Vec2f d = p - origin - m.center;
-    // The variance of a segment's two ends is three times that of its points.
+    // The variance of a segment's two ends is three times the variance of its points.
     m.xx += d.x * d.x / (3 * n);
     m.xy += d.x * d.y / (3 * n);
     m.yy += d.y * d.y / (3 * n);

@@ -14,10 +14,10 @@
 
 namespace voxdag {
 
-/// The scale from texels to values of 0 to 1.
+/// The factor from texels to values from 0 to 1.
 inline constexpr float kTexelScale = 1.0f / 65535;
 
-/// Bounds of colours, in linear light.
+/// Bounds on colours, in linear light.
 struct ColorBounds {
   Vec3f lo, hi;
 };
@@ -63,11 +63,11 @@ struct SurfaceTables {
            material.least_corner_alpha;
   }
 
-  /// Returns the mean, without normal map, of the unit normals over a polygon.
+  /// Returns the mean of the unit normals over a polygon, without the normal map.
   Vec3f mean_normal(std::uint32_t t, std::span<const Vec2f> polygon,
                     const PolygonMoments& moments) const;
   TangentFrame frame_at(std::uint32_t t, const CornerTangents& corners, Vec2f b) const;
-  /// Returns bounds of the colours in a polygon.
+  /// Returns bounds on the colours in a polygon.
   ColorBounds color_bounds(std::uint32_t t, const ResolvedMaterial& material,
                            std::span<const Vec2f> polygon) const;
   /// Returns true only if the normal of every point of a polygon is within `error` radians of

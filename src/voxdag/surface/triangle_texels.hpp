@@ -1,5 +1,5 @@
 #pragma once
-/// Where polygons in a triangle lie in texture space.
+/// Maps polygons in a triangle to texture space.
 #include <algorithm>
 #include <span>
 
@@ -46,7 +46,7 @@ inline UvBox box_of(std::span<const Vec2f> polygon, const Linear<Vec2f>& uv,
   return box;
 }
 
-/// Returns bounds of the texels that a polygon may show.
+/// Returns bounds on the texels that a polygon may show.
 inline Texture::Bounds bounds_of(const Texture& texture, std::span<const Vec2f> polygon,
                                  const Linear<Vec2f>& uv, const UvTransform& transform) {
   const UvBox box = box_of(polygon, uv, transform);

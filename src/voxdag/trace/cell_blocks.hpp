@@ -1,5 +1,5 @@
 #pragma once
-/// The occupancy of the cells around a place, read from any node layout.
+/// Reads the occupancy of the cells around a point from any node layout.
 #include "voxdag/core/bits.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/vec.hpp"
@@ -8,7 +8,7 @@ namespace voxdag {
 
 /// The cells of eight neighbouring blocks of 4³ cells: 2 by 2 by 2, so 8³ cells of one level.
 struct CellBlocks {
-  /// [x | y << 1 | z << 2]: bit i is the cell with Morton code i in that block.
+  /// masks[x | y << 1 | z << 2] belongs to block (x, y, z): bit i is the cell with Morton code i.
   std::uint64_t masks[8] = {};
 };
 
@@ -25,8 +25,8 @@ VOXDAG_HD inline std::uint64_t cell_mask(const Nodes& nodes, typename Nodes::Nod
   return cells;
 }
 
-/// Moves `node` from its level `from_level` down to the node of `to_level` at `cell`, in
-/// coordinates of that level. Returns false if there is none.
+/// Moves `node` from its level `from_level` down to the node of `to_level` at `cell`, in cells of
+/// `to_level`. Returns false if there is no such node.
 template <class Nodes>
 VOXDAG_HD inline bool descend(const Nodes& nodes, typename Nodes::Node& node, int from_level,
                               int to_level, Vec3i cell) {
@@ -40,7 +40,7 @@ VOXDAG_HD inline bool descend(const Nodes& nodes, typename Nodes::Node& node, in
 }
 
 /// Returns the cells of `level` (2..L) in the blocks `block` to `block` + 1 on every axis; block b
-/// begins at cell 4b. Cells outside of the grid are empty. Walks down once to the lowest node that
+/// begins at cell 4b. Cells outside the grid are empty. Walks down once to the finest node that
 /// holds all blocks, then once to each block.
 template <class Nodes>
 VOXDAG_HD inline CellBlocks cell_blocks(const Nodes& nodes, int level, Vec3i block) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Steps from cell to cell along a ray: the part that the casts of all octrees share.
+/// Steps from cell to cell along a ray: the code that the casts at all kinds of octrees share.
 ///
 /// Source: Laine and Karras, "Efficient Sparse Voxel Octrees", I3D 2010, section 4 and Figure 8.
 #include "voxdag/trace/grid_ray.hpp"
@@ -11,12 +11,13 @@ namespace voxdag {
 /// only ever fall.
 class CellWalk {
  public:
-  /// T at the planes of the cell's lower corner; t is the least of them, where the ray leaves.
+  /// T at the planes of the cell's lower corner. `t` is the least of them: the ray leaves the cell
+  /// there.
   struct Exit {
     float x, y, z, t;
   };
 
-  /// Starts at the child of the root that the ray is in at `t`. The ray must be in the root then.
+  /// Starts at the child of the root that the ray is in at `t`. The ray must be in the root at `t`.
   VOXDAG_HD CellWalk(const GridRay& ray, float t)
       : ox_(ray.origin.x),
         oy_(ray.origin.y),
@@ -27,14 +28,14 @@ class CellWalk {
     select_child(t);
   }
 
-  /// The float bits of the cell's lower corner.
+  /// Return the float bits of the cell's lower corner.
   VOXDAG_HD std::uint32_t x() const { return x_; }
   VOXDAG_HD std::uint32_t y() const { return y_; }
   VOXDAG_HD std::uint32_t z() const { return z_; }
   VOXDAG_HD int level() const { return kTopBit + 1 - bit_; }
-  /// The cell's child index in its parent, mirrored.
+  /// Returns the cell's child index in its parent, mirrored.
   VOXDAG_HD std::uint32_t child() const { return child_; }
-  /// The position bit that siblings of this level differ in.
+  /// Returns the position bit in which siblings of this level differ.
   VOXDAG_HD int bit() const { return bit_; }
 
   VOXDAG_HD Exit exit() const {
@@ -88,7 +89,7 @@ class CellWalk {
 
  private:
   static constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f
-  static constexpr int kTopBit = 22;  // the position bit that the root's children differ in
+  static constexpr int kTopBit = 22;  // the position bit in which the root's children differ
 
   VOXDAG_HD void select_child(float t) {
     const std::uint32_t half = 1u << bit_;

@@ -8,21 +8,21 @@
 /// the contour's normal n (mirrored like the ray), the ray is at O - T d, and between the planes
 /// while
 ///     h position(low) <= n.(O - C) - T n.d <= h position(high).
-/// O and C are multiples of 2^-23 and n consists of small integers, so that n.(O - C) is exact in
-/// 32 bits, however far away the voxel is. Rounding happens in the bounds (outwards, to units of
-/// 2^-23), in d (to multiples of 2^-24) and in the final quotient. All arithmetic is integer but
-/// for two products to which nothing is added: every machine finds the same T, as for the planes of
+/// O and C are multiples of 2^-23 and n consists of small integers. So n.(O - C) is exact in 32
+/// bits at any distance of the voxel. Rounding happens in the bounds (outwards, to units of 2^-23),
+/// in d (to multiples of 2^-24) and in the final quotient. All arithmetic is integer except for two
+/// products, to which nothing is added. So every machine finds the same T, as for the planes of
 /// cubes.
 ///
 /// n.d is made odd, so that it is never 0: a ray parallel to the planes crosses them far away.
 ///
-/// No holes. Let u = 2^-24 and |n| the sum of n's components. d is off by less than 1.25 u for each
-/// axis, so T n.d by 1.25 u |n| T, and by another u T because it is made odd. The quotient has four
-/// roundings, equivalent to 4 u |n| T in the numerator. The T of a cube's two ends have one
-/// rounding each, together 2 u |n| T. The planes are moved outwards by 16 u |n| T, with T at the
-/// ray's exit from the cube: more than all of these errors together. So a ray whose line meets the
-/// exact shape of a voxel that it is in does meet the voxel, and before the end of the voxel's
-/// range. At a thousand pixels per radian the planes move by less than 1/500 pixel.
+/// No holes. Let u = 2^-24 and |n| the sum of n's components. d has an error below 1.25 u on each
+/// axis, so T n.d has an error of 1.25 u |n| T, and another u T because it is made odd. The
+/// quotient has four roundings, equivalent to 4 u |n| T in the numerator. The T of a cube's two
+/// ends have one rounding each, together 2 u |n| T. The planes are moved outwards by 16 u |n| T,
+/// with T at the ray's exit from the cube: more than the sum of all these errors. So if a ray is in
+/// a voxel and its line meets the voxel's exact shape, the ray meets the voxel, and before the end
+/// of the voxel's range. At a thousand pixels per radian the planes move by less than 1/500 pixel.
 #include "voxdag/layout/contour.hpp"
 #include "voxdag/trace/grid_ray.hpp"
 
@@ -40,7 +40,7 @@ struct ContourSlab {
   std::int32_t length1;  ///< |n|1 of the normal.
   std::int32_t low, high;
 
-  /// `1 << bit` is the side of the voxel in units of 2^-23.
+  /// Makes the slab of a voxel whose side is 1 << `bit` in units of 2^-23.
   VOXDAG_HD static ContourSlab make(Contour contour, std::uint32_t mirrored, int bit) {
     const auto sign = [mirrored](int axis) {
       return -static_cast<std::int32_t>(mirrored >> axis & 1u);
@@ -56,13 +56,14 @@ struct ContourSlab {
     slab.high = (high_steps * kStep >> (kTopBit - bit)) + wider;
     return slab;
   }
-  /// h position(p) is its steps times 2^(bit - 1) / 127, computed as a product with 2^22 / 127 and
-  /// a shift. Both, and slack(), round down by less than the planes are moved outwards.
+  /// h position(p) is the number of steps times 2^(bit - 1) / 127. It is computed as a product with
+  /// 2^22 / 127 and a shift. Both round down, and so does slack(), by less than the planes are
+  /// moved outwards.
   static constexpr std::int32_t kTopBit = 23, kStep = (1 << 22) / Contour::kMaxPosition;
   static constexpr std::int32_t kWider = 3, kWiderShift = 20;
 
-  /// Returns how far the planes are moved outwards for a ray that leaves the cube at t_exit: 16 u
-  /// |n| T in whole units.
+  /// Returns the distance by which the planes are moved outwards for a ray that leaves the cube at
+  /// t_exit: 16 u |n| T, in whole units.
   VOXDAG_HD std::int32_t slack(float t_exit) const {
     // Between 8192 and 8193 floats are 1/1024 apart: the difference of the bits counts 1024ths.
     const std::uint32_t reach = bits_of_float(t_exit + kReachBase) - bits_of_float(kReachBase);
@@ -82,7 +83,8 @@ class ContourRay {
     }
   }
 
-  /// Returns how fast a ray falls along an axis, in units of 2^-24; 0 along parallel axes.
+  /// Returns the component of a ray's direction along an axis, negated, in units of 2^-24; 0 along
+  /// parallel axes.
   VOXDAG_HD static std::int32_t direction(float inverse) {
     return static_cast<std::int32_t>(kDirectionOne / inverse);
   }

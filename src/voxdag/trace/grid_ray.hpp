@@ -1,39 +1,40 @@
 #pragma once
 /// A ray in the coordinates of the traversal, and the exact definition of the voxels that it meets.
 ///
-/// Coordinates: the grid is the cube [1,2]³, so that the bits of a float's mantissa are the child
-/// indices of the cells that contain it (Laine and Karras, "Efficient Sparse Voxel Octrees",
-/// I3D 2010, section 4.1). Axes along which the ray runs up are mirrored (p -> 3 - p), so that the
-/// ray runs down along every axis. Its origin is a multiple of 2^-23 in [1,2]. Its parameter T is 0
-/// at the origin, and grows by 1 while the ray crosses the grid along its dominant axis.
+/// Coordinates. The grid is the cube [1,2]³, so that the bits of a coordinate's mantissa are the
+/// child indices of the cells that contain the point (Laine and Karras, "Efficient Sparse Voxel
+/// Octrees", I3D 2010, section 4.1). Axes along which the ray runs up are mirrored (p -> 3 - p), so
+/// that the ray runs down along every axis. Its origin is a multiple of 2^-23 in [1,2]. Its
+/// parameter T is 0 at the origin, and grows by 1 while the ray crosses the grid along its dominant
+/// axis.
 ///
 /// The plane rule. The ray meets the plane p of an axis at
 ///     T(p) = (origin - p) * inverse                                     (plane_t below)
-/// in float arithmetic. Origin and p are multiples of 2^-23 in [1,2], so that the difference is
-/// exact; the product with a positive constant is rounded correctly, once. Rounding is monotone, so
-/// that T(p) never decreases as p falls. From one voxel plane to the next it even increases
-/// strictly: neighbouring differences are at least 2^-20 apart and at most 1, a ratio of more than
-/// 1 + 2^-21, while rounding changes a product by at most a factor 1 +- 2^-24. No sum follows the
-/// product, so that no compiler can contract it: every machine finds the same T.
+/// in float arithmetic. Origin and p are multiples of 2^-23 in [1,2], so the difference is exact.
+/// The product with a positive constant is rounded once, correctly. Rounding is monotone, so T(p)
+/// never decreases as p falls. From one voxel plane to the next it even increases strictly:
+/// neighbouring differences are at least 2^-20 apart and at most 1, a ratio of more than 1 + 2^-21,
+/// while rounding changes a product by at most a factor of 1 +- 2^-24. No sum follows the product,
+/// so no compiler can contract it, and every machine finds the same T.
 ///
-/// The voxel rule. At T the ray is, along each axis, beyond exactly the planes with T(p) <= T. That
-/// defines one voxel for every T, and one cell of every coarser level: the planes of coarser cells
-/// are a subset of the voxels' planes, so that a walk of the octree visits the same voxels as a
-/// walk of the grid. The ray meets the voxels that it is in at some T in [t_min, t_max], both ends
+/// The voxel rule. At T the ray is, along each axis, beyond exactly the planes with T(p) <= T. This
+/// defines one voxel for every T, and one cell of every coarser level. The planes of coarser cells
+/// are a subset of the voxels' planes, so a walk of the octree visits the same voxels as a walk of
+/// the grid. The ray meets the voxels that it is in at some T in [t_min, t_max], both ends
 /// included. If it crosses several planes at one T (an edge or a corner, to float precision), it
 /// passes to the diagonal neighbour and meets none of the voxels between. A ray that starts on a
 /// plane is in the voxel ahead.
 ///
-/// Parallel axes. Inside the grid a direction component below 2^-32 of the largest is taken for
-/// zero: it would move the ray by less than 2^-32 of the grid. Such a ray stays, for all T, in the
-/// voxels with floor(p), p being where it enters the grid: the half-open cube rule of the voxels
-/// themselves. No face of that axis is ever the entered one. Outside of the grid even the smallest
-/// component counts, so that a ray that starts far away enters the grid where its line does.
+/// Parallel axes. Inside the grid, a direction component below 2^-32 of the largest counts as zero:
+/// it would move the ray by less than 2^-32 of the grid. If such a ray enters the grid at p, it
+/// stays in the voxels with floor(p) for all T: the rule of the half-open voxel. It never enters
+/// through a face of that axis. Outside the grid even the smallest component counts, so that a ray
+/// that starts far away enters the grid where its line does.
 ///
-/// Precision. The origin is rounded by up to 2^-24 of the grid (1/128 voxel at 131,072³) once, the
-/// same for all rays of a camera inside the grid; from it on, T is good to two roundings, 2^-23
-/// of the distance. Rays that start outside are restarted where they enter the grid, in double: a
-/// ray that starts D grids away is off by up to D * 2^-51 of the grid there.
+/// Precision. The origin is rounded once, by up to 2^-24 of the grid (1/128 voxel at 131,072³); all
+/// rays of a camera inside the grid get the same origin. From there on, T has two rounding errors,
+/// 2^-23 of the distance. A ray that starts outside is restarted where it enters the grid, in
+/// double. If it starts D grids away, its error there is up to D * 2^-51 of the grid.
 #include <cmath>
 #include <cstdint>
 
@@ -76,13 +77,13 @@ VOXDAG_HD inline float end_of_range(float t_max) {
   return t_max < HUGE_VALF ? float_from_bits(bits_of_float(t_max) + 1) : t_max;
 }
 
-/// Returns the ray origin + t * direction, t_min <= t <= t_max, given in world units, as the
-/// traversal takes it. The origin may lie anywhere; t_min and t_max are rounded to nearest in T.
+/// Converts the ray origin + t * direction, t_min <= t <= t_max, from world units to the form of
+/// the traversal. The origin may lie anywhere; t_min and t_max are rounded to nearest in T.
 VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec3d world_direction,
                                        double t_min, double t_max) {
   constexpr double kInfinity = HUGE_VAL;
   constexpr double kParallel = 0x1p-32;
-  constexpr double kZero = 0x1p-960;  // what is less has no finite inverse, or nearly none
+  constexpr double kZero = 0x1p-960;  // smaller values have no finite inverse, or almost none
   GridRay ray;
   if (!(t_min <= t_max)) return ray;
 
@@ -100,7 +101,7 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec
   if (!(length > 0) || !(ray.t_scale < kInfinity)) return ray;
   direction = direction * ray.t_scale;
 
-  // Where the line enters and leaves the grid, and by which axis.
+  // The t at which the line enters and leaves the grid, and the axis of the entered side.
   double enter = (t_min < 0 ? t_min : 0.0) * length, leave = kInfinity;
   int enter_axis = -1;
   ray.mirrored = 0;
@@ -157,7 +158,7 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, const Ray& ray) {
                        static_cast<double>(ray.t_min), static_cast<double>(ray.t_max));
 }
 
-/// A point in the grid as the traversal takes it: rounded once, for all rays that start there.
+/// A point in the grid in the form of the traversal: rounded once, for all rays that start there.
 struct GridPoint {
   Vec3f position{1, 1, 1};  ///< The grid is [1,2]³; multiples of 2^-23.
 };
@@ -190,7 +191,8 @@ VOXDAG_HD inline GridRay make_grid_ray(const GridPoint& start, Vec3f direction, 
     const float d = direction[axis], p = start.position[axis];
     const bool still = !(std::fabs(d) >= kParallel * length);
     const bool up = still || d > 0;
-    // As above: a ray that does not move along an axis is in the voxels with floor(origin).
+    // A ray that does not move along an axis is in the voxels with floor(origin); rounding must not
+    // move it out of the grid.
     const float q = still && p > 2 - 0x1p-23f ? 2 - 0x1p-23f : p;
     ray.parallel |= still ? 1u << axis : 0u;
     ray.mirrored |= up ? 1u << axis : 0u;

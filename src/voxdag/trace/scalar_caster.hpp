@@ -1,6 +1,6 @@
 #pragma once
-/// Casts the rays of a stream one at a time: the caster for a thread of a GPU, and the reference
-/// for the casters of packets.
+/// Casts the rays of a stream one at a time: the caster for a GPU thread, and the reference for the
+/// packet casters.
 ///
 /// The effects of render/ cast their rays through a caster, a type with
 ///   closest(count, make_ray, on_result)   finds the first cell along each ray
@@ -9,7 +9,7 @@
 /// make_ray(i) returns CastRay i, 0 <= i < count, or a reference to it that outlives the call of
 /// the caster. It is called once for each i, in any order. closest() calls on_result(i, ray, cell,
 /// is_hit), any() calls on_result(i, is_hit), in any order: sums over results must not depend on
-/// the order. A cell is a FoundBy<Nodes>::Type. All casters give the same results to the bit.
+/// the order. A cell is a FoundBy<Nodes>::Type. All casters give the same results, to the bit.
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 

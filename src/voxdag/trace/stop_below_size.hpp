@@ -12,8 +12,8 @@ namespace voxdag {
 
 /// A termination hook for cast(): true for cells of level `coarsest_level` or finer whose side is
 /// at most at_start + per_t * T, where T is the ray's exit from the cell. Unlike the entry, the
-/// exit does not depend on where the ray starts, so that shortened rays end at the same cells.
-/// Sides are in units of the grid's side: cells of level l have 2^-l.
+/// exit does not depend on where the ray starts, so shortened rays end at the same cells. Sides are
+/// in units of the grid's side: a cell of level l has the side 2^-l.
 struct StopBelowSize {
   float at_start = 0;
   float per_t = 0;
@@ -24,8 +24,8 @@ struct StopBelowSize {
     return level >= coarsest_level && side <= at_start + per_t * t_exit;
   }
 
-  /// Returns a level above which (at lesser levels) the hook is always false: T is at most 1 in the
-  /// grid.
+  /// Returns a level such that the hook is false at all coarser levels (with lower numbers). Uses
+  /// that T is at most 1 in the grid.
   VOXDAG_HD int first_level() const {
     const float most = (at_start + (per_t > 0 ? per_t : 0)) * (1 + 0x1p-10f);
     const int level = most > 0 ? 127 - static_cast<int>(bits_of_float(most) >> 23) : 127;
@@ -34,7 +34,7 @@ struct StopBelowSize {
 };
 
 /// Returns the hook that ends the cast of `ray` at cells whose side is at most `size_per_t` * t, in
-/// world units, as for the footprint of a pixel seen from the ray's origin at t = 0.
+/// world units: the footprint of a pixel, seen from the ray's origin at t = 0.
 VOXDAG_HD inline StopBelowSize stop_below_size(const Grid& grid, const GridRay& ray,
                                                double size_per_t) {
   const double scale = size_per_t / grid.side();

@@ -1,6 +1,6 @@
 #pragma once
 /// The ray cast of cast.hpp at the wide layout: the same cells for every ray, to the bit, in fewer
-/// steps. A step looks at one cell of a node's 4³; if the octant around the cell is empty, the step
+/// steps. A step tests one of a node's 4³ cells. If the octant of the cell is empty, the step
 /// leaves the whole octant. PUSH and POP move by two levels of the tree.
 ///
 /// Invariant: the cell of size 1 << `bit` at (x,y,z) is the one that the ray is in at `t`.
@@ -9,8 +9,8 @@
 
 namespace voxdag {
 
-/// See cast() in cast.hpp. `stop` must ignore t_enter, and have first_level(), the least level at
-/// which it can be true.
+/// Casts a ray like cast() in cast.hpp. `stop` must ignore t_enter. It must have first_level(): the
+/// coarsest level at which it can be true.
 template <WideLayout Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   constexpr std::uint32_t kOne = 0x3F800000u;  // the bits of 1.0f

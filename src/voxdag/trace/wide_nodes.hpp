@@ -44,7 +44,7 @@ class WideNodes {
 template <class Nodes>
 concept WideLayout = Nodes::kIsWide;
 
-/// The position bits of a wide walk's nodes in a grid of L levels.
+/// The position bits that a wide walk uses in a grid of L levels.
 struct WideLevels {
   int leaf_bit;  ///< The position bit in which neighbouring voxels differ.
   int root_bit;  ///< The position bit in which neighbouring cells of the root differ.
@@ -53,11 +53,11 @@ struct WideLevels {
       : leaf_bit(23 - levels), root_bit(leaf_bit + 2 * ((levels + 1) / 2 - 1)) {}
 };
 
-/// The greatest number of wide nodes on the way from the root to a voxel.
+/// The maximum number of wide nodes on the way from the root to a voxel.
 inline constexpr int kMaxWideDepth = (kMaxLevels + 1) / 2;
 
-/// The four cells of a wide node's octant, as bits of one 32-bit half of its mask; shifted by the
-/// octant's x and y.
+/// The eight cells of a wide node's octant (0, 0), as bits of the 32-bit half of the mask that
+/// holds them. For other octants, shift it by the octant's x and y.
 inline constexpr std::uint32_t kOctantCells = 0x00330033u;
 
 /// Returns the number that, XORed with the cell of a mirrored position, gives the cell in the mask.
@@ -65,8 +65,8 @@ VOXDAG_HD constexpr std::uint32_t wide_mirror(std::uint32_t mirrored) {
   return (mirrored & 1u) * 3 | (mirrored >> 1 & 1u) * 12 | (mirrored >> 2 & 1u) * 48;
 }
 
-/// Returns the position bits of which one changes if a step leaves the node with cells of size
-/// 1 << bit, or the grid, which may be an octant of the root.
+/// Returns a mask of position bits. One of them changes if a step leaves the node whose cells have
+/// the size 1 << bit, or leaves the grid (which may be an octant of the root).
 VOXDAG_HD constexpr std::uint32_t leaves_node(int bit) { return ~3u << bit | ~0u << 23; }
 
 }  // namespace voxdag

@@ -1,6 +1,6 @@
 #pragma once
-/// 64-bit masks of 4³ voxels. In linear order (bit x + 4y + 16z) rows and slices are easy to make.
-/// Leaf blocks store Morton order.
+/// 64-bit masks of 4³ voxels. Builders use linear order (bit x + 4y + 16z), in which rows and
+/// slices are simple masks. Leaf blocks use Morton order.
 #include <cstdint>
 
 #include "voxdag/core/host_device.hpp"
@@ -8,7 +8,8 @@
 
 namespace voxdag {
 
-/// Extends sixteen bits u + 4v of a projection's square to the voxels of their columns.
+/// Extends sixteen bits u + 4v of a projection's square along the projection's axis, to the voxels
+/// of their columns.
 VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t expand_square(int projection,
                                                                     std::uint64_t m) {
   if (projection == 2) return m * 0x0001000100010001ull;
@@ -38,8 +39,8 @@ VOXDAG_HD VOXDAG_FORCE_INLINE constexpr std::uint64_t box_mask(Vec3i block, Vec3
 
 namespace detail {
 
-/// Exchanges the bits whose positions have the index bits (i, j) = (0, 1) with those that have (1,
-/// 0).
+/// Exchanges the bits at positions with the index bits (i, j) = (0, 1) and those at positions with
+/// (1, 0).
 template <int i, int j>
 VOXDAG_HD constexpr std::uint64_t swap_index_bits(std::uint64_t m) {
   constexpr int kShift = (1 << i) - (1 << j);

@@ -1,7 +1,7 @@
 // Rasterises triangles into leaf blocks of 4³ voxels, vectorised. Included once for each
 // instruction set.
 //
-// Every lane holds an integer that decides one voxel or column exactly, so the masks are equal for
+// Every lane holds an integer that decides one voxel or column exactly. So the masks are equal for
 // all vector widths.
 #if defined(VOXDAG_BLOCK_RASTER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_BLOCK_RASTER_INL
@@ -24,14 +24,14 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The voxels of a slab in a block, and the interval of offsets in which they do not change.
+/// The voxels of a slab in a block, and the interval of offsets for which they are the same.
 struct SlabBlock {
   std::uint64_t mask;  ///< Linear order.
   std::uint64_t down, up;
 };
 
-/// Returns lane i of the mask as bit i, for up to 16 lanes. Loads exactly the stored bytes, since a
-/// wider load would wait for the store.
+/// Returns lane i of the mask as bit i, for up to 16 lanes. Loads exactly the stored bytes, because
+/// a wider load would wait for the store.
 template <class D, class M>
 HWY_INLINE std::uint64_t mask_bits(D d, M mask) {
   std::uint8_t bytes[8];
@@ -47,7 +47,7 @@ struct SquareLanes {
 };
 inline constexpr SquareLanes kSquare;
 
-/// Returns sixteen bits u + 4v: whether value + a*u + b*v >= 0. The sums must fit in 32 bits.
+/// Returns sixteen bits: bit u + 4v is set if value + a*u + b*v >= 0. The sums must fit in 32 bits.
 HWY_INLINE std::uint64_t edge_square(std::int32_t value, std::int32_t a, std::int32_t b) {
   const hn::CappedTag<std::int32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -71,8 +71,8 @@ inline std::uint64_t edge_square_wide(std::int64_t value, std::int64_t a, std::i
 }
 
 /// Returns the voxels of a slab in a block. T must hold 16 |n|1. Negative distances are huge as
-/// unsigned numbers, so the least and the greatest distance to the slab's two ends tell how far the
-/// slab can move in both directions.
+/// unsigned numbers. So the least and greatest distances to the slab's two ends give the distance
+/// by which the slab can move in both directions.
 template <class T>
 HWY_INLINE SlabBlock slab_block_in(const PlaneSlab& slab, std::int64_t lo) {
   using U = hwy::MakeUnsigned<T>;
@@ -111,8 +111,8 @@ HWY_INLINE SlabBlock slab_block_in(const PlaneSlab& slab, std::int64_t lo) {
   return {mask, static_cast<U>(~top), up};
 }
 
-/// Returns the voxels of the slab whose least value relative to the block is `lo`. |lo| <= 16 |n|1:
-/// the slab is near the block.
+/// Returns the voxels of the slab whose least value relative to the block is `lo`. The slab must be
+/// near the block: |lo| <= 16 |n|1.
 HWY_INLINE SlabBlock slab_block(const PlaneSlab& slab, std::int64_t lo) {
   return slab.width < (std::int64_t{1} << 26) ? slab_block_in<std::int32_t>(slab, lo)
                                               : slab_block_in<std::int64_t>(slab, lo);
@@ -137,7 +137,7 @@ inline ScaledSlab scale_slab(const PlaneSlab& slab) {
 /// Returns the voxels of a slab in a block, in linear order. `lo` is the slab's least value
 /// relative to the block, |lo| <= 60 |n|1. The shift changes a voxel's distance from the slab's
 /// near end by -9 to +1, and from its far end by -9 to +2, exclusive. If no distance is that close
-/// to 0, the scaled numbers decide exactly; else the exact ones are used.
+/// to 0, the scaled numbers decide exactly; else the exact numbers decide.
 HWY_INLINE std::uint64_t slab_mask(const ScaledSlab& slab, std::int64_t lo) {
   const hn::CappedTag<std::uint32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -181,7 +181,8 @@ HWY_INLINE std::uint64_t triangle_children(const TriangleSetup& t, std::uint32_t
     const int edge = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
     const int projection = edge / 3;
     const std::int64_t a = t.a[edge], b = t.b[edge];
-    // The greatest value in the first child. It changes by a * size and b * size per child.
+    // The greatest value in the first child. From child to child it changes by a * size or b *
+    // size.
     const std::int64_t value = t.c[edge] + a * cell[kProjectionU[projection]] +
                                b * cell[kProjectionV[projection]] +
                                last * (positive(a) + positive(b));

@@ -1,10 +1,10 @@
 #pragma once
-/// Finds the children of an octree cell that a triangle meets, and the conditions that still matter
-/// in them.
+/// Finds the children of an octree cell that a triangle meets, and the conditions that can still
+/// fail in them.
 ///
-/// The functions of triangle_setup.hpp have their least and greatest values over a cell at two of
-/// its corner voxels, so the answer is exact for a cell of any size. If the plane's sums over a
-/// cell need more than 64 bits, the plane is tested in smaller cells only.
+/// The functions of triangle_setup.hpp take their least and greatest values over a cell at two of
+/// its corner voxels, so the result is exact for a cell of any size. If the plane's sums over a
+/// cell need more than 64 bits, the plane is tested only in smaller cells.
 #include <bit>
 #include <cstdint>
 
@@ -13,8 +13,8 @@
 namespace voxdag {
 
 /// The result for the children (x=1, y=2, z=4) of a cell. Bit i of `alive` is set if the triangle
-/// meets child i; conditions(i) are those that some of its voxels may fail. Dominant edges stay
-/// until the child's whole column is inside the triangle: without them only the plane matters.
+/// meets child i. conditions(i) are the conditions that some voxels of child i may fail. Dominant
+/// edges stay until the child's whole column is inside the triangle; then only the plane can fail.
 struct ChildConditions {
   std::uint32_t alive = 0xFF;
   std::uint64_t lanes[2];  ///< Eight 16-bit sets.
@@ -29,8 +29,8 @@ namespace detail {
 inline constexpr std::uint32_t kLowChildren[3] = {0x55, 0x33, 0x0F};
 inline constexpr std::uint64_t kEveryLane = 0x0001000100010001ull;
 
-/// The children over a set of the four quadrants (u=1, v=2) of projection p, as a mask and as
-/// 16-bit lanes.
+/// The children in the columns of some of the four quadrants (u=1, v=2) of projection p, as a mask
+/// and as 16-bit lanes.
 struct QuadrantChildren {
   std::uint32_t mask[3][16];
   std::uint64_t lanes[3][16][2];
@@ -55,7 +55,7 @@ inline constexpr QuadrantChildren kQuadrantChildren = make_quadrant_children();
 }  // namespace detail
 
 /// Classifies the children of a cell of (2*half)³ voxels. `cell` is its lowest voxel, relative to
-/// the setup's origin; `conditions` are those that its voxels may fail.
+/// the setup's origin; `conditions` are the conditions that its voxels may fail.
 VOXDAG_FORCE_INLINE ChildConditions classify_children(const TriangleSetup& t,
                                                       std::uint32_t conditions, Vec3i cell,
                                                       std::int32_t half) {

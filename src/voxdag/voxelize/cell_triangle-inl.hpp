@@ -1,9 +1,9 @@
 // Rasterises a triangle into the 4³ leaf blocks of a cell of 16³ voxels, vectorised. Included once
 // for each instruction set.
 //
-// Values that the blocks share are computed once: those of each edge over a block's square of
-// voxels, and over the cell's square of blocks. A block adds one of the latter to the former, and
-// tests all edges of a projection together without a branch per edge.
+// Values that the blocks share are computed once for each edge: its values over a block's square of
+// voxels, and its values over the cell's square of blocks. For a block, one of the second is added
+// to the first. All edges of a projection are tested together, without a branch per edge.
 #if defined(VOXDAG_CELL_TRIANGLE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_CELL_TRIANGLE_INL
 #undef VOXDAG_CELL_TRIANGLE_INL
@@ -31,9 +31,9 @@ struct alignas(64) CellTriangle {
 inline constexpr int kLog2CellBlocks = 2;
 inline constexpr std::int64_t kCellLast = 15;
 
-/// Returns the block columns that pass the edges of a projection: 16 bits u + 4v. If a voxel of the
-/// cell may fail one of the edges, adds the projection to `c`. Dominant edges count as such until
-/// the cell's whole column is inside the triangle.
+/// Returns the block columns that pass the edges of a projection, as 16 bits u + 4v. If a voxel of
+/// the cell may fail one of the edges, adds the projection to `c`. Dominant edges count as edges
+/// that may fail until the cell's whole column is inside the triangle.
 HWY_INLINE std::uint64_t enter_projection(const TriangleSetup& t, int projection, Vec3i cell,
                                           bool dominant, CellTriangle& c) {
   using detail::absolute;
@@ -52,7 +52,7 @@ HWY_INLINE std::uint64_t enter_projection(const TriangleSetup& t, int projection
     if (first + kCellLast * (positive(a) + positive(b)) < 0) return 0;
     const std::int64_t needed = dominant ? absolute(a) + absolute(b) : 0;
     open |= first + kCellLast * (negative(a) + negative(b)) < needed;
-    // A value beyond kFar has one sign in the whole cell.
+    // A value beyond kFar has the same sign in the whole cell.
     value[e] = static_cast<std::int32_t>(std::clamp(first, -kFar, kFar));
     most[e] = static_cast<std::int32_t>(3 * (positive(a) + positive(b)));
   }
@@ -86,7 +86,7 @@ HWY_INLINE std::uint64_t enter_cell(const TriangleSetup& t, std::uint32_t condit
   constexpr std::int32_t kLast = static_cast<std::int32_t>(kCellLast);
   const int range = (conditions & kPlane) ? slab_range(t, cell, kLast + 1) : 1;
   if (range == 0) return 0;
-  // The values of edges shorter than this change by less than 2^28 over the cell.
+  // If an edge is shorter than this, its value changes by less than 2^28 over the cell.
   constexpr std::int32_t kLongestEdge = 1 << 15;
   const Vec3i size = t.box_hi - t.box_lo;
   c.wide = range == 2 || std::max({size.x, size.y, size.z}) >= kLongestEdge - 1;
@@ -132,7 +132,7 @@ HWY_INLINE std::uint64_t enter_cell(const TriangleSetup& t, std::uint32_t condit
 }
 
 /// Returns the voxels of a leaf block that the triangle sets, in linear order. `block` is the
-/// block's place in the cell, 0 to 3 on each axis. The triangle must not be wide.
+/// block's position in the cell, 0 to 3 on each axis. The triangle must not be wide.
 HWY_INLINE std::uint64_t block_voxels(const CellTriangle& c, Vec3i block) {
   const hn::CappedTag<std::int32_t, 16> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);

@@ -4,8 +4,8 @@
 ///
 /// Source: the separating-axis test of Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing",
 /// 2001, in exact integers. The half-open cube [i, i+1) is the closed cube [i, i+1-e] for an
-/// infinitesimal e: if the extreme point of the cube along an axis lies on a far side, equality
-/// separates.
+/// infinitesimal e. So if the extreme point of the cube along an axis lies on an upper side,
+/// equality separates.
 #include "voxdag/core/host_device.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/vec.hpp"
@@ -43,8 +43,8 @@ VOXDAG_HD inline bool separates(Wide ax, Wide ay, Wide az, Vec3i a, Vec3i b, Vec
 }  // namespace detail
 
 /// Returns whether the closed triangle abc contains a point of the half-open cube [lo, lo + size)³.
-/// All values are in one unit; |coordinates| <= 2^30. A degenerate triangle counts as a segment or
-/// a point.
+/// All values are in one unit; |coordinates| <= 2^30. A triangle without area counts as a segment
+/// or a point.
 VOXDAG_HD inline bool triangle_overlaps_cube(Vec3i a, Vec3i b, Vec3i c, Vec3l lo,
                                              std::int64_t size) {
   using detail::separates;

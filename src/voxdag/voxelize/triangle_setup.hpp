@@ -5,16 +5,16 @@
 /// Source: the overlap test of Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on
 /// GPUs", SIGGRAPH Asia 2010, made exact for half-open cubes.
 ///
-/// A triangle meets a voxel if its box does, its plane does, and in each of the three axis-aligned
-/// projections the voxel's square is not wholly outside of one of the triangle's edges. All twelve
-/// conditions are linear in the voxel's integer coordinates, with the ties of the half-open cube
-/// and the division by 256 units per voxel folded into the constants:
+/// A triangle meets a voxel if its bounding box and its plane meet the voxel, and if in each of the
+/// three axis-aligned projections the voxel's square is not completely outside one of the
+/// triangle's edges. All conditions are linear in the voxel's integer coordinates. The constants
+/// include the ties of the half-open cube and the division by 256 units per voxel:
 ///
 ///   edge    a*u + b*v + c >= 0         (u, v): the two coordinates of the projection
 ///   plane   lo <= n*v <= lo + width    a digital plane; n reduced by the common divisor
 ///
-/// The same functions decide for a cell of s³ voxels: the least and the greatest value over the
-/// cell's voxels say whether none, some or all of them pass.
+/// These functions also decide for a cell of s³ voxels: their least and greatest values over the
+/// cell's voxels tell whether none, some or all of the voxels pass.
 #include <cstdint>
 #include <numeric>
 
@@ -48,8 +48,8 @@ struct alignas(64) TriangleSetup {
   std::int32_t a[9], b[9];
   std::int64_t c[9];
   PlaneSlab plane;
-  /// The slab's least dot(n, v), modulo 2^64. It is exact if `approximate_lo` says that the true
-  /// value is small, which holds in every cell near the plane.
+  /// The slab's least dot(n, v), modulo 2^64. It is exact if `approximate_lo` is small, which is
+  /// true in every cell near the plane.
   std::uint64_t lo;
   double approximate_lo;
   double normal_length1;         ///< |n|1
@@ -73,8 +73,8 @@ VOXDAG_HD inline void set_edge(TriangleSetup& s, int slot, std::int64_t pu, std:
   std::int64_t a = pv - qv, b = qu - pu;
   if (flip) a = -a, b = -b;
   const std::int64_t c = -(a * pu + b * pv);
-  // The greatest value over the half-open square is at its far corner. That corner is not part of
-  // the square, so the value there must be greater than 0.
+  // The greatest value over the half-open square is at its far corner. If that corner is not part
+  // of the square, the value there must be greater than 0.
   const std::int64_t strict = a > 0 || b > 0 ? 1 : 0;
   s.a[slot] = static_cast<std::int32_t>(a);
   s.b[slot] = static_cast<std::int32_t>(b);
@@ -101,7 +101,7 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
     long_axes += s.box_lo[axis] != s.box_hi[axis] ? 1 : 0;
   }
   s.conditions = kBox;
-  // A triangle is connected: if its box is one row of voxels, it meets each of them.
+  // A triangle is connected. So if its box is one row of voxels, it meets each of them.
   if (long_axes <= 1) return s;
 
   Vec3l normal = cross(p[1] - p[0], p[2] - p[0]);
@@ -131,9 +131,9 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
   if (divisor == 0) return s;
   Vec3l n{normal.x / divisor, normal.y / divisor, normal.z / divisor};
   if (n.x < 0 || (n.x == 0 && (n.y < 0 || (n.y == 0 && n.z < 0)))) n = -n;
-  // A voxel meets the plane dot(n, x) = d if d lies between the values at its least and its
-  // greatest corner. Corners on far sides are not part of the voxel, so equality does not count
-  // there.
+  // A voxel meets the plane dot(n, x) = d if d lies between the values at the corners with the
+  // least and greatest values. Corners on upper sides are not part of the voxel, so equality does
+  // not count there.
   const Int128 d = static_cast<Int128>(n.x) * p[0].x + static_cast<Int128>(n.y) * p[0].y +
                    static_cast<Int128>(n.z) * p[0].z;
   const int far_max = n.x > 0 || n.y > 0 || n.z > 0, far_min = n.x < 0 || n.y < 0 || n.z < 0;
@@ -152,9 +152,9 @@ inline TriangleSetup make_triangle_setup(const QuantizedTriangle& triangle, Vec3
   return s;
 }
 
-/// Returns those of `conditions` that some voxel of the cell of size³ voxels at v may fail.
-/// Dominant edges stay until the cell's whole column is inside the triangle; then only the plane is
-/// left.
+/// Returns the subset of `conditions` that some voxel of the cell of size³ voxels at v may fail.
+/// Dominant edges stay until the cell's whole column is inside the triangle; then only the plane
+/// can fail.
 VOXDAG_HD VOXDAG_FORCE_INLINE std::uint32_t open_conditions(const TriangleSetup& s,
                                                             std::uint32_t conditions, Vec3i v,
                                                             std::int32_t size) {
@@ -190,7 +190,7 @@ VOXDAG_HD VOXDAG_FORCE_INLINE int slab_range(const TriangleSetup& s, Vec3i v, st
   const Vec3l& n = s.plane.normal;
   const double lo = s.approximate_lo - static_cast<double>(n.x) * v.x -
                     static_cast<double>(n.y) * v.y - static_cast<double>(n.z) * v.z;
-  // Rounding errs by less than 2^-49 of the largest term, |n|1 * 2^21: far less than |n|1.
+  // The rounding error is less than 2^-49 of the largest term, |n|1 * 2^21: much less than |n|1.
   return lo > 2 * reach + 1 || lo < -3 * reach - 1 ? 0 : 1;
 }
 

@@ -25,12 +25,12 @@ struct MtlMap {
 /// Parses the arguments of a map statement. Throws MalformedMtl.
 MtlMap parse_mtl_map(std::string_view text);
 
-/// Removes the numbers that the text starts with, `numbers.size()` at most, and returns how many
-/// there were, those included that are not finite.
+/// Removes the numbers at the start of the text, at most `numbers.size()`, and stores them in
+/// `numbers`. Returns the number of values removed, also counting values that are not finite.
 std::size_t take_numbers(std::string_view& text, std::span<float> numbers);
 
-/// Removes numbers in the same way. Throws MalformedMtl with the message `expected` if fewer than
-/// `least` are there or one is not finite.
+/// Removes numbers like the function above. Throws MalformedMtl with the message `expected` if
+/// there are fewer than `least` numbers, or if one is not finite.
 void take_numbers(std::string_view& text, std::span<float> numbers, std::size_t least,
                   const char* expected);
 

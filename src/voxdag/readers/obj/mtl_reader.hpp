@@ -15,9 +15,9 @@ namespace voxdag {
 /// Fills materials from MTL files, by name, and adds the images that they use.
 ///
 /// Reads Kd (as sRGB), d and Tr, map_Kd, map_d, norm, bump (map_bump) with -bm, disp (map_disp)
-/// with -mm, and for each map -s, -o and -clamp; ignores other statements and options. A map_Kd
-/// alone gives the colour; Kd replaces it where the image cannot be read. A map_d makes the
-/// material a mask. A malformed statement is a warning with its line and with what replaces it.
+/// with -mm, and for each map -s, -o and -clamp; ignores other statements and options. If there is
+/// a map_Kd, it alone gives the colour; Kd replaces it if the image cannot be read. A map_d makes
+/// the material a mask. A malformed statement is a warning that names its line and its replacement.
 class MtlReader {
  public:
   /// `appearance` has the materials, with distinct names. The references must stay valid.
@@ -25,11 +25,11 @@ class MtlReader {
             Warnings& warnings);
   ~MtlReader();
 
-  /// Reads the text of one file, whose names of images start in `folder`. `name` names the file in
-  /// messages. Throws Error for an image outside of the mesh file's folder, OverMemory, Cancelled.
+  /// Reads the text of one file. Names of images are relative to `folder`. `name` names the file in
+  /// messages. Throws Error for an image outside the mesh file's folder, OverMemory, Cancelled.
   void read(std::string_view text, const std::filesystem::path& folder, const std::string& name);
 
-  /// Whether a file that was read describes appearance.materials[material].
+  /// Returns whether a file that was read describes appearance.materials[material].
   bool describes(std::size_t material) const;
 
  private:

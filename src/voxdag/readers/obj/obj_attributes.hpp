@@ -19,10 +19,10 @@ struct ObjReferences {
 };
 
 /// Holds the file's values and the references of all corners until every value is known, because
-/// faces may precede the values. Threads may set distinct values and corners at once.
+/// faces may precede their values. Threads may set distinct values and corners concurrently.
 class ObjAttributes {
  public:
-  /// Makes room for what the file has. Throws OverMemory.
+  /// Makes room for all values and corners of the file. Throws OverMemory.
   ObjAttributes(const MeshSource& source, const ObjCounts& totals, bool has_colors);
 
   void set_uv(std::size_t index, std::string_view numbers);
@@ -30,16 +30,16 @@ class ObjAttributes {
   /// Sets the colour of a vertex from the numbers that follow its coordinates, if there are three.
   void set_color(std::size_t vertex, std::string_view numbers);
 
-  /// Parses the rest of a corner "v/vt/vn" from "vt" on. `seen` counts the values that precede the
-  /// face in the file. A reference to no value counts as bad.
+  /// Parses a corner "v/vt/vn" from "vt" on. `seen` counts the values that precede the face in the
+  /// file. A reference to a value that does not exist counts as bad.
   ObjReferences parse_references(std::string_view text, const ObjCounts& seen);
   /// Sets the references of the three corners of a triangle.
   void set_references(std::size_t triangle, const ObjReferences& a, const ObjReferences& b,
                       const ObjReferences& c);
-  /// Follows the cut of a face whose fan started at triangle `first`.
+  /// Moves the references of a face that `cutter` has cut, whose fan starts at triangle `first`.
   void move_references(const FaceCutter& cutter, std::size_t first, std::size_t triangles);
 
-  /// Replaces the references by their values. Call once, last. Throws OverMemory.
+  /// Replaces the references by their values. Call it once, at the end. Throws OverMemory.
   void finish(const Mesh& mesh, Appearance& appearance);
 
   bool has_colors() const { return !colors_.empty(); }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the first pass over an OBJ file counts, chunk by chunk.
+/// Counts the statements of an OBJ file, chunk by chunk: the first pass of the reader.
 #include <cstdint>
 #include <string_view>
 
@@ -11,7 +11,8 @@ namespace voxdag {
 
 enum class ObjStatement { kVertex, kUv, kNormal, kFace, kMaterial, kLibrary, kOther };
 
-/// Removes the keyword from a line, which starts with no blank, and returns what it states.
+/// Removes the keyword from a line, which must not start with a blank, and returns the statement
+/// that it stands for.
 inline ObjStatement take_keyword(std::string_view& line) {
   const std::string_view keyword = next_token(line);
   if (keyword == "v") return ObjStatement::kVertex;
@@ -46,7 +47,7 @@ struct ObjChunk {
   bool has_colors = false;  ///< Some vertex has six numbers.
 };
 
-/// Number of triangles in the fan of a face line.
+/// Returns the number of triangles in the fan of a face line.
 std::size_t count_fan_triangles(std::string_view corners, CancelPoll& poll);
 
 }  // namespace voxdag

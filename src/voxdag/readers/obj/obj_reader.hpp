@@ -11,7 +11,8 @@ namespace voxdag {
 /// Faces may come before their vertices. A backslash at the end of a line continues it.
 ///
 /// With its appearance: reads `vt`, `vn`, colours that follow a vertex's coordinates (`v x y z r g
-/// b`, sRGB) and the MTL files of `mtllib`. A corner whose `vt` or `vn` does not exist has none.
+/// b`, sRGB) and the MTL files of `mtllib`. A corner whose `vt` or `vn` does not exist has no
+/// texture coordinates or normal.
 ///
 /// Throws Error with the line: malformed vertices or faces, references out of range, triangles with
 /// a vertex that is not finite. Throws Error if there are no triangles.

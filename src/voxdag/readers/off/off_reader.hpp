@@ -12,9 +12,9 @@ bool is_off(std::string_view bytes);
 /// face per line. Ignores the rest of the line (normals, colours) and comments from '#' on. Cuts
 /// polygons with cut_polygon() and ignores those of fewer than three corners.
 ///
-/// Throws Error with the line: malformed lines, counts that the file is too short for, indices out
-/// of range, vertices that are used and not finite, the binary and higher-dimensional variants.
-/// Throws Error if there are no triangles.
+/// Throws Error with the line: malformed lines, counts that need a longer file, indices out of
+/// range, used vertices that are not finite, the binary and higher-dimensional variants. Throws
+/// Error if there are no triangles.
 Mesh read_off(const MeshSource& source);
 
 }  // namespace voxdag

@@ -14,9 +14,9 @@
 
 namespace voxdag {
 
-/// The values of one row that make the appearance.
+/// The values of one row that belong to the appearance.
 struct PlyRowValues {
-  /// The slots of scalar properties; the list `texcoord` has none.
+  /// The slots of scalar properties; the list `texcoord` has no slot.
   enum Slot { kRed, kGreen, kBlue, kAlpha, kNormalX, kNormalY, kNormalZ, kU, kV, kSlots };
 
   explicit PlyRowValues(MemoryBudget* memory) : texcoord(memory) {}
@@ -25,7 +25,7 @@ struct PlyRowValues {
   CountedVector<float> texcoord;  ///< u and v of the corners of a face.
 };
 
-/// Which properties of an element make the appearance.
+/// The properties of an element that belong to the appearance.
 struct PlyColumns {
   std::vector<int> slots;  ///< PlyRowValues::Slot of each property, or -1.
   int texcoord = -1;       ///< Index of the list `texcoord`, or -1.
@@ -35,7 +35,7 @@ struct PlyColumns {
   bool is_used() const { return color_components > 0 || has_normals || has_uvs || texcoord >= 0; }
 };
 
-/// Gathers the attributes while the mesh is read. Threads may take distinct rows at once.
+/// Collects the attributes while the mesh is read. Threads may pass distinct rows concurrently.
 ///
 /// Reads from vertices: `red green blue` with or without `alpha` (or `diffuse_red` ..., `r` ...;
 /// sRGB, integers divided by their type's greatest value), `nx ny nz`, and `s t`, `u v`, `texture_u
@@ -48,17 +48,17 @@ class PlyAttributes {
   const PlyColumns& vertex_columns() const { return vertex_; }
   const PlyColumns& face_columns() const { return face_; }
 
-  /// Make room. Throw OverMemory.
+  /// Makes room for `count` vertices. Throws OverMemory.
   void resize_vertices(std::size_t count);
   void resize_triangles(std::size_t count);
 
   void take_vertex(std::size_t index, const PlyRowValues& row);
-  /// Takes the face that has become `count` triangles from triangle `first` on.
+  /// Stores the values of a face that has become `count` triangles from triangle `first` on.
   void take_face(std::size_t first, std::size_t count, const PlyRowValues& row,
                  const FaceCutter& cutter);
 
-  /// Completes the appearance: corners, materials, the texture. Call once, last. Throws Error if
-  /// the texture is outside of the file's folder.
+  /// Completes the appearance: corners, materials, the texture. Call it once, at the end. Throws
+  /// Error if the texture is outside the file's folder.
   Appearance finish(const Mesh& mesh, std::vector<std::string>& warnings);
 
  private:

@@ -40,7 +40,7 @@ struct PlyElement {
 
   /// Returns the index of the property that has one of the names, or -1.
   int find(std::initializer_list<std::string_view> names) const;
-  /// Returns the least number of bytes that a row takes in a binary file.
+  /// Returns the minimum number of bytes of a row in a binary file.
   std::size_t least_row_bytes() const;
 };
 

@@ -77,7 +77,7 @@ struct RowLayout {
   std::size_t fixed_row_bytes() const { return runs[0].fixed_bytes; }
 
   /// Calls on_run(index, start of its fixed bytes, items in its list) for each run of the row at
-  /// `p`. Returns the row's end. Throws Fault if the row does not end by `end`.
+  /// `p`. Returns the row's end. Throws Fault if the row extends beyond `end`.
   template <class OnRun>
   const char* walk(const char* p, const char* end, bool swap, const OnRun& on_run) const {
     for (std::size_t k = 0; k < runs.size(); ++k) {

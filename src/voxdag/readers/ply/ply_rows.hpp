@@ -1,5 +1,5 @@
 #pragma once
-/// What the readers of ascii and of binary PLY bodies share.
+/// The types and functions that the readers of ascii and binary PLY bodies share.
 #include <array>
 #include <string>
 
@@ -12,7 +12,7 @@ namespace voxdag {
 
 class PlyAttributes;
 
-/// Indices of the properties that make the mesh.
+/// Indices of the properties that belong to the mesh.
 struct PlyFields {
   explicit PlyFields(const PlyHeader& header)
       : vertex(header.elements[static_cast<std::size_t>(header.vertex)]),
@@ -33,7 +33,7 @@ struct PlyFields {
   int material;  ///< -1: the file has no materials.
 };
 
-/// What the reader of a body needs.
+/// The input of the reader of a body.
 struct PlyBody {
   const MeshSource& source;
   const PlyHeader& header;
@@ -41,8 +41,8 @@ struct PlyBody {
   PlyAttributes* attributes;  ///< Null: the appearance is not read.
 };
 
-/// Read the mesh, and give the rows' other values to body.attributes. `memory` counts the mesh.
-/// Throw Error, OverMemory, Cancelled.
+/// Reads the mesh, and passes the rows' other values to body.attributes. `memory` counts the mesh.
+/// Throws Error, OverMemory, Cancelled.
 Mesh read_ply_ascii(const PlyBody& body, MemoryReservation& memory);
 Mesh read_ply_binary(const PlyBody& body, MemoryReservation& memory);
 
@@ -52,7 +52,7 @@ void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& m
 void resize_ply_triangles(const PlyBody& body, std::size_t triangles, MemoryReservation& memory,
                           Mesh& mesh);
 
-/// Return the index if it is in range, else throw Fault.
+/// Returns the index if it is in range, else throws Fault.
 std::uint32_t checked_index(std::int64_t index, std::size_t vertices, const char* position);
 std::uint32_t checked_material(std::int64_t index, const Mesh& mesh, const char* position);
 

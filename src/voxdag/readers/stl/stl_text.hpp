@@ -1,5 +1,5 @@
 #pragma once
-/// The grammar of ascii STL files, over any part of a file that starts and ends between facets.
+/// The grammar of ascii STL files. Parses any part of a file that starts and ends between facets.
 #include <string_view>
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// Compares without regard to the case of ASCII letters; `word` is in lower case.
+/// Returns whether `token` is `word`, ignoring the case of ASCII letters. `word` is in lower case.
 inline bool same_word(std::string_view token, std::string_view word) {
   return std::equal(token.begin(), token.end(), word.begin(), word.end(), [](char a, char b) {
     return (a >= 'A' && a <= 'Z' ? static_cast<char>(a + 32) : a) == b;
@@ -64,8 +64,9 @@ class StlTokens {
 std::vector<std::string_view> split_facets(std::string_view text,
                                            std::size_t chunk_bytes = kChunkBytes);
 
-/// Calls body(Vec3f) for each corner of a part from split_facets(). Throws Fault for text outside
-/// of the grammar, for vertices that are not finite, and if the last part does not end its solid.
+/// Calls body(Vec3f) for each corner of a part from split_facets(). Throws Fault for text that
+/// breaks the grammar, for vertices that are not finite, and if the last part does not end its
+/// solid.
 template <class Body>
 void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Body& body) {
   StlTokens tokens(is_first ? without_byte_order_mark(part) : part);
@@ -92,7 +93,7 @@ void parse_stl_text(std::string_view part, bool is_first, bool is_last, const Bo
     }
     if (in_solid && same_word(token, "facet")) {
       expect("normal");
-      for (int i = 0; i < 3; ++i) {  // Unused, and some writers put NaN there.
+      for (int i = 0; i < 3; ++i) {  // The normal is unused: some writers put NaN there.
         if (tokens.next().empty()) throw Fault{token.data(), "the file ends inside a facet"};
       }
       expect("outer");
