@@ -3,8 +3,9 @@
 ///
 ///   attribute_codecs [TEXTURE.png|.jpg ...]
 ///
-/// Normals are those of shapes as voxels of two sibling nodes see them; colours those of random
-/// lines through the colour cube and of the textures' 4x4 pixels, all of them and a random half.
+/// Normals are those of shapes, in the voxels of two sibling nodes. Colours are those on random
+/// lines through the colour cube, and those of 4x4 pixels of the textures: all of them, and a
+/// random half.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -75,7 +76,7 @@ Blocks make(const std::function<Block(std::mt19937&)>& one) {
 
 Blocks spheres(float radius) {
   return make([radius](std::mt19937& random) {
-    // In double: the gradient of a large sphere is a difference of nearly equal numbers.
+    // In double, because the gradient of a large sphere is a difference of nearly equal numbers.
     const Vec3d center = Vec3d(direction(random)) * static_cast<double>(radius);
     Block block = voxels_of([center, radius](Vec3f p) {
       const Vec3d d = Vec3d(p) - center;
@@ -100,7 +101,7 @@ Blocks cylinders(float radius) {
   });
 }
 
-/// The corner where `planes` planes of random directions meet.
+/// Returns corners where `planes` planes of random directions meet.
 Blocks corners(int planes) {
   return make([planes](std::mt19937& random) {
     std::vector<Vec3f> normals(static_cast<std::size_t>(planes));
@@ -113,7 +114,7 @@ Blocks corners(int planes) {
   });
 }
 
-/// Both sides of a sheet, bent by `bend` radians.
+/// Returns both sides of sheets that are bent by `bend` radians.
 Blocks sheets(float bend) {
   return make([bend](std::mt19937& random) {
     const Vec3f n = direction(random);
@@ -136,7 +137,7 @@ Blocks random_directions() {
   });
 }
 
-/// Returns the CPU time in seconds.
+/// Returns the CPU time of work() per block, in microseconds.
 double microseconds_per_block(const Blocks& blocks, const std::function<void(const Block&)>& work) {
   double least = 1e30;
   for (int repeat = 0; repeat < 3; ++repeat) {

@@ -1,6 +1,6 @@
-# Run by `cmake --install`: copies the headers in LIST (public_headers.txt) that belong to the folders
-# in ROOMS, and all headers that these include, from SOURCE/voxdag to STAGE/voxdag. A header that is
-# not in LIST gets a first line that says so.
+# Run by `cmake --install`: copies the headers in LIST (public_headers.txt) that belong to the
+# folders in ROOMS, and all headers that these include, from SOURCE/voxdag to STAGE/voxdag. A header
+# that is not in LIST gets a first line that says that it is not public.
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${LIST} lines REGEX "^[a-z]")
 set(public "")

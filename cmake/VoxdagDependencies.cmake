@@ -1,5 +1,5 @@
-# Finds the packages of the parts that are built. All come from Debian 12. Optional ones are found or
-# skipped with one line.
+# Finds the packages of the parts that are built. All packages are in Debian 12. If an optional
+# package is missing, one line says so.
 set(optional_packages assimp embree CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
 
 # The packages that an installed voxdag needs, by part: voxdagConfig.cmake.in reads them.

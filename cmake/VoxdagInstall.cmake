@@ -24,7 +24,7 @@ install(TARGETS voxdag ${parts} EXPORT voxdagTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT voxdagTargets NAMESPACE voxdag:: DESTINATION ${package_dir})
-# The public headers and what they include; the other headers are not installed.
+# Installs the public headers and the headers that they include; no others.
 install(CODE "
   set(LIST \"${PROJECT_SOURCE_DIR}/cmake/public_headers.txt\")
   set(SOURCE \"${PROJECT_SOURCE_DIR}/src\")

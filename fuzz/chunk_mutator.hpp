@@ -35,7 +35,7 @@ inline std::vector<Piece> split_chunks(const std::string& file) {
   return pieces;
 }
 
-/// Returns the file of these chunks.
+/// Returns a file with these chunks.
 inline std::string join_chunks(const std::vector<Piece>& pieces) {
   std::string file(vdag_align(entry_offset(pieces.size())), '\0');
   VdagHeader header{};
@@ -56,7 +56,8 @@ inline std::string join_chunks(const std::vector<Piece>& pieces) {
   return file;
 }
 
-/// Changes one word a little, or copies one word over another. The result is often still a DAG.
+/// Changes one word slightly, or copies one word over another. The result is often still a valid
+/// DAG.
 template <class T>
 void change_word(std::string& bytes, std::mt19937& rng) {
   const std::size_t count = bytes.size() / sizeof(T);
@@ -83,8 +84,8 @@ inline void change_entry(VdagChunkEntry& entry, std::mt19937& rng) {
   entry = peek<VdagChunkEntry>(bytes, 0);
 }
 
-/// Mutates a file for LLVMFuzzerCustomMutator. `change(pieces, rng)` changes one of the chunks, of
-/// which there is at least one; `seed_file(rng)` returns a small file of any kind.
+/// Mutates a file for LLVMFuzzerCustomMutator. `change(pieces, rng)` changes one of the chunks (at
+/// least one); `seed_file(rng)` returns any small valid file.
 template <class Change, class SeedFile>
 std::size_t mutate_chunks(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed,
                           const Change& change, const SeedFile& seed_file) {

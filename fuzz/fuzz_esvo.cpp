@@ -1,8 +1,8 @@
-/// Fuzzes the reader of ESVO files: any bytes give an Error, or an octree that every walk survives.
-/// Blocks of several pages need -max_len=131072.
+/// Fuzzes the reader of ESVO files: any bytes give an Error, or an octree that is safe for every
+/// walk. Blocks of several pages need -max_len=131072.
 ///
 /// The mutator keeps the container and the checksums of the blocks correct (chunk_mutator.hpp). It
-/// needs no corpus: it starts with small random octrees with contours.
+/// needs no corpus, because it starts with small random octrees with contours.
 #include <cstdlib>
 #include <span>
 #include <string>
@@ -22,9 +22,9 @@ namespace {
 
 struct TooMany {};
 
-/// Returns the origins of the first parts of leaves, and reads their attributes.
+/// Returns the origins of the first parts of leaves, and reads the leaves' attributes.
 std::vector<Vec3i> first_parts(const EsvoView& view) {
-  constexpr std::size_t kMost = 500;  // a small file can stand for 2^60 voxels
+  constexpr std::size_t kMost = 500;  // a small file can represent 2^60 voxels
   std::vector<Vec3i> blocks;
   try {
     for_each_leaf_part(view, whole_grid(view.levels),

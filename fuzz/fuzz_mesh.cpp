@@ -1,6 +1,6 @@
-/// Feeds bytes to each of the library's own mesh readers. The first byte chooses the reader and
-/// whether the appearance is read. The result must be a sound mesh with an appearance of its size,
-/// or an Error.
+/// Fuzzes the library's own mesh readers. The first byte chooses the reader and whether the
+/// appearance is read. The result must be a valid mesh with an appearance of matching size, or an
+/// Error.
 #include <cmath>
 #include <cstdlib>
 

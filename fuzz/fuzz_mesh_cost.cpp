@@ -1,6 +1,7 @@
-/// Fuzzes the cost of the mesh readers: fails if one takes more instructions per byte of the file
-/// and of the memory that it may use than below. Like fuzz_mesh, it chooses the reader by the first
-/// byte. Larger inputs show more: run it with -max_len=65536, and -timeout=60 for what never ends.
+/// Fuzzes the cost of the mesh readers. Fails if a reader takes more instructions, per byte of the
+/// file and of its memory, than the limits below. The first byte chooses the reader, as in
+/// fuzz_mesh. Larger inputs find more: run it with -max_len=65536, and with -timeout=60 to find
+/// endless loops.
 #include <tbb/global_control.h>
 
 #include <cstdio>
@@ -11,7 +12,7 @@
 
 namespace {
 
-/// Instructions, with sanitizers, which take about ten times as many as without.
+/// Limits on instructions with sanitizers, which take about ten times as many as without.
 constexpr std::uint64_t kPerRun = 300'000'000, kPerInputByte = 200'000;
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{4} << 20;
 constexpr std::uint64_t kPerMemoryByte = 1'000;
@@ -24,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   static const WorkCounter counter;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  MemoryBudget memory(kMemoryBytes);  // Bounds what instances of glTF meshes may make.
+  MemoryBudget memory(kMemoryBytes);  // Bounds the size of instanced glTF meshes.
   MeshSource source{bytes, "fuzz", {}, nullptr, {}};
   source.options.memory = &memory;
   const std::uint64_t start = counter.count();

@@ -1,8 +1,9 @@
-/// Fuzzes the .vdag reader: any bytes give an Error, or a DAG that every walk survives. A DAG that
-/// is also canonical and minimal must equal the one that the reference builder makes of its voxels.
+/// Fuzzes the .vdag reader: any bytes give an Error, or a DAG that is safe for every walk. A DAG
+/// that is also canonical and minimal must equal the DAG that the reference builder makes from its
+/// voxels.
 ///
 /// The mutator keeps the offsets and checksums of the container correct (chunk_mutator.hpp). It
-/// needs no corpus: it starts with small DAGs of random voxels.
+/// needs no corpus, because it starts with small DAGs of random voxels.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -9,8 +9,8 @@
 
 namespace voxdag {
 
-/// Counts instructions where the processor's counters may be used, else processor time. Children
-/// of the thread do not count: run the work on one thread.
+/// Counts instructions if the processor's counters are accessible, else CPU time. Does not count
+/// other threads: run the work on one thread.
 class WorkCounter {
  public:
   WorkCounter() {
@@ -28,7 +28,7 @@ class WorkCounter {
   WorkCounter(const WorkCounter&) = delete;
   WorkCounter& operator=(const WorkCounter&) = delete;
 
-  /// Returns instructions, or nanoseconds of processor time times 3: about the same number.
+  /// Returns instructions, or nanoseconds of CPU time times 3, which is about the same number.
   std::uint64_t count() const {
     std::uint64_t instructions = 0;
     if (file_ >= 0 && ::read(file_, &instructions, sizeof instructions) == sizeof instructions)

@@ -37,7 +37,7 @@ cd "$(dirname "$0")/.."
 . scripts/packages.sh
 export PATH="$PATH:/usr/local/cuda/bin"
 
-# Runs a command within the time that is left.
+# Runs a command, limited to the time that is left.
 deadline=$((SECONDS + 470))
 [ -z "$pack" ] || deadline=$((SECONDS + 7200))
 within() { timeout --foreground $((deadline - SECONDS > 5 ? deadline - SECONDS : 5)) "$@"; }
@@ -77,7 +77,7 @@ if [ -n "$pack" ]; then
   cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests $content
   strip $content/voxdag $content/cuda_tests
   ! ldd $content/voxdag $content/cuda_tests | grep "not found" || die "libraries are missing"
-  # All libraries but the C library, which must match the loader of the other machine.
+  # Copies all libraries except the C library, which must match the loader of the other machine.
   ldd $content/voxdag $content/cuda_tests | awk '$3 ~ "^/" { print $3 }' | sort -u |
     grep -vE '/(lib(c|m|dl|rt|pthread|resolv|mvec)|ld-linux[^/]*)\.so' | xargs cp -Lt $content/lib
   sponza=$(find_sponza)
@@ -108,7 +108,7 @@ fi
 ours() { within env LD_LIBRARY_PATH="$libraries" "$@"; }
 voxdag() { ours $program "$@"; }
 
-# attempt COMMAND...: counts a failure and goes on.
+# attempt COMMAND...: runs the command; counts a failure and continues.
 failures=0
 attempt() { "$@" || { echo "gpu-check: FAILED: $*" >&2; failures=$((failures + 1)); }; }
 
@@ -130,7 +130,7 @@ done
 hits_agree() {
   awk -F '[:,]' '/"rival":/ { ours = $2 ~ "voxdag_cpu" } /"rival_agreement":/ && ours && $2 != 1 { exit 1 }' "$1"
 }
-# bench NAME FILE MESH LAYOUTS
+# bench NAME FILE MESH LAYOUTS: measures rays per second.
 bench() {
   echo "== $1"
   attempt voxdag bench trace "$2" --mesh "$3" --device cuda --layout "$4" --size 1920x1080 \

@@ -18,7 +18,7 @@ namespace voxdag {
 namespace {
 
 constexpr int kFailure = 1, kBadUsage = 2, kSignalBase = 128;
-constexpr int kCancelled = -1;  // kSignalBase and the signal
+constexpr int kCancelled = -1;  // becomes kSignalBase plus the signal
 
 int report(const std::string& text, int status) {
   print_line(text);

@@ -1,6 +1,6 @@
 #pragma once
-/// `voxdag bench build`: time and memory of builds, also of other programs. Every run is a process
-/// of its own, so that time and peak memory are its own.
+/// `voxdag bench build`: time and memory of builds, also of other programs. Every run is a separate
+/// process, so that its time and peak memory can be measured.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -39,7 +39,7 @@ struct BuildRun {
   std::uint64_t dag_bytes = 0, file_bytes = 0;
 
   std::uint64_t mesh_bytes() const { return 12 * (triangles + vertices); }
-  /// The peak memory that is thought acceptable.
+  /// Returns the peak memory that counts as acceptable, in bytes.
   std::uint64_t memory_allowance() const {
     return 3 * dag_bytes + mesh_bytes() + (std::uint64_t{256} << 20);
   }
@@ -47,7 +47,7 @@ struct BuildRun {
     return static_cast<double>(cost.peak_bytes) / static_cast<double>(memory_allowance());
   }
   double voxels_per_second() const { return static_cast<double>(voxels) / cost.wall_seconds; }
-  /// Returns the seconds of a stage, 0 if the method does not have it.
+  /// Returns the seconds of a stage; 0 if the method does not have this stage.
   double stage(const std::string& name) const {
     for (const auto& [stage, seconds] : stage_seconds)
       if (stage == name) return seconds;
@@ -67,9 +67,9 @@ struct BenchResults {
   std::vector<RivalRun> rivals;
 };
 
-/// Runs the plan. Each mesh is read once beforehand, so that no run waits for the disk. After a run
-/// that fails, which is recorded, greater resolutions are skipped. Throws Error if a mesh cannot be
-/// read or made, and Cancelled.
+/// Runs the plan. Reads each mesh once beforehand, so that no run waits for the disk. Records a run
+/// that fails, and skips higher resolutions of its series. Throws Error if a mesh cannot be read or
+/// generated, and Cancelled.
 BenchResults bench_build(const BenchPlan& plan, Progress& progress);
 
 }  // namespace voxdag

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Splits "hairball:100" into name and size; without a size that is empty.
+/// Splits "hairball:100" into name and size; the size is empty if there is none.
 std::array<std::string, 2> split_scene(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return {text, ""};

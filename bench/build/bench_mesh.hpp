@@ -12,7 +12,7 @@ namespace voxdag {
 /// Returns the path of this program, for child processes.
 std::string this_program();
 
-/// Whether `mesh` is not a file but the name of a procedural scene, NAME or NAME:SIZE.
+/// Returns whether `mesh` is the name of a procedural scene, NAME or NAME:SIZE, and not a file.
 bool is_procedural(const std::string& mesh);
 
 /// A mesh file, ready to be read from memory.

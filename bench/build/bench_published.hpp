@@ -1,5 +1,5 @@
 #pragma once
-/// Published figures, to stand beside measured ones. Viktor Kämpe, Erik Sintorn, Ulf Assarsson,
+/// Published figures, for comparison with measured ones. Viktor Kämpe, Erik Sintorn, Ulf Assarsson,
 /// High Resolution Sparse Voxel DAGs, ACM Transactions on Graphics 32(4), SIGGRAPH 2013, Table 1:
 /// seconds to reduce an SVO to a DAG, and the part of them spent in sorting, on an Intel Core i7
 /// 3930K (six cores). Rows of Hairball and Lucy as corrected for an interleaving in the print.

@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Factors from one measured resolution to the next higher one, per level.
+/// Growth factors per level, from one measured resolution to the next higher one.
 struct Growth {
   double wall = 0, cpu = 0, voxels = 0, dag_bytes = 0;
 };

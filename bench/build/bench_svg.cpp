@@ -40,7 +40,7 @@ std::string bench_svg(const BenchResults& results) {
       growth.points.push_back({x, size});
     }
     if (seconds.points.empty()) continue;
-    // The growth of the DAG as a reference slope, through the time at the highest resolution.
+    // Draws the growth of the DAG as a reference slope through the time at the highest resolution.
     const double seconds_per_byte = seconds.points.back()[1] / dag.points.back()[1];
     for (auto& point : growth.points) point[1] *= seconds_per_byte;
     time.lines.insert(time.lines.end(), {seconds, growth});

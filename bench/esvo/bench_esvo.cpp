@@ -24,7 +24,8 @@ class Bench {
         plan.threads > 0 ? plan.threads : static_cast<int>(std::thread::hardware_concurrency());
   }
 
-  /// Runs all builds first: a child's peak memory includes the size of this program at the fork.
+  /// Runs all builds first, because a child's peak memory includes the size of this program at the
+  /// fork.
   EsvoBenchResults run() {
     std::vector<fs::path> meshes;
     for (const EsvoBenchScene& scene : plan_.scenes) {

@@ -14,7 +14,7 @@
 
 namespace voxdag {
 
-/// A scene of the command line.
+/// A scene from the command line.
 struct EsvoBenchScene {
   std::string name;                  ///< As the tables name it.
   std::string mesh;                  ///< A file, or a procedural scene as NAME or NAME:SIZE.
@@ -35,8 +35,8 @@ struct EsvoBenchPlan {
   bool silhouettes = true;
 };
 
-/// The compared forms, in the order of the paper's Table 2; then contours on the coarsest grid
-/// whose silhouettes are as good as those of the cubes.
+/// The compared forms: first those of the paper's Table 2, in its order; then contours on a coarse
+/// grid, the coarsest one whose silhouettes are as good as those of the cubes.
 enum class EsvoForm {
   kTriangles,
   kCubes,
@@ -68,7 +68,7 @@ struct EsvoBuildRun {
     return voxels == 0 ? 0 : static_cast<double>(bytes) / static_cast<double>(voxels);
   }
   double voxels_per_second() const { return static_cast<double>(voxels) / build_seconds; }
-  /// Includes parsing and writing.
+  /// Returns the voxels per second of CPU time, with parsing and writing.
   double voxels_per_cpu_second() const { return static_cast<double>(voxels) / cost.cpu_seconds(); }
 };
 
@@ -80,7 +80,8 @@ struct EsvoRateRow {
   ImageSize size;
   std::uint64_t rays = 0;
   std::array<double, kEsvoForms.size()> mrays_per_second{};
-  std::array<double, kEsvoForms.size()> agreement{};  ///< With the triangles: fraction of the rays.
+  std::array<double, kEsvoForms.size()>
+      agreement{};  ///< Fraction of the rays that agree with the triangles.
 };
 
 /// The silhouette errors at one resolution: the fraction of the rays to the finest voxels for which
@@ -98,11 +99,12 @@ struct EsvoBenchResults {
   std::vector<SilhouetteRow> silhouettes;
 };
 
-/// "NAME=MESH", and options of `build` after it, each as a word. Throws std::invalid_argument.
+/// Parses "NAME=MESH", which may be followed by options of `build`, separated by spaces. Throws
+/// std::invalid_argument.
 EsvoBenchScene parse_esvo_scene(const std::string& text);
 
 /// Builds both forms of every scene in child processes, then casts rays in this process. Records a
-/// build that fails, and leaves higher resolutions of its scene out. Throws Error, Cancelled.
+/// build that fails, and skips higher resolutions of its scene. Throws Error, Cancelled.
 EsvoBenchResults bench_esvo(const EsvoBenchPlan& plan, Progress& progress);
 
 /// Casts rays at the octrees of a scene, and appends the rows. `mesh` is its file.
@@ -111,13 +113,13 @@ void bench_esvo_rays(const EsvoBenchPlan& plan, const EsvoBenchScene& scene,
                      EsvoBenchResults& results);
 
 /// Returns the levels of the coarsest grid on which the silhouettes of contours are as good as
-/// those of cubes on the finest grid; 0: only the finest grid.
+/// those of cubes on the finest grid. Returns 0 if no grid but the finest is good enough.
 int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& scene);
 
 /// The number of levels by which cubes must be finer to be as good as the contours of a row.
 struct LevelsSaved {
   double levels = 0;
-  bool at_least = false;  ///< No measured cubes are as good.
+  bool at_least = false;  ///< No measured cubes are as good: this is a lower bound.
 };
 
 /// Returns the saved levels, from the silhouettes of the scene.

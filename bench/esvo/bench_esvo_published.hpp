@@ -91,7 +91,7 @@ inline double esvo_of_levels(const std::array<double, 7>& values, int levels) {
 }
 
 /// Returns the voxels per core and second; NaN if the paper has no such octree. Assumes megabytes
-/// of 2^20 bytes, and the bytes per voxel of the largest octree for all.
+/// of 2^20 bytes, and for all octrees the bytes per voxel of the largest one.
 inline double esvo_voxels_per_core_second(const EsvoScene* scene, int levels) {
   constexpr double kCores = 4;
   if (scene == nullptr) return kNone;

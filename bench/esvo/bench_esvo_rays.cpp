@@ -79,7 +79,7 @@ struct FormSums {
   double seconds = 0, agreeing = 0;
 };
 
-/// The targets of the rays, all in the same grid cube.
+/// The targets of the rays, all in the same cube.
 struct Octrees {
   EsvoFile contours, cubes;
   std::optional<EsvoFile> coarse;  ///< Contours whose silhouettes are as good as the cubes'.
@@ -98,7 +98,7 @@ class SceneRays {
     views_ = bench_views(finest.view(), finest.grid(), 4.0 / 3, plan.views);
   }
 
-  /// Chooses the coarse grid by the measured silhouettes.
+  /// Measures the rays of all forms. Chooses the coarse grid by the measured silhouettes.
   void rates() {
     if (pairs_.empty()) return;
     const BuiltPair& pair = pairs_.back();
@@ -154,7 +154,8 @@ class SceneRays {
   }
 
  private:
-  /// Returns the number of rays. All octrees get equal rays, except for the starts from beams.
+  /// Adds the rays of a view and returns their number. All octrees get equal rays, except for the
+  /// starts from beams.
   std::size_t add_view(const Octrees& octrees, const View& view, ImageSize size,
                        std::array<FormSums, kEsvoForms.size()>& sums) {
     const auto& [contours, cubes, coarse] = octrees;

@@ -98,7 +98,7 @@ std::string rates_table(const std::vector<EsvoRateRow>& rates) {
   return text;
 }
 
-/// Prints the coarse forms, as multiples of the cubes' rate.
+/// Returns the table of the coarse forms, as multiples of the cubes' rate.
 std::string coarse_table(const EsvoBenchResults& results) {
   const auto coarse_of = [&](const EsvoRateRow& row) {
     return coarse_levels(results.silhouettes, row.scene);
@@ -157,7 +157,7 @@ void add_lines(const Builds& builds, const Value& value, LineDiagram& diagram) {
   }
 }
 
-/// Returns the paper's lines of the scenes in `builds`.
+/// Adds the paper's lines for the scenes in `builds`.
 void add_paper_lines(const Builds& builds, std::array<double, 7> published::EsvoScene::*values,
                      LineDiagram& diagram) {
   std::size_t series = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// Any caster of ours as a runner of `voxdag bench`.
+/// Wraps any of voxdag's casters as a runner of `voxdag bench`.
 #include <span>
 
 #include "bench/rays/trace_rays.hpp"
@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// A runner for any caster (see trace/scalar_caster.hpp). `casts` must outlive it.
+/// Returns a runner for any caster (see trace/scalar_caster.hpp). `casts` must outlive it.
 template <class Caster>
 TraceRunner runner_of(const Caster& caster, RayClass rays, std::span<const CastRay> casts) {
   TraceRunner runner;

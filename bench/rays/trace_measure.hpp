@@ -16,16 +16,17 @@ struct Measured {
   std::vector<std::uint8_t> hits;
 };
 
-/// Casts the `count` rays of a set on all threads. The runners take turns, so that a disturbance of
-/// the machine disturbs all of them. The first turn warms up; the fastest of `repeat` others
+/// Casts the `count` rays of a set on all threads. The runners take turns, so that other load on
+/// the machine affects all of them. The first turn warms up; then the fastest of `repeat` turns
 /// counts.
 std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size_t count,
                               int repeat);
 
-/// Returns for how many rays both or neither hit something.
+/// Returns the number of rays for which both or neither hit something.
 std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
 
-/// Returns at most about `most` rays, in runs of 64 that are spread evenly over the set.
+/// Returns a sample of about `most` rays at most, in runs of 64 that are spread evenly over the
+/// set.
 std::vector<CastRay> sample_of(std::span<const CastRay> rays, std::size_t most);
 
 }  // namespace voxdag

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kTile = 4;
 
-/// A caster that keeps the rays that meet the grid, and finds no hits.
+/// A caster that records the rays that meet the grid. It reports no hits.
 class RecordingCaster {
  public:
   explicit RecordingCaster(std::vector<CastRay>& rays) : rays_(rays) {}
@@ -34,7 +34,7 @@ class RecordingCaster {
   std::vector<CastRay>& rays_;
 };
 
-/// Returns a lamp in free space ahead of the camera, above and to the right.
+/// Returns a lamp in free space in front of the camera, above it and to its right.
 template <class Nodes>
 LightSpec lamp_near(const Nodes& nodes, const Grid& grid, const Camera& camera) {
   const Vec3d way =
@@ -117,9 +117,9 @@ RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const Vie
 
 namespace {
 
-/// Returns a part of the tiles, evenly spread, with about `most_rays` rays.
+/// Returns evenly spread tiles with a total of about `most_rays` rays.
 std::vector<ViewTile> some_tiles(const Camera& camera, int rays_per_pixel, std::size_t most_rays) {
-  constexpr std::size_t kGroup = 4;  // tiles that make 8×8 pixels
+  constexpr std::size_t kGroup = 4;  // number of tiles that form 8×8 pixels
   const std::vector<ViewTile> tiles = tiles_in_order(camera);
   const std::size_t wanted =
       tiles.size() * kTile * kTile * static_cast<std::size_t>(rays_per_pixel);

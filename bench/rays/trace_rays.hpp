@@ -16,7 +16,7 @@ namespace voxdag {
 
 enum class RayClass {
   kPrimary,       ///< The first cell along a pixel's ray.
-  kPrimaryBeams,  ///< Primary rays that start at the ends of beams; the beams count as time.
+  kPrimaryBeams,  ///< Primary rays that start where beams end; the time of the beams counts.
   kShadow,        ///< Tests whether the sun, a point in the sky, is visible.
   kSoft,          ///< Tests whether points on a lamp are visible.
   kAo,            ///< Short rays in all directions.
@@ -27,7 +27,8 @@ inline constexpr std::array kRayClasses{RayClass::kPrimary, RayClass::kPrimaryBe
 /// Returns the name of a class in the JSON: "primary_beams".
 std::string_view name_of(RayClass rays);
 
-/// Returns whether rays of a class find the first cell, not only whether there is one.
+/// Returns whether rays of a class find the first cell (closest hit). Other classes find only
+/// whether there is a cell (any hit).
 constexpr bool is_closest(RayClass rays) {
   return rays == RayClass::kPrimary || rays == RayClass::kPrimaryBeams;
 }
@@ -37,16 +38,17 @@ struct RayOptions {
   int shadow_samples = 16, occlusion_samples = 64;
   float lod_pixels = 1;
   double occlusion_cone = 0;  ///< As RenderOptions::occlusion_cone.
-  /// Limit on a set of any-hit rays. A larger set is sampled: whole squares of 8×8 pixels, spread
-  /// evenly over the picture.
+  /// The maximum size of a set of any-hit rays. Larger sets are sampled in squares of 8×8 pixels,
+  /// spread evenly over the picture.
   std::size_t most_rays = 500'000;
 };
 
-/// The rays of a camera's picture, in the order of 4×4 pixels along a Morton curve, all rays of a
-/// pixel together: 16 or 64 consecutive rays suit packets. Rays that miss the grid are left out.
+/// The rays of a camera's picture, without those that miss the grid. Squares of 4×4 pixels follow a
+/// Morton curve, and all rays of a pixel are consecutive, so that 16 or 64 consecutive rays form
+/// good packets.
 struct RecordedRays {
-  /// Primary rays with and without beams have the same indices; rays that beams decide miss
-  /// everything.
+  /// The rays of each class. A primary ray has the same index with and without beams. A ray whose
+  /// beam meets nothing is stored as a ray that misses everything.
   std::array<std::vector<CastRay>, kRayClasses.size()> rays;
 
   const std::vector<CastRay>& of(RayClass c) const { return rays[static_cast<std::size_t>(c)]; }
@@ -60,11 +62,11 @@ class BeamPass {
   BeamPass(const BeamPass&) = delete;
   BeamPass& operator=(const BeamPass&) = delete;
 
-  /// Casts the beams; may be called again.
+  /// Casts the beams. May be called repeatedly.
   void run();
   /// Returns the results of run(), for RenderSetup::beam_starts.
   const float* starts() const;
-  const RenderSetup& setup() const;  ///< Without them.
+  const RenderSetup& setup() const;  ///< Its beam_starts is null.
 
  private:
   struct State;
@@ -75,18 +77,19 @@ class BeamPass {
 RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const View& view,
                               const RayOptions& options);
 
-/// Returns the primary rays that meet the grid, in the order of the pixels. `starts` are
-/// RenderSetup::beam_starts: rays that beams decide miss everything. Null: without beams.
+/// Returns the primary rays that meet the grid, in the order of the pixels. `beam_starts` is
+/// RenderSetup::beam_starts, or null for rays without beams. A ray whose beam meets nothing becomes
+/// a ray that misses everything.
 std::vector<CastRay> primary_rays(const RenderSetup& setup, const float* beam_starts);
 
 /// Records the rays of a view. `beams` must be for picture_options() and have run.
 RecordedRays record_rays(const VoxelSet& scene, const BeamPass& beams, const RayOptions& options);
 
-/// Returns the measured views: inside views, or views around an object, and the view that `render`
-/// chooses.
+/// Returns the measured views: views from inside, or views around an object, and the view that
+/// `render` chooses.
 std::vector<View> bench_views(const VoxelSet& scene, const Grid& grid, double aspect, int count);
 
-/// Returns a cast ray in world units: the same points at the same t.
+/// A cast ray, converted to world units: the same points at the same t.
 struct WorldRay {
   Vec3d origin, direction;
   float t_min = 0, t_max = 0;

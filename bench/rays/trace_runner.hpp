@@ -1,5 +1,5 @@
 #pragma once
-/// Casts of a set of rays, by voxdag or by a rival, whose time is measured.
+/// Functions that cast a set of rays, for voxdag or a rival, and whose time is measured.
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -9,12 +9,12 @@ namespace voxdag {
 
 struct TraceRunner {
   std::string name;
-  /// Casts rays [first, last) of the set; hits[i] becomes 1 if ray i hits something. Called from
-  /// many threads at once.
+  /// Casts rays [first, last) of the set; hits[i] becomes 1 if ray i hits something. Many threads
+  /// call it concurrently.
   std::function<void(std::size_t first, std::size_t last, std::uint8_t* hits)> cast;
-  /// Work for the whole set before the rays, whose time counts, too; may be empty.
+  /// Work for the whole set before the rays; its time counts too. May be empty.
   std::function<void()> before;
-  /// If not empty, used instead: casts the whole set and returns the seconds that count.
+  /// If not empty, replaces both: casts the whole set and returns the seconds that count.
   std::function<double(std::uint8_t* hits)> cast_set{};
 };
 

@@ -49,10 +49,10 @@ class Descriptor {
   int number_;
 };
 
-/// In the child: never returns. Only what is safe between fork and exec.
+/// Runs in the child and never returns. Calls only functions that are safe between fork and exec.
 [[noreturn]] void become(char* const* arguments, const char* directory, int out, int err) {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGTERM);  // not to outlive a benchmark that was killed
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends with a benchmark that is killed
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) signal(number, SIG_DFL);
   const int empty = open("/dev/null", O_RDONLY);
   dup2(empty, STDIN_FILENO);
@@ -72,7 +72,8 @@ std::string contents(int file) {
   return text;
 }
 
-/// Waits for the child's end, or ends it and its children, politely first, when it must stop.
+/// Waits until the child ends. At the time limit or on cancellation, ends the child and its
+/// children: first with SIGTERM, then with SIGKILL.
 bool wait_for_end(pid_t child, const Descriptor& handle, Clock::time_point start, double limit,
                   const Progress& progress) {
   constexpr int kPollMilliseconds = 100;
@@ -112,7 +113,7 @@ ChildResult run_child(const std::vector<std::string>& command,
   const pid_t child = fork();
   if (child < 0) fail(command[0]);
   if (child == 0) become(arguments.data(), directory.c_str(), out.get(), err.get());
-  setpgid(child, child);  // here too: whichever of the two comes first
+  setpgid(child, child);  // both parent and child call it, because either may run first
   const Descriptor handle(static_cast<int>(syscall(SYS_pidfd_open, child, 0)), command[0]);
 
   ChildResult result;
@@ -122,7 +123,7 @@ ChildResult run_child(const std::vector<std::string>& command,
   struct rusage usage {};
   while (wait4(child, &status, 0, &usage) < 0)
     if (errno != EINTR) fail(command[0]);
-  kill(-child, SIGKILL);  // what it left running
+  kill(-child, SIGKILL);  // processes that the child left running
   progress.throw_if_cancelled();
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.cost.user_seconds = seconds_of(usage.ru_utime);

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs a program and measures its time and memory: the source of the figures of `voxdag bench`.
+/// Runs a program and measures its time and memory, for `voxdag bench`.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -27,15 +27,15 @@ struct ChildResult {
 };
 
 /// Runs `command` (command[0] is searched in PATH) in `directory` and waits for it, for at most
-/// `seconds_limit` if that is above zero. Keep the caller small: Linux includes the size of a
-/// process before exec in its peak memory. Throws Error if no process can be created, and
-/// Cancelled, after killing the child, if `progress` is cancelled.
+/// `seconds_limit` if that is above zero. The caller should use little memory: the peak memory that
+/// Linux reports includes the size of the process before exec. Throws Error if no process can be
+/// created, and Cancelled, after killing the child, if `progress` is cancelled.
 ChildResult run_child(const std::vector<std::string>& command,
                       const std::filesystem::path& directory, double seconds_limit,
                       const Progress& progress);
 
-/// Returns why the child failed: the first line of its errors, such as "a.obj: line 3: ...", or how
-/// it ended. Empty if it succeeded.
+/// Returns the reason why the child failed: the first line of its errors, such as "a.obj: line 3:
+/// ...", or the way in which it ended. Empty if it succeeded.
 std::string failure_of(const ChildResult& result, double seconds_limit);
 
 }  // namespace voxdag

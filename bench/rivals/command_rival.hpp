@@ -1,5 +1,5 @@
 #pragma once
-/// Any program that builds from a mesh: `bench build --rival NAME=COMMAND`.
+/// Runs any program that builds from a mesh: `bench build --rival NAME=COMMAND`.
 #include <string>
 
 #include "bench/rivals/rival.hpp"
@@ -8,9 +8,9 @@ namespace voxdag {
 
 class CommandRival : public Rival {
  public:
-  /// `command` is for the shell. {mesh} and {out} stand for quoted paths, {resolution} and {levels}
-  /// for the grid. The command runs in an empty folder, which is removed afterwards; {out} is in
-  /// it.
+  /// The shell runs `command`. {mesh} and {out} stand for quoted paths, {resolution} and {levels}
+  /// for the grid. The command runs in an empty folder, which contains {out} and is removed
+  /// afterwards.
   CommandRival(std::string name, std::string command);
 
   std::optional<RivalBuild> build(const RivalTask& task, Progress& progress) override;

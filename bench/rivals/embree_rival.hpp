@@ -1,5 +1,5 @@
 #pragma once
-/// Embree 3: casts the same rays at the triangles of the mesh.
+/// Embree 3: casts voxdag's rays at the triangles of the mesh.
 #include <memory>
 
 #include "bench/rivals/rival.hpp"
@@ -7,11 +7,12 @@
 
 namespace voxdag {
 
-/// Its casts are "embree_single", one ray at a time, and "embree_packet16", packets of 16
-/// consecutive rays with the flag for coherent and with the one for incoherent rays.
+/// Its casts are "embree_single" (one ray at a time) and "embree_packet16" (packets of 16
+/// consecutive rays, once with the flag for coherent rays and once with the flag for incoherent
+/// rays).
 class EmbreeRival : public Rival {
  public:
-  /// Whether voxdag was built with Embree.
+  /// Returns whether voxdag was built with Embree.
   static bool is_available();
 
   /// Requires is_available().

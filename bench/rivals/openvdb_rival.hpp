@@ -1,5 +1,5 @@
 #pragma once
-/// OpenVDB: casts the same rays at the same voxels, in a program of its own
+/// OpenVDB: casts voxdag's rays at voxdag's voxels. Runs a separate program
 /// (bench/rivals/rival_openvdb_trace.cpp), so that voxdag does not link OpenVDB.
 #include <filesystem>
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace voxdag {
 
-/// Takes a sample of each set; the program, which is slow to start, casts all of them at once.
+/// Takes a sample of each set. One run of the program casts all samples, because it is slow to
+/// start.
 class OpenVdbRival : public Rival {
  public:
   /// `program` is rival_openvdb_trace, `vdag` the file of `voxels`.
@@ -21,7 +22,7 @@ class OpenVdbRival : public Rival {
   std::vector<RivalTime> cast_all(int repeat, Progress& progress) override;
 
  private:
-  /// The sample of a set, and what voxdag finds for it.
+  /// The sample of a set, and voxdag's hits.
   struct Sample {
     RayClass rays_class;
     double set_size = 0;

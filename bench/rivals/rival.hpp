@@ -1,5 +1,5 @@
 #pragma once
-/// Other programs and libraries that do the same work: what each of them implements.
+/// The interface of rivals: other programs and libraries that do voxdag's work.
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -25,7 +25,7 @@ struct RivalBuild {
   std::string command;  ///< The command line that ran.
   std::string failure;  ///< Why there is no result, or empty.
   ProcessCost cost;
-  std::uint64_t output_bytes = 0;  ///< Of all files that it left.
+  std::uint64_t output_bytes = 0;  ///< Size of all files that it left.
   std::string reported;            ///< The last line of its output if that is a JSON object.
 };
 
@@ -39,10 +39,11 @@ struct RaySet {
 struct RivalTime {
   RayClass rays_class;
   double seconds = 0;   ///< For the whole set.
-  double agreeing = 0;  ///< Rays for which both or neither of rival and voxdag hit something.
+  double agreeing = 0;  ///< Rays that hit for both rival and voxdag, or for neither.
 };
 
-/// A rival builds or casts rays, or both. What it does not do keeps the default.
+/// A rival builds or casts rays, or both. It keeps the default of functions that it does not
+/// support.
 class Rival {
  public:
   explicit Rival(std::string name) : name_(std::move(name)) {}
@@ -52,17 +53,17 @@ class Rival {
 
   const std::string& name() const { return name_; }
 
-  /// Builds from a mesh file in a process of its own. Returns nothing if the rival does not build.
+  /// Builds from a mesh file in a separate process. Returns nothing if the rival does not build.
   /// Throws Cancelled.
   virtual std::optional<RivalBuild> build(const RivalTask& task, Progress& progress);
 
-  /// Takes a set of rays and returns casts of it that take turns with voxdag's, valid until the
-  /// next call. Of several with one name the fastest counts. A rival that casts its sets later
-  /// returns none.
+  /// Takes a set of rays and returns casts of it, which run in turns with voxdag's casts. They are
+  /// valid until the next call. If several have the same name, the fastest counts. A rival that
+  /// casts its sets later returns none.
   virtual std::vector<TraceRunner> prepare(const Grid& grid, const RaySet& set);
 
-  /// Casts the sets that prepare() took and returned no casts for; one result for each, in order.
-  /// Throws Error if the rival fails, and Cancelled.
+  /// Casts the sets for which prepare() returned no casts. Returns one result for each set, in
+  /// order. Throws Error if the rival fails, and Cancelled.
   virtual std::vector<RivalTime> cast_all(int repeat, Progress& progress);
 
  private:

@@ -1,7 +1,8 @@
-/// OpenVDB's mesh-to-volume conversion, to stand beside `voxdag build`: the same mesh reader and
-/// the same grid, then an unsigned distance field in the narrowest band that holds every voxel
-/// which the surface meets (centres within half a voxel's diagonal), saved as .vdb. Differs from
-/// voxdag: voxels by distance to their centres, a float in each, and a tree that shares nothing.
+/// OpenVDB's mesh-to-volume conversion, for comparison with `voxdag build`. Uses voxdag's mesh
+/// reader and grid. Computes an unsigned distance field and saves it as .vdb. Its band is the
+/// narrowest that holds every voxel that the surface meets (centres within half a voxel's
+/// diagonal). Differences from voxdag: the distance to its centre decides a voxel, each voxel
+/// stores a float, and the tree shares no nodes.
 ///
 ///   rival_openvdb MESH RESOLUTION FILE.vdb
 #include <openvdb/openvdb.h>
@@ -19,7 +20,7 @@ namespace {
 /// Half of a voxel's diagonal, rounded up.
 constexpr float kBandVoxels = 0.87F;
 
-/// The interface that OpenVDB asks of a mesh.
+/// The interface that OpenVDB requires of a mesh.
 struct MeshInGrid {
   const voxdag::Mesh& mesh;
   const voxdag::Grid& grid;
@@ -32,7 +33,7 @@ struct MeshInGrid {
                           openvdb::Vec3d& position) const {
     const voxdag::Vec3f v = mesh.vertices[mesh.triangles[triangle][corner]];
     const voxdag::Vec3d p = grid.to_grid({double{v.x}, double{v.y}, double{v.z}});
-    // OpenVDB's voxels are centred on whole numbers, ours begin there.
+    // OpenVDB's voxels have their centres at whole numbers, ours have their lower corners there.
     position = {p.x - 0.5, p.y - 0.5, p.z - 0.5};
   }
   // NOLINTEND(readability-identifier-naming)

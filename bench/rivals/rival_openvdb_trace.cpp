@@ -1,10 +1,10 @@
-/// OpenVDB's hierarchical DDA, to stand beside `voxdag bench trace`: a mask grid with the voxels of
-/// a .vdag file, and for each ray the first active voxel.
+/// OpenVDB's hierarchical DDA, for comparison with `voxdag bench trace`: makes a mask grid with the
+/// voxels of a .vdag file, and finds the first active voxel of each ray.
 ///
 ///   rival_openvdb_trace FILE.vdag THREADS REPEAT RAYS.npy...
 ///
-/// RAYS.npy is a float32 array of shape (N, 8) as `voxdag trace` takes it. Writes RAYS.npy.hits, a
-/// byte for each ray, and prints {"seconds": [...]}: for each file the fastest of REPEAT casts.
+/// RAYS.npy is a float32 array of shape (N, 8), as for `voxdag trace`. Writes RAYS.npy.hits, one
+/// byte for each ray, and prints {"seconds": [...]}: the fastest of REPEAT casts of each file.
 #include <openvdb/math/DDA.h>
 #include <openvdb/math/Ray.h>
 #include <openvdb/openvdb.h>
@@ -53,7 +53,7 @@ class FirstActiveVoxel {
   VdbRay ray_;
 };
 
-/// Up to 2^30 voxels a side: as far as Coord goes.
+/// Makes a mask grid of the DAG's voxels; Coord allows up to 2^30 voxels a side.
 openvdb::MaskGrid::Ptr mask_of(const voxdag::SvdagView& dag) {
   auto grid = openvdb::MaskGrid::create();
   auto accessor = grid->getAccessor();
@@ -64,7 +64,8 @@ openvdb::MaskGrid::Ptr mask_of(const voxdag::SvdagView& dag) {
   return grid;
 }
 
-/// In voxels; voxel (i,j,k) is the cube that starts there, as in voxdag.
+/// Returns the ray in units of voxels. Voxel (i,j,k) is the cube with its lower corner at (i,j,k),
+/// as in voxdag.
 VdbRay to_index_space(const voxdag::Grid& grid, const voxdag::Ray& ray) {
   const voxdag::Vec3d eye = grid.to_grid(static_cast<voxdag::Vec3d>(ray.origin));
   const voxdag::Vec3d way = static_cast<voxdag::Vec3d>(ray.direction) * (1 / grid.voxel_size);
@@ -114,7 +115,7 @@ void trace(int argc, char** argv) {
     const std::vector<voxdag::Ray> rays = read_rays(argv[i]);
     std::vector<char> hits(rays.size());
     double best = HUGE_VAL;
-    for (int turn = 0; turn <= repeat; ++turn) {  // the first one warms up
+    for (int turn = 0; turn <= repeat; ++turn) {  // the first turn warms up
       const double took = cast_all(*mask, file.grid(), rays, hits);
       if (turn > 0) best = std::min(best, took);
     }

@@ -16,7 +16,7 @@
 namespace voxdag {
 namespace {
 
-/// Sums over views.
+/// Sums of times and counts over views.
 struct Sums {
   double seconds = 0, agreeing = 0;
   void add(double more_seconds, double more_agreeing) {
@@ -48,7 +48,7 @@ void measure_set(const TraceLayout& layout, const TraceRunner& ours,
   sums.view_rates.push_back(count / measured[0].seconds * 1e-6);
   sums.hits += static_cast<double>(
       std::count(measured[0].hits.begin(), measured[0].hits.end(), std::uint8_t{1}));
-  std::map<std::string, Sums> best;  // of runners with the same name
+  std::map<std::string, Sums> best;  // the fastest of runners with the same name
   for (std::size_t i = 1; i < runners.size(); ++i) {
     const Sums s{measured[i].seconds,
                  static_cast<double>(agreeing(measured[0].hits, measured[i].hits))};
@@ -124,7 +124,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       ++done;
       const std::vector<CastRay>& casts = recorded.of(rays);
       if (casts.empty()) continue;
-      // Rivals have no beams: they cast those rays from the eye.
+      // Rivals have no beams: they cast the primary rays from the eye.
       const bool with_beams = rays == RayClass::kPrimaryBeams;
       const std::vector<CastRay>& whole = with_beams ? recorded.of(RayClass::kPrimary) : casts;
       std::vector<TraceRunner> rival_runners;

@@ -1,5 +1,6 @@
 #pragma once
-/// Implements `voxdag bench trace`: rays per second of voxdag, and of rivals at the same rays.
+/// Implements `voxdag bench trace`: measures rays per second of voxdag, and of rivals with the same
+/// rays.
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,14 +18,14 @@ struct TraceScene {
   std::string name;
   Grid grid;
   VoxelSet voxels;
-  const Mesh* mesh = nullptr;  ///< The mesh of the voxels, for rivals that cast at triangles.
-  std::filesystem::path file;  ///< The voxels as a .vdag, for rivals that are programs; or empty.
+  const Mesh* mesh = nullptr;  ///< The voxels' mesh, for rivals that cast at triangles.
+  std::filesystem::path file;  ///< The voxels' .vdag, for rivals that are programs; or empty.
 };
 
 struct TracePlan {
   std::vector<std::string> layouts;  ///< As trace_layouts() names them; empty: the default.
   RayOptions rays;
-  DeviceChoice device;  ///< On CUDA, voxdag's casts on the CPU are a rival that must agree.
+  DeviceChoice device;  ///< On CUDA, voxdag's CPU casts are a rival that must agree.
   int views = 4;
   int repeat = 3;               ///< Number of casts of a set; the fastest counts.
   std::string openvdb_program;  ///< rival_openvdb_trace, or empty.
@@ -33,7 +34,7 @@ struct TracePlan {
 struct RivalRate {
   std::string name;
   double mrays_per_second = 0;
-  double agreement = 0;  ///< Fraction of the rays for which both or neither hit something.
+  double agreement = 0;  ///< Fraction of the rays that hit for both or for neither.
 };
 
 /// One class of rays in one scene, all views together.
@@ -48,7 +49,7 @@ struct TraceRow {
   std::uint64_t layout_bytes = 0;
   std::vector<double> view_mrays_per_second;
   std::vector<RivalRate> rivals;
-  bool on_cuda = false;  ///< Not every layout has kernels.
+  bool on_cuda = false;  ///< Cast on CUDA; not every layout has kernels.
 };
 
 struct TraceResults {

@@ -18,7 +18,7 @@ std::string resolution_of(const TraceRow& row) {
   return with_commas(std::uint64_t{1} << row.levels) + "³";
 }
 
-/// Returns whether `row` belongs to the same table as `before`.
+/// Returns whether `row` belongs to the table of the row `before`.
 bool is_same_dag(const TraceRow& row, const TraceRow& before) {
   return row.scene == before.scene && row.levels == before.levels && row.layout == before.layout;
 }

@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A scene of the list: a mesh in the folder of scenes or below, or a procedural one.
+/// A scene of the list: a mesh in the folder of scenes or below it, or a procedural scene.
 struct ListedScene {
   const char* name;
-  const char* file;  ///< Null: procedural, of that name.
+  const char* file;  ///< Null: the procedural scene of that name.
 };
 
 constexpr std::array kScenes{ListedScene{"crytek_sponza", "sponza.obj"},

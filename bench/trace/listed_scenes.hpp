@@ -1,5 +1,5 @@
 #pragma once
-/// The scenes that `voxdag bench trace` measures if it is given no file.
+/// The scenes that `voxdag bench trace` measures if no file is given.
 #include <filesystem>
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace voxdag {
 
-/// Builds each scene of the list at each of `levels` in memory and measures it. `folder` holds the
-/// meshes, in any folder below it. Scenes that fail are listed in the results. Throws Cancelled.
+/// Builds each scene of the list in memory, at each of `levels`, and measures it. The meshes are in
+/// `folder` or in any folder below it. The results list scenes that fail. Throws Cancelled.
 TraceResults bench_listed_scenes(const std::filesystem::path& folder,
                                  const std::vector<int>& levels, const TracePlan& plan,
                                  Progress& progress);

@@ -30,7 +30,7 @@ class ByteCountingNodes : public SvdagNodes {
   std::uint64_t *steps_, *bytes_;
 };
 
-/// Casts the rays and returns the means of the counts `steps` and `read` of `nodes`.
+/// Casts the rays and returns the means per ray of the counters `steps` and `read` of `nodes`.
 template <class Nodes>
 WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::uint64_t& steps,
                  const std::uint64_t& read) {
@@ -42,7 +42,7 @@ WalkCost cost_of(const Nodes& nodes, std::span<const CastRay> casts, const std::
   return {static_cast<double>(steps) / count, static_cast<double>(read) / count};
 }
 
-/// Casts one ray at a time at the layout of files.
+/// Casts one ray at a time at the layout that files store.
 class PaperScalarLayout : public TraceLayout {
  public:
   explicit PaperScalarLayout(const SvdagView& dag) : dag_(dag) {}
@@ -62,7 +62,7 @@ class PaperScalarLayout : public TraceLayout {
   SvdagView dag_;
 };
 
-/// Casts packets of rays at the layout of files and its boxes.
+/// Casts packets of rays at the layout that files store, with boxes (BoundedDag).
 class PaperLayout : public PaperScalarLayout {
  public:
   explicit PaperLayout(const SvdagView& dag) : PaperScalarLayout(dag), dag_(SvdagNodes(dag)) {}
@@ -97,7 +97,7 @@ class ByteCountingWideNodes : public WideNodes {
   std::uint64_t *steps_, *bytes_;
 };
 
-/// Casts one ray at a time at nodes of 4³ cells.
+/// Casts one ray at a time at the wide layout.
 class Wide : public TraceLayout {
  public:
   explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}

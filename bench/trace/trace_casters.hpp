@@ -1,5 +1,5 @@
 #pragma once
-/// Casts rays with voxdag, by layout.
+/// Casts rays with voxdag's casters, one class per layout.
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,7 +16,7 @@ namespace voxdag {
 /// The mean cost of a ray.
 struct WalkCost {
   double cells = 0;  ///< Visited cells.
-  double bytes = 0;  ///< Read from nodes.
+  double bytes = 0;  ///< Bytes read from nodes.
 };
 
 /// Voxels in one layout, ready for casts.
@@ -25,20 +25,21 @@ class TraceLayout {
   virtual ~TraceLayout() = default;
 
   virtual std::uint64_t bytes() const = 0;
-  /// Returns the runner on a CUDA device, if there is one.
+  /// Returns the layout for CUDA devices, or nothing if no kernels exist for it.
   virtual std::optional<DeviceLayout> device_layout() const = 0;
   virtual std::uint64_t device_bytes() const { return bytes(); }
-  /// Casts with the fastest caster of the layout. `casts` must outlive the runner.
+  /// Returns a runner with the fastest caster of the layout. `casts` must outlive it.
   virtual TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const = 0;
   virtual WalkCost cost(std::span<const CastRay> casts) const = 0;
 };
 
-/// The layouts' names, of all voxels or of these, the default first.
+/// Return the names of the layouts, of all kinds of voxels or of these voxels; the default comes
+/// first.
 std::vector<std::string> trace_layouts();
 std::vector<std::string> trace_layouts(const VoxelSet& voxels);
 
-/// Throws Error where memory is short, or the layout is not one of these voxels. They must outlive
-/// the result.
+/// Makes the layout `name` for `voxels`, which must outlive it. Throws Error if there is not enough
+/// memory, or if these voxels do not have this layout.
 std::unique_ptr<TraceLayout> make_trace_layout(const std::string& name, const VoxelSet& voxels);
 
 }  // namespace voxdag

@@ -5,8 +5,8 @@
 namespace voxdag {
 namespace {
 
-/// Calls cast(), which returns seconds, for 0.3 seconds or once, and returns what the last
-/// call did: a device that has rested while the CPU worked raises its clock under load only.
+/// Calls cast() repeatedly for 0.3 seconds, at least once, and returns the seconds of the last
+/// call. An idle device has a low clock, which rises only under load.
 template <class Cast>
 double warm_seconds(const Cast& cast) {
   using Clock = std::chrono::steady_clock;

@@ -8,8 +8,9 @@
 
 namespace voxdag {
 
-/// Copies the set to the device. The seconds are the device's own: copies do not count. The beams
-/// that gave the set its starts, if any, do. Throws Error where memory is short.
+/// Copies the set to the device and returns its runner. The runner measures device time, so copies
+/// do not count. The time of `beams`, which computed the starts of the rays, counts. Throws Error
+/// if there is not enough memory.
 TraceRunner cuda_runner(const DeviceScene& dag, RayClass rays, std::span<const CastRay> casts,
                         const std::optional<TimedBeams>& beams);
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A limit is kept if no more than a tenth and 8 MiB beyond it are used.
+/// A command keeps its limit if it uses at most a tenth and 8 MiB more.
 constexpr double kLimitFactor = 1.1;
 constexpr std::uint64_t kLimitSlack = std::uint64_t{8} << 20;
 
@@ -35,7 +35,7 @@ std::string join_lines(const std::string& text) {
   return end == std::string::npos ? text : text.substr(0, end);
 }
 
-/// Returns what a run broke of the promises for untrusted files, or nothing.
+/// Returns how a run broke a promise of docs/security.md, or an empty text.
 std::string broken_promise(const UntrustedCase& test, const ChildResult& result,
                            const fs::path& folder, const std::vector<fs::path>& before) {
   if (result.timed_out) return "does not end in time";

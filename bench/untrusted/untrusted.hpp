@@ -1,5 +1,5 @@
 #pragma once
-/// Runs voxdag on hostile inputs and measures what they cost: `voxdag bench untrusted`.
+/// Runs voxdag on hostile inputs and measures their cost: `voxdag bench untrusted`.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ namespace voxdag {
 struct UntrustedPlan {
   std::string program;           ///< The voxdag to run.
   std::string only;              ///< Runs the cases whose names contain this; empty: all.
-  double timeout_seconds = 120;  ///< A command that runs longer is ended, and the case is broken.
+  double timeout_seconds = 120;  ///< A command that runs longer is killed; its case fails.
 };
 
 struct UntrustedRun {
@@ -21,15 +21,15 @@ struct UntrustedRun {
       0;  ///< Disk space of the input files: holes of sparse files are free.
   std::uint64_t memory_limit = 0;
   ChildResult result;
-  std::string failure;  ///< What the case broke of docs/security.md; empty: nothing.
+  std::string failure;  ///< The promise of docs/security.md that the case broke, or empty.
 
   double seconds_per_mib() const {
     return result.cost.cpu_seconds() * 1048576.0 / static_cast<double>(input_bytes);
   }
 };
 
-/// Runs the cases one after the other, each in a scratch folder. Throws Error where no process or
-/// file can be made, and Cancelled.
+/// Runs the cases one after the other, each in a scratch folder. Throws Error if a process or file
+/// cannot be created, and Cancelled.
 std::vector<UntrustedRun> bench_untrusted(const UntrustedPlan& plan, Progress& progress);
 
 nlohmann::ordered_json untrusted_json(const std::vector<UntrustedRun>& runs,

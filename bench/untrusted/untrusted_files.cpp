@@ -1,4 +1,4 @@
-// Hostile voxel files, camera paths, and names that lead out of the input's folder.
+// Hostile voxel files, camera paths, and names of files outside the input's folder.
 #include <fstream>
 
 #include "bench/untrusted/untrusted_case.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A full grid of 2^20 voxels a side: 2^60 voxels in about 2 KB.
+/// Writes the DAG of a full grid of 2^20 voxels a side: 2^60 voxels in about 2 KB.
 void write_full_dag(const fs::path& folder) {
   constexpr int kLevels = 20;
   Svdag dag;

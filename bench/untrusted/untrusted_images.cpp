@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-// After <cstdio>, which it needs.
+// jpeglib.h must come after <cstdio>, which it needs.
 #include <jpeglib.h>
 
 #include "bench/untrusted/untrusted_case.hpp"
@@ -38,7 +38,7 @@ void write_textured_triangle(const fs::path& folder, const std::string& texture)
   std::ofstream(folder / "triangle.mtl") << "newmtl a\nmap_Kd " << texture << "\n";
 }
 
-/// 16,384² pixels of one bit, black: about 33 KB.
+/// Writes a PNG of 16,384² black pixels of one bit: about 33 KB.
 void write_one_bit_png(const fs::path& folder) {
   constexpr png_uint_32 kSide = 16384;
   write_textured_triangle(folder, "black.png");
@@ -56,14 +56,15 @@ void write_one_bit_png(const fs::path& folder) {
   png_destroy_write_struct(&png, &info);
 }
 
-/// 3 GiB that only claim to be a PNG; the file system stores no bytes for them.
+/// Writes a sparse file of 3 GiB that starts like a PNG; its holes need no disk space.
 void write_sparse_png(const fs::path& folder) {
   write_textured_triangle(folder, "sparse.png");
   std::ofstream(folder / "sparse.png") << "none";
   fs::resize_file(folder / "sparse.png", std::uint64_t{3} << 30);
 }
 
-/// 8,192² grey pixels in 190 scans, each of one coefficient and one bit.
+/// Writes a progressive JPEG of 8,192² grey pixels in 190 scans, each of one coefficient and one
+/// bit.
 void write_scan_jpeg(const fs::path& folder) {
   constexpr JDIMENSION kSide = 8192;
   write_textured_triangle(folder, "scans.jpg");

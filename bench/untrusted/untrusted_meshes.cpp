@@ -1,4 +1,4 @@
-// Hostile meshes: few bytes that stand for many, faces and names that make slow algorithms slow.
+// Hostile meshes: few bytes that expand to many, and faces and names that trigger slow algorithms.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +18,8 @@ void write_text(const fs::path& path, const std::string& text) {
   out << text;
 }
 
-/// A glTF accessor without a buffer view is zeros: it needs no bytes for any count.
+/// Writes a glTF accessor without a buffer view: its elements are zero, so any count needs no
+/// bytes.
 void write_zeros_accessor(const fs::path& folder) {
   std::string nodes, indices;
   for (int i = 0; i < 20; ++i) {
@@ -33,7 +34,7 @@ void write_zeros_accessor(const fs::path& folder) {
                          indices, nodes));
 }
 
-/// Primitives that take turns between two large accessors.
+/// Writes glTF primitives that alternate between two large accessors.
 void write_alternating_accessors(const fs::path& folder) {
   std::string primitives;
   for (int i = 0; i < 120; ++i)
@@ -48,7 +49,7 @@ void write_alternating_accessors(const fs::path& folder) {
                          primitives));
 }
 
-/// One face of about 400 KB whose corners return to its first vertex again and again.
+/// Writes one face of about 400 KB whose corners return to its first vertex many times.
 void write_repeated_corners(const fs::path& folder) {
   constexpr int kRing = 20000;
   std::string text = "v 0 0 0\n";
@@ -61,7 +62,7 @@ void write_repeated_corners(const fs::path& folder) {
   write_text(folder / "corners.obj", text + "\n");
 }
 
-/// A triangle and a material library of 2.2 MB in which every line is wrong.
+/// Writes a triangle and a material library of 2.2 MB in which every line is wrong.
 void write_wrong_materials(const fs::path& folder) {
   write_text(folder / "warnings.obj",
              "mtllib warnings.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
@@ -84,7 +85,7 @@ void write_many_materials(const fs::path& folder) {
   write_text(folder / "many.obj", mesh);
 }
 
-/// 4,000 triangles around one vertex, with texture coordinates for displacement.
+/// Writes 4,000 triangles around one vertex, with texture coordinates for displacement.
 void write_fan(const fs::path& folder) {
   constexpr int kTriangles = 4000;
   std::string text = "v 0 0 0.2\nvt 0.5 0.5\n";
@@ -98,7 +99,7 @@ void write_fan(const fs::path& folder) {
   write_text(folder / "fan.obj", text);
 }
 
-/// 4,000 triangles that share one edge.
+/// Writes 4,000 triangles that share one edge.
 void write_book(const fs::path& folder) {
   constexpr int kTriangles = 4000;
   std::string text = "v 0 0 0\nv 0 0 1\nvt 0 0\nvt 0 1\n";
@@ -111,7 +112,7 @@ void write_book(const fs::path& folder) {
   write_text(folder / "book.obj", text);
 }
 
-/// A cube whose every face stands a thousand times.
+/// Writes a cube whose faces are repeated a thousand times.
 void write_thousand_cubes(const fs::path& folder) {
   std::string text;
   for (int i = 0; i < 8; ++i) text += fmt::format("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2 & 1);
@@ -120,7 +121,7 @@ void write_thousand_cubes(const fs::path& folder) {
   write_text(folder / "cubes.obj", text);
 }
 
-/// 600,000 tiny triangles in one spot, and two far ones that make the grid large.
+/// Writes 600,000 tiny triangles in one place, and two distant triangles that make the grid large.
 void write_tiny_triangles(const fs::path& folder) {
   std::ofstream out(folder / "spot.stl", std::ios::binary);
   constexpr std::uint32_t kCount = 600002;

@@ -16,13 +16,14 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${WORK_DIR}/build -G ${GENERAT
     -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/build_and_cast ${SOURCE_DIR}/examples/cube.obj ${WORK_DIR}/cube.vdag)
-# From the centre of the cube straight down: the bottom face, half of the cube's side away.
+# Casts a ray from the centre of the cube straight down: it hits the bottom face, half of the cube's
+# side away.
 if(NOT out MATCHES "voxel 512 0 512 at t = (0\\.99|1)")
   message(FATAL_ERROR "the example prints something else:\n${out}")
 endif()
 run(${WORK_DIR}/prefix/bin/voxdag verify ${WORK_DIR}/cube.vdag --mesh ${SOURCE_DIR}/examples/cube.obj)
 
-# Every public header compiles in a project that has only what was installed.
+# Every public header compiles in a project that uses only the installed files.
 file(STRINGS ${SOURCE_DIR}/cmake/public_headers.txt headers REGEX "^[a-z]")
 set(text "")
 foreach(header ${headers})
@@ -43,8 +44,7 @@ if(internal)
   message(FATAL_ERROR "internal headers were installed: ${internal}")
 endif()
 
-# A program that builds DAGs needs no package for images, meshes or files, neither to configure nor
-# to run.
+# A program that builds DAGs needs no package for images, meshes or files, to configure or to run.
 set(disabled "")
 foreach(package PNG JPEG OpenEXR nlohmann_json FastFloat assimp embree CUDAToolkit)
   list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)

@@ -18,9 +18,9 @@ struct BenchOutput {
   std::vector<OutputFile> files() const;
   /// Throws UsageError if two files are the same, or one is an input.
   void check_distinct(const Session& session) const;
-  /// Throws Error unless all files can be made. Call it before the work.
+  /// Throws Error unless all files can be created. Call it before the work.
   void check_writable() const;
-  /// Writes the files, and prints JSON or `text`. `drawings` draw the plots.
+  /// Writes the files, and prints JSON or `text`. `drawings` return the plots.
   void write(const nlohmann::ordered_json& json,
              const std::vector<std::function<std::string()>>& drawings, const std::string& text,
              Session& session) const;

@@ -7,7 +7,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns a grid of the same cube with at most 2^levels voxels a side.
+/// Returns a grid of the cube of `grid` with at most 2^levels voxels a side.
 Grid coarser(Grid grid, int levels) {
   for (; grid.levels > levels; --grid.levels) {
     grid.voxel_size *= 2;

@@ -13,7 +13,7 @@
 namespace voxdag {
 
 struct BakeArguments {
-  int rays = 0;         ///< Per point; 0: none, nothing is baked.
+  int rays = 0;         ///< Rays per point; 0: nothing is baked.
   double distance = 0;  ///< Length of the rays, world units; 0: kDefaultDistance grid sides.
   static constexpr double kDefaultDistance = 0.15;  ///< As for `render --ao`.
 
@@ -23,7 +23,7 @@ struct BakeArguments {
   }
 };
 
-/// Adds --bake-ao and --ao-distance to the group of options.
+/// Adds --bake-ao and --ao-distance to a group of options.
 void add_bake_options(const Command& command, BakeArguments& arguments,
                       const std::function<bool()>& has_colors, const std::string& group);
 
@@ -31,8 +31,8 @@ void add_bake_options(const Command& command, BakeArguments& arguments,
 void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
                        std::map<std::string, std::string>& settings);
 
-/// Hides the sky from points of a surface: an ESVO of the same surface, with cut-outs and
-/// displacement, without colours and no finer than 1024³.
+/// The voxels that hide the sky from points of a surface: an ESVO of that surface, with alpha masks
+/// and displacement, without colours, of at most 1024³ voxels.
 class Occluders {
  public:
   Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
@@ -41,7 +41,7 @@ class Occluders {
   Occluders(const Occluders&) = delete;
   Occluders& operator=(const Occluders&) = delete;
 
-  /// Returns the light for EsvoSettings of an ESVO in the grid; valid while this object lives.
+  /// Returns the light to bake, for EsvoSettings; valid while this object lives.
   SurfaceLight light() const;
 
  private:

@@ -1,4 +1,4 @@
-/// `voxdag build`: a .vdag or .esvo file of a mesh.
+/// `voxdag build`: builds a .vdag or .esvo file from a mesh.
 #include <fmt/core.h>
 
 #include <memory>
@@ -74,7 +74,8 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
       .in_group(kEsvoOptions);
 }
 
-/// Throws UsageError for options of the other kind of output, and for wrong combinations.
+/// Throws UsageError for options that belong to the other kind of output, and for wrong
+/// combinations.
 void check_build_arguments(const Command& command, BuildArguments& arguments, Session& session) {
   if (arguments.as_esvo)
     command.refuse_group(kDagOptions, "is for DAGs only, but the output is an ESVO (see --as)");

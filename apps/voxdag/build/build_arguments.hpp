@@ -1,5 +1,5 @@
 #pragma once
-/// What the command line of `voxdag build` asks for.
+/// The arguments of `voxdag build`.
 #include <map>
 #include <optional>
 #include <string>
@@ -32,18 +32,19 @@ struct BuildArguments {
   EsvoArguments esvo;
 };
 
-/// Returns the grid that the arguments ask for. `surface` holds the surface where it is not where
-/// the triangles are, as after displacement.
+/// Returns the grid that the arguments ask for. `surface` is the bounding box of the displaced
+/// surface, if there is displacement.
 Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
                  const BuildArguments& arguments);
 
 /// Returns the settings that shape the voxels, for the metadata of the output.
 std::map<std::string, std::string> grid_settings(const BuildArguments& arguments);
 
-/// Builds a DAG of session.subject, writes it, and prints the summary.
+/// Builds a DAG from the mesh file session.subject, writes it, and prints the summary.
 void build_dag_file(const BuildArguments& arguments, Session& session);
 
-/// Builds an ESVO of session.subject with its textures, writes it, and prints the summary.
+/// Builds an ESVO from the mesh file session.subject with its textures, writes it, and prints the
+/// summary.
 void build_esvo_file(const BuildArguments& arguments, Session& session);
 
 }  // namespace voxdag

@@ -1,4 +1,4 @@
-/// `voxdag build` for a DAG.
+/// `voxdag build` for DAGs.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -89,7 +89,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   seconds.write = watch.lap();
   std::error_code unknown;
   report.file_bytes = std::filesystem::file_size(arguments.output, unknown);
-  if (unknown) report.file_bytes = 0;  // written to a pipe or a device
+  if (unknown) report.file_bytes = 0;  // the output is a pipe or a device
 
   warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
   session.bar.clear();

@@ -1,4 +1,4 @@
-/// `voxdag build` for an ESVO.
+/// `voxdag build` for ESVOs.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@
 namespace voxdag {
 namespace {
 
-/// Writes blocks to the file as they come, and counts their bytes.
+/// Writes each block to the file when it is finished, and counts the bytes.
 class FileSink : public EsvoSink {
  public:
   explicit FileSink(EsvoFileWriter& writer) : writer_(writer) {}
@@ -33,8 +33,8 @@ class FileSink : public EsvoSink {
   EsvoBytes bytes_;
 };
 
-/// Throws Error unless `path` is or becomes a regular file: an ESVO is written out of order, and
-/// read again.
+/// Throws Error unless `path` is a regular file or can become one: an ESVO file is not written in
+/// order, and must be readable later.
 void check_regular(const std::string& path) {
   std::error_code unknown;
   if (resolve_output(path).descriptor >= 0 ||
@@ -137,7 +137,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
     metadata.root = result.root;
     metadata.counts = result.counts;
     progress.throw_if_cancelled();
-    // Not read back: by now the name may be another file's.
+    // Does not read the file back: its name may already belong to another file.
     report = {metadata, sink.bytes(), writer.finish(std::move(result.directory), metadata)};
   }
   seconds.build = watch.lap();

@@ -1,4 +1,4 @@
-/// `voxdag scene`: procedural scenes as mesh files.
+/// `voxdag scene`: writes procedural scenes as mesh files.
 #include <fmt/core.h>
 
 #include <memory>
@@ -37,7 +37,7 @@ std::string view_options(const ScenePreset& preset) {
          fmt::format("--fov {:.6g}", preset.fov_degrees);
 }
 
-/// Returns the flight through the scene as `render --path` reads it.
+/// Returns the flight through the scene in the form that `render --path` reads.
 PathFile path_file(const ScenePreset& preset) {
   PathFile path;
   path.sun = preset.sun_direction;
@@ -82,7 +82,7 @@ void make(const SceneArguments& arguments, const Session& session) {
   }
 }
 
-/// Throws UsageError for arguments that are missing, and sets the work.
+/// Sets the work of the session. Throws UsageError if arguments are missing.
 void choose_work(const std::shared_ptr<SceneArguments>& arguments, Session& session) {
   if (arguments->list) {
     session.work = [&session] { print_list(session.json); };

@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-/// Calls store(text) and makes what parse functions throw a UsageError that names the option.
+/// Calls store(text). Turns exceptions of parse functions into a UsageError that names the option.
 void store_or_refuse(const CLI::Option& option,
                      const std::function<void(const std::string&)>& store,
                      const std::string& text) {

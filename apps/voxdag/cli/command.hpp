@@ -1,6 +1,6 @@
 #pragma once
-/// Subcommands and their options. CLI11 does the parsing; only command.cpp and command_line.cpp
-/// include its header, which takes ten seconds to compile.
+/// Subcommands and their options. CLI11 parses; only command.cpp and command_line.cpp include its
+/// header, which takes ten seconds to compile.
 #include <functional>
 #include <memory>
 #include <string>
@@ -17,27 +17,28 @@ class App;
 
 namespace voxdag {
 
-/// A handle of a subcommand, or of the program itself; cheap to copy. Variables that options store
-/// into must live until the command line is parsed.
+/// A handle of a subcommand, or of the program itself; cheap to copy. The variables that receive
+/// option values must live until the command line is parsed.
 class Command {
  public:
   explicit Command(CLI::App& app);
 
-  /// Adds a subcommand. `purpose` is one line; `footer` ends the help: an example, and notes.
+  /// Adds a subcommand. `purpose` is one line. `footer` is the end of the help: an example, and
+  /// notes.
   Command add(const std::string& name, const std::string& purpose, const std::string& footer) const;
   void require_subcommand() const;
 
-  /// Adds a text. Names are "-o,--output" for an option, "file" for a positional.
+  /// Adds a text option ("-o,--output") or a text positional ("file").
   Option text(const std::string& names, std::string& value, const std::string& shape,
               const std::string& help) const;
-  /// Adds a positional that takes any number of texts.
+  /// Adds a positional that accepts any number of texts.
   Option texts(const std::string& name, std::vector<std::string>& values, const std::string& shape,
                const std::string& help) const;
   /// Adds a flag that sets `value`.
   Option flag(const std::string& names, bool& value, const std::string& help) const;
   /// Adds a flag that clears `value`.
   Option off_switch(const std::string& name, bool& value, const std::string& help) const;
-  /// Adds a number. The help says its range and its default, which is the value that it has now.
+  /// Adds a number. The help shows its range and its default, which is its current value.
   template <class Number>
   Option number(const std::string& names, Number& value, const NumberRange& range,
                 const std::string& shape, const std::string& help) const {
@@ -46,7 +47,7 @@ class Command {
     };
     return add_option(names, store, shape, help + note(range, default_text(value)));
   }
-  /// Adds a number whose default is no number; `help` says what it is.
+  /// Adds a number without a numeric default; `help` describes the default.
   template <class Number, class Target>
   Option optional_number(const std::string& names, Target& value, const NumberRange& range,
                          const std::string& shape, const std::string& help) const {
@@ -55,8 +56,8 @@ class Command {
     };
     return add_option(names, store, shape, help);
   }
-  /// Adds an option whose text `parse` turns into a value. parse throws std::invalid_argument with
-  /// the reason if the text is wrong.
+  /// Adds an option whose text is converted by `parse`, which throws std::invalid_argument with the
+  /// reason if the text is wrong.
   template <class Value, class Parse>
   Option parsed(const std::string& names, Value& value, const Parse& parse,
                 const std::string& shape, const std::string& help) const {
@@ -78,19 +79,19 @@ class Command {
     return add_list(
         names, [&values] { values.clear(); }, store, shape, help, ',');
   }
-  /// Adds a whole number that may be left out: "--name" alone stores `if_left_out`.
+  /// Adds an option with an optional whole number: "--name" without a number stores `if_left_out`.
   Option flag_or_number(const std::string& name, int& value, const NumberRange& range,
                         int if_left_out, const std::string& shape, const std::string& help) const;
 
-  /// Calls `done` once all options of this command are parsed and each of them has an effect.
-  /// `done` may throw UsageError.
+  /// Registers `done`, which is called after all options of this command were parsed and each of
+  /// them was found to have an effect. `done` may throw UsageError.
   void when_parsed(std::function<void()> done) const;
   /// Throws UsageError if an option of the group was given.
   void refuse_group(const std::string& group, const std::string& reason) const;
 
   std::string name() const;
   std::vector<Command> subcommands() const;
-  /// "--output -o --help -h", for completion.
+  /// Returns the names of all options, for completion: "--output -o --help -h".
   std::string option_names() const;
 
  private:
@@ -102,7 +103,7 @@ class Command {
                       const std::string& help) const;
   Option add_list(const std::string& names, const std::function<void()>& clear, const Store& store,
                   const std::string& shape, const std::string& help, char separator) const;
-  /// " (1 to 16; default: 4)".
+  /// Returns the note about range and default: " (1 to 16; default: 4)".
   static std::string note(const NumberRange& range, const std::string& default_value);
   template <class Number>
   static std::string default_text(Number value) {

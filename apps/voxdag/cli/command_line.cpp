@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kNameColumns = 30, kLineColumns = 96;
 
-/// The name of an option and its description, broken into lines of at most kLineColumns.
+/// Returns the name of an option and its description, broken into lines of at most kLineColumns
+/// columns.
 std::string help_row(const std::string& name, const std::string& description) {
   std::string text = "  " + name;
   std::size_t column = text.size();
@@ -36,7 +37,7 @@ std::string help_row(const std::string& name, const std::string& description) {
   return text + "\n";
 }
 
-/// The help: like CLI11's, but with line breaks, and without lists of other options.
+/// Formats the help like CLI11, but with line breaks, and without lists of other options.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -53,7 +54,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-/// Throws UsageError for "--name=", which CLI11 takes for an option whose value follows.
+/// Throws UsageError for "--name=", which CLI11 would read as an option whose value follows.
 void refuse_empty_values(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view text = argv[i];
@@ -63,7 +64,7 @@ void refuse_empty_values(int argc, char** argv) {
   }
 }
 
-/// "voxdag bench trace": as much of the command as was recognised.
+/// Returns the part of the command that was recognised: "voxdag bench trace".
 std::string recognised_command(const CLI::App& app) {
   std::string words = app.get_name();
   const CLI::App* command = &app;

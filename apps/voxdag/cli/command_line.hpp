@@ -9,18 +9,18 @@ namespace voxdag {
 
 class CommandLine {
  public:
-  /// `version` is what --version prints.
+  /// `version` is the text that --version prints.
   CommandLine(const std::string& program, const std::string& purpose, const std::string& version);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// The program: subcommands are added here.
+  /// Returns the handle of the program, to which subcommands are added.
   Command root() const;
 
-  /// Parses the arguments and calls what when_parsed() of the chosen command was given. Returns
-  /// false if the help or the version was asked for and printed. Throws UsageError with one line
-  /// that ends with how to get help.
+  /// Parses the arguments and calls the function that when_parsed() registered for the chosen
+  /// command. Returns false if it printed the help or the version instead. Throws UsageError; its
+  /// text is one line that ends with the way to get help.
   bool parse(int argc, char** argv);
 
  private:

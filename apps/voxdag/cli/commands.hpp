@@ -1,5 +1,5 @@
 #pragma once
-/// The subcommands, one file each. A function declares its command on the parser.
+/// The subcommands, one file each. Each function declares its command on the parser.
 #include "cli/session.hpp"
 
 namespace voxdag {

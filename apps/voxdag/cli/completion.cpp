@@ -1,4 +1,4 @@
-/// `voxdag completion`: completion of command lines in a shell, made from the parser itself.
+/// `voxdag completion`: prints a script for completion in a shell, generated from the parser.
 #include <fmt/core.h>
 
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-/// The option --device: where rays are cast.
+/// The option --device: the processor that casts rays.
 #include <optional>
 #include <string>
 
@@ -13,7 +13,7 @@ DeviceChoice parse_device(const std::string& text);
 
 void add_device_option(const Command& command, DeviceChoice& choice);
 
-/// Returns load_on_device(); its errors name the option.
+/// Calls load_on_device(). Errors name the option.
 std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice, const VoxelSet& scene);
 
 /// Returns "the CPU" or the device's name.

@@ -26,7 +26,8 @@ extern "C" void on_signal(int number) {
   progress_to_cancel->cancel();
 }
 
-/// What is mapped is gone where another program cuts the file short, or the disk fails.
+/// Handles SIGBUS: a page of a mapped file cannot be read, because another program truncated the
+/// file or the disk failed.
 extern "C" void on_bus_error(int) {
   static std::atomic_flag is_reported;
   while (is_reported.test_and_set()) pause();  // another thread, and the end is near
@@ -41,7 +42,8 @@ extern "C" void on_bus_error(int) {
 
 void make_writes_return_errors() {
   for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);
-  // Open for reading only, so that writes to it fail. The lowest free descriptor is taken.
+  // /dev/null is opened read-only, so that writes to it fail. open() returns the lowest free
+  // descriptor, so it returns `stream`.
   for (int stream = 0; stream <= 2; ++stream)
     if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDONLY) != stream)
       return;
@@ -51,13 +53,13 @@ void cancel_on_signals(Progress& progress) {
   progress_to_cancel = &progress;
   struct sigaction action {};
   action.sa_handler = on_signal;
-  // Without SA_RESTART: a pipe that nobody reads would be opened for ever. Reads and writes of
-  // pipes that stand still go on after a signal; a second one ends the program.
+  // SA_RESTART is not set: with it, opening a pipe that nobody reads would never return. Blocked
+  // reads and writes of pipes continue after the first signal; a second signal ends the program.
   action.sa_flags = 0;
   std::signal(SIGBUS, on_bus_error);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
-    // What the caller had ignored (nohup) stays ignored.
+    // Signals that the caller ignores (nohup) stay ignored.
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
   }

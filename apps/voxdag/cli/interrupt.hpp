@@ -1,5 +1,5 @@
 #pragma once
-/// Ctrl-C and termination as cancellation; failed writes as errors.
+/// Turns signals into cancellation and errors.
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
@@ -9,11 +9,11 @@ namespace voxdag {
 /// opened would take its place and its text.
 void make_writes_return_errors();
 
-/// From now on SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the
-/// process. A second signal removes unfinished output and ends the process at once.
+/// Installs handlers: SIGINT, SIGTERM and SIGHUP cancel `progress`, which must live as long as the
+/// process. A second signal removes unfinished output and ends the process immediately.
 void cancel_on_signals(Progress& progress);
 
-/// The signal that cancelled, or 0.
+/// Returns the signal that cancelled the work, or 0.
 int cancelling_signal();
 
 }  // namespace voxdag

@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns whether all importers are wanted.
+/// Returns whether `text` asks for all importers.
 bool parse_importers(const std::string& text) {
   if (text != "any" && text != "safe")
     throw std::invalid_argument("\"" + text + "\" is neither safe nor any");

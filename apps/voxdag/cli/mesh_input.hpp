@@ -1,5 +1,5 @@
 #pragma once
-/// Mesh files that commands read, and the options for that.
+/// Reads the mesh files of commands, and declares the options for it.
 #include <string>
 #include <vector>
 
@@ -12,15 +12,15 @@
 
 namespace voxdag {
 
-/// What readers may do with mesh files of the command line.
+/// The rights of readers of the command line's mesh files.
 struct MeshAccess {
   bool allow_outside = false;       ///< As ReadOptions::allow_outside.
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
   MemoryBudget* memory = nullptr;   ///< As ReadOptions::memory.
-  std::vector<OutputFile> outputs;  ///< The command writes them: no mesh may name them.
+  std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.
 };
 
-/// Adds --allow-outside and --assimp. `mesh` is the option of the mesh, if it can be left out.
+/// Adds --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is optional.
 void add_mesh_access_options(const Command& command, MeshAccess& access,
                              const Option* mesh = nullptr);
 
@@ -31,7 +31,7 @@ Mesh read_mesh_file(const std::string& file, const MeshAccess& access, Session& 
 MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const MeshAccess& access,
                                                   Session& session);
 
-/// Throws Error(file, ...) unless the mesh, which was read from `file`, is the one of the voxels.
+/// Throws Error(file, ...) unless the voxels were built from this mesh, which was read from `file`.
 void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
                       const Grid& grid);
 

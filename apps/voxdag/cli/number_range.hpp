@@ -1,5 +1,5 @@
 #pragma once
-/// The numbers that an option takes.
+/// The numbers that an option accepts.
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -12,15 +12,15 @@ class NumberRange {
   static NumberRange whole(std::int64_t least, std::int64_t most);  ///< Both ends included.
   static NumberRange from(double least, double most);               ///< Both ends included.
   static NumberRange half_open(double least, double end);           ///< Without `end`.
-  /// Above zero and at most `most`.
+  /// Returns the range of numbers above zero, up to `most`.
   static NumberRange up_to(double most);
-  /// Above zero and finite, also as a float.
+  /// Returns the range of numbers above zero that are finite also as a float.
   static NumberRange positive();
 
-  /// "1 to 4096", for the help.
+  /// Returns the range as text for the help: "1 to 4096".
   const std::string& text() const { return text_; }
 
-  /// Throws std::invalid_argument with the range if `text` is not a number in it.
+  /// Parses `text`. Throws std::invalid_argument with the range if it is not a number in the range.
   template <class Number>
   Number parse(const std::string& text) const {
     if constexpr (std::is_integral_v<Number>)

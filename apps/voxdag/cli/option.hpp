@@ -11,7 +11,7 @@ class Option;
 
 namespace voxdag {
 
-/// A condition under which an option changes the result. An option without effect is refused.
+/// A condition for an option to change the result. An option without effect is an error.
 struct EffectRule {
   CLI::Option* option = nullptr;
   std::function<bool()> has_effect;

@@ -1,5 +1,5 @@
 #pragma once
-/// The files that a command writes, and what they must not overwrite.
+/// The files that a command writes, and checks that they overwrite no other file of the command.
 #include <filesystem>
 #include <span>
 #include <string>
@@ -10,22 +10,22 @@
 namespace voxdag {
 
 struct OutputFile {
-  std::string option;  ///< The option that names it, for errors.
+  std::string option;  ///< The option that names the file, for errors.
   std::string path;    ///< Empty: none.
 };
 
-/// Throws UsageError if an output would overwrite another output or an input of the session: their
-/// paths lead to the same file. Devices and pipes may be written several times.
+/// Throws UsageError if the paths of an output and of another output or an input lead to the same
+/// file. Devices and pipes may be written several times.
 void check_distinct(const std::vector<OutputFile>& outputs, const Session& session);
 
 /// Throws Error if an output would overwrite one of `files`, which the file `namer` names.
 void check_not_overwritten(const std::vector<OutputFile>& outputs,
                            std::span<const std::filesystem::path> files, const std::string& namer);
 
-/// Returns the canonical path of the file that output to `path` goes to.
+/// Returns the canonical path of the file that receives output to `path`.
 std::filesystem::path canonical_output(const std::string& path);
 
-/// Whether both are names of one file that exists.
+/// Returns whether both paths name the same existing file.
 bool are_same_file(const std::string& a, const std::string& b);
 
 }  // namespace voxdag

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxImageSide = 1 << 15;
 
-/// The finite number that the whole of `text` is, if it is one.
+/// Returns the value of a text that is a finite number, else nothing.
 template <class T>
 std::optional<T> number_of(std::string_view text) {
   T value{};
@@ -27,7 +27,7 @@ std::optional<T> number_of(std::string_view text) {
   return good ? std::optional(value) : std::nullopt;
 }
 
-/// Likewise, or throws with `expected`.
+/// Returns the value of a text that is a finite number. Else throws "... is not EXPECTED".
 template <class T>
 T parse_number(std::string_view text, const char* expected) {
   const std::optional<T> value = number_of<T>(text);
@@ -35,7 +35,7 @@ T parse_number(std::string_view text, const char* expected) {
   return *value;
 }
 
-/// As parse_number, of a list.
+/// Parses an element of a list: a whole number, or a number in the range of float.
 template <class T>
 T parse_element(std::string_view text) {
   if constexpr (std::is_integral_v<T>) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kRedrawInterval{100};
 constexpr int kBarColumns = 24;
-/// Before this much of a stage is done, the time left is a guess that nobody should read.
+/// The time left is shown after this fraction of a stage; before, the estimate is too inaccurate.
 constexpr double kLeastFraction = 0.02;
 
 }  // namespace

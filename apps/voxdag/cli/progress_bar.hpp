@@ -1,5 +1,5 @@
 #pragma once
-/// The line on a terminal that tells how far long work is.
+/// A line on a terminal that shows the progress of long work.
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace voxdag {
 
-/// Draws on stderr, and only where stderr is a terminal. Calls come one at a time.
+/// Draws on stderr, only if stderr is a terminal. Not thread-safe.
 class ProgressBar {
  public:
-  /// A bar that is not enabled draws nothing.
+  /// Turns the bar on if `wanted` and if stderr is a terminal. It is off at first.
   void enable(bool wanted);
-  /// `fraction` is 0..1 of the stage; `items` is what the stage has made so far.
+  /// Draws the bar. `fraction` (0 to 1) of the stage is done; `items` counts its results so far.
   void update(std::string_view stage, double fraction, std::uint64_t items);
-  /// Takes the line away, so that other output begins at the left.
+  /// Clears the line, so that other output starts in the first column.
   void clear();
 
  private:
@@ -26,8 +26,8 @@ class ProgressBar {
   Clock::time_point stage_start_, last_draw_;
 };
 
-/// The text of the bar: stage, bar, percentage, rate and time left.
-/// `seconds` is the time that the stage has run.
+/// Returns the text of the bar: stage, bar, percentage, rate and time left. `seconds` is the time
+/// that the stage has run.
 std::string progress_line(std::string_view stage, double fraction, std::uint64_t items,
                           double seconds);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the subcommands share: the options that many of them have, progress and cancellation.
+/// The state that subcommands share: common options, progress and cancellation.
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -11,15 +11,15 @@
 
 namespace voxdag {
 
-/// A subcommand declares its options and sets `work`, which runs after the whole command line was
-/// checked.
+/// A subcommand declares its options and sets `work`, which runs after the complete command line
+/// was checked.
 struct Session {
   std::function<void()> work;
   /// Input files, which are never overwritten.
   std::vector<std::string> inputs;
-  std::string subject;  ///< The file that the work is about: errors that name no file name it.
+  std::string subject;  ///< The main input; errors without a file name it.
   int threads = 0;      ///< 0: one per processor.
-  bool quiet = false;   ///< Neither progress bar nor summary.
+  bool quiet = false;   ///< No progress bar and no summary.
   bool json = false;    ///< Print the result as JSON.
 
   ProgressBar bar;
@@ -49,7 +49,7 @@ void warn_if_empty(std::uint64_t voxels, const std::string& output, Session& ses
 /// may have, become U+FFFD.
 std::string json_text(const nlohmann::ordered_json& json);
 
-/// Throws Error unless a file can be made at `path`. Call it before long work.
+/// Throws Error unless a file can be created at `path`. Call it before long work.
 void check_writable(const std::string& path);
 
 }  // namespace voxdag

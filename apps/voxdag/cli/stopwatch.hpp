@@ -7,12 +7,12 @@ namespace voxdag {
 
 class Stopwatch {
  public:
-  /// Returns the seconds since the last lap, or since the start.
+  /// Returns the seconds since the last lap() or since construction, and starts a new lap.
   double lap() {
     const Clock::time_point before = std::exchange(start_, Clock::now());
     return std::chrono::duration<double>(start_ - before).count();
   }
-  /// Returns the seconds since the last lap, without beginning a new one.
+  /// Returns the seconds since the last lap() or since construction.
   double since_start() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
   }

@@ -1,4 +1,4 @@
-/// `voxdag export`: the voxels in the formats of other programs.
+/// `voxdag export`: writes the voxels in the formats of other programs.
 #include "voxdag/file/export.hpp"
 
 #include <memory>

@@ -1,4 +1,4 @@
-/// `voxdag info`: what a .vdag or .esvo file holds.
+/// `voxdag info`: describes the contents of a .vdag or .esvo file.
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
-/// `voxdag verify`: every check of a .vdag file, and of its voxels against the mesh.
+/// `voxdag verify`: runs every check of a .vdag or .esvo file, and compares its voxels with the
+/// mesh.
 #include <fmt/core.h>
 
 #include <limits>
@@ -22,7 +23,7 @@ namespace {
 
 using Result = VerifyCheck::Result;
 
-/// Hours of work on any machine.
+/// The maximum of --samples: hours of work on any machine.
 constexpr std::int64_t kMostSamples = 1'000'000'000;
 
 struct VerifyArguments {
@@ -37,13 +38,14 @@ const char* result_name(Result result) {
   return result == Result::kPassed ? "passed" : result == Result::kFailed ? "FAILED" : "skipped";
 }
 
-/// Announces the cost of check(samples), which is measured with fewer samples, if there are many.
+/// If there are many samples, measures check() with fewer samples and announces the cost of
+/// check(samples).
 template <class Check>
 void announce_samples(std::uint64_t samples, const Check& check, Session& session) {
   constexpr std::uint64_t kFew = 100'000, kProbe = 10'000;
   if (samples <= kFew) return;
   Stopwatch watch;
-  check(1);  // the constant part
+  check(1);  // the constant part of the cost
   const double constant = watch.lap();
   check(kProbe);
   const double probe = watch.lap() - constant;
@@ -95,8 +97,8 @@ void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
   fmt::print("{}", json_text(nlohmann::ordered_json{{"passed", passed}, {"checks", list}}));
 }
 
-/// Returns the displacement of the surface, from the options or as the file says; nothing if the
-/// file names a texture, which may be anywhere.
+/// Returns the displacement of the surface, from the options or from the file's metadata. Returns
+/// nothing if the file names a texture, because its folder is unknown.
 std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
                                                  const DisplaceArguments& asked) {
   if (!asked.texture.empty()) return asked;
@@ -109,7 +111,7 @@ std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
   return arguments;
 }
 
-/// Looks for points of the mesh in the octree.
+/// Checks that the octree contains random points of the mesh.
 VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
   const EsvoFile file(session.subject);
   const std::optional<DisplaceArguments> displace = displacement_of(file, arguments.displace);

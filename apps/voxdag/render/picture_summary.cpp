@@ -15,7 +15,8 @@ void print_picture_summary(const std::string& file, const RenderedImage& image, 
              human_seconds(seconds), human_count(static_cast<double>(image.rays) / seconds),
              device);
   const View& view = image.view;
-  // {} prints the shortest number that parses to the same value: the same picture.
+  // {} prints the shortest number that parses to the same value, so the options reproduce the
+  // picture.
   fmt::print("  --eye {},{},{} --target {},{},{} --up {},{},{} --fov {} --exposure {}\n",
              view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y, view.target.z,
              view.up.x, view.up.y, view.up.z, view.vertical_fov_degrees, image.exposure);

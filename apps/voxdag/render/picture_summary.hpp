@@ -1,5 +1,5 @@
 #pragma once
-/// What `voxdag render` prints about a picture.
+/// The summary that `voxdag render` prints.
 #include <string>
 
 #include "voxdag/render/render_options.hpp"

@@ -1,4 +1,4 @@
-/// `voxdag render`: a picture or film of a .vdag or .esvo file.
+/// `voxdag render`: renders a picture or film of a .vdag or .esvo file.
 #include <memory>
 
 #include "cli/commands.hpp"

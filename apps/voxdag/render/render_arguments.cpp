@@ -10,7 +10,8 @@
 namespace voxdag {
 namespace {
 
-/// Throws UsageError if a film's file name has no placeholder, or another picture's name has one.
+/// Throws UsageError if a film's file name has no placeholder, or if the name of a single picture
+/// has one.
 void check_frame_pattern(const OutputFile& output, bool is_film) {
   const auto refuse = [&](const std::string& reason) {
     throw UsageError(output.option, fmt::format("\"{}\" {}", output.path, reason));
@@ -30,7 +31,7 @@ std::vector<OutputFile> pictures_of(const RenderArguments& arguments) {
   return outputs;
 }
 
-/// Throws UsageError for names of outputs that are wrong, alone or together. Returns all outputs.
+/// Returns all outputs. Throws UsageError if a name is wrong or two names conflict.
 std::vector<OutputFile> check_outputs(const RenderArguments& arguments, const Session& session) {
   std::vector<OutputFile> outputs = pictures_of(arguments);
   for (const OutputFile& output : outputs) {

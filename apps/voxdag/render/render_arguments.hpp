@@ -1,5 +1,5 @@
 #pragma once
-/// What the command line of `voxdag render` asks for.
+/// The arguments of `voxdag render`.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,17 +13,17 @@
 
 namespace voxdag {
 
-/// --mesh: view samples come from triangles.
+/// The options of --mesh: view samples come from triangles.
 struct MeshArguments {
   std::string file;  ///< Empty: none.
   MeshAccess access;
-  bool grey = false;    ///< Ignore the mesh's colours, textures and normals.
+  bool grey = false;    ///< Ignores the mesh's colours, textures and normals.
   std::string primary;  ///< "mesh", "voxels" or empty: the mesh if there is one.
 
   bool is_seen() const { return !file.empty() && primary != "voxels"; }
 };
 
-/// --path: the frames of a film.
+/// The options of --path: the frames of a film.
 struct PathArguments {
   std::string file;     ///< The camera path; empty: one picture.
   std::string timings;  ///< A CSV to write, with a plot beside it; empty: none.
@@ -32,7 +32,7 @@ struct PathArguments {
 
 struct RenderArguments {
   std::string output, depth, normal;
-  std::vector<PicturePass> passes;  ///< Of --pass.
+  std::vector<PicturePass> passes;  ///< Values of --pass.
   ImageSize size{1920, 1080};
   RenderOptions options;
   bool filter = false, no_filter = false;  ///< Neither: filter an ESVO.
@@ -45,13 +45,15 @@ struct RenderArguments {
 /// Adds all options of `voxdag render`. They store into `arguments` and `session`.
 void add_render_options(const Command& command, Session& session, RenderArguments& arguments);
 
-/// Throws UsageError for values that no scene allows, alone or together, and for wrong outputs.
+/// Throws UsageError for values or combinations that are wrong for every scene, and for wrong
+/// outputs.
 void check_render_arguments(RenderArguments& arguments, Session& session);
 
 /// Returns all passes to write: the picture, --depth, --normal and --pass.
 std::vector<PicturePass> all_passes(const RenderArguments& arguments);
 
-/// Returns the options of the picture or of each frame. `is_esvo` says what the scene is.
+/// Returns the options of the picture or of each frame. `is_esvo` says whether the scene is an ESVO
+/// or a DAG.
 RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo);
 
 /// Returns the name of the plot beside the CSV of --timings.

@@ -16,7 +16,7 @@
 namespace voxdag {
 namespace {
 
-/// Throws Error if the path has what an option of the command line says, too.
+/// Throws Error if the path and an option of the command line both set a value.
 void check_own_view(const PathFile& path, const ViewRequest& asked) {
   if (path.keys.empty()) return;
   const PathKey& first = path.keys.front();
@@ -27,8 +27,8 @@ void check_own_view(const PathFile& path, const ViewRequest& asked) {
   if (first.fov_degrees && asked.vertical_fov_degrees) refuse("fov");
 }
 
-/// Throws Error if two files of the film have the same name, as frame 11 of f%d.png and frame 1 of
-/// f1%d.png have, or if one is an input file.
+/// Throws Error if two files of the film have the same name (such as frame 11 of f%d.png and frame
+/// 1 of f1%d.png), or if a file is also an input.
 void check_file_names(const RenderArguments& arguments, const std::vector<PicturePass>& passes,
                       std::size_t frames, const Session& session) {
   std::unordered_set<std::string> names;

@@ -15,7 +15,7 @@ namespace {
 struct LightForm {
   const char* name;
   LightKind kind;
-  std::size_t numbers;  // without a colour
+  std::size_t numbers;  // count without a colour
 };
 
 constexpr LightForm kForms[] = {{"point", LightKind::kPoint, 3},
@@ -23,7 +23,7 @@ constexpr LightForm kForms[] = {{"point", LightKind::kPoint, 3},
                                 {"disc", LightKind::kDisc, 7},
                                 {"rect", LightKind::kRectangle, 9}};
 
-/// Throws std::invalid_argument for what the renderer would refuse, wherever the grid is.
+/// Throws std::invalid_argument for lights that the renderer would refuse in every grid.
 void check(const LightSpec& light) {
   try {
     make_light(light, Grid{});

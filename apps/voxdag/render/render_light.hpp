@@ -6,9 +6,9 @@
 
 namespace voxdag {
 
-/// "point:x,y,z", "sphere:x,y,z,radius", "disc:x,y,z,nx,ny,nz,radius" or
-/// "rect:x,y,z,ux,uy,uz,vx,vy,vz", each with ",r,g,b" for its colour or without. Throws
-/// std::invalid_argument with the reason where the text is none of these.
+/// Parses "point:x,y,z", "sphere:x,y,z,radius", "disc:x,y,z,nx,ny,nz,radius" or
+/// "rect:x,y,z,ux,uy,uz,vx,vy,vz". Each may end with ",r,g,b", its colour. Throws
+/// std::invalid_argument with the reason if the text is none of these.
 LightSpec parse_light(const std::string& text);
 
 }  // namespace voxdag

@@ -8,7 +8,7 @@
 namespace voxdag {
 
 /// Returns the mesh as a source of view samples, or null if the picture shows voxels. Throws Error
-/// if the mesh is not the one of the voxels.
+/// if the voxels were not built from the mesh.
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
                                              const VoxelSet& scene, const Grid& grid,
                                              Session& session);

@@ -33,7 +33,7 @@ std::string parse_primary(const std::string& text) {
   return text;
 }
 
-/// Whether any light has soft edges.
+/// Returns whether any light casts shadows with soft edges.
 bool has_soft_light(const RenderOptions& options) {
   return (options.with_sun && options.sun_degrees > 0) ||
          std::any_of(options.lights.begin(), options.lights.end(),

@@ -13,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-/// Renders a film. Blocks that a frame has loaded stay for the next one.
+/// Renders a film. Blocks that a frame has loaded stay loaded for the next frame.
 void render_streamed_film(const RenderArguments& arguments, StreamBlocks& blocks,
                           Session& session) {
   const Grid& grid = blocks.stream().grid();
@@ -26,7 +26,7 @@ void render_streamed_film(const RenderArguments& arguments, StreamBlocks& blocks
               session);
 }
 
-/// Renders a picture. The outputs are there after the first pass and become finer.
+/// Renders a picture. Writes the outputs after each pass; each pass is finer than the one before.
 void render_streamed_picture(const RenderArguments& arguments, StreamBlocks& blocks,
                              Session& session) {
   const auto write = [&](const RenderedImage& image) {

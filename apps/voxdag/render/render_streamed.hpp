@@ -4,8 +4,8 @@
 
 namespace voxdag {
 
-/// Renders and writes the picture or the film of the ESVO. Throws Error as StreamBlocks and
-/// render_streamed do.
+/// Renders and writes the picture or the film of the ESVO. Throws Error like StreamBlocks and the
+/// library's render_streamed().
 void render_streamed(const RenderArguments& arguments, Session& session);
 
 }  // namespace voxdag

@@ -10,8 +10,8 @@
 namespace voxdag {
 
 /// Rows of a structured array without padding: t, voxel, face, hit; for an ESVO also the normal and
-/// colour that it stores for the voxel. These are looked up by voxel, so that they do not depend on
-/// the device that cast the ray.
+/// colour that it stores for the voxel. The normal and colour are looked up by voxel, so they do
+/// not depend on the device that cast the ray.
 class HitRows {
  public:
   /// The data that `scene` points to must outlive the rows.

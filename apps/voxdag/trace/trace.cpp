@@ -1,4 +1,4 @@
-/// `voxdag trace`: casts rays of a NumPy array and writes their hits as another.
+/// `voxdag trace`: casts the rays of a NumPy array and writes their hits to another array.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace voxdag {
 namespace {
 
-/// Rays in memory at once: enough for all threads of a CPU or GPU.
+/// The number of rays in memory at a time: enough for all threads of a CPU or GPU.
 constexpr std::size_t kBatch = std::size_t{1} << 20;
 
 struct TraceArguments {
