@@ -15,7 +15,7 @@ std::shared_ptr<void> allocate_large(std::size_t bytes) {
   void* const memory = std::aligned_alloc(alignment, rounded > 0 ? rounded : alignment);
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-  if (bytes >= kLargePage) madvise(memory, rounded, MADV_HUGEPAGE);  // a wish
+  if (bytes >= kLargePage) madvise(memory, rounded, MADV_HUGEPAGE);  // only a hint
 #endif
   return {memory, &std::free};
 }

@@ -28,7 +28,8 @@ float SurfaceOpenness::open_part(const Nodes& nodes, const Caster& caster, Vec3d
   start.start = make_grid_point(grid_, lifted);
   start.normal = normal;
   start.face = face;
-  // In a corner, the point may lie in a voxel of the other surface: starts beside it.
+  // In a corner, the point may lie in a voxel of the other surface. Then rays start beside that
+  // voxel.
   const auto is_inside = [&] {
     CellHit cell;
     return cast(nodes, make_grid_ray(start.start, face, 0, 0), StopAtVoxels{}, cell);

@@ -1,4 +1,4 @@
-/// Stands in for the CUDA backend in a build without nvcc: every function reports that.
+/// Replaces the CUDA backend in a build without nvcc. Every function reports that CUDA is missing.
 #include "voxdag/core/error.hpp"
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_scene.hpp"

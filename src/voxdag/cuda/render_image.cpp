@@ -14,17 +14,18 @@
 namespace voxdag {
 namespace {
 
-/// Rays of the first launch: half a second on a slow device.
+/// The number of rays of the first launch: half a second on a slow device.
 constexpr double kFirstRays = 1 << 25;
-/// Blocks whose view samples the host finds at once.
+/// The number of blocks for which the host finds view samples at a time.
 constexpr std::uint32_t kSourceBlocks = 4096;
-/// Coarse beams per launch.
+/// The number of coarse beams per launch.
 constexpr std::uint32_t kBeamsPerLaunch = 1 << 18;
 
 /// Block numbers have 32 bits, launches 31.
 constexpr std::uint32_t kMostBlocks = 1u << 30;
 
-/// Two of these take turns: the device reads one while the host fills the other.
+/// A buffer for view samples. Two of them alternate: the device reads one while the host fills the
+/// other.
 struct SourceSamples {
   PinnedBuffer<ViewSample> host;
   DeviceBuffer<ViewSample> device;

@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns the seconds that the device takes for the work that `launch(stream)` starts.
+/// Returns the device time, in seconds, of the work that `launch(stream)` starts.
 template <class Launch>
 double seconds_of(const char* doing, const Launch& launch) {
   const CudaStream stream;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;
 
-/// A block of rays on its way to the device, on the device, or, as hits, on its way back.
+/// A block of rays. It is being copied to the device, traced, or its hits are being copied back.
 struct Block {
   Block()
       : rays(make_pinned_buffer<Ray>(kBlock, "rays")),
@@ -25,7 +25,7 @@ struct Block {
   PinnedBuffer<Hit> hits;
   DeviceBuffer<Ray> device_rays;
   DeviceBuffer<Hit> device_hits;
-  std::size_t begin = 0, count = 0;  // in all rays; none if the block is free
+  std::size_t begin = 0, count = 0;  // range in all rays; count is 0 if the block is free
   CudaStream stream;                 // last, so that it is destroyed before the memory that it uses
 };
 
@@ -70,7 +70,7 @@ void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Progress*
   std::size_t turn = 0;
   const auto next = [&]() -> Block& { return state_->blocks[turn++ % state_->blocks.size()]; };
   for (Block& block : state_->blocks) {
-    // Waits for the work of a cancelled call.
+    // A cancelled call may have left work in the stream.
     block.stream.wait("casting rays");
     block.count = 0;
   }

@@ -25,8 +25,8 @@ double list_scratch_bytes(const SubvolumeBins& bins) {
   for (std::size_t i = 0; i < bins.cells.size(); ++i)
     longest = std::max(longest, bins.list(i).size());
   const std::size_t setups = std::min(longest, std::size_t{1} << 14);
-  // Triangles are in a list of each level that the recursion goes down at once, and in two or three
-  // cells of it.
+  // A triangle is in lists of each level that the recursion descends at once, and on a level in the
+  // lists of two or three cells.
   constexpr std::size_t kLists = 4;
   return static_cast<double>(
       Context::kStackBytes +

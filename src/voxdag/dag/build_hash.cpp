@@ -1,7 +1,7 @@
-// Depth-first, hash-consed construction: design, "From mesh to minimal DAG".
+// Depth-first, hash-consed construction (see "From mesh to minimal DAG" in the design).
 //
-// The sub-volumes are built in parallel into tables that all threads share, so that there is
-// nothing to merge; the few nodes above them follow serially.
+// The sub-volumes are built in parallel into tables that all threads share, so nothing has to be
+// merged. The few nodes above them are then built serially.
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace voxdag {
 namespace {
 
-/// 8 MiB for each thread, less where memory is short.
+/// 8 MiB for each thread, less if memory is short.
 constexpr int kMostLog2MemoSets = 16, kLeastLog2MemoSets = 10;
 
 using Stores = std::vector<std::unique_ptr<NodeStore>>;
@@ -32,10 +32,10 @@ int log2_memo_sets(const MemoryBudget& budget, std::size_t threads) {
   return log2_sets;
 }
 
-/// canonical_order's view of the stores.
+/// The stores as the `source` of canonical_order().
 struct StoreSource {
   Stores& stores;
-  PageVector<std::uint32_t> forwards;  // by half the leaf's id: all of them are even
+  PageVector<std::uint32_t> forwards;  // indexed by half of the leaf's id; ids are even
 
   StoreSource(Stores& all, MemoryBudget& budget) : stores(all), forwards(&budget) {
     forwards.resize(stores.back()->end_id() / 2);
@@ -72,8 +72,8 @@ void measure(const Stores& stores, StageBytes& bytes) {
 
 }  // namespace
 
-/// Returns a level at which sub-volumes are small enough to balance the threads, and large enough
-/// to seldom cut a triangle.
+/// Returns a level whose sub-volumes are small enough to balance the threads, and so large that
+/// they seldom cut a triangle.
 int hash_bin_level(int levels, std::size_t triangles) {
   int level = std::clamp(levels - 5, 0, 6);
   // About 1024 triangles for each of the ~4^level cells of a surface.

@@ -1,5 +1,6 @@
-// The paper's own construction (SVDAG, Section 3): octrees of sub-volumes of at most 1024³, each
-// reduced by sorting before the next is made, joined under a top tree and reduced once more.
+// The paper's own construction (SVDAG, Section 3): builds octrees of sub-volumes of at most 1024³,
+// reduces each by sorting before it builds the next, joins them under a top tree, and reduces the
+// whole once more.
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ std::uint64_t reduction_bytes(const SortTree& tree) {
   return bytes;
 }
 
-/// canonical_order's view: ids become word offsets, from the leaf blocks up.
+/// The tree as the `source` of canonical_order(): ids become word offsets, from the leaf blocks up.
 class WordSource {
  public:
   WordSource(SortTree& tree, MemoryBudget& budget, const Progress* progress) : forwards_(&budget) {
@@ -136,7 +137,7 @@ class SortedSubvolumes {
     const NodeId root = build_subvolume(
         context,
         {{cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)});
-    // Bins of the largest grids list triangles that miss the cell.
+    // In the largest grids, bins can list triangles that miss the cell.
     if (root == kNoNode) return;
     SortTree reduced = std::move(context.sink.tree);
     bytes[i] = static_cast<double>(reduced.bytes() + reduction_bytes(reduced));
@@ -146,8 +147,8 @@ class SortedSubvolumes {
   }
 
   SortTree tree;
-  std::vector<NodeId> roots;  ///< Of each sub-volume; indices into their level.
-  std::vector<double> bytes;  ///< Most that each sub-volume took.
+  std::vector<NodeId> roots;  ///< Root of each sub-volume, as an index into its level.
+  std::vector<double> bytes;  ///< Most bytes that each sub-volume took.
 
  private:
   std::mutex mutex_;
@@ -172,7 +173,7 @@ SortTree voxelize_by_sorting(const BuildInput& input, BuildReport& report, Stage
 
   SortedSubvolumes subvolumes(binned, input);
   tbb::enumerable_thread_specific<SortTimes> times;
-  // Sub-volumes that do not fit into memory together are built again one by one.
+  // Sub-volumes that did not fit into memory together are built again, one at a time.
   std::vector<std::size_t> postponed;
   std::mutex postponed_mutex;
   polled_for(bins.cells.size(), 1, input.progress, "voxelize", [&](std::size_t i) {

@@ -21,7 +21,7 @@ std::string mebibytes(std::uint64_t bytes) {
 
 /// Throws OverMemory if the limit is clearly too small, before any long work.
 void check_memory(const BuildInput& input, BuildMethod method) {
-  // Far enough below for a build that takes a hundredth of the time.
+  // So many levels below that the estimate takes a hundredth of the time.
   constexpr int kSteps = 4;
   const MemoryBudget& budget = input.budget;
   if (budget.limit() == 0 || area_bound(input.mesh, input.grid) < budget.left() / 2) return;

@@ -18,11 +18,11 @@ namespace {
 constexpr int kCoarserLevels = 4;
 constexpr std::uint64_t kMostAtOnce = 1 << 20;  // cells
 
-/// Returns a number in [0, 1), uniform and the same on every machine
-/// (std::uniform_real_distribution differs).
+/// Returns a uniform number in [0, 1) that is equal on every machine
+/// (std::uniform_real_distribution is not).
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// Random points of the surface, uniform by area.
+/// Generates random points of the surface, uniform by area.
 class SurfacePoints {
  public:
   SurfacePoints(const QuantizedMesh& mesh, const Progress* progress) : mesh_(mesh) {
@@ -33,7 +33,7 @@ class SurfacePoints {
         const QuantizedTriangle t = mesh.triangle(i);
         const Vec3d n = cross(static_cast<Vec3d>(t.y) - static_cast<Vec3d>(t.x),
                               static_cast<Vec3d>(t.z) - static_cast<Vec3d>(t.x));
-        // One square voxel more, so that degenerate triangles are sampled, too.
+        // Adds one square voxel, so that triangles without area are sampled, too.
         sum += std::sqrt(dot(n, n)) + kSubvoxels * kSubvoxels;
       }
       areas_.push_back(sum);
@@ -75,7 +75,7 @@ std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int le
         v[axis] = static_cast<std::int32_t>(random() & static_cast<std::uint64_t>(n - 1));
     } else {
       v = surface.voxel(random);
-      // Moves one in two to a neighbour cell, which is mostly not covered.
+      // Moves every second sample to a neighbour cell, which is usually not covered.
       const std::int32_t step = std::int32_t{1} << (levels - level);
       if (kind % 2 == 0)
         for (int axis = 0; axis < 3; ++axis)
@@ -92,7 +92,7 @@ std::vector<Vec3i> sample_cells(const SurfacePoints& surface, int levels, int le
   return cells;
 }
 
-/// Returns for each of `cells` (sorted by x) whether a triangle meets it: tests every triangle
+/// Returns for each of `cells` (sorted by x) whether a triangle meets it. Tests every triangle
 /// against the cells in its box.
 std::unique_ptr<std::atomic<bool>[]> covered_cells(const QuantizedMesh& mesh, int levels, int level,
                                                    const std::vector<Vec3i>& cells,

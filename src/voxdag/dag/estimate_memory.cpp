@@ -6,7 +6,7 @@
 namespace voxdag {
 namespace {
 
-/// Throws OverMemory and Cancelled.
+/// Builds at 2^levels and returns the bytes of the stages. Throws OverMemory and Cancelled.
 StageBytes measure(const BuildInput& input, BuildMethod method, int levels) {
   const double scale = std::ldexp(1.0, input.grid.levels - levels);
   BuildInput coarse = input;
@@ -34,7 +34,7 @@ std::optional<std::uint64_t> estimate_memory(const BuildInput& input, BuildMetho
   try {
     const StageBytes a = measure(probe, method, coarse), b = measure(probe, method, fine);
     const auto extrapolate = [&](double at_coarse, double at_fine) {
-      // A surface has four times the cells at the next level, and a DAG is never larger.
+      // A surface has four times as many cells at the next level, and a DAG never grows faster.
       const double growth = fine == coarse ? 4 : std::clamp(at_fine / at_coarse, 1.0, 4.0);
       return at_coarse > 0 ? at_fine * std::pow(growth, levels - fine) : at_fine;
     };

@@ -25,8 +25,8 @@ class SpinLock {
 
 constexpr int kFirstSlotsBits = 6;
 
-/// The first thread that sees a table kGrowEighths full makes it grow; others add nodes to it
-/// meanwhile until it is kFullEighths full, and then wait.
+/// The first thread that sees a table with kGrowEighths eighths full grows it. Meanwhile other
+/// threads add nodes to it until kFullEighths eighths are full, and then wait.
 constexpr std::uint64_t kGrowEighths = 5, kFullEighths = 7;
 
 /// Returns the bytes of a table of 2^bits slots, in whole pages.
@@ -47,12 +47,12 @@ std::uint64_t* NodeStore::find(const Table& table, std::uint32_t tag, const std:
                                int count, std::uint64_t& slot) const {
   for (std::uint64_t i = tag & table.last;; i = (i + 1) & table.last) {
     std::uint64_t& here = table.slots[i];
-    // Acquires the words that the slot's writer stored before.
+    // Acquires the words that the slot's writer stored before the slot.
     slot = std::atomic_ref(here).load(std::memory_order_acquire);
     if (slot == 0) return &here;
     if (slot >> 32 != tag) continue;
     const std::uint32_t* stored = this->words(static_cast<std::uint32_t>(slot) - 1);
-    // Equal first words mean equal lengths, so that the rest may be read.
+    // If the first words are equal, the lengths are equal, so the other words may be read.
     if (stored[0] == words[0] && std::equal(words + 1, words + count, stored + 1)) return &here;
   }
 }
@@ -121,7 +121,7 @@ void NodeStore::take_run(Run& run) {
     throw Error("the DAG is too large: one level has more words than 32-bit pointers can address");
   const std::size_t chunk_words = std::size_t{1} << (kFirstChunkBits + chunk);
   std::uint64_t bytes = std::uint64_t{words} * 4;
-  // Large chunks become resident by whole huge pages.
+  // Large chunks become resident in whole huge pages.
   if (chunk_words * 4 >= PageArray<std::uint32_t>::kHugePage)
     bytes = std::uint64_t{end_ - chunk_begin(chunk)} * 4 % PageArray<std::uint32_t>::kHugePage == 0
                 ? PageArray<std::uint32_t>::kHugePage
@@ -135,7 +135,7 @@ void NodeStore::take_run(Run& run) {
 }
 
 /// Gives a shard its first table, or one twice as large. Several threads may make a first table at
-/// once; one of them is used.
+/// the same time; one of the tables is used.
 void NodeStore::grow(std::uint32_t shard_index) {
   Shard& shard = shards_[shard_index];
   const std::uint64_t packed = tables_[shard_index].load(std::memory_order_acquire);

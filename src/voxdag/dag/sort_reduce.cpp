@@ -10,7 +10,7 @@ namespace {
 
 using Indirections = PageVector<std::uint32_t>;
 
-/// Sorts `nodes` and keeps one of each; returns for every old index the new one.
+/// Sorts `nodes` and removes duplicates. Returns the new index of every old index.
 template <class Key>
 Indirections sort_and_compact(PageVector<Key>& nodes, bool parallel, SortTimes& times,
                               MemoryBudget& budget, const Progress* progress) {

@@ -17,7 +17,7 @@ namespace {
 using Entries = PageVector<std::uint64_t>;  // Morton code of the cell << 32 | triangle
 using Cursors = std::array<std::size_t, 4096>;
 
-/// Walks down from a cell that the triangle meets to the sub-volumes.
+/// Walks down to the sub-volumes from a cell that the triangle meets.
 void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i cell, int log2_size,
              int log2_bin, std::uint32_t triangle, Entries& entries) {
   if (log2_size == log2_bin) {
@@ -53,8 +53,8 @@ void bin_one(const QuantizedMesh& mesh, std::uint32_t index, int levels, int log
   descend(setup, setup.conditions, {0, 0, 0}, levels, log2_bin, index, entries);
 }
 
-/// Moves the entries of all `parts` to one array, sorted by 12 bits of the cell from `shift` up;
-/// equal ones keep their order. Frees the parts.
+/// Moves the entries of all `parts` to one array, sorted stably by the 12 bits of the cell from bit
+/// `shift` up. Frees the parts.
 Entries sort_by_digit(std::vector<Entries>& parts, int shift, MemoryBudget& budget,
                       const Progress* progress) {
   const auto digit_of = [shift](std::uint64_t entry) {
@@ -82,7 +82,7 @@ Entries sort_by_digit(std::vector<Entries>& parts, int shift, MemoryBudget& budg
 
 }  // namespace
 
-// The cells' codes are sorted by a radix sort of their 12-bit digits, the lowest first.
+// Sorts the cells' codes by a radix sort with 12-bit digits, the lowest first.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
                             const IndexSet& excluded, MemoryBudget& budget, Progress* progress) {
   const int log2_bin = levels - level;

@@ -14,7 +14,7 @@ Vec3f projection_weights(Vec3f n) {
     return w * w;
   };
   const Vec3f w{weight(n.x), weight(n.y), weight(n.z)};
-  return w * (1 / (w.x + w.y + w.z));  // Not 0: one component is at least 0.57.
+  return w * (1 / (w.x + w.y + w.z));  // The divisor is not 0: one component is at least 0.57.
 }
 
 /// Returns a height, 0 to 1.
@@ -65,7 +65,7 @@ double edge_texel_density(const DisplacedMesh& mesh, CornerIndex edge) {
 }
 
 float height_level(double texel_density, double edge_limit) {
-  // Edges end up between half the limit and the limit.
+  // Tessellation leaves edges between half of the limit and the limit.
   return static_cast<float>(std::log2(texel_density * edge_limit * 0.7));
 }
 

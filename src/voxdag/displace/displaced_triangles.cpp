@@ -10,10 +10,10 @@
 namespace voxdag {
 namespace {
 
-/// Returns the corner of a triangle that lies on two of its edges, given as bits.
+/// Returns the corner of a triangle at which two edges meet, given as bits.
 std::uint32_t corner_on(std::uint8_t edges) { return edges == 0b101 ? 0 : edges == 0b011 ? 1 : 2; }
 
-/// The least and the greatest of the heights that it is given, 0 to 65535.
+/// The least and greatest of the added heights, 0 to 65535.
 class HeightRange {
  public:
   /// Adds the heights in a box of texture coordinates.
@@ -22,7 +22,7 @@ class HeightRange {
     least_ = std::min(least_, bounds.lo[0]);
     most_ = std::max(most_, bounds.hi[0]);
   }
-  /// Returns how far they move points along a normal, in world units.
+  /// Returns the range of offsets along a normal that these heights cause, in world units.
   Interval along(const Displacement& d) const {
     const double p = d.base + d.gain * least_ / 65535, q = d.base + d.gain * most_ / 65535;
     return {std::min(p, q), std::max(p, q)};
@@ -83,7 +83,7 @@ DisplacedTriangles::Pass::Pass(const DisplacedTriangles& all, std::uint32_t base
     corners[c].b2 = c == 2 ? 1.0f : 0.0f;
     corners[c].edges = edges[c];
     if (!all.is_displaced(base)) continue;
-    // Off seams a corner moves as the first member of its group does.
+    // A corner that is not on a seam moves like the first member of its group.
     densest = std::max({densest, edge_texel_density(mesh, all.seams_.edge_group(corner).members[0]),
                         texel_density(mesh, all.seams_.corner_group(corner).members[0] / 3)});
   }
@@ -118,18 +118,18 @@ DisplacedPiece DisplacedTriangles::enclose(const Pass& pass, const PieceCorner& 
   const Vec3f middle = normalized_or(n[0] + n[1] + n[2], {});
   const float shortest = std::min({dot(n[0], middle), dot(n[1], middle), dot(n[2], middle)});
   if (!(shortest > 0.3f)) {
-    // Normals that differ so much may point anywhere between.
+    // If normals differ this much, interpolated normals may have any direction.
     piece.slack = radius_;
     return piece;
   }
   piece.shortest = shortest;
   piece.heights = heights_of(pass, piece, corners);
-  // Normals that are nearly equal count as equal.
+  // Allows for normals that differ slightly but count as equal.
   piece.slack = 2e-3 * radius_;
   return piece;
 }
 
-/// Returns how far a piece's heights may move its points, but for those on seams.
+/// Returns the range of offsets along the normal for a piece's points, except for those on seams.
 Interval DisplacedTriangles::heights_of(const Pass& pass, const DisplacedPiece& piece,
                                         const std::array<const PieceCorner*, 3>& corners) const {
   const Displacement& d = mesh_.displacement(pass.triangle);
@@ -210,7 +210,7 @@ MicroTriangle DisplacedTriangles::micro_at(std::uint32_t triangle, Vec2f place,
                                            double edge_limit) const {
   Pass pass(*this, triangle, edge_limit);
   std::array<PieceCorner, 3> piece = pass.corners;
-  // Returns how far inside of a piece the place lies; negative outside.
+  // Returns the depth of the place inside a piece; negative outside.
   const auto depth_in = [&](const PieceCorner& a, const PieceCorner& b, const PieceCorner& c) {
     const auto side = [&](const PieceCorner& p, const PieceCorner& q) {
       const Vec2d from{static_cast<double>(p.b1), static_cast<double>(p.b2)};

@@ -10,13 +10,13 @@
 namespace voxdag {
 namespace {
 
-/// Return whether two normals, or two texture coordinates, are so near that one stands for both.
+/// Returns whether two normals, or two texture coordinates, are so close that they count as equal.
 bool is_near(Vec3f a, Vec3f b) { return dot(a - b, a - b) < 1e-6f; }
 bool is_near(Vec2f a, Vec2f b) {
   return std::abs(a.x - b.x) < 1e-6f && std::abs(a.y - b.y) < 1e-6f;
 }
 
-/// Returns whether two triangles move a common corner alike.
+/// Returns whether two triangles move a common corner by equal offsets.
 bool corners_agree(const DisplacedMesh& mesh, CornerIndex a, CornerIndex b) {
   const std::uint32_t s = a / 3, t = b / 3;
   return Appearance::material_index(mesh.mesh, s) == Appearance::material_index(mesh.mesh, t) &&
@@ -27,13 +27,13 @@ bool corners_agree(const DisplacedMesh& mesh, CornerIndex a, CornerIndex b) {
 struct PositionHash {
   std::size_t operator()(Vec3f p) const {
     std::uint64_t h = 0;
-    for (int axis = 0; axis < 3; ++axis)  // + 0: equal hashes for both zeros, which are equal.
+    for (int axis = 0; axis < 3; ++axis)  // + 0 turns -0 into 0, so that their hashes are equal.
       h = (h ^ std::bit_cast<std::uint32_t>(p[axis] + 0.0f)) * 0x9E3779B97F4A7C15ull, h ^= h >> 31;
     return static_cast<std::size_t>(h);
   }
 };
 
-/// Reports the share that is done of one of three passes over the mesh, now and then.
+/// Reports the progress of one of three passes over the mesh, from time to time.
 void report(Progress* progress, int pass, std::size_t item, std::size_t count) {
   if (progress == nullptr || item % 65536 != 0) return;
   progress->throw_if_cancelled();
@@ -84,7 +84,7 @@ void DisplacementSeams::add_group(const DisplacedMesh& mesh, std::span<const Cor
   StoredGroup group{static_cast<std::uint32_t>(members_.size()), 0, false};
   for (const CornerIndex corner : all) {
     group.is_pinned |= !mesh.is_displaced(corner / 3) || group.count > kMostMembers;
-    // The members of a pinned group do not matter, but for the first.
+    // A pinned group needs only its first member.
     if (group.is_pinned && group.count > 0) break;
     bool is_known = false;
     for (std::uint32_t i = 0; i < group.count && !is_known; ++i)

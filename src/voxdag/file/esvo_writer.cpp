@@ -20,7 +20,7 @@ EsvoFileWriter::EsvoFileWriter(const std::filesystem::path& path) : file_(path) 
 }
 
 void EsvoFileWriter::append(std::span<const std::uint64_t> slots) {
-  // The info section of each block has its size.
+  // The info section of each block stores the block's size.
   for (std::size_t begin = 0; begin < slots.size();) {
     EsvoBlockInfo info;
     std::memcpy(&info, slots.data() + begin + slots[begin], sizeof info);

@@ -32,8 +32,8 @@ void refuse_too_large(const std::filesystem::path& path, const Box3i& window,
   check_disk_space(path, bytes);
 }
 
-/// Calls write(bytes) with one part of the dense array after the other. A part is a strip of the
-/// window: a range of the slowest axis, or of the middle axis if a single layer is too large.
+/// Calls write(bytes) for one part of the dense array after the other. A part is a range of layers
+/// on the slowest axis, or a range on the middle axis if a single layer is too large.
 template <class Write>
 void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std::string& axes,
                           const ExportOptions& options, const Write& write) {

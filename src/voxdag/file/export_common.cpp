@@ -28,8 +28,8 @@ Box3i export_window(const std::filesystem::path& path, const VoxelSet& voxels,
 
 namespace {
 
-/// The free bytes on the disk of a file, or no limit for a pipe or device, or where the system
-/// reports none.
+/// Returns the free bytes on the disk of a file. Returns the largest number for a pipe or device,
+/// or if the system reports none.
 std::uint64_t free_bytes(const std::filesystem::path& path) {
   constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
   std::error_code unknown;

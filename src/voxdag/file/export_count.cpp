@@ -7,8 +7,8 @@
 namespace voxdag {
 namespace {
 
-/// Subtrees below this many levels above the leaf blocks are walked again and again: remembering
-/// them would take more memory than time saved.
+/// Counts are not stored for subtrees less than this many levels above the leaf blocks: storing
+/// them would cost more memory than it saves time.
 constexpr int kForgottenLevels = 4;
 constexpr std::uint64_t kStepsPerPoll = 1 << 16;
 
@@ -39,7 +39,7 @@ class DagCounter {
     });
   }
 
-  /// Returns the voxels of a cell that lies in the window as a whole.
+  /// Returns the number of voxels of a cell that lies completely in the window.
   std::uint64_t count_whole(int level, std::uint32_t at) {
     if (level == dag_.levels - 2)
       return static_cast<std::uint64_t>(popcount64(dag_.leaf_blocks[at]));
@@ -73,7 +73,7 @@ class DagCounter {
   std::uint64_t steps_ = 0;
 };
 
-/// Thrown inside count_voxels() to leave the walk.
+/// Thrown inside count_voxels() to end the walk.
 struct TooMany {};
 
 }  // namespace

@@ -29,8 +29,8 @@ bool float_suffices(const Grid& grid) {
          grid.voxel_size > 16 * std::numeric_limits<float>::min();
 }
 
-/// A PLY file whose counts are known only at the end. Then the header is written again, padded to
-/// the same length with a comment.
+/// A PLY file whose counts are known only at the end. The header is then written again, padded with
+/// a comment to its first length.
 class PlyFile {
  public:
   struct Content {
@@ -116,7 +116,7 @@ int corner_index(Vec3i corner) { return corner.x + 5 * (corner.y + 5 * corner.z)
 
 /// The faces of a leaf block's voxels whose neighbours are not set.
 struct BlockSurface {
-  /// [2 * axis + side] is the mask of the voxels with an outer face on the low (0) or high (1)
+  /// faces[2 * axis + side] is the mask of the voxels with an outer face on the low (0) or high (1)
   /// side.
   std::array<std::uint64_t, 6> faces{};
   std::bitset<kCorners> corners;  ///< Corners that the faces use.
@@ -135,9 +135,10 @@ std::array<Vec3i, 4> face_corners(Vec3i voxel, int axis, int side) {
   return corners;
 }
 
-/// Moves every voxel's bit to its neighbour at a higher (lower) coordinate on an axis; bits of
-/// `next`, the block beyond, move in. In Morton order, a step inside of an octant of 2³ moves by
-/// one bit position of the axis, a step to the next octant by seven.
+/// Moves every voxel's bit to the neighbour with a higher coordinate on an axis; bits of `below`,
+/// the neighbouring block, move in. shift_down() moves bits in the opposite direction. In Morton
+/// order, a step inside an octant of 2³ moves a bit by the axis's stride (1, 2 or 4), a step to the
+/// next octant by seven strides.
 std::uint64_t shift_up(std::uint64_t block, std::uint64_t below, int axis) {
   const auto& slab = kLeafSlabs[axis];
   return (block << (1 << axis) & (slab[1] | slab[3])) | (block << (7 << axis) & slab[2]) |
@@ -213,7 +214,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
   const Box3i window = export_window(path, voxels, options);
   const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   PlyFile file(path, grid, {.faces = true});
-  // In PLY all vertices come before all faces: two walks make the same surfaces.
+  // In PLY all vertices come before all faces. So two walks compute the same surfaces.
   export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
     const BlockSurface surface = block_surface(voxels, window, origin, block);
     for (int i = 0; i < kCorners; ++i)

@@ -156,7 +156,8 @@ std::string NpyWriter::header(std::uint64_t rows) const {
   std::string dictionary =
       "{'descr': " + dtype_literal(dtype_) +
       ", 'fortran_order': False, 'shape': " + shape_literal(number, row_shape_) + ", }";
-  // As long as for the largest N, so that it can be overwritten; aligns the data to 64 bytes.
+  // The header is as long as for the largest N, so that it can be overwritten. It aligns the data
+  // to 64 bytes.
   const std::size_t longest = kPrefixBytes + dictionary.size() - number.size() + kMostDigits + 1;
   const std::size_t padded = (longest + 63) / 64 * 64;
   dictionary.resize(padded - kPrefixBytes - 1, ' ');

@@ -69,7 +69,7 @@ class Parser {
     return value;
   }
 
-  /// Returns the text of a bracketed list. Brackets inside of strings do not count.
+  /// Returns the text of a bracketed list. Ignores brackets inside strings.
   std::string list() {
     const std::size_t begin = at_;
     int depth = 0;

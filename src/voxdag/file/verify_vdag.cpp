@@ -70,7 +70,7 @@ VerifyReport verify_esvo(std::span<const std::byte> file) {
   return report;
 }
 
-/// Returns false for files that are not even containers.
+/// Returns whether the file holds an ESVO; false for files that are not containers.
 bool holds_esvo(std::span<const std::byte> file) {
   try {
     return is_esvo(read_vdag_chunks(file));

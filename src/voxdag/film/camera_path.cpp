@@ -42,7 +42,7 @@ double monotone_cubic(const std::vector<CameraKey>& keys, std::size_t i, double 
 template <class Point>
 Vec3d along_curve(const std::vector<CameraKey>& keys, std::size_t i, double time,
                   const Point& point) {
-  // The distance between knots is the square root of the distance between points, and never 0, so
+  // The distance between knots is the square root of the distance between points. It is never 0, so
   // that a camera may rest.
   const auto gap = [&](std::size_t k) {
     const Vec3d d = point(k + 1) - point(k);
@@ -50,7 +50,7 @@ Vec3d along_curve(const std::vector<CameraKey>& keys, std::size_t i, double time
   };
   std::vector<double> knots(keys.size());
   for (std::size_t k = 0; k + 1 < keys.size(); ++k) knots[k + 1] = knots[k] + gap(k);
-  const auto velocity = [&](std::size_t k) {  // by knot
+  const auto velocity = [&](std::size_t k) {  // per knot
     const bool has_before = k > 0, has_after = k + 1 < keys.size();
     const auto secant = [&](std::size_t j) { return (point(j + 1) - point(j)) * (1 / gap(j)); };
     if (!has_before) return secant(k);

@@ -23,7 +23,7 @@ std::optional<Placeholder> placeholder_at(std::string_view text, std::size_t at)
   return Placeholder{at, 4, rest[2] - '0'};
 }
 
-/// How the % of a text are used.
+/// The numbers of placeholders and of other % in a text.
 struct Percents {
   int places = 0, others = 0;  // placeholders, and other %
   Placeholder last{};

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Where in the file a value is: for errors.
+/// The place of a value in the file, for errors.
 struct Place {
   const std::string& file;
   std::string name;

@@ -34,7 +34,8 @@ std::uint8_t nearest_code(float value, int, int) {
   return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
 }
 
-/// Returns the picture of color(value): what the display shows, from 0 to 1, rounded by `to_code`.
+/// Returns a picture of all values. color(value) is the display colour, from 0 to 1; to_code()
+/// rounds it.
 template <class Value, class Color>
 ImageRgb8 colored(const RenderedImage& image, const std::vector<Value>& values, const Color& color,
                   std::uint8_t (*to_code)(float value, int x, int y) = nearest_code) {
@@ -67,7 +68,7 @@ ImageRgb8 greys(const RenderedImage& image) {
   return colored(image, image.*kValues, grey);
 }
 
-/// Grey values that are linear in 1 / depth.
+/// Returns a picture of grey values that are linear in 1 / depth.
 ImageRgb8 depths(const RenderedImage& image) {
   float nearest = HUGE_VALF, farthest = 0;
   for (const float d : image.depth) {

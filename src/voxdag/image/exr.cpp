@@ -14,7 +14,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns where OpenEXR finds channel `c` of an interleaved image.
+/// Returns OpenEXR's slice for channel `c` of an interleaved image.
 Imf::Slice slice_of(const ImageF& image, std::size_t c) {
   const std::size_t pixel = sizeof(float) * static_cast<std::size_t>(image.channels);
   const std::size_t row = pixel * static_cast<std::size_t>(image.width);

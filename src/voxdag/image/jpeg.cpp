@@ -16,11 +16,11 @@
 namespace voxdag {
 namespace {
 
-/// Memory of libjpeg beside the coefficients: tables and rows.
+/// Memory of libjpeg without the coefficients: tables and rows.
 constexpr std::uint64_t kJpegWorkBytes = std::uint64_t{4} << 20;
 
-/// A decompressor and the callbacks through which libjpeg reports. Callbacks must not return an
-/// error and no exception may pass through libjpeg: both jump to where the decoder was called.
+/// A decompressor and libjpeg's callbacks. An error callback must not return, and no exception may
+/// pass through libjpeg. So both jump (longjmp) to the caller of the decoder.
 struct JpegDecoder {
   jpeg_decompress_struct info{};
   jpeg_error_mgr errors{};
@@ -28,7 +28,7 @@ struct JpegDecoder {
   std::jmp_buf escape;
   char message[JMSG_LENGTH_MAX] = {};
   const ImageOptions& options;
-  std::exception_ptr thrown;  ///< By options.poll, to be thrown again after the jump.
+  std::exception_ptr thrown;  ///< Exception of options.poll, rethrown after the jump.
 
   explicit JpegDecoder(const ImageOptions& image_options) : options(image_options) {
     info.err = jpeg_std_error(&errors);
@@ -55,7 +55,7 @@ struct JpegDecoder {
     std::longjmp(escape, 1);
   }
 
-  /// libjpeg calls this for each row of blocks of each scan.
+  /// Checks scans and polls. libjpeg calls it for each row of blocks of each scan.
   void on_progress() {
     const auto scans = static_cast<std::uint64_t>(info.input_scan_number);
     if (scans > kMaxJpegScans ||
@@ -76,8 +76,8 @@ struct JpegDecoder {
   }
 };
 
-// The two functions below are where libjpeg's errors jump to. No object with a destructor may live
-// in them. They return false if decoding failed.
+// libjpeg's errors jump to the two functions below. No object with a destructor may live in them.
+// They return false if decoding failed.
 
 bool read_header(JpegDecoder& decoder, std::span<const std::uint8_t> bytes) {
   if (setjmp(decoder.escape)) return false;
@@ -102,7 +102,7 @@ bool read_rows(JpegDecoder& decoder, DecodedImage& image) {
   return true;
 }
 
-/// Returns the bytes of the coefficients that libjpeg keeps of a file with several scans.
+/// Returns the bytes of the coefficients that libjpeg stores for a file with several scans.
 std::uint64_t coefficient_bytes(jpeg_decompress_struct& info) {
   if (!jpeg_has_multiple_scans(&info)) return 0;
   const auto round_up = [](std::uint64_t value, int step) {

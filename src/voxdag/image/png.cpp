@@ -15,18 +15,18 @@
 namespace voxdag {
 namespace {
 
-/// Deflate expands at most 1032 times, so a file cannot hold more one-bit pixels than this for each
+/// Deflate expands data at most 1032 times, so a file has at most this many one-bit pixels for each
 /// of its bytes.
 constexpr std::uint64_t kMaxPixelsPerByte = 1032 * 8;
-/// Chunks that are skipped: libpng would unpack a few kilobytes of them to megabytes.
+/// Chunks that are skipped, because libpng would unpack a few kilobytes of them to megabytes.
 constexpr png_byte kSkippedChunks[] = "tEXt\0zTXt\0iTXt\0iCCP\0sPLT\0eXIf";
 
 std::uint32_t big_endian32(const std::uint8_t* p) {
   return std::uint32_t{p[0]} << 24 | std::uint32_t{p[1]} << 16 | std::uint32_t{p[2]} << 8 | p[3];
 }
 
-/// Walks the chunks up to IEND: libpng stops at the last pixel and would not notice that the end is
-/// missing.
+/// Throws Error unless the chunks reach IEND. libpng stops at the last pixel and would not notice a
+/// missing end.
 void require_whole(const std::string& file, std::span<const std::uint8_t> bytes) {
   for (std::size_t at = 8;;) {
     if (bytes.size() - at < 12) break;
@@ -39,7 +39,7 @@ void require_whole(const std::string& file, std::span<const std::uint8_t> bytes)
   throw Error(file, ErrorPlace::byte(bytes.size()), "the PNG file is truncated");
 }
 
-/// Checks the size in the header, which libpng does not see before.
+/// Checks the size in the header before libpng reads it.
 void require_sane_size(const std::string& file, std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 24 || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0)
     throw Error(file, "byte 8", "damaged PNG file: the first chunk is not the header");
@@ -51,7 +51,7 @@ void require_sane_size(const std::string& file, std::span<const std::uint8_t> by
                     std::to_string(height) + " pixels");
 }
 
-/// libpng's structures for reading, freed on every way out, and what its callbacks need.
+/// libpng's structures for reading, which the destructor frees, and the data of its callbacks.
 struct PngDecoder {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -76,8 +76,8 @@ void on_read(png_structp png, png_bytep to, png_size_t size) {
   rest = rest.subspan(size);
 }
 
-// The functions below are where libpng's errors jump to. No object with a destructor may live in
-// them. They return false if decoding failed.
+// libpng's errors jump to the functions below. No object with a destructor may live in them. They
+// return false if decoding failed.
 
 bool read_header(PngDecoder& decoder) {
   decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, on_error, on_warning);
@@ -88,7 +88,7 @@ bool read_header(PngDecoder& decoder) {
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kSkippedChunks,
                               sizeof kSkippedChunks / 5);
   png_read_info(png, decoder.info);
-  png_set_expand(png);  // Palettes, few bits and transparent colours.
+  png_set_expand(png);  // Expands palettes, few bits and transparent colours.
   if constexpr (std::endian::native == std::endian::little) png_set_swap(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, decoder.info);

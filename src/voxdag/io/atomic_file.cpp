@@ -62,7 +62,8 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
   } else {
     create_named();
   }
-  // Not the set-user-ID and set-group-ID bits: they were given to the old bytes.
+  // Does not copy the set-user-ID and set-group-ID bits, because they were meant for the old
+  // contents.
   if (exists) fchmod(descriptor_, existing.st_mode & 0777);
 }
 
@@ -131,7 +132,7 @@ void AtomicFile::commit() {
 void AtomicFile::share(int descriptor) {
   const int flags = fcntl(descriptor, F_GETFL);
   if (flags < 0) fail(0, errno);
-  // Descriptors that this program opened itself are not outputs of its user.
+  // A descriptor that this program opened itself is not an output that the user named.
   const bool is_own = (fcntl(descriptor, F_GETFD) & FD_CLOEXEC) != 0;
   if (is_own || (flags & O_ACCMODE) == O_RDONLY) fail(0, EBADF);
   descriptor_ = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
@@ -156,14 +157,14 @@ void AtomicFile::take_name() {
   if (noted_ != nullptr && !is_noted(noted_)) fail(position(), ECANCELED);
   int error = name_file(descriptor_, target_);
   if (error == 0)
-    temporary_ = target_;  // to be removed if closing it fails
+    temporary_ = target_;  // removed if closing it fails
   else if (error == EEXIST)
     error = name_file(descriptor_, temporary_);
   is_nameless_ = false;
   if (error != 0) copy_to_named();
 }
 
-/// Copies a nameless file to a named one, where the system refuses to give it a name.
+/// Copies a nameless file to a named one, if the system refuses to give it a name.
 void AtomicFile::copy_to_named() {
   struct Nameless {
     int descriptor;
@@ -182,7 +183,7 @@ void AtomicFile::flush() {
 }
 
 void AtomicFile::write_through(const std::byte* data, std::size_t bytes) {
-  // Linux writes at most 2 GiB at once, and less where a signal or a full disk cuts it short.
+  // Linux writes at most 2 GiB at once, and less if a signal or a full disk interrupts it.
   const std::size_t all = bytes;
   while (bytes > 0) {
     const ssize_t written = ::write(descriptor_, data, bytes);

@@ -1,6 +1,6 @@
 #include "voxdag/io/checksum.hpp"
 
-// The header-only form, so that an installed voxdag needs no libxxhash beside it.
+// Uses the header-only form, so that an installed voxdag needs no libxxhash.
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 

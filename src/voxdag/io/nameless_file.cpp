@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-/// A path to an open file that needs no name of its own. Needs /proc.
+/// A path to an open file that works without a name, through /proc.
 struct OwnPath {
   char text[32];
   explicit OwnPath(int descriptor) {

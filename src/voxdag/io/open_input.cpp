@@ -19,7 +19,7 @@ Error system_error(const std::filesystem::path& path, const char* action) {
   return {path.string(), "", std::string(action) + ": " + std::system_category().message(errno)};
 }
 
-/// "64 MiB", or bytes where that is not whole.
+/// Returns "64 MiB", or bytes if the size is not a whole number of MiB.
 std::string size_text(std::uint64_t bytes) {
   constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
   return bytes % kMebibyte == 0 ? std::to_string(bytes / kMebibyte) + " MiB"
@@ -34,7 +34,7 @@ Error over_limit(const std::filesystem::path& path, const std::string& size, Siz
 }  // namespace
 
 OpenInput open_input(const std::filesystem::path& path, InputKind kind, SizeLimit limit) {
-  // O_NONBLOCK: opening a named pipe does not wait for its writer.
+  // With O_NONBLOCK, opening a named pipe does not wait for its writer.
   const int wait = kind == InputKind::kRegularFile ? O_NONBLOCK : 0;
   OpenInput input{Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | wait)), {}};
   if (!input.descriptor.is_open()) throw system_error(path, "cannot open");

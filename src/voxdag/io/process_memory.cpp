@@ -14,16 +14,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Code that is paged in after the start, the command's small allocations and its threads' stacks.
+/// Memory that nothing else counts: code that is paged in after the start, small allocations and
+/// the threads' stacks.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{6} << 20;
 
 std::optional<std::uint64_t> read_count(const fs::path& file) {
   std::uint64_t count = 0;
-  if (std::ifstream(file) >> count) return count;  // not if it says "max"
+  if (std::ifstream(file) >> count) return count;  // fails if the file says "max"
   return std::nullopt;
 }
 
-/// Returns the least number in the files of that name in `folder` and the `depth` folders above it.
+/// Returns the least number in the files called `name` in `folder` and the `depth` folders above
+/// it.
 std::optional<std::uint64_t> least_limit(fs::path folder, const char* name, std::ptrdiff_t depth) {
   std::optional<std::uint64_t> least;
   for (; depth >= 0; --depth, folder = folder.parent_path())
@@ -44,8 +46,8 @@ std::optional<std::uint64_t> available_bytes() {
 }  // namespace
 
 MemoryBudget command_budget(std::uint64_t limit) {
-  // Freed memory goes back to the system, so that what is counted is what is resident: malloc would
-  // raise these thresholds by itself to 32 and 64 MiB.
+  // Freed memory must go back to the system, so that the counted memory is the resident memory. By
+  // itself, malloc would raise these thresholds to 32 and 64 MiB.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   mallopt(M_TRIM_THRESHOLD, 4 << 20);
   return MemoryBudget(limit != 0 ? limit : default_memory_limit(),

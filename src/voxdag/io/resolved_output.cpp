@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxLinks = 40;  // Linux follows as many
+constexpr int kMaxLinks = 40;  // Linux's own limit
 
 /// Returns the descriptor of this process that the path itself names, or -1.
 int descriptor_at(const fs::path& path) {

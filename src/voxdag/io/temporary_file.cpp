@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Leaves room for the suffix within the 255 bytes that file systems allow a name.
+/// Leaves room for the suffix within the 255 bytes that file systems allow for a name.
 constexpr std::size_t kMaxStem = 200;
 constexpr std::string_view kMark = ".voxdag-";
 
@@ -30,7 +30,7 @@ std::string prefix_of(const fs::path& target) {
   return target.filename().string().substr(0, kMaxStem) + std::string(kMark);
 }
 
-/// Parses decimal digits without sign or leading zero up to `end`. Returns -1 for anything else.
+/// Parses decimal digits without sign or leading zero. Returns -1 for anything else.
 long parse_digits(std::string_view digits) {
   long value = -1;
   if (digits.empty() || (digits[0] == '0' && digits.size() > 1) || digits[0] == '-') return -1;
@@ -60,7 +60,8 @@ void remove_unlocked(const fs::path& path) {
   if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
 }
 
-/// Names with the mark, by folder: outputs of one run can be many files of one large folder.
+/// Returns the names in a folder that contain the mark of temporary files. Caches them per folder,
+/// because one run can write many files into one large folder.
 std::vector<std::string> marked_names(const fs::path& folder) {
   static std::mutex mutex;
   static std::map<fs::path, std::vector<std::string>> known;

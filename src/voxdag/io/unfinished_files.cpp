@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-/// Who takes a name out of its slot owns it.
+/// The thread or handler that takes a name out of its slot owns the name.
 std::atomic<char*> unfinished[64];
 /// Names of removed files. A signal handler must not free them.
 char* removed[std::size(unfinished)];

@@ -38,7 +38,7 @@ EsvoBytes& EsvoBytes::operator+=(const EsvoBytes& other) {
 EsvoBytes esvo_bytes(std::span<const std::uint64_t> blocks) {
   EsvoBytes bytes;
   for (std::size_t begin = 0; begin < blocks.size();) {
-    // The first slot of a page says how far it is to the block's info.
+    // The first slot of a page holds the distance to the block's info.
     EsvoBlockInfo info;
     std::memcpy(&info, blocks.data() + begin + blocks[begin], sizeof info);
     bytes += bytes_of(info);

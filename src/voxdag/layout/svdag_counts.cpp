@@ -36,8 +36,8 @@ SvdagCounts count_svdag(const SvdagView& dag) {
       const std::uint64_t paths_here = paths[(at - begin) / 2];
       const int children = popcount(child_mask(node));
       for (int i = 1; i <= children; ++i) below[(node[i] - below_begin) >> shift] += paths_here;
-      // Prefetches the sums, which are scattered over the level below. Words that are masks do no
-      // harm.
+      // Prefetches the sums, which are scattered over the next level. Words that are masks are
+      // harmless.
       for (int i = 1; i <= children && at + i + kAhead < end; ++i)
         if (const std::uint64_t sum = (node[i + kAhead] - below_begin) >> shift; sum < below.size())
           __builtin_prefetch(&below[sum], 1);

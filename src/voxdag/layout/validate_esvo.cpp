@@ -51,7 +51,7 @@ EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
   return info;
 }
 
-/// Walks a block from its first group and marks the slots that it has seen.
+/// Walks a block from its first group and marks the slots that it has visited.
 class BlockWalk {
  public:
   BlockWalk(std::span<const std::uint64_t> slots, const EsvoBlockInfo& info, int levels)
@@ -78,7 +78,8 @@ class BlockWalk {
     Vec3i cell;
   };
 
-  /// Checks that a group of siblings may be stored there, and that its slots are new.
+  /// Checks that a group of siblings may be stored at `first`, and that its slots were not visited
+  /// before.
   void check_group(std::uint64_t first, std::uint64_t count) {
     const std::uint64_t end = first + count;
     if (end > info_.descriptor_slots)
@@ -152,7 +153,7 @@ class BlockWalk {
     }
   }
 
-  EsvoView view_;  // of this block alone
+  EsvoView view_;  // a view of this block alone
   const EsvoBlockInfo& info_;
   std::vector<bool> seen_;
   std::vector<Step> stack_;
@@ -231,7 +232,7 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
       if (child.parent != entry.begin + link.slot || child.level != link.level ||
           child.cell != link.cell)
         fail(from, "the directory disagrees with this slot about its child block");
-      // The whole info section is checked again when the walk visits the block.
+      // The complete info section is checked when the walk visits the block.
       const std::span<const std::uint64_t> slots(view.slots + child.begin, child.slots);
       if (check_info(slots).first_descriptor != static_cast<std::uint64_t>(target) - child.begin)
         fail(from, "the far pointer does not point to the first descriptor of a block");

@@ -58,7 +58,8 @@ void mark_nodes(const SvdagView& dag, int level, std::vector<std::uint64_t>& sta
   }
 }
 
-/// Checks the pointers of a level above the leaf blocks' parents. Its nodes must be sound.
+/// Checks the pointers of a level above the leaf blocks' parents. mark_nodes() must have accepted
+/// its nodes.
 void check_pointers(const SvdagView& dag, int level, const std::vector<std::uint64_t>& starts) {
   const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
   const std::uint64_t below_words = dag.level_begin[level + 2] - end;
@@ -111,7 +112,8 @@ class PositionSet {
   }
 
  private:
-  /// Not a position: no node starts at a level's last word, and a level has at most 2^32 words.
+  /// Marks a free slot. It is not a valid position, because no node starts at a level's last word
+  /// and a level has at most 2^32 words.
   static constexpr std::uint32_t kFree = 0xFFFFFFFF;
   std::vector<std::uint32_t> slots_;
 };
@@ -170,7 +172,8 @@ void check_canonical(const SvdagView& dag) {
   for (int level = 0; level < dag.levels - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     const bool above_leaf_blocks = level + 1 == dag.levels - 2;
-    // The first node below that the scan of this level has not met: the next new child must be it.
+    // The first node of the next level that the scan of this level has not met. The next new child
+    // must be this node.
     std::uint64_t next = above_leaf_blocks ? 0 : end;
     const std::uint64_t below_end =
         above_leaf_blocks ? dag.leaf_block_count : dag.level_begin[level + 2];

@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-/// The children of a wide node, by their bit in its mask.
+/// The children of a wide node, indexed by their bit in its mask.
 struct WideNode {
   std::uint64_t mask = 0;
   std::array<std::uint32_t, 64> children{};
@@ -45,7 +45,8 @@ class WideMaker {
   }
 
  private:
-  /// Returns the word index of the wide node or leaf block for a pointer of level `level` - 1.
+  /// Returns the word index of the wide node or leaf block for a pointer in a node of level `level`
+  /// - 1.
   std::uint32_t wide_pointer(int level, std::uint32_t pointer) const {
     if (level == dag_.levels - 2) return 2 * pointer;
     return below_[pointer - dag_.level_begin[level]];
@@ -118,7 +119,7 @@ class WideMaker {
 
   const SvdagView& dag_;
   WideSvdag wide_;
-  std::vector<std::uint32_t> below_;  ///< The wide node of each word of the last level done.
+  std::vector<std::uint32_t> below_;  ///< The wide node of each word of the last finished level.
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
 /// Ear clipping (G. H. Meisters, "Polygons have ears", 1975): a corner whose triangle contains no
 /// other corner is an ear. Ears are cut off until one triangle is left. Only reflex corners can lie
-/// in another corner's triangle, and a k-d tree finds them. A corner that is no ear can become one
-/// only when a neighbour is cut off, so that each cut costs two tests.
+/// in another corner's triangle, and a k-d tree finds them. A corner that is not an ear can become
+/// one only when a neighbour is cut off, so each cut needs two tests.
 ///
-/// Corners at one position share one point of the tree, which is present while any of them is
-/// reflex and not cut off: repeated positions cost nothing.
+/// Corners at one position share one point of the tree. It is present while any of them is reflex
+/// and not cut off. So repeated positions cost no extra time.
 #include "voxdag/mesh/polygon.hpp"
 
 #include <algorithm>
@@ -23,11 +23,11 @@ namespace {
 
 using Point = PlanePoint;
 
-/// Cancellation is polled each time that so many nodes of the tree have been visited.
+/// The number of visited nodes of the tree between two polls of cancellation.
 constexpr std::uint64_t kVisitsPerPoll = std::uint64_t{1} << 20;
 
-/// Returns how many nodes of the tree may be visited for a polygon of `corners` corners. Stars,
-/// combs and spirals of 100,000 corners need less than a fifth of it.
+/// Returns the maximum number of tree nodes to visit for a polygon of `corners` corners. Stars,
+/// combs and spirals of 100,000 corners need less than a fifth of that.
 std::uint64_t max_visits(std::size_t corners) {
   return std::uint64_t{128} * corners * static_cast<std::uint64_t>(std::bit_width(corners));
 }
@@ -40,7 +40,8 @@ Vec3d area_vector(const Triangle& triangle, std::span<const Vec3f> vertices) {
 
 class EarClipper {
  public:
-  /// `points` are the corners of a polygon that turns left on the whole. `poll` may be empty.
+  /// `points` are the corners of a polygon that is counter-clockwise (it has a positive area).
+  /// `poll` may be empty.
   EarClipper(const std::vector<Point>& points, const std::function<void()>& poll)
       : points_(points),
         poll_(poll),
@@ -56,13 +57,13 @@ class EarClipper {
     for (std::uint32_t i = 0; i < points.size(); ++i) update(i);
   }
 
-  /// Calls on_triangle(a, b, c) with indices of corners: two times fewer than there are corners.
+  /// Calls on_triangle(a, b, c) with indices of corners. There are two triangles less than corners.
   template <class OnTriangle>
   void run(const OnTriangle& on_triangle) {
     std::vector<std::uint32_t> all(points_.size());
     std::iota(all.begin(), all.end(), 0u);
     clip(all, Ear::kClear, on_triangle);
-    // The remaining polygon crosses itself, or touches itself in more than corners.
+    // The remaining polygon crosses itself, or touches itself at other points than corners.
     for (const Ear least : {Ear::kTouched, Ear::kConvex, Ear::kAny})
       for (const std::uint32_t corner : all) clip({corner}, least, on_triangle);
   }
@@ -70,7 +71,7 @@ class EarClipper {
  private:
   static constexpr std::uint32_t kNoPosition = ~0u;
 
-  /// What a corner must be to be cut off, from the strictest condition to none.
+  /// Conditions for cutting a corner off, from the strictest to none.
   enum class Ear {
     kClear,    ///< Convex, and no other corner lies in its triangle or on its edges.
     kTouched,  ///< Convex, and no other corner lies inside its triangle.
@@ -106,7 +107,7 @@ class EarClipper {
   }
   bool is_cut(std::uint32_t i) const { return next_[i] == i; }
 
-  /// Tells the tree whether corner `i` is reflex now. Corners that were convex at first never are.
+  /// Updates the tree: is corner `i` reflex now? A corner that was convex at first is never reflex.
   void update(std::uint32_t i) {
     const std::uint32_t position = position_[i];
     if (position == kNoPosition) return;
@@ -120,10 +121,11 @@ class EarClipper {
   bool is_ear(std::uint32_t i, Ear least) {
     if (least == Ear::kAny) return true;
     const double size = corner_area(i);
-    if (size <= 0 || least == Ear::kConvex) return size >= 0;  // No area: nothing can be in it.
+    if (size <= 0 || least == Ear::kConvex)
+      return size >= 0;  // No corner can lie in a triangle without area.
     const Point a = points_[previous_[i]], b = points_[i], c = points_[next_[i]];
     const bool is_blocked = tree_.any_in(a, b, c, visits_, [&](Point p) {
-      // Corners at one position are how a polygon goes around its holes.
+      // Polygons with holes have several corners at one position.
       if (p == a || p == b || p == c) return false;
       return least == Ear::kClear ||
              (signed_area(a, b, p) > 0 && signed_area(b, c, p) > 0 && signed_area(c, a, p) > 0);
@@ -142,7 +144,7 @@ class EarClipper {
   }
 
   /// Cuts off the ears among `corners`, then those among their neighbours, and so on. Neighbours
-  /// wait for the next round, which keeps triangles rounder.
+  /// wait for the next round, which avoids thin triangles.
   template <class OnTriangle>
   void clip(std::vector<std::uint32_t> corners, Ear least, const OnTriangle& on_triangle) {
     std::vector<std::uint32_t> waiting;
@@ -173,20 +175,20 @@ class EarClipper {
   const std::function<void()>& poll_;
   const std::uint64_t max_visits_;
   std::uint64_t visits_ = 0, next_poll_ = kVisitsPerPoll;
-  std::vector<std::uint32_t> next_, previous_;  ///< A corner that is cut off is its own next.
+  std::vector<std::uint32_t> next_, previous_;  ///< A cut-off corner is its own next.
   std::vector<bool> is_waiting_;
   std::size_t left_;
-  std::vector<std::uint32_t> position_;  ///< By corner: its point of the tree, or kNoPosition.
-  std::vector<bool> is_blocking_;        ///< By corner: reflex and not cut off.
+  std::vector<std::uint32_t> position_;  ///< Each corner's point in the tree, or kNoPosition.
+  std::vector<bool> is_blocking_;        ///< Per corner: reflex and not cut off.
   PointTree tree_;
-  std::vector<std::uint32_t> blocking_;  ///< By point of the tree: its blocking corners.
+  std::vector<std::uint32_t> blocking_;  ///< Number of blocking corners of each point in the tree.
 };
 
-/// Projects the corners of a polygon along its unit normal: they turn left on the whole.
+/// Projects the corners of a polygon along its unit normal. The result is counter-clockwise.
 std::vector<Point> project(std::span<const std::uint32_t> corners, std::span<const Vec3f> vertices,
                            Vec3d normal) {
-  // The axis after the normal's longest component: it is far from parallel to the normal, and for a
-  // normal along an axis the projection is exact.
+  // Uses the axis after the normal's longest component. It is far from parallel to the normal, and
+  // for a normal along an axis the projection is exact.
   const Vec3d size{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
   const Vec3d axis = size.x >= size.y && size.x >= size.z ? Vec3d{0, 1, 0}
                      : size.y >= size.z                   ? Vec3d{0, 0, 1}
@@ -208,7 +210,8 @@ std::vector<Point> project(std::span<const std::uint32_t> corners, std::span<con
 void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices,
                  const std::function<void()>& poll) {
   if (fan.size() < 2) return;
-  Vec3d normal;  // M. Newell's: the sum of the areas, which is equal for all fans of a polygon.
+  Vec3d normal;  // M. Newell's normal: the sum of the area vectors, which is equal for all fans of
+                 // a polygon.
   for (const Triangle& triangle : fan) normal = normal + area_vector(triangle, vertices);
   normal = normalized_or(normal, {});
   if (normal == Vec3d{}) return;

@@ -1,5 +1,5 @@
 /// Source: Thürmer and Wüthrich, "Computing Vertex Normals from Polygonal Facets", Journal of
-/// Graphics Tools 3(1), 1998: weights by angle do not depend on how faces are triangulated.
+/// Graphics Tools 3(1), 1998. Weights by angle do not depend on the triangulation of faces.
 #include "voxdag/mesh_view/corner_normals.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct CornersByPosition {
   std::size_t positions() const { return starts.size() - 1; }
 };
 
-/// Returns a number for each vertex, the same for vertices at equal positions.
+/// Returns a number for each vertex; vertices at equal positions get the same number.
 std::vector<std::uint32_t> position_numbers(const std::vector<Vec3f>& vertices) {
   std::vector<std::uint32_t> numbers(vertices.size());
   VertexTable table(vertices.size(), 2 * vertices.size() + 1);
@@ -71,7 +71,7 @@ std::vector<std::array<PackedNormal, 3>> corner_normals(const Mesh& mesh, float 
   /// If more triangles meet, as at the tip of a fan, comparing all pairs would take too long.
   constexpr std::uint64_t kMostTriangles = 1024;
   constexpr std::size_t kBlock = 1024;
-  // A little more than requested, so that planes that differ by exactly the angle are smoothed in
+  // Slightly larger than requested, so that planes that differ by exactly the angle are smoothed in
   // spite of rounding.
   const double least_cosine = std::cos(crease_degrees * kRadiansPerDegree) - 1e-6;
   std::vector<std::array<PackedNormal, 3>> normals(mesh.triangles.size());

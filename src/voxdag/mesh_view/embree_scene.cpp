@@ -36,7 +36,7 @@ EmbreeScene::EmbreeScene(Mesh mesh, EmbreeMode mode) : mesh_(std::move(mesh)) {
   }
   for (Vec3f& vertex : mesh_.vertices)
     vertex = static_cast<Vec3f>(from_world(static_cast<Vec3d>(vertex)));
-  // Embree loads 16 bytes from each vertex, the last one included.
+  // Embree loads 16 bytes from each vertex, also from the last one.
   mesh_.vertices.reserve(mesh_.vertices.size() + 1);
   mesh_.vertices.push_back({});
 

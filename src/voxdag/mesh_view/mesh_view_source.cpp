@@ -13,8 +13,8 @@ namespace {
 constexpr int kPacketSide = 4;
 constexpr int kPacket = kPacketSide * kPacketSide;
 
-/// Returns where a line meets the plane of a triangle, as the weights of corners 1 and 2; nothing
-/// if the two are nearly parallel.
+/// Returns the point where a line meets the plane of a triangle, as the weights of corners 1 and 2.
+/// Returns nothing if line and plane are nearly parallel.
 std::optional<Vec2d> meet_plane(const std::array<Vec3d, 3>& corners, Vec3d origin,
                                 Vec3d direction) {
   const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0], ao = origin - corners[0];
@@ -61,8 +61,8 @@ class MeshViewSource::Scene {
                      std::span<ViewSample> samples) const;
 
  private:
-  /// Returns the point at which the line comes close to the mesh, in Embree's coordinates, so that
-  /// the rest of the ray suits floats even for a distant viewer.
+  /// Returns the point at which the line comes close to the mesh, in Embree's coordinates. From
+  /// there on, floats are precise enough even for a distant viewer.
   Vec3d near_origin(Vec3d eye, Vec3d direction) const {
     const Vec3d from = embree_.from_world(eye);
     const double length2 = dot(direction, direction);
@@ -120,7 +120,7 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
   const Vec3f view = static_cast<Vec3f>(normalized(-direction));
   const Vec3d winding = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double area2 = length(winding);
-  if (!(area2 > 0)) {  // Embree reports no triangles without area, but decides in float
+  if (!(area2 > 0)) {  // Embree reports no triangles without area, but it decides in float
     sample.face = sample.normal = view;
     return sample;
   }

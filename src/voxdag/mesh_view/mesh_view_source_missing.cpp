@@ -1,4 +1,5 @@
-/// Stands in for MeshViewSource in a library built without Embree: every use reports that.
+/// Replaces MeshViewSource in a library built without Embree. Every use reports that Embree is
+/// missing.
 #include "voxdag/core/error.hpp"
 #include "voxdag/mesh_view/mesh_view_source.hpp"
 

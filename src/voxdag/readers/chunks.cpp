@@ -8,7 +8,7 @@ std::vector<std::string_view> split_lines(std::string_view text, char line_end,
   chunks.reserve(text.size() / chunk_bytes + 1);
   while (!text.empty()) {
     std::size_t cut = chunk_bytes;
-    for (;; ++cut) {  // to the first line end that does not continue its line
+    for (;; ++cut) {  // up to the first line end that ends its line
       cut = cut < text.size() ? text.find(line_end, cut) : text.npos;
       if (cut == text.npos) break;
       std::size_t last = cut;

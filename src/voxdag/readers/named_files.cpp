@@ -14,7 +14,7 @@ fs::path resolved(const fs::path& path) {
   std::error_code failed;
   // weakly_canonical() leaves a relative path relative if no part of it exists.
   fs::path result = fs::weakly_canonical(fs::absolute(path), failed);
-  // What cannot be resolved (a loop of links, a name too long) cannot be opened either.
+  // A path that cannot be resolved (a loop of links, a name too long) cannot be opened either.
   return failed ? fs::absolute(path, failed).lexically_normal() : result;
 }
 

@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-/// Adds grey materials with the mesh's names to a mesh whose format has no appearance.
+/// Returns the mesh with grey materials of its names: for formats without appearance.
 MeshWithAppearance in_grey(Mesh mesh) {
   MeshWithAppearance result;
   std::vector<Material>& materials = result.appearance.materials;

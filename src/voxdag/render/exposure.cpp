@@ -8,7 +8,7 @@ namespace voxdag {
 
 float automatic_exposure(std::span<const Vec3f> radiance, std::span<const float> depth) {
   constexpr double kMiddle = 0.3, kBright = 0.95, kWhite = 1.1;
-  constexpr double kLeast = 1e-6;  // the dark counts, but not without end
+  constexpr double kLeast = 1e-6;  // lower bound, so that black pixels do not dominate the mean
   std::vector<float> luminances;
   for (std::size_t i = 0; i < depth.size(); ++i)
     if (std::isfinite(depth[i]))

@@ -14,19 +14,19 @@ namespace voxdag {
 namespace {
 
 constexpr double kOutsideFov = 35, kInsideFov = 65;  // degrees, vertical
-/// Rooms and courtyards are less open than this, and fill more of their bounds. Statues in folded
-/// drapery, and objects with a complex inside, do not do both.
+/// Rooms and courtyards are less open than this, and fill more of their bounds than this. Statues
+/// in folded drapery, and objects with a complex inside, do not fulfil both conditions.
 constexpr double kInsideOpenness = 0.29, kInsideFill = 0.75;
 
-/// Returns whether the scene's outline, seen along each axis, fills its bounds, as that of a
-/// building does.
+/// Returns whether the scene's outline, seen along each axis, fills its bounds, like the outline of
+/// a building.
 bool fills_its_box(const CoarseCells& scene) {
   for (int axis = 0; axis < 3; ++axis)
     if (scene.side_cover(axis, true, scene.side()) < kInsideFill) return false;
   return true;
 }
 
-/// Returns the mean share of directions in which a line from the scene's cells leaves the scene:
+/// Returns the mean fraction of directions in which a line from the scene's cells leaves the scene:
 /// about a half for the surface of an object, little for the inside of a building.
 double openness(const CoarseCells& scene, const SceneExplorer& explorer, const Grid& grid,
                 const Compass& compass) {
@@ -40,7 +40,7 @@ double openness(const CoarseCells& scene, const SceneExplorer& explorer, const G
         grid.origin + (static_cast<Vec3d>(scene.cells()[at]) + Vec3d{0.5, 0.5, 0.5}) * cell_size;
     for (int i = 0; i < kDirections; ++i) {
       const Vec3d direction = sphere_direction(compass, i, kDirections);
-      // Two cells away, the line has left the surface that it starts on, or will meet it.
+      // The line starts two cells away: there it has left its own surface, or will meet it.
       const double distance = explorer.distance(middle + direction * (2 * cell_size), direction);
       open += distance < HUGE_VAL ? 0 : 1;
       ++lines;
@@ -49,7 +49,7 @@ double openness(const CoarseCells& scene, const SceneExplorer& explorer, const G
   return lines == 0 ? 1 : static_cast<double>(open) / lines;
 }
 
-/// Returns the view from outside along `forward` whose picture the scene just fills.
+/// Returns the view from outside, along `forward`, that the scene exactly fills.
 View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward, Vec3d up,
                        double fov, double aspect) {
   View view;
@@ -95,7 +95,7 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
   return view;
 }
 
-/// Throws Error for numbers that are wrong whatever the target is.
+/// Throws Error for numbers that are wrong for every target.
 void check_numbers(const View& view) {
   if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
     throw Error("the camera's coordinates must be finite");

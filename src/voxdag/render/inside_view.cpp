@@ -9,7 +9,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns a score that is high for a far sight, few near obstacles and little sky.
+/// Returns a score that is high for distant surfaces, few near obstacles and little sky.
 double view_score(const SceneExplorer& explorer, const Camera& camera, double size) {
   constexpr int kColumns = 10, kRows = 6;
   double sum = 0;
@@ -39,7 +39,7 @@ std::vector<InsideView> inside_views(const CoarseCells& scene, const SceneExplor
   const double size = length(extent);
   std::vector<InsideView> views;
   for (int place = 0; place < kPlaces; ++place) {
-    // The R3 sequence, at low heights, where people stand.
+    // The R3 sequence, limited to low heights, where people stand.
     double u[3] = {0.8191725134, 0.6710436067, 0.5497004779};
     for (double& c : u) c = c * (place + 1) - std::floor(c * (place + 1));
     const double height = 0.12 + 0.38 * u[2];

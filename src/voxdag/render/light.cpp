@@ -30,7 +30,7 @@ void check(const LightSpec& spec) {
       throw Error("a light's colour must be finite and not negative");
 }
 
-/// Sets a box around the light, widened by more than the rounding errors of sampling in float.
+/// Sets a box around the light, widened by more than the rounding errors of float samples.
 void set_bounds(Light& light) {
   constexpr float kRounding = 1e-5f;
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,7 +57,8 @@ void set_bounds(Light& light) {
   }
 }
 
-/// Returns the colour that gives `irradiance` on a surface that faces the light from afar.
+/// Returns the colour with which the light gives `irradiance` on a surface that faces it at a large
+/// `distance`.
 Vec3f color_for(const Light& light, Vec3f irradiance, float distance) {
   const float distance2 = distance * distance;
   switch (light.kind) {

@@ -11,7 +11,7 @@ constexpr int kReach = static_cast<int>(kFilterRadius);
 
 float length(float x, float y) { return std::sqrt(x * x + y * y); }
 
-/// Returns the spacing of samples at this distance from the centre, up to a factor.
+/// Returns the relative spacing of samples at this distance from the centre.
 float spacing(float distance) { return std::sqrt(std::sqrt(std::max(distance, 0.25f))); }
 
 FilterSample sample_at(int x, int y) {
@@ -30,8 +30,8 @@ float room(const FilterTable& table, int count, const FilterSample& at) {
   return least;
 }
 
-/// Returns the pixel with most room among those at about this distance from the centre. Considers
-/// only the upper half: opposite pixels have equal room.
+/// Returns the pixel with most room() among the pixels at about this distance from the centre.
+/// Considers only the upper half, because opposite pixels have equal room.
 FilterSample roomiest(const FilterTable& table, int count, float distance) {
   FilterSample best{};
   float most = -1.0f;
@@ -43,7 +43,8 @@ FilterSample roomiest(const FilterTable& table, int count, float distance) {
         continue;
       const float space =
           std::min(room(table, count, candidate),
-                   2.0f * candidate.distance / spacing(candidate.distance));  // to its opposite
+                   2.0f * candidate.distance /
+                       spacing(candidate.distance));  // distance to the opposite pixel
       if (space <= most) continue;
       most = space;
       best = candidate;
@@ -74,8 +75,8 @@ void weigh(FilterTable& table) {
 }
 
 FilterTable make_filter_table() {
-  // If the density falls with the square root of the distance, distance^(3/2) samples are within
-  // it.
+  // If the density falls with the square root of the distance, the number of samples within a
+  // distance is proportional to distance^(3/2).
   FilterTable table{};
   table[0] = sample_at(0, 0);
   for (int count = 1; count < kFilterSamples; count += 2) {

@@ -39,8 +39,8 @@ void check(const RenderOptions& options) {
     throw Error("tiles must have 1 to 32 pixels a side");
 }
 
-/// Returns the rays per view sample for `per_pixel` rays in a pixel of `samples_per_pixel` view
-/// samples.
+/// Returns the number of rays per view sample, for `per_pixel` rays in a pixel with
+/// `samples_per_pixel` view samples.
 int per_view_sample(int per_pixel, int samples_per_pixel) {
   return (per_pixel + samples_per_pixel - 1) / samples_per_pixel;
 }
@@ -52,7 +52,7 @@ SampleSets make_samples(const RenderOptions& options) {
           std::max(1, per_view_sample(options.occlusion_samples, samples) * samples)};
 }
 
-/// Sets the sun's direction; by default one from which it shows the shapes in view.
+/// Returns the sky with the sun's direction. The default direction shows the shapes in view well.
 Sky make_sky(const Camera& camera, const View& view, const RenderOptions& options) {
   Sky sky;
   const Vec3d up = normalized(view.up);

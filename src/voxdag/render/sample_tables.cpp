@@ -75,8 +75,8 @@ SampleSets::SampleSets(int light_count, int hemisphere_count) {
   });
   for_each_point(hemisphere_count, 2, [&](int, int, const double* u) {
     const double r = std::sqrt(u[0]), angle = 2 * std::numbers::pi * u[1];
-    // A hit at distance d, as a fraction of the greatest, has the weight (1 - d)². A ray of random
-    // length with P(length > d) = (1 - d)² hits with that probability.
+    // A hit at distance d, as a fraction of the maximum, has the weight (1 - d)². A ray of random
+    // length with P(length > d) = (1 - d)² meets it with that probability.
     const double reach = 1 - std::sqrt(u[2]);
     hemisphere_.push_back(
         {{static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)),

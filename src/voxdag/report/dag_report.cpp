@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// 0 where there is nothing to divide by.
+/// Returns a / b, or 0 if b is 0.
 double quotient(double a, double b) { return b > 0 ? a / b : 0; }
 
 double bits_per_voxel(std::uint64_t bytes, const SvdagCounts& counts) {

@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns three significant digits with the largest of `units` that leaves one before the point.
+/// Returns three significant digits with the largest of `units` for which the value is at least 1.
 std::string scaled(double value, double step, const char* const (&units)[6]) {
   int unit = 0;
   // 999.5 would be printed as 1000 with the smaller unit.

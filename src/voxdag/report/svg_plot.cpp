@@ -48,7 +48,7 @@ std::string file(double width, double height, const std::string& content) {
          content + "</svg>\n";
 }
 
-/// A round number that divides `range` into some five to ten steps.
+/// Returns a round number that divides `range` into about five to ten steps.
 double round_step(double range) {
   const double power = std::pow(10, std::floor(std::log10(range / 5)));
   for (const double factor : {1.0, 2.0, 5.0})
@@ -56,7 +56,7 @@ double round_step(double range) {
   return power * 10;
 }
 
-/// Values along one side of a box.
+/// Maps values to positions along one side of a box.
 class Scale {
  public:
   Scale(const PlotAxis& axis, double from, double to) : axis_(axis), from_(from), to_(to) {}
@@ -65,7 +65,7 @@ class Scale {
     lo_ = std::min(lo_, on_axis(value));
     hi_ = std::max(hi_, on_axis(value));
   }
-  /// Makes the ends ticks, after the last extend().
+  /// Completes the scale after the last extend(). With `round_ends`, extends both ends to ticks.
   void finish(bool round_ends) {
     step_ = axis_.is_log ? std::log(axis_.step) : axis_.step;
     if (!(hi_ > lo_)) hi_ = lo_ + (step_ > 0 ? step_ : 1);
@@ -134,7 +134,7 @@ std::string lines_in_box(const LineDiagram& diagram, double left, double top, do
 
 std::string bars_in_box(const BarDiagram& diagram, double left, double top, double width,
                         double height) {
-  constexpr double kGap = 0.2;  // of a group's width
+  constexpr double kGap = 0.2;  // fraction of a group's width
   const PlotAxis axis{false, 0, diagram.tick};
   Scale y(axis, top + height, top);
   y.extend(0);

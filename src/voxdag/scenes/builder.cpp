@@ -84,7 +84,8 @@ void Builder::square(const Profile& profile) {
 }
 
 void Builder::moulding(const Profile& profile, double half_x, double half_z, bool outside) {
-  // The direction of the path that has the chosen side of the rectangle on its right.
+  // The signs give the direction of the path that has the chosen side of the rectangle on its
+  // right.
   static constexpr int kSigns[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
   const double out = outside ? 1 : -1;
   std::vector<Frame> corners;

@@ -4,9 +4,8 @@
 #include "voxdag/scenes/city_parts.hpp"
 #include "voxdag/scenes/list.hpp"
 
-/// A town of square blocks: shops and houses at the edge, towers in the middle, a park here and
-/// there, streets with trees, lamps and cars. The centre of the town is the origin; the street is y
-/// = 0.
+/// A town of square blocks: shops and houses at the edge, towers in the middle, some parks, streets
+/// with trees, lamps and cars. The centre of the town is the origin; the street is y = 0.
 namespace voxdag::scenes {
 namespace {
 
@@ -132,7 +131,7 @@ ScenePreset city_preset(double size) {
   preset.target = {0, 8 + 3 * blocks, 0};
   preset.fov_degrees = 50;
   preset.sun_direction = normalized(Vec3d{-0.72, 0.55, 0.42});
-  // Down from the air into the street nearest to the middle, round a corner, and up again.
+  // The flight goes down into the street nearest to the middle, around a corner, and up again.
   const bool is_even = std::fmod(blocks, 2) == 0;
   const double x = is_even ? 0 : kPitchX / 2, z = is_even ? 0 : kPitchZ / 2;
   const double far_x = blocks * kPitchX / 2, far_z = blocks * kPitchZ / 2;

@@ -18,7 +18,7 @@ using namespace courtyard;
 
 constexpr double kBay = 3.0, kHalfX = 4.5, kHalfZ = 12.0;
 constexpr double kGallery = 3.6;    // depth from the arcade's axis to the outer wall
-constexpr double kThickness = 0.6;  // of the arcade walls
+constexpr double kThickness = 0.6;  // thickness of the arcade walls
 constexpr double kSpring = 3.1, kGroundTop = 5.0, kUpperFloor = 5.45;
 constexpr double kPedestal = 0.95, kUpperSpring = 8.05, kUpperTop = 9.1, kRoofFoot = 9.62;
 constexpr double kRoofRun = 4.3, kRoofRise = 1.9;
@@ -366,7 +366,8 @@ ScenePreset courtyard_preset(double) {
   preset.target = {2.0, 2.9, -3};
   preset.fov_degrees = 58;
   preset.sun_direction = normalized(Vec3d{-0.55, 0.9, 0.35});
-  // Past the fountain, through the arcade and along the gallery behind it, and up over the roofs.
+  // The flight passes the fountain, goes through the arcade, along the gallery behind it, and up
+  // over the roofs.
   preset.flight = {
       {0, preset.eye, preset.target},           {4, {-1.5, 2.2, 6.0}, {0.6, 1.6, -1}},
       {8, {-2.7, 1.7, 0.0}, {-1.0, 1.6, -3.5}}, {11, {-1.7, 1.8, -6.9}, {-5.5, 1.9, -8.2}},

@@ -101,7 +101,7 @@ void ashlar(Builder& b, Random& random, double width, double height, Point2 gap,
       if (next > width - 0.3) next = width;
       double lo = x, hi = next;
       x = next;
-      if (y < gap_height) {  // leave the opening free
+      if (y < gap_height) {  // leaves the opening free
         const double g0 = gap.x, g1 = gap.x + gap.y;
         if (lo >= g0 && hi <= g1) continue;
         if (lo < g0 && hi > g0) hi = g0;

@@ -2,7 +2,8 @@
 
 #include "voxdag/scenes/courtyard_parts.hpp"
 
-/// Cloth is a single sheet: depth follows the folds, which deepen where the cloth is gathered.
+/// Cloth. Each piece is a single sheet whose depth follows the folds; the folds are deeper where
+/// the cloth is gathered.
 namespace voxdag::scenes::courtyard {
 namespace {
 
@@ -41,7 +42,7 @@ void rod(Builder& b, const Detail& d, double width, double y) {
 void tied_curtains(Builder& b, const Detail& d, Random& random, double width, double top) {
   rod(b, d, width, top);
   const double tie = 0.56, half = width / 2;
-  // Width of the cloth: full at the rod, gathered at the tie, wider below.
+  // Returns the width of the cloth: full at the rod, gathered at the tie, wider below.
   const auto reach = [&](double v) {
     if (v < tie) {
       const double t = v / tie;

@@ -3,11 +3,11 @@
 
 #include "voxdag/scenes/courtyard_parts.hpp"
 
-/// Columns after the usual orders: attic base, shaft with entasis, leafy capital.
+/// Columns in the classical orders: attic base, shaft with entasis, leafy capital.
 namespace voxdag::scenes::courtyard {
 namespace {
 
-/// Plinth, torus, hollow, torus: one radius high.
+/// Draws an attic base, one radius high: plinth, torus, hollow, torus.
 void attic_base(Builder& b, const Detail& d, double r) {
   const double w = 1.42 * r;
   b.square({{w, 0}, {w, 0.28 * r}, {w - 0.03 * r, 0.32 * r}, {0, 0.32 * r}});
@@ -28,11 +28,11 @@ void attic_base(Builder& b, const Detail& d, double r) {
   b.lathe(p, d(40, 8));
 }
 
-/// A leaf that climbs the bell and curls outwards at its tip.
+/// Draws a leaf that follows the bell upwards and curls outwards at its tip.
 void capital_leaf(Builder& b, const Detail& d, double radius, double height, double width) {
   const int nu = d(8, 4), nv = d(14, 5);
   const auto front = [&](double u, double v) {
-    // Up to three quarters it hugs the bell, then it bends over in half a circle.
+    // Up to 0.7 of its length it follows the bell, then it bends over in half a circle.
     const double bend = std::max(0.0, v - 0.7) / 0.3, curl = 0.16 * height;
     const double out = curl * (1 - cos_turns(0.42 * bend)) + 0.06 * height * v;
     const double y = height * std::min(v, 0.7) / 0.84 + curl * sin_turns(0.42 * bend);
@@ -57,7 +57,8 @@ void volute(Builder& b, const Detail& d, double size) {
   b.tube(path, radii, d(8, 5));
 }
 
-/// Two rows of leaves on a bell, volutes under the corners of a hollow-sided abacus.
+/// Draws two rows of leaves on a bell, and volutes under the corners of an abacus with hollow
+/// sides.
 void leafy_capital(Builder& b, const Detail& d, double r, double height) {
   const double h = height;
   b.lathe(rounded({{0.98 * r, -0.05 * h},

@@ -6,7 +6,7 @@
 namespace voxdag::scenes::courtyard {
 namespace {
 
-/// A bowl on a stem whose rim is scalloped; `r` is its radius, its rim lies at y = 0.
+/// Draws a bowl with a scalloped rim on a stem; `r` is the radius, the rim lies at y = 0.
 void basin(Builder& b, const Detail& d, double r, int lobes) {
   const Profile p = rounded({{0.14 * r, -0.42 * r},
                              {0.2 * r, -0.4 * r},

@@ -2,12 +2,12 @@
 
 #include "voxdag/scenes/courtyard_parts.hpp"
 
-/// Carved and wrought things.
+/// Ornaments of stone and iron.
 namespace voxdag::scenes::courtyard {
 
 void rosette(Builder& b, const Detail& d, double radius) {
   const double r = radius;
-  // The axis of the turned rim looks out of the wall.
+  // The axis of the turned rim points out of the wall.
   const Frame outwards{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   b.at(outwards, [&] {
     b.lathe({{r, -0.01},

@@ -10,7 +10,7 @@ void agave(Builder& b, const Detail& d, Random& random, double size) {
   b.material("leaf");
   const int leaves = 34;
   for (int i = 0; i < leaves; ++i) {
-    const double age = static_cast<double>(i) / leaves;  // young leaves stand, old ones bend
+    const double age = static_cast<double>(i) / leaves;  // young leaves are upright, old ones bend
     const double l = size * lerp(0.75, 1.0, age) * random.uniform(0.85, 1.1);
     const double start = lerp(0.235, 0.06, age) + random.uniform(-0.015, 0.015);
     const double bend = lerp(0.05, 0.22, age) + random.uniform(0, 0.05);

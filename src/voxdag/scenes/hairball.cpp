@@ -11,8 +11,8 @@ namespace voxdag::scenes {
 namespace {
 
 constexpr int kSides = 6, kRings = 120;  // 2 * 6 * 120 = 1440 triangles a hair.
-// Gives about as many octree nodes as the SVDAG paper's hairball at 8192³: 769 million; the paper's
-// has 781 million.
+// Gives 769 million octree nodes at 8192³, about as many as the SVDAG paper's hairball (781
+// million).
 constexpr double kRadius = 0.0036;
 
 /// Returns a path from near the centre to near the surface, bent by two slow waves.
@@ -61,7 +61,7 @@ ScenePreset hairball_preset(double) {
   preset.eye = {1.1, 0.5, 2.2};
   preset.fov_degrees = 46;
   preset.sun_direction = normalized(Vec3d{-0.5, 0.9, 0.6});
-  // Once around it, coming near.
+  // The flight goes once around the ball and comes closer.
   constexpr int kKeys = 9;
   for (int i = 0; i < kKeys; ++i) {
     const double part = static_cast<double>(i) / (kKeys - 1);

@@ -80,7 +80,7 @@ ScenePreset sponge_preset(double size) {
   preset.target = Vec3d{0.5, 0.36, 0.5} * side;
   preset.fov_degrees = 42;
   preset.sun_direction = normalized(Vec3d{-0.35, 0.9, 0.62});
-  // In through the hole in front, and backwards out at the side.
+  // The flight goes in through the hole in front, and backwards out at the side.
   preset.flight = {{0, preset.eye, preset.target},
                    {3, Vec3d{0.85, 0.85, 1.9} * side, Vec3d{0.5, 0.5, 0.5} * side},
                    {6, Vec3d{0.5, 0.5, 1.25} * side, Vec3d{0.5, 0.5, 0} * side},

@@ -62,7 +62,7 @@ void lake(Builder& b, const HeightField& field, std::uint32_t seed) {
   side(0, 0, 0, kSide);
 }
 
-/// Makes most of [0,1] small. std::pow may round differently on other machines.
+/// Returns v^6, which is small for most of [0,1]. std::pow may round differently on other machines.
 double sixth_power(double v) { return v * v * v * v * v * v; }
 
 void rocks(Builder& b, const HeightField& field, std::uint32_t seed) {
@@ -78,7 +78,7 @@ void rocks(Builder& b, const HeightField& field, std::uint32_t seed) {
     if (slope > 0.9 || slope < 0.12) continue;
     b.at(placed({x, field.height(x, z) + 0.15 * size, z}, turns), [&] {
       b.ball(size > 3 ? 10 : 5, [&](Vec3d d) {
-        // A ball cut by a few planes, with noise.
+        // A rock is a ball that is cut by a few planes, with noise.
         double r = 1 + 0.25 * noise(d * 1.3, shape);
         for (int k = 0; k < 5; ++k) {
           const Vec3d n =

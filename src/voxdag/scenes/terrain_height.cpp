@@ -9,9 +9,9 @@
 namespace voxdag::scenes {
 namespace {
 
-/// Source: Musgrave, "Procedural Fractal Terrains", in "Texturing and Modeling", 1994: the ridged
-/// multifractal. Noise folded at zero gives crests; each octave is stronger where the last was
-/// high.
+/// Returns the ridged multifractal. Noise folded at zero gives crests; each octave is stronger
+/// where the previous one was high. Source: Musgrave, "Procedural Fractal Terrains", in "Texturing
+/// and Modeling", 1994.
 double ridged(Vec3d p, std::uint32_t seed, int octaves) {
   double sum = 0, height = 0.5, weight = 1;
   for (int i = 0; i < octaves; ++i) {
@@ -36,8 +36,9 @@ double raw_height(double u, double v, std::uint32_t seed) {
   return 470 * (range * ridged(q * 2.3, seed + 104, 9) + hills * (0.4 + range)) - 60 * (1 - range);
 }
 
-/// Source: Beyer, "Implementation of a Method for Hydraulic Erosion", 2015. A drop runs down the
-/// gradient with some inertia, takes up soil where it is fast and drops it where it slows.
+/// Erodes a height field by drops of water. A drop runs down the gradient with some inertia, takes
+/// up soil where it is fast, and deposits soil where it is slow. Source: Beyer, "Implementation of
+/// a Method for Hydraulic Erosion", 2015.
 class Erosion {
  public:
   Erosion(HeightField& field, std::uint32_t seed) : field_(field), random_(seed, 9) {
@@ -53,7 +54,7 @@ class Erosion {
 
   void drop() {
     const int n = field_.cells;
-    // Heights in cells: erosion then looks alike at every resolution.
+    // Heights are in cells, so that erosion looks similar at every resolution.
     const double unit = field_.cell();
     double x = random_.uniform(0, n), z = random_.uniform(0, n), dir_x = 0, dir_z = 0;
     double speed = 1, water = 1, soil = 0;
@@ -107,7 +108,7 @@ class Erosion {
   std::vector<Dab> brush_;
 };
 
-/// Applies a binomial filter of 3 by 3, since drops leave pits of single cells.
+/// Applies a binomial filter of 3 by 3, because drops leave pits of single cells.
 void soften(HeightField& field) {
   const HeightField old = field;
   const int n = field.cells;

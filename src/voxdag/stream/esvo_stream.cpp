@@ -22,8 +22,7 @@ void EsvoStream::fail(ErrorPlace place, const std::string& reason) const {
 
 EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) : path_(path) {
   {
-    // The mapping ends with this scope, before anything is walked, and its blocks are never
-    // touched.
+    // The mapping ends with this scope, before any walk, and its blocks are never read.
     const MappedFile mapping(path, MappedFile::Access::kRandom);
     try {
       const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
@@ -232,8 +231,7 @@ void EsvoStream::evict(std::size_t block) {
     is_cut_[slot] = false;
     cut_.erase(slot);
   }
-  // cut() stores the descriptor with the position of its far pointer, which is all that attach()
-  // needs.
+  // cut() keeps the position of the far pointer in the descriptor, and attach() needs nothing else.
   cut(block);
   --blocks_[static_cast<std::size_t>(b.parent)].loaded_children;
   release(b.position, directory_[block].slots);

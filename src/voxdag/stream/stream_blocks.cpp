@@ -62,7 +62,7 @@ void StreamBlocks::load(std::size_t block) {
   while (!stream_.is_loaded(block)) {
     std::size_t next = block;
     while (!stream_.can_load(next)) next = static_cast<std::size_t>(stream_.parent(next));
-    // Without other blocks, a block and its ancestors fit side by side.
+    // Without other blocks, a block and its ancestors fit into memory together.
     if (!make_room(next)) {
       evict_all();
       continue;

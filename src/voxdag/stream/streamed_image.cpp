@@ -65,7 +65,8 @@ class StreamedPicture {
 
   Vec3d eye() { return plan_.image().view.eye; }
 
-  /// Its beams end at the loaded voxels.
+  /// Makes a renderer for the blocks that are loaded now, because its beams end at the loaded
+  /// voxels.
   void make_renderer() {
     const ContourNodes nodes(source_.view());
     renderer_.emplace(nodes, PacketCaster(nodes), plan_.setup(), options_.beams, nullptr);

@@ -15,20 +15,20 @@ struct TextureKey {
   enum Kind { kColor, kTangentNormals, kHeights, kEither };
   Kind kind = kColor;
   int image = -1, alpha_image = -1;
-  float number = 0;  ///< The least visible alpha of a colour texture; the scale of normals.
+  float number = 0;  ///< Colour texture: the least visible alpha. Normals: their scale.
   TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 
-  // NOLINTNEXTLINE(modernize-use-nullptr): sees a null pointer in what the compiler writes here
+  // NOLINTNEXTLINE(modernize-use-nullptr): false positive in the generated code
   friend auto operator<=>(const TextureKey&, const TextureKey&) = default;
 };
 
 struct LoadedTexture {
   std::shared_ptr<const Texture> texture;
   std::vector<std::string> warnings;
-  bool is_over_memory = false;  ///< Did not fit beside the images that were decoded with it.
+  bool is_over_memory = false;  ///< Did not fit with the images that were decoded at the same time.
 };
 
-/// Returns the alpha from which on a material is visible; 0 if it always is.
+/// Returns the least alpha at which a material is visible; 0 if it is always visible.
 float least_alpha(const Material& material) {
   switch (material.alpha_mode) {
     case AlphaMode::kMask:
@@ -72,7 +72,7 @@ class Loader {
         entries[i]->second.is_over_memory = true;
       }
     });
-    // Alone, an image may fit.
+    // An image may fit if it is decoded alone.
     for (std::size_t i = 0; i < entries.size(); ++i)
       if (entries[i]->second.is_over_memory) {
         entries[i]->second = {};
@@ -94,7 +94,7 @@ class Loader {
     TextureKey key{TextureKey::kColor, material.color_map.image, -1, 0, use.wrap_u, use.wrap_v};
     const float least = least_alpha(material);
     if (least > 0) {
-      // If no texel passes, the threshold may be any number above 1.
+      // If no texel can pass, any threshold above 1 works.
       key.number = material.alpha > 0 ? std::min(least / material.alpha, 2.0f) : 2.0f;
       if (material.alpha_map.image != material.color_map.image)
         key.alpha_image = material.alpha_map.image;
@@ -136,8 +136,8 @@ class Loader {
     }
   }
 
-  /// Decodes an image. One that cannot be read is a warning that ends with `stand_in`, and the
-  /// result is empty.
+  /// Decodes an image. If it cannot be read, adds a warning that ends with `stand_in` and returns
+  /// an empty image.
   DecodedImage decode(int index, const char* stand_in, LoadedTexture& loaded) const {
     try {
       return decode_texture_image(image(index), options_);

@@ -70,7 +70,7 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
         material.color_texture->mean(region_of(moments, tables.uv(t), material.color_uv));
     float scale = kTexelScale;
     if (material.is_alpha_textured) {
-      // Full and no coverage are exact, despite the rounding of the filter.
+      // Makes coverages of 0 and 1 exact, despite the rounding of the filter.
       sample.coverage = value[3] > 65534.5f ? 1 : value[3] < 0.5f ? 0 : value[3] * kTexelScale;
       scale = sample.coverage > 0 ? 1 / value[3] : 0;
     }

@@ -12,7 +12,7 @@ Vec3f SurfaceTables::mean_normal(std::uint32_t t, std::span<const Vec2f> polygon
   const Vec3f* const n = normals(t);
   if (n == nullptr) return face_normal(mesh, t);
   if (n[0] == n[1] && n[0] == n[2]) return n[0];
-  // Exact for polynomials of degree two over a triangle.
+  // This quadrature is exact for polynomials of degree two over a triangle.
   const Linear<Vec3f> normal(n[0], n[1], n[2]);
   Vec3f corners{};
   for (const Vec2f b : polygon) corners = corners + unit_or_zero(normal(b));
@@ -65,7 +65,8 @@ bool SurfaceTables::is_direction_near(std::uint32_t t, const ResolvedMaterial& m
       const Vec3f normal = n == nullptr ? face_normal(mesh, t) : n[0];
       return normal == Vec3f{} || dot(normal, direction) >= least - 1e-6f;
     }
-    // If the normals of the corners lie in a cone narrower than a half-space, so do all between.
+    // If the normals of the corners lie in a cone narrower than a half-space, so do the
+    // interpolated ones.
     if (least <= 0) return false;
     const Linear<Vec3f> normal(n[0], n[1], n[2]);
     return std::all_of(polygon.begin(), polygon.end(), [&](Vec2f b) {
@@ -76,7 +77,7 @@ bool SurfaceTables::is_direction_near(std::uint32_t t, const ResolvedMaterial& m
   float turn = 0;
   for (const Vec2f b : polygon)
     turn = std::max(turn, angle_between(center, frame_at(t, corners, b)));
-  // Inside of the polygon a frame may turn a little more than at its corners.
+  // Inside the polygon a frame may turn slightly more than at its corners.
   const float left = error - 1.25f * turn;
   if (!(left > 0)) return false;
   const float least = std::cos(std::min(left, 1.5f));

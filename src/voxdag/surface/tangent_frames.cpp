@@ -9,7 +9,7 @@
 namespace voxdag {
 namespace {
 
-/// Corners that are equal share a tangent.
+/// The key of a corner. Equal corners share a tangent.
 struct Corner {
   Vec3f position, normal;
   Vec2f uv;
@@ -41,7 +41,7 @@ Vec3f face_normal(const Mesh& mesh, std::size_t triangle) {
   const Vec3f a = mesh.vertices[t[0]];
   const Vec3f normal = normalized_or(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a), {});
   if (normal != Vec3f{}) return normal;
-  // The areas of tiny triangles underflow in float32.
+  // Computes in double, because the areas of tiny triangles underflow in float32.
   const Vec3d d(a);
   return static_cast<Vec3f>(
       normalized_or(cross(Vec3d(mesh.vertices[t[1]]) - d, Vec3d(mesh.vertices[t[2]]) - d), {}));

@@ -31,7 +31,7 @@ double longest_side(const Box3d& box) {
   return std::max({side.x, side.y, side.z});
 }
 
-/// The least number of levels whose grid has at least `voxels` voxels a side.
+/// Returns the least number of levels whose grid has at least `voxels` voxels a side.
 int levels_for(double voxels) {
   int levels = kMinLevels;
   while (levels <= kMaxLevels && static_cast<double>(std::int64_t{1} << levels) < voxels) ++levels;
@@ -89,7 +89,7 @@ std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
   for (int axis = 0; axis < 3; ++axis) {
     const double units = (world[axis] - grid.origin[axis]) * grid.quantization_scale;
     if (!(std::fabs(units) <= kMaxUnits)) return std::nullopt;
-    // std::llround(units), which is a call.
+    // Computes std::llround(units), which would be a call.
     const auto whole = static_cast<std::int32_t>(units);
     const double rest = units - whole;
     q[axis] = whole + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0);
@@ -131,7 +131,7 @@ QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
   return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
 }
 
-// Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
+// Clips by Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
 void QuantizedMesh::clip(const Mesh& mesh, const Grid& grid, std::uint32_t index) {
   std::vector<Vec3d> polygon, kept;
   for (const std::uint32_t vertex : mesh.triangles[index])

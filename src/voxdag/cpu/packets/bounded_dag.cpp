@@ -40,7 +40,7 @@ CellBox box_of(std::uint64_t block) {
   constexpr std::uint32_t kVoxel = CellBox::kParts / 4;
   Extent extent;
   for (int axis = 0; axis < 3; ++axis) {
-    std::uint32_t slices = 0;  // Bit i: there is a voxel at coordinate i.
+    std::uint32_t slices = 0;  // Bit i is set if there is a voxel at coordinate i.
     for (std::uint32_t i = 0; i < 4; ++i) {
       const std::uint64_t slice = ((i & 1u) != 0 ? kOdd[axis] : ~kOdd[axis]) &
                                   ((i & 2u) != 0 ? kUpper[axis] : ~kUpper[axis]);
@@ -52,7 +52,7 @@ CellBox box_of(std::uint64_t block) {
   return extent.box();
 }
 
-/// Returns the first words of nodes in [begin, end) that are about kRun words apart.
+/// Returns the first words of some nodes in [begin, end), about kRun words apart.
 std::vector<std::uint64_t> runs_of(const SvdagView& dag, std::uint64_t begin, std::uint64_t end) {
   constexpr std::uint64_t kRun = 1 << 14;
   std::vector<std::uint64_t> runs{begin};
@@ -63,8 +63,8 @@ std::vector<std::uint64_t> runs_of(const SvdagView& dag, std::uint64_t begin, st
   return runs;
 }
 
-/// Prefetches the node of a pointer a little ahead. If that word is a mask, the prefetch does no
-/// harm.
+/// Prefetches the node of a pointer a few words ahead. If that word is a mask, the prefetch is
+/// harmless.
 void prefetch(const SvdagView& dag, int level, std::uint64_t at, const std::uint32_t* words) {
   constexpr std::uint64_t kAhead = 64;
   if (at + kAhead + 8 >= dag.level_begin[level + 1]) return;
@@ -77,8 +77,8 @@ void prefetch(const SvdagView& dag, int level, std::uint64_t at, const std::uint
   }
 }
 
-/// Makes the node at word `at` of the DAG; its children must be made. Returns its number of words
-/// in the DAG.
+/// Makes the node at word `at` of the DAG; its children must be made already. Returns its number of
+/// words in the DAG.
 std::uint64_t make_node(const SvdagView& dag, int level, std::uint64_t at, std::uint32_t* words) {
   const std::uint32_t mask = child_mask(dag.nodes + at);
   const auto children = static_cast<std::uint64_t>(popcount8(mask));

@@ -1,9 +1,9 @@
 // Casts packets of up to 64 beams from one point. Compiled once for each instruction set; the best
 // one that the machine has is chosen at run time.
 //
-// It is the walk of trace/beam.hpp, depth first and nearest octants first, with a beam in each
-// lane: for all beams that meet a node, it finds which of the node's children they meet, and where.
-// It works in float, and moves T outwards by more than all rounding errors.
+// The walk is that of trace/beam.hpp (depth first, nearest octants first) with a beam in each lane.
+// For all beams that meet a node, it finds the children that they meet, and the t at which they
+// meet them. It computes in float, and moves t outwards by more than all rounding errors.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/packets/cast_beam_packet.cpp"
 #include <hwy/foreach_target.h>

@@ -5,17 +5,17 @@
 // Rendering with Coherent Ray Tracing", Eurographics 2001; the plane and voxel rules of
 // trace/grid_ray.hpp after S. Laine and T. Karras, "Efficient Sparse Voxel Octrees", I3D 2010.
 //
-// The idea: mirrored, all rays of a packet run down along every axis, so that they meet the
+// The idea: after mirroring, all rays of a packet run down along every axis. So they meet the
 // children of a node in the order of the mirrored child index. One depth-first walk serves all
 // rays, and reads a node once for all rays in it. By the definition in grid_ray.hpp, a ray is in a
 // cell, or in a box of whole voxels, exactly if the range of T between its planes is not empty. So
-// each ray ends where a cast of its own would end, at the same T, to the bit.
+// each ray ends at the cell and the T of a separate cast, to the bit.
 //
 // Only rays that meet the box of a child's voxels (bounded_dag.hpp) visit the child. The walk tests
 // the boxes of all eight children first against the bounds on all rays, then against the rays. In a
-// leaf block the lanes are rays, or, if there are few rays, voxels.
+// leaf block the lanes are rays; if there are few rays, the lanes are voxels.
 //
-// The walk starts at the lowest node that holds the starts of all rays, and climbs from there only
+// The walk starts at the finest node that holds the starts of all rays, and ascends from there only
 // as far as the rays reach.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/packets/cast_dag_packet.cpp"
@@ -51,7 +51,7 @@ inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) const {
     const bool descends =
         level < starts.level && (unmirrored >> (index ^ rays_.mirrored) & 1u) != 0;
     if (level >= reach.level || !descends) {
-      // Skips the child in which the rays start: the visit below it covers that.
+      // Skips the child in which the rays start, because another visit covers it.
       Visit& visit = stack[top++];
       visit.rays = all;
       visit.node = node;
@@ -69,8 +69,8 @@ inline void DagPacketWalk::walk() {
   Visit stack[16 * kMaxLevels];
   std::size_t top = begin(searching_, stack);
   while (top > 0) {
-    // Loads field by field, as it was stored: a wider load would wait for the stores. The corner
-    // and the level were stored as one vector.
+    // Loads the fields separately, as they were stored, because a wider load would wait for the
+    // stores. The corner and the level were stored as one vector.
     const Visit& popped = stack[--top];
     Visit visit;
     visit.rays = popped.rays & searching_;

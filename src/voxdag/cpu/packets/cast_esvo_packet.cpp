@@ -5,18 +5,18 @@
 // Rendering with Coherent Ray Tracing", Eurographics 2001; contours by S. Laine and T. Karras,
 // "Efficient Sparse Voxel Octrees", I3D 2010, section 4.
 //
-// The idea: as in cast_dag_packet.cpp, mirrored rays run down along every axis, so that one
-// depth-first walk, nearest children first, serves all of them: it reads a descriptor, and decodes
-// a contour, once for all rays in the voxel. A ray meets a voxel's shape exactly if the range of T
-// that its ancestors' contours, its cube and its own contour leave is not empty. The walk of one
-// ray in trace/esvo_cast.hpp computes the same ranges with the same products, so that both agree to
-// the bit.
+// The idea: as in cast_dag_packet.cpp, mirrored rays run down along every axis. So one depth-first
+// walk, nearest children first, serves all rays: it reads a descriptor, and decodes a contour, once
+// for all rays in the voxel. A ray meets a voxel's shape exactly if a range of T remains after the
+// cuts by the contours of the ancestors, the voxel's cube and its own contour. The walk of one ray
+// in trace/esvo_cast.hpp computes the same ranges with the same products, so both agree to the bit.
 //
-// The walk tests a contour when it visits the voxel, not its parent: by then, rays that ended
-// nearer by are gone. It keeps the ranges of T that the contour leaves for the voxel's level, until
-// it has visited all descendants. If many rays are close together, it tests them as one wide ray
-// (the hull) against all children's cubes and contours before it visits the children. If only a few
-// rays are left, it tests one ray after the other against all children and their contours at once.
+// The walk tests a contour when it visits the voxel, not when it visits the parent: by then, rays
+// that ended at nearer voxels are gone. For the voxel's level, it stores the ranges of T that
+// remain after the contour, until it has visited all descendants. If many rays are close together,
+// it tests them as one wide ray (the hull) against all children's cubes and contours before it
+// visits the children. If only a few rays are left, it tests one ray after the other, each against
+// all children and their contours at once.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxdag/cpu/packets/cast_esvo_packet.cpp"
 #include <hwy/foreach_target.h>
@@ -52,7 +52,7 @@ void EsvoPacketWalk<kWithContours, kOneOrigin>::prepare_rays() {
             hn::Div(hn::Set(d, ContourRay::kDirectionOne), hn::Load(d, rays_.inverse[axis] + i));
         hn::Store(hn::ConvertTo(di, speed), di, direction_[axis] + i);
       }
-      // Both conversions are monotone.
+      // Ranges can be converted by their ends, because both conversions are monotone.
       const auto position = [](float p) {
         return static_cast<std::int32_t>(bits_of_float(p) - kOne);
       };
@@ -84,7 +84,8 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::clip(const Visit& visit, Rays rays, R
                    : clip<false, false>(visit, rays, stopped);
 }
 
-/// Returns the contour, of the visited voxel or an ancestor, through which a ray came to t, if any.
+/// Returns the contour that a ray crosses at t (of the visited voxel or an ancestor), if there is
+/// one.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE ContourPlane EsvoPacketWalk<kWithContours, kOneOrigin>::plane_at(const Visit& visit,
                                                                             std::size_t ray,
@@ -154,8 +155,8 @@ HWY_INLINE bool EsvoPacketWalk<kWithContours, kOneOrigin>::may_stop_below(
   return side_of(level) <= stop_start_[1] + stop_per_t_[1] * last_exit(visit);
 }
 
-/// Visits the children of a voxel that the rays meet and do not end at. Returns the rays that end
-/// at a child. Pushes the children that other rays meet onto the stack, the nearest on top.
+/// Tests the children of a voxel. Returns the rays that end at a child. Pushes the children that
+/// other rays meet onto the stack, the nearest on top.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::visit_children(const Visit& visit, Rays rays) {
@@ -194,8 +195,8 @@ EsvoPacketWalk<kWithContours, kOneOrigin>::walk(Rays all) {
   stack_[0] = {{{kOne, kOne, kOne}, 0}, all, esvo_.root, kMeetCube};
   top_ = 1;
   while (top_ > 0 && searching != 0) {
-    // Loads field by field, as it was stored: a wider load would wait for the stores. The corner
-    // and the level were stored as one vector.
+    // Loads the fields separately, as they were stored, because a wider load would wait for the
+    // stores. The corner and the level were stored as one vector.
     const Visit& popped = stack_[--top_];
     Rays rays = popped.rays & searching;
     if (rays == 0) continue;

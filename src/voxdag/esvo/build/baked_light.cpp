@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns the mean of a polygon's corners, a point well inside of it.
+/// Returns the mean of a polygon's corners, which lies well inside it.
 Vec3d middle_of(const SurfacePolygon& polygon) {
   Vec3d sum{};
   for (int i = 0; i < polygon.count; ++i) sum = sum + polygon.corners[i];
@@ -24,7 +24,7 @@ SurfacePlace place_on(const Cell& cell, const TrianglePiece& piece, const PieceS
   return place;
 }
 
-/// The weighted mean and the range of the light at some places.
+/// The weighted mean and the range of the light at some points.
 class LightSum {
  public:
   LightSum(const SurfaceLight& light, const Cell& cell) : light_(light), half_(cell.half_size()) {
@@ -41,7 +41,7 @@ class LightSum {
     weight_ += weight;
   }
   float mean() const { return static_cast<float>(sum_ / weight_); }
-  /// The difference of the brightest and the darkest place, sRGB encoded.
+  /// Returns the difference between the brightest and the darkest point, sRGB encoded.
   float range() const { return linear_to_srgb(most_) - linear_to_srgb(least_); }
 
  private:
@@ -58,7 +58,7 @@ std::optional<float> baked_light(const SurfaceLight& light, const Cell& cell,
                                  const PieceSampler& sampler, float color_error) {
   LightSum sum(light, cell);
   if (cell.log2_size == 0) {
-    // One place stands for a voxel of the finest level: the middle of its largest piece.
+    // A voxel of the finest level uses one point: the middle of its largest piece.
     const auto largest = std::max_element(
         cell.pieces.begin(), cell.pieces.end(),
         [](const TrianglePiece& a, const TrianglePiece& b) { return a.area < b.area; });
@@ -71,7 +71,7 @@ std::optional<float> baked_light(const SurfaceLight& light, const Cell& cell,
     const Vec3d middle = middle_of(piece.polygon);
     const double weight = cell.area(piece) + 1e-6;
     sum.add(place, middle, weight);
-    // Light differs most towards the corners.
+    // Light varies most towards the corners.
     for (int k = 0; k < piece.polygon.count; ++k) {
       sum.add(place, piece.polygon.corners[k] * 0.875 + middle * 0.125, weight);
       if (sum.range() > color_error) return std::nullopt;

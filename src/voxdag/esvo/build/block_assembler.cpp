@@ -47,7 +47,7 @@ std::uint64_t BlockAssembler::append(const PackedBlocks& blocks) {
   return position + blocks.first_child;
 }
 
-/// Hands a finished voxel to its parent. Where it was the last child the parent is finished too.
+/// Gives a finished voxel to its parent. If it was the last child, finishes the parent too.
 void BlockAssembler::arrive(std::size_t cell, BuiltVoxel&& voxel) {
   const TopCell* top = &cells_[cell];
   while (top->parent != TopCell::kNoParent) {

@@ -18,7 +18,7 @@
 namespace voxdag {
 namespace {
 
-/// Builds tasks; several threads at a time, each another task.
+/// Builds tasks. Several threads may build different tasks at the same time.
 class TaskBuilder {
  public:
   TaskBuilder(const TriangleSource& source, const EsvoOptions& options,
@@ -61,13 +61,13 @@ class TaskBuilder {
   }
 
  private:
-  /// Scratch memory and result of packing, for each slot that is packed.
+  /// Bytes of scratch memory and result for each packed slot.
   static constexpr std::uint64_t kPackingBytesPerSlot = 96;
 
-  /// Returns how much memory a task is expected to take.
+  /// Returns the expected memory of a task, in bytes.
   std::uint64_t expected_bytes(const TopCell& cell) const {
     constexpr double kTreeBytesPerVoxel = 64;
-    // Of what is tessellated two triangles or so go to a voxel.
+    // Tessellation makes a few triangles per voxel.
     const double displaced = cell.is_displaced ? 4 * cell.weight : 0;
     return static_cast<std::uint64_t>((static_cast<double>(cell.triangles.size()) + displaced) *
                                           static_cast<double>(PieceStack::kBytesPerTriangle) +

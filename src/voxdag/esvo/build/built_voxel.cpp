@@ -9,7 +9,7 @@ std::ptrdiff_t count_bits(std::uint32_t mask) {
   return static_cast<std::ptrdiff_t>(std::popcount(mask));
 }
 
-/// Appends all of `child` but its node 0, and renumbers it. Returns node 0 renumbered.
+/// Appends all nodes of `child` except node 0, renumbered. Returns node 0, renumbered.
 EsvoNode append_tree(EsvoTree& tree, const EsvoTree& child) {
   const auto nodes = static_cast<std::uint32_t>(tree.nodes.size()) - 1;
   const auto contours = static_cast<std::uint32_t>(tree.contours.size());

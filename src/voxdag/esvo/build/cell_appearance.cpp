@@ -12,8 +12,8 @@ namespace {
 
 void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
                const SurfaceSample& sample) {
-  // A triangle that only touches the cell counts a little, so that every voxel has a colour. So
-  // does a piece that is almost all transparent: the alpha test may leave some of it.
+  // A triangle that only touches the cell has a small weight, so that every voxel has a colour. An
+  // almost transparent piece has a small weight too, because part of it may pass the alpha test.
   const float area = static_cast<float>(cell.area(piece) + 1e-6) * std::max(sample.coverage, 1e-3f);
   sum.add(sample.color, sample.normal, area);
 }
@@ -25,7 +25,7 @@ SurfaceSum unlit_sum(const Cell& cell, const PieceSampler& sampler) {
   return sum;
 }
 
-/// Returns whether all triangles in the cell have the same colour and normal at each point.
+/// Returns whether all points of all triangles in the cell have the same colour and normal.
 bool has_one_sample(const Cell& cell) {
   const auto& first = cell.triangle_of(cell.pieces[0]).constant_sample;
   return first &&
@@ -60,7 +60,7 @@ std::optional<SurfaceSum> CellAppearance::sum_if_uniform(const Cell& cell) const
 }
 
 std::optional<SurfaceSum> CellAppearance::unlit_sum_if_uniform(const Cell& cell) const {
-  // SurfaceShading need not compare normals that a triangle has from its own plane.
+  // SurfaceShading need not compare normals if the triangle uses its plane's normal.
   constexpr float kAnyNormal = 4;  // radians
   const auto normal_error = [&](const SurfaceTriangle& triangle) {
     return sampler_.has_own_normal(triangle) ? kAnyNormal : settings_.normal_error;
@@ -68,7 +68,8 @@ std::optional<SurfaceSum> CellAppearance::unlit_sum_if_uniform(const Cell& cell)
   const SurfaceShading* const shading = sampler_.shading();
   PieceCorners corners[kMostNearPolygons];
   if (cell.pieces.size() > std::size(corners)) return std::nullopt;
-  // Most cells that are not uniform have a piece that is not: their mean need not be known.
+  // Most cells that are not uniform have a piece that is not uniform. For these the mean is not
+  // needed.
   for (std::size_t i = 0; i < cell.pieces.size(); ++i) {
     const SurfaceTriangle& triangle = cell.triangle_of(cell.pieces[i]);
     if (triangle.constant_sample) continue;

@@ -25,7 +25,7 @@ std::uint64_t mix(std::uint64_t v) {
 
 double unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// Walks down to a point and remembers the deepest level it reached.
+/// Walks down to a point and records the deepest level that it reached.
 struct Walk {
   const EsvoView& esvo;
   Vec3d point;  // in voxels
@@ -105,7 +105,8 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
     if (!mesh.in_range(triangle)) return;
     const std::uint32_t source = mesh.source(triangle);
     const bool is_displaced = displaced != nullptr && displaced->is_displaced(source);
-    // Displaced triangles are sampled whole, not by their pieces at the grid's sides.
+    // A displaced triangle is sampled as a whole, not by the pieces that clipping at the grid's
+    // sides makes.
     if (is_displaced && source != triangle) return;
     Vec3d p[3];
     corners(triangle, p);

@@ -5,10 +5,10 @@
 namespace voxdag {
 namespace {
 
-/// Collects the directions that the cell's contour may have: the normals of its triangles, and in
-/// their planes the perpendiculars of open edges.
+/// Collects the candidate directions for the cell's contour: the normals of its triangles, and the
+/// perpendiculars of open edges in the triangles' planes.
 ContourCandidates contour_candidates(const Cell& cell) {
-  // A sample of very many pieces has all directions that matter.
+  // If there are very many pieces, a sample of them has all directions that matter.
   constexpr std::size_t kMostLookedAt = 48;
   const std::size_t step = (cell.pieces.size() + kMostLookedAt - 1) / kMostLookedAt;
   ContourCandidates result;
@@ -16,7 +16,7 @@ ContourCandidates contour_candidates(const Cell& cell) {
     const TrianglePiece& piece = cell.pieces[i];
     const SurfaceTriangle& triangle = cell.triangle_of(piece);
     if (!triangle.across.exists()) {
-      // A segment or a point has no normal: the axes stand in.
+      // A segment or a point has no normal: uses the axes instead.
       for (int axis = 0; axis < 3; ++axis) {
         Vec3i n{};
         n[axis] = Contour::kMaxNormal;
@@ -40,8 +40,8 @@ ContourCandidates contour_candidates(const Cell& cell) {
 }  // namespace
 
 bool CellDecider::is_too_thin(const Cell& cell, const ConvexPolyhedron& shape) {
-  constexpr std::size_t kMost = 6;       // With more pieces it is unlikely.
-  constexpr double kRounding = 0x1p-10;  // exceeds the rounding of cutting shapes
+  constexpr std::size_t kMost = 6;       // Unlikely with more pieces.
+  constexpr double kRounding = 0x1p-10;  // larger than the rounding errors of cutting shapes
   if (cell.pieces.size() > kMost) return false;
   const auto is_thin = [&](const ContourDirection& across) {
     return 2 * extent_of(shape, across.normal).size() <

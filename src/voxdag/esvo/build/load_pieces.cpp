@@ -21,7 +21,7 @@ class UnitCube {
       is_inside &= least[axis] >= lo_[axis] && most[axis] < hi_[axis];
       is_outside |= most[axis] < lo_[axis] || least[axis] >= hi_[axis];
     }
-    // The exact test is slow, and most triangles lie inside of the cube.
+    // The exact test is slow, and most triangles lie inside the cube.
     return is_inside || (!is_outside && triangle_overlaps_cube(t.x, t.y, t.z, lo_, side_));
   }
 

@@ -6,8 +6,8 @@
 namespace voxdag {
 namespace {
 
-/// Returns a hash of an edge that does not depend on its direction. If the upper halves of two
-/// different edges' hashes are equal by chance, open edges look closed.
+/// Returns a hash of an edge that does not depend on its direction. If the upper halves of the
+/// hashes of two different edges collide, an open edge may count as closed.
 std::uint64_t edge_key(Vec3i a, Vec3i b) {
   const auto point_key = [](Vec3i p) {
     std::uint64_t key = 0x9E3779B97F4A7C15ull;
@@ -30,8 +30,8 @@ std::vector<std::uint8_t> find_open_edges(const QuantizedMesh& mesh, const Index
   const auto counts = [&](std::size_t i) {
     return mesh.in_range(i) && !ignored.contains(mesh.source(i));
   };
-  // The upper half of an edge's key and its number, 3 * triangle + edge. The edges of triangles
-  // that do not count are all alike, so that none of them is open.
+  // The upper half of an edge's key and its number, 3 * triangle + edge. Triangles that do not
+  // count get equal keys for all edges, so none of their edges is open.
   CountedVector<std::uint64_t> edges(3 * count, memory);
   polled_for(count, 4096, progress, "edges", [&](std::size_t i) {
     const QuantizedTriangle t = counts(i) ? mesh.triangle(i) : QuantizedTriangle{};

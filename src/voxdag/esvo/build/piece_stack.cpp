@@ -71,7 +71,7 @@ ChildConditions PieceStack::classify(const TrianglePiece& piece, int log2_size,
     return {1u << first | 1u << last, {every, every}};
   };
   if (const auto octants = piece.polygon.octants()) return meets(octants->first, octants->last);
-  // If the triangle's box lies in one child, or in two side by side, the triangle meets them.
+  // If the triangle's box lies in one child, or in two neighbouring ones, the triangle meets them.
   const TriangleSetup& setup = triangles_[piece.triangle].setup;
   const int shift = log2_size - 1;
   std::uint32_t lo = 0, hi = 0;

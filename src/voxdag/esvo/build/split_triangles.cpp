@@ -23,7 +23,7 @@ class Splitter {
           world_box(source.grid, cell * 2 + child_offset(child), log2_half_);
   }
 
-  /// Returns a bit mask of the children.
+  /// Returns a bit mask of the children that a triangle may meet.
   std::uint32_t children_met(std::uint32_t triangle) const {
     if (source_.is_displaced(triangle)) {
       return source_.displaced->regions_met(triangle, regions_, source_.edge_limit(),

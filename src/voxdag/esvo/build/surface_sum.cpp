@@ -9,7 +9,7 @@ namespace voxdag {
 namespace {
 
 /// sRGB codes, looked up by the leading bits of a float. 256 steps in each of the 13 octaves below
-/// 1 give an error of at most half a code, where the curve is steepest.
+/// 1 give an error of at most half a code, even where the curve is steepest.
 class SrgbTable {
  public:
   SrgbTable() {
@@ -34,7 +34,7 @@ Vec3f SurfaceSum::direction() const {
   const Vec3f axis = axes.principal_axis();
   const float axis_length = std::sqrt(dot(axis, axis));
   if (!(axis_length > 0)) return normal;
-  // Below this rounding decides which side is larger.
+  // If the difference is smaller, rounding would decide which side is larger.
   constexpr float kEqualSides = 1e-4f;
   const float along = dot(normal, axis) / axis_length;
   bool is_turned = along < 0;

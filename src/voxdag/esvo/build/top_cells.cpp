@@ -20,17 +20,17 @@ namespace {
 /// A cell with less surface than this, in voxels², is one task.
 constexpr double kTaskWeight = 1 << 16;
 
-/// The side of the smallest cells that are still divided into tasks.
+/// The log2 side, in voxels, of the smallest cells that are still divided into tasks.
 constexpr int kLeastLog2 = 2;
 
-/// Cells with more triangles have no contours: fitting one would hold all triangles in memory at
-/// once, for little.
+/// Cells with more triangles get no contours: fitting one needs all triangles in memory at once,
+/// and gains little.
 constexpr std::size_t kMostLoaded = 1 << 14;
 
-/// The side of the cells in which displaced triangles are tessellated.
+/// The log2 side, in voxels, of the cells in which displaced triangles are tessellated.
 constexpr int kDisplacedTaskLog2 = 4;
 
-/// classify_children() expects that the triangle's box meets the cell.
+/// Returns whether the triangle's box meets the grid, as classify_children() requires.
 bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
   const std::int64_t side = grid.resolution() * kSubvoxels;
   const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
@@ -45,8 +45,8 @@ TriangleList root_triangles(const TriangleSource& source, MemoryBudget* memory) 
   triangles.reserve(source.mesh.triangle_count());
   for (std::size_t i = 0; i < source.mesh.triangle_count(); ++i) {
     if (source.is_duplicate(i)) continue;
-    // Displaced triangles are clipped after they are displaced: not their pieces are built, but
-    // they.
+    // Displaced triangles are clipped after displacement. So the triangles themselves are listed,
+    // not the pieces from clipping.
     const bool is_piece = i >= source.mesh.mesh_triangle_count();
     const bool is_displaced = source.is_displaced(source.mesh.source(i));
     if (is_displaced
@@ -153,8 +153,8 @@ class TopCellFinder {
       cell.triangles = std::move(triangles);
       cell.shape = cells_[parent].shape.octant(child);
     }
-    // Triangles that may meet a cell may miss all of its children. A task without triangles tells
-    // the parent that the cell is empty.
+    // The triangles that may meet a cell can miss all its children. Then the cell becomes a task
+    // without triangles, which tells the parent that the cell is empty.
     if (cells_[parent].children_left == 0) cells_[parent].is_task = true;
   }
 

@@ -18,7 +18,7 @@ std::uint32_t ContourPool::add(std::span<const Contour> list) {
   for (const Contour contour : list) whole = hash_next(whole, contour);
   if (const auto found = places_.find(whole); found != places_.end()) {
     const std::size_t place = found->second;
-    // If the hashes of different lists are equal, the later list is not shared.
+    // If the hashes of different lists collide, the later list is not shared.
     if (place + list.size() <= contours_.size() &&
         std::equal(list.begin(), list.end(), contours_.begin() + found->second))
       return found->second;

@@ -1,8 +1,9 @@
 /// Source: the cluster fit of Simon Brown's libsquish. An optimal block gives the colours selectors
 /// in their order along the principal axis, so the candidates are the ways to cut the sorted list
 /// into four. Prefix sums give each cut's best ends, as real numbers, and the remaining error in
-/// closed form. The best cuts then get ends in whole steps and selectors by distance; the best of
-/// these blocks gets new ends and selectors in turn while that helps.
+/// closed form. For the best cuts, the ends are then rounded to whole steps, and selectors are
+/// chosen by distance. The best of these blocks is refined: new ends, then new selectors, while the
+/// error decreases.
 #include "voxdag/esvo/encode/encode_color_block.hpp"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ void gather(std::span<const Vec3f, kValuesPerBlock> colors, std::uint32_t used,
   values.mean = sum / values.total_weight;
 }
 
-/// A block while it is fitted: its ends in steps, and how many thirds of c0 each value takes.
+/// A block that is being fitted: its ends in steps, and each value's weight of c0 in thirds.
 struct Fit {
   FloatLanes c0, c1;
   float thirds[kValuesPerBlock];
@@ -78,7 +79,8 @@ void fit_ends(const Values& values, Fit& fit) {
   const FloatLanes b = values.mean * (3.0f * values.total_weight) * scale - a;
   // A channel's error is aa p² + 2 ab p q + bb q² - 2 a p - 2 b q and a constant.
   const float det = aa * bb - ab * ab;
-  // With a single selector any p and q of the right mix would do; equal ones come nearest to it.
+  // With a single selector, any p and q with the right mix would fit; equal ones come closest to
+  // it.
   const bool line = det <= 1e-5f * (aa + bb) * (aa + bb);
   const FloatLanes real_p = line ? mean : (a * bb - b * ab) / det;
   const FloatLanes real_q = line ? mean : (b * aa - a * ab) / det;
@@ -161,10 +163,11 @@ void sort_along_axis(const Values& values, Sorted& sorted) {
   }
 }
 
-/// Cuts of the sorted values: those before `a` take c0, before `b` 2/3 of it, before `c` 1/3.
+/// Cuts of the sorted values: values before `a` take c0, those before `b` 2/3 of it, those before
+/// `c` 1/3.
 struct Cuts {
   int a = 0, b = 0, c = 0;
-  float gain = 0.0f;  ///< by how much the best ends reduce the sum of squared differences
+  float gain = 0.0f;  ///< reduction of the sum of squared differences by the best ends
 };
 
 /// The best cuts of each lane.
@@ -181,9 +184,9 @@ class CutSearch {
         nine_weight_(9.0f * sorted.weight[count]),
         least_det_(1e-5f * sorted.weight[count] * sorted.weight[count]) {}
 
-  /// The best cut of each of eight disjoint sets, which hold all cuts but those of a single
-  /// selector. The first four use both ends. The last four leave one end unused, which may then lie
-  /// outside of the colours; the gain does not account for that.
+  /// Returns the best cut in each of eight disjoint sets, which contain all cuts except those with
+  /// a single selector. The first four use both ends. The last four leave one end unused, which may
+  /// then lie outside the colours; the gain does not account for that.
   std::array<Cuts, 2 * kLanes> run() const {
     BestCuts inner, outer;
     for (int a = 1; a < count_; ++a)
@@ -191,7 +194,7 @@ class CutSearch {
         for (int c = b; c < count_; c += kLanes) consider(a, b, c, count_, inner);
     for (int b = 0; b < count_; ++b)
       for (int c = b; c <= count_; c += kLanes) consider(0, b, c, count_ + 1, outer);
-    // All values lie before the last cut: here `b` runs over the lanes.
+    // All values lie before the last cut. Here the lanes hold different `b`.
     for (int a = 1; a < count_; ++a)
       for (int b = a; b <= count_; b += kLanes) consider_whole(a, b, outer);
     std::array<Cuts, 2 * kLanes> cuts;
@@ -257,7 +260,7 @@ void try_cuts(const Values& values, const Sorted& sorted, int a, int b, int c, F
   if (fit.error < best.error) best = fit;
 }
 
-/// Gives all values 2/3 c0 + 1/3 c1, which reaches every third of a step.
+/// Returns a fit in which all values are 2/3 c0 + 1/3 c1, which reaches every third of a step.
 Fit one_color(const Values& values) {
   Fit fit;
   std::fill_n(fit.thirds, kValuesPerBlock, 2.0f);
@@ -275,7 +278,7 @@ Fit fit_cuts(const Values& values) {
   fit_selectors(values, best);
   const int count = static_cast<int>(values.count);
   if (count <= 3) {
-    // Many cuts fit few values exactly; then only the rounding to whole steps decides.
+    // Many cuts fit a few values exactly. Then only the rounding to whole steps decides.
     for (int a = 0; a <= count; ++a)
       for (int b = a; b <= count; ++b)
         for (int c = b; c <= count; ++c) try_cuts(values, sorted, a, b, c, best);

@@ -1,9 +1,9 @@
 /// Source: Laine, Karras, "Efficient Sparse Voxel Octrees", I3D 2010, Section 3.5, whose last
 /// paragraph names the three kinds of grids tried here: across the normals' mean, along one line
 /// with parallel axes, and through entirely different directions. Each kind starts with a grid of
-/// real numbers. The grid is then, in turn, rounded to its stored form, assigned to the normals and
-/// fitted by least squares to the normals at each point. If the normals differ much, the integers
-/// of the axes are finally changed one by one while that helps.
+/// real numbers. The encoder then repeats three steps: it rounds the grid to its stored form,
+/// assigns its points to the normals, and fits the grid to them by least squares. If the normals
+/// differ much, it finally changes the integers of the axes one by one while the error decreases.
 #include "voxdag/esvo/encode/encode_normal_block.hpp"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ struct PlaneView {
       pp += values.weight[i] * dp * dp, pq += values.weight[i] * dp * dq;
       qq += values.weight[i] * dq * dq;
     }
-    // An eigenvector of the covariance matrix, from the sum that does not cancel.
+    // An eigenvector of the covariance matrix, computed from the sum without cancellation.
     const float half = 0.5f * (pp - qq), root = std::sqrt(half * half + pq * pq);
     float c = half >= 0.0f ? half + root : pq, s = half >= 0.0f ? pq : root - half;
     const float length = std::sqrt(c * c + s * s);
@@ -70,14 +70,14 @@ struct PlaneView {
   }
 };
 
-/// Returns which of the `steps` + 1 even steps from `low` to `high` is nearest to a value.
+/// Returns the index of the nearest of `steps` + 1 evenly spaced values from `low` to `high`.
 int step_of(float value, float low, float high, float steps) {
   return static_cast<int>((value - low) * (steps / std::max(high - low, 1e-20f)) + 0.5f);
 }
 
 float coefficient(int step) { return static_cast<float>(step) * (2.0f / 3.0f) - 1.0f; }
 
-/// The first kind: 4x4 points over the ranges of the plane view.
+/// Tries the first kind: 4x4 points over the ranges of the plane view.
 void consider_across(const NormalValues& values, const PlaneView& view, NormalFit& best) {
   NormalFit start{};
   for (std::size_t i = 0; i < values.count; ++i) {
@@ -101,8 +101,8 @@ void consider_line(const NormalValues& values, const PlaneView& view, NormalFit&
   consider_grid(values, grid, start, 3, best);
 }
 
-/// Returns the better of the first two kinds. A view of width p and height q makes one expect
-/// squared errors of (p² + q²) / 27 and of q² / 3.
+/// Tries the better of the first two kinds, or both if they are about equal. For a view of width p
+/// and height q, their expected squared errors are (p² + q²) / 27 and q² / 3.
 void consider_plane(const NormalValues& values, Vec3f mean, NormalFit& best) {
   const PlaneView view(values, mean);
   const float p = view.half_p(), q = view.half_q();
@@ -110,7 +110,7 @@ void consider_plane(const NormalValues& values, Vec3f mean, NormalFit& best) {
   if (q < 0.42f * p) consider_line(values, view, best);
 }
 
-/// Returns three of the normals, each far from those before it.
+/// Three of the normals, each far from the previous ones.
 struct FarNormals {
   Vec3f normal[3];
 
@@ -128,7 +128,8 @@ struct FarNormals {
   }
 };
 
-/// The third kind: three corners of the grid are at three far directions. Tries each assignment.
+/// Tries the third kind: three corners of the grid are at three directions that are far apart.
+/// Tries each assignment.
 void consider_corners(const NormalValues& values, NormalFit& best) {
   const FarNormals far(values);
   for (int shared = 0; shared < 3; ++shared) {
@@ -139,8 +140,8 @@ void consider_corners(const NormalValues& values, NormalFit& best) {
   }
 }
 
-/// For normals and their opposites, as on both sides of a thin wall: three steps of u give
-/// multiples of the base, and the fourth gives minus the base.
+/// Tries a grid for normals and their opposites, as on both sides of a thin wall: three steps of u
+/// give multiples of the base, and the fourth gives minus the base.
 void consider_opposites(const NormalValues& values, NormalFit& best) {
   OuterProductSum spread;
   for (std::size_t i = 0; i < values.count; ++i) spread.add(values.normal[i], values.weight[i]);
@@ -178,7 +179,8 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
   const Vec3f base = axis + (in_front * 5.0f - behind) * 0.25f;
   const Vec3f u = axis * -2.0f - (behind + in_front * (5.0f / 3.0f)) * 0.75f;
   if (!(longest_side(base) > 0.25f)) return;
-  // Without a spread v is free to correct u; otherwise v takes the direction of the spread.
+  // If the normals do not spread, v is free to correct u. Otherwise v takes the direction of the
+  // spread.
   NormalFit start{};
   for (std::size_t i = 0; i < values.count; ++i) {
     const bool is_front = dot(values.normal[i], axis) > 0.0f;
@@ -192,7 +194,7 @@ void consider_opposites(const NormalValues& values, NormalFit& best) {
   }
 }
 
-/// Changes the integers of the axes by one while that helps.
+/// Changes the integers of the axes by one while the error decreases.
 void move_integers(const NormalValues& values, NormalFit& fit) {
   for (int round = 0; round < 3; ++round) {
     const float before = fit.error;
@@ -212,7 +214,7 @@ void move_integers(const NormalValues& values, NormalFit& fit) {
   }
 }
 
-/// For a single normal: stores the base, and an axis from the base to the normal.
+/// Fits a single normal: stores the base, and an axis from the base to the normal.
 NormalFit fit_one_normal(Vec3f normal) {
   NormalValues values;
   values.count = 1;
@@ -232,10 +234,11 @@ NormalFit fit_one_normal(Vec3f normal) {
 
 /// Returns the block of a single normal from a cache: flat surfaces repeat few normals.
 const NormalFit& one_normal(Vec3f normal) {
-  // Compares bits: if 0 and -0 were equal, results would depend on what the thread did before.
+  // Compares bits: if 0 and -0 counted as equal, results would depend on the thread's earlier
+  // calls.
   using Bits = std::array<std::uint32_t, 3>;
   struct Known {
-    Bits normal{};  // Zero is no unit vector.
+    Bits normal{};  // Zero marks an empty entry: it is no unit vector.
     NormalFit fit;
   };
   constexpr int kLog2Known = 6;

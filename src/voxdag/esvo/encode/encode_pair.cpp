@@ -9,9 +9,9 @@
 namespace voxdag {
 namespace {
 
-/// The weight of a leaf relative to an inner voxel. Leaves may be large and near to the viewer;
-/// inner voxels are seen only where they are smaller than a pixel. On a flat wall a leaf whose
-/// normal is off by a degree stands out from the leaves beside it.
+/// The weight of a leaf relative to an inner voxel. Leaves may be large and near the viewer; inner
+/// voxels are visible only if they are smaller than a pixel. On a flat wall, an error of a degree
+/// in a leaf's normal is visible next to other leaves.
 constexpr float kColorOfLeaf = 16, kNormalOfLeaf = 256;
 
 std::array<float, kValuesPerBlock> weights_of(const PairValues& values, float leaf) {

@@ -19,7 +19,8 @@ struct LanesVec {
 };
 
 /// For four normals: the differences from their grid points to the nearest points on the normals'
-/// rays, and their weights. A difference makes an angle in inverse proportion to the distance.
+/// rays, and their weights. The angle of a difference is inversely proportional to the point's
+/// distance.
 struct Residuals {
   LanesVec difference;
   FloatLanes weight;
@@ -42,8 +43,8 @@ int group_count(const NormalValues& values) {
   return (static_cast<int>(values.count) + kLanes - 1) / kLanes;
 }
 
-/// Returns `grid` fitted by least squares to the normals that `points` assigns to its points. What
-/// they do not determine stays as it is.
+/// Returns `grid` fitted by least squares to the normals that `points` assigns to its points.
+/// Parameters that they do not determine stay unchanged.
 RealGrid fitted(const NormalValues& values, const NormalFit& points, RealGrid grid) {
   FloatLanes w_sum = {}, u_sum = {}, v_sum = {}, uu_sum = {}, uv_sum = {}, vv_sum = {};
   LanesVec r_sum, ru_sum, rv_sum;
@@ -60,7 +61,7 @@ RealGrid fitted(const NormalValues& values, const NormalFit& points, RealGrid gr
   }
   const float w = sum_of(w_sum);
   if (!(w > 0.0f)) return grid;
-  // Around the weighted means of cu and cv the base drops out of the system.
+  // Relative to the weighted means of cu and cv, the base drops out of the system.
   const float wu = sum_of(u_sum), wv = sum_of(v_sum), mean_u = wu / w, mean_v = wv / w;
   const float stay = 1e-3f * w;
   const float a = sum_of(uu_sum) + stay - mean_u * wu, b = sum_of(uv_sum) - mean_u * wv,
@@ -90,14 +91,14 @@ float slope(const NormalValues& values, const NormalFit& points) {
   return (sum_of(uv_sum) - mean_v * sum_of(u_sum)) / vv;
 }
 
-/// Stores the grid in `fit` as precisely as possible and assigns its points to the normals. On
-/// entry the fit has the points of the grid before it was stored.
+/// Rounds the grid to its stored form in `fit`, as precisely as possible, and assigns its points to
+/// the normals. On entry `fit` has the points of the unrounded grid.
 void store(const NormalValues& values, const RealGrid& grid, NormalFit& fit) {
   const float scale = 1.0f / longest_side(grid.base);
   const Vec3f u = grid.u * scale, v = grid.v * scale, direction = unit_vector(grid.base);
   const float bend = std::min(0.3f * (dot(u, u) + dot(v, v)), 1.0f);
   fit.u = nearest_axis(u, direction, bend);
-  // If cu and cv are proportional, v takes the rounding error of u: this fits two directions.
+  // If cu and cv are proportional, v absorbs the rounding error of u. This fits two directions.
   const Vec3f missing = u - fit.u.vector();
   const Vec3f across = missing - direction * dot(missing, direction);
   fit.v = nearest_axis(v + across * slope(values, fit), direction, bend);

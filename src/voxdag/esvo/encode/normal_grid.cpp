@@ -6,7 +6,7 @@
 namespace voxdag {
 namespace {
 
-/// Normals whose components differ by less are merged: about 0.0003 degrees.
+/// Normals are merged if their components differ by less than this: about 0.0003 degrees.
 constexpr float kSame = 4e-6f;
 constexpr float kThird = 1.0f / 3.0f;
 constexpr float kCoefficients[4] = {-1.0f, -kThird, kThird, 1.0f};
@@ -22,8 +22,8 @@ FloatLanes nearest_component(FloatLanes v) {
   return truncated(min(max(v, all_lanes(-8.0f)), all_lanes(7.0f)) + 8.5f) - 8.0f;
 }
 
-/// The directions of a grid's points relative to its base, the four points of a u step at once, and
-/// half their squares.
+/// The directions of a grid's points, relative to its base, and half of their squares. The four
+/// points of a u step are the lanes.
 struct GridDirections {
   FloatLanes x[4], y[4], z[4], half_square[4];
   Vec3f base;
@@ -35,7 +35,7 @@ struct GridDirections {
       const Vec3f start = grid.base + grid.u * kCoefficients[row];
       const FloatLanes px = vx + start.x, py = vy + start.y, pz = vz + start.z;
       const FloatLanes squared = px * px + py * py + pz * pz;
-      // A point without a direction is placed too far away to be chosen.
+      // A point without a direction is placed so far away that it is never chosen.
       const IntLanes directed = squared > 1e-6f;
       const FloatLanes scale = 1.0f / square_root(directed ? squared : all_lanes(1.0f));
       x[row] = px * scale - base.x, y[row] = py * scale - base.y, z[row] = pz * scale - base.z;
@@ -45,7 +45,8 @@ struct GridDirections {
   }
 };
 
-/// For 4 `Groups` normals: compares squared chords without the terms that all points share.
+/// Assigns points to 4 * `Groups` normals. Compares squared chords without the terms that all
+/// points share.
 template <int Groups>
 void fit_groups(const NormalValues& values, const GridDirections& points, NormalFit& fit) {
   FloatLanes x[Groups], y[Groups], z[Groups], least[Groups], nearest[Groups];
@@ -132,7 +133,7 @@ CubePoint nearest_cube_point(Vec3f direction) {
 }
 
 GridAxis nearest_axis(Vec3f target, Vec3f base, float bend) {
-  // The finest unit in which no component exceeds 7.45.
+  // Chooses the finest unit in which no component exceeds 7.45.
   const std::uint32_t bits = bits_of_float(longest_side(target) * (1.0f / 7.45f));
   const int ceiling = static_cast<int>(bits >> 23) - 127 + ((bits & 0x7FFFFFu) != 0 ? 1 : 0);
   const int exponent = std::min(std::max(ceiling + GridAxis::kBias, 0), 15);

@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// The decision for each node whether its children begin a block of their own.
+/// Decides for each node whether its children begin a block of their own.
 struct Cut {
-  std::vector<std::uint32_t> slots;  ///< Of everything below the node in the node's own block.
+  std::vector<std::uint32_t> slots;  ///< Slots below the node in the node's own block.
   std::vector<bool> is_cut;          ///< The node's children are in another block than the node.
 };
 
@@ -28,7 +28,7 @@ void for_each_child(const EsvoTree& tree, std::uint32_t node, const Body& body) 
   for (std::uint32_t i = 0; i < n.inner_count(); ++i) body(n.first_child + i);
 }
 
-/// Returns the slots of the children of a node alone: descriptors, their far pointers, a gap.
+/// Returns the number of slots of one group of siblings: descriptors, their far pointers, a gap.
 std::uint32_t group_slots(std::uint32_t descriptors, std::uint32_t far_pointers) {
   return (descriptors + far_pointers + 1) & ~1u;
 }
@@ -62,11 +62,11 @@ Cut cut_blocks(const EsvoTree& tree, std::uint32_t max_slots) {
   return cut;
 }
 
-/// The slots of each node in its block, counted from the block's begin. 0: none.
+/// The slots of each node in its block, counted from the block's begin. 0 means none.
 struct Placement {
   explicit Placement(std::size_t nodes) : children(nodes), far_pointer(nodes) {}
-  std::vector<std::uint32_t> children;     ///< The first of the node's children.
-  std::vector<std::uint32_t> far_pointer;  ///< The far pointer to the children.
+  std::vector<std::uint32_t> children;     ///< Slot of the node's first child.
+  std::vector<std::uint32_t> far_pointer;  ///< Slot of the far pointer to the children.
 };
 
 /// Writes one block.
@@ -140,8 +140,8 @@ class BlockWriter {
     const EsvoNode& n = tree_.nodes[node];
     const std::uint32_t count = n.inner_count();
     auto at = static_cast<std::uint32_t>(slots_.size());
-    // Both descriptors of a pair have the same parent; far pointers and page headers may be beside
-    // any.
+    // Both descriptors of a pair must have the same parent. Far pointers and page headers may share
+    // a pair with any descriptor.
     if (at % 2 == 1 && node_at_.back() != kNone) ++at;
     if (at % kEsvoPageSlots == 0 || at / kEsvoPageSlots != (at + count - 1) / kEsvoPageSlots)
       at = (at + kEsvoPageSlots - 1) / kEsvoPageSlots * kEsvoPageSlots + 1;
@@ -169,7 +169,7 @@ class BlockWriter {
 
   struct PlacedContours {
     ContourPool pool;
-    std::vector<std::uint32_t> first;  ///< By slot: index of the descriptor's list.
+    std::vector<std::uint32_t> first;  ///< Index of the list of the descriptor in each slot.
   };
 
   PlacedContours place_contours() const {
@@ -240,7 +240,7 @@ class BlockWriter {
   const Cut& cut_;
   Placement& placement_;
   std::vector<std::uint64_t> slots_;
-  std::vector<std::uint32_t> node_at_;  // by slot: the node of its descriptor, or kNone
+  std::vector<std::uint32_t> node_at_;  // node of the descriptor in each slot, or kNone
   std::uint32_t first_ = 0;
 };
 
@@ -311,7 +311,7 @@ PackedBlocks pack_blocks(const EsvoTree& tree, int level, Vec3i cell, std::uint6
   PackedBlocks result;
   result.counts = count_voxels(tree, parents, level);
   Placement placement(tree.nodes.size());
-  // By node: the index of its first child in result.slots, and the block that begins there.
+  // For each node: the index of its first child in result.slots, and the block that begins there.
   std::vector<std::uint64_t> first_child(tree.nodes.size());
   std::vector<std::uint32_t> block_of(tree.nodes.size(), kNone);
   for (auto node = static_cast<std::uint32_t>(tree.nodes.size()); node-- > 0;) {

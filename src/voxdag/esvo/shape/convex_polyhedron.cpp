@@ -23,7 +23,7 @@ ConvexPolyhedron ConvexPolyhedron::cube() {
   p.next_face_ = 6;
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 8; ++i) p.at_[axis][i] = (i >> axis & 1) != 0 ? 1.0f : -1.0f;
-  // Face 2 * axis + side.
+  // The number of a face is 2 * axis + side.
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 8; ++i) {
       if ((i >> axis & 1) != 0) continue;
@@ -56,7 +56,7 @@ void ConvexPolyhedron::become_half(const ConvexPolyhedron& whole, int axis, bool
 }
 
 void ConvexPolyhedron::become_part(const ConvexPolyhedron& whole, const float* distances) {
-  // Few branches depend on where the plane runs, because processors cannot predict them.
+  // Avoids branches that depend on the plane's position, because processors cannot predict them.
   std::uint64_t outside = 0;
   for (int i = 0; i < whole.vertex_count_; i += kLanes)
     outside |= std::uint64_t{lane_bits(load_lanes(&distances[i]) > 0.0f)} << i;
@@ -65,7 +65,7 @@ void ConvexPolyhedron::become_part(const ConvexPolyhedron& whole, const float* d
     *this = whole;
     return;
   }
-  // The new index of each vertex, with kOut set for those that are cut away.
+  // The new index of each vertex, with kOut set for vertices that are cut away.
   constexpr std::uint8_t kOut = 0x80;
   std::uint8_t places[kMaxVertices];
   int count = 0;
@@ -98,7 +98,7 @@ void ConvexPolyhedron::become_part(const ConvexPolyhedron& whole, const float* d
   }
   next_face_ = std::max(whole.next_face_, cut_face + 1);
 
-  // For each face: the first end of the cut across it, while the second end is not found yet.
+  // For each face: the first end of its cut, until the second end is found.
   std::uint8_t open_end[kMaxFaces];
   std::uint64_t open = 0;
   for (int k = 0; k < crossings; ++k) {

@@ -28,7 +28,7 @@ ContourDirection ContourDirection::nearest(Vec3d direction) {
   if (!(largest > 0)) return {};
   const auto d = static_cast<Vec3f>(direction * (1 / largest));
   const auto rounded = [](FloatLanes v) { return truncated(v + 32.5f) - 32.0f; };
-  // Longer vectors are finer on average, but a shorter one may hit the direction better.
+  // Longer vectors are more precise on average, but a shorter one may be closer to this direction.
   FloatLanes least = all_lanes(HUGE_VALF), x{}, y{}, z{};
   for (int most = Contour::kMaxNormal; most > Contour::kMaxNormal / 2; most -= kLanes) {
     const FloatLanes scale = static_cast<float>(most) - FloatLanes{0, 1, 2, 3};
@@ -81,7 +81,7 @@ namespace {
 template <int groups>
 ContourExtents extents_by_groups(std::span<const PlanarPolygon> surface,
                                  std::span<const ContourDirection> directions) {
-  // Floats are precise enough: their rounding is a hundredth of kMargin.
+  // Floats are precise enough: their rounding error is a hundredth of kMargin.
   FloatLanes x[groups]{}, y[groups]{}, z[groups]{}, least[groups], most[groups];
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const auto n = static_cast<Vec3f>(directions[i].normal);

@@ -117,7 +117,7 @@ bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygo
   if (shape.is_empty()) return true;
   if (surface.empty() || surface.size() > kMostNearPolygons || !(distance > 0)) return false;
   const PointGroups points(shape);
-  // Most shapes that reach too far have a point that is too high over all of the planes.
+  // Most shapes that are not near have a point that is too far from all planes.
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
     for (const PlanarPolygon& polygon : surface)
@@ -128,7 +128,7 @@ bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygo
   std::size_t known = 0;
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
-    // Most near points are near a corner of a small polygon.
+    // Most points that are near are near a corner of a small polygon.
     for (const PlanarPolygon& polygon : surface) {
       const auto corner = static_cast<Vec3f>(polygon.polygon->corners[0]);
       const FloatLanes x = points.x[i] - corner.x, y = points.y[i] - corner.y,

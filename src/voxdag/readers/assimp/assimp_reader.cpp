@@ -40,7 +40,7 @@ std::string reason(const Assimp::Importer& importer) {
   return text.substr(0, 200);
 }
 
-/// Opens the mesh file and, of the files that it names, regular ones inside its folder.
+/// Opens the mesh file and regular files inside its folder that it names.
 class AllowedFiles : public Assimp::DefaultIOSystem {
  public:
   explicit AllowedFiles(const MeshSource& source) : source_(source), named_(source) {}
@@ -95,11 +95,11 @@ void add_mesh(const MeshSource& source, const aiMesh& part, Mesh& mesh) {
 }
 
 /// Bytes that assimp's importers may take for each byte of a file. Measured: 8 (AMF, XGL) to 24
-/// (DXF). A file of empty XML elements takes most.
+/// (DXF). A file of empty XML elements needs most.
 constexpr std::uint64_t kAssimpBytesPerFileByte = 64;
 
-/// Takes away the importers that did not survive fuzzing. Assimp asks all others whether they know
-/// a file's content.
+/// Removes the importers that did not survive fuzzing. Assimp asks all others whether they know a
+/// file's content.
 void keep_safe_importers(Assimp::Importer& importer) {
   std::vector<Assimp::BaseImporter*> unsafe;
   for (std::size_t i = 0; i < importer.GetImporterCount(); ++i)

@@ -129,7 +129,7 @@ void GltfAccessor::read_sparse(const GltfFile& file, const GltfValue& sparse) {
                          " is out of range: " + std::to_string(count_) + " elements");
     changes_.emplace_back(target, values.first + i * values.stride);
   }
-  // The last of several values for one element counts: it has the greatest address.
+  // If an element has several values, the last one counts: it has the greatest address.
   std::sort(changes_.begin(), changes_.end());
 }
 
@@ -147,7 +147,7 @@ float GltfAccessor::load_component(const char* p) const {
   const auto scaled = [&](auto value) {
     const auto number = static_cast<double>(value);
     if (!is_normalized_) return static_cast<float>(number);
-    // Divided in double, so that the result is the nearest float32.
+    // Divides in double, so that the result is the nearest float32.
     return static_cast<float>(
         std::max(-1.0, number / static_cast<double>(std::numeric_limits<decltype(value)>::max())));
   };

@@ -8,7 +8,7 @@ namespace {
 constexpr std::array kArrayNames = {"buffers", "bufferViews", "accessors", "meshes",   "nodes",
                                     "scenes",  "materials",   "images",    "textures", "samplers"};
 
-/// Whether an array makes no geometry: if it is malformed, it counts as empty.
+/// Returns whether an array does not affect geometry. A malformed one counts as empty.
 bool is_optional(GltfArray array) { return array >= GltfArray::kImages; }
 
 std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
@@ -18,7 +18,7 @@ std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
-/// Whether an extension does not change where the triangles are.
+/// Returns whether an extension leaves the geometry unchanged.
 bool is_harmless_extension(std::string_view name) {
   for (const std::string_view prefix :
        {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_",
@@ -106,7 +106,7 @@ void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
     buffer.bytes = buffer.bytes.substr(0, size);
     buffer_bytes_ += size;
   }
-  // A short decoded string has moved with its buffer.
+  // A short decoded string has moved with its buffer object, so its view must be set again.
   for (Buffer& buffer : buffers_)
     if (buffer.decoded)
       buffer.bytes = std::string_view(buffer.decoded->bytes).substr(0, buffer.bytes.size());

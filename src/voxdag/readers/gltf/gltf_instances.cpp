@@ -5,7 +5,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns the root nodes that are shown.
+/// Returns the root nodes of the shown scene.
 CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
   const GltfItems& nodes = file.array(GltfArray::kNodes);
   CountedVector<std::uint64_t> roots(file.source().options.memory);

@@ -23,7 +23,7 @@ std::uint64_t uv_set_of_material(const GltfValue& material) {
   return uv_set_of(color.exists() ? color : material["normalTexture"]);
 }
 
-/// Returns T * R * S of the extension's specification.
+/// Returns the transform T * R * S of the extension KHR_texture_transform.
 UvTransform uv_transform(const GltfValue& texture_info) {
   const GltfValue transform = transform_of(texture_info);
   const std::vector<double> offset = transform["offset"].numbers(2);
@@ -48,8 +48,7 @@ TextureWrap wrap_of(const GltfValue& mode) {
                                     : TextureWrap::kRepeat;
 }
 
-/// Returns the name of an image's file; empty if the image is inside of the glTF file. Throws
-/// Error.
+/// Returns the name of an image's file; empty if the image is inside the glTF file. Throws Error.
 std::string file_name_of(const GltfValue& image) {
   std::string unescaped;
   const std::string_view uri = image["uri"].text_view(unescaped);
@@ -88,7 +87,7 @@ class MaterialReader {
  private:
   void add_memory(std::uint64_t bytes) { memory_.resize(memory_.bytes() + bytes); }
 
-  /// Runs body(). If that finds something malformed, warns that `replacement` holds.
+  /// Runs body(). If it finds malformed data, adds a warning that names `replacement`.
   template <class Body>
   void attempt(const Body& body, const char* replacement) {
     try {
@@ -121,7 +120,7 @@ class MaterialReader {
     }
   }
 
-  /// Copies the bytes of an image inside of the file.
+  /// Copies the bytes of an image inside the file.
   void copy_image(const GltfValue& image, TextureImage& out) {
     std::string unescaped;
     const std::string_view uri = image["uri"].text_view(unescaped);
@@ -187,7 +186,7 @@ class MaterialReader {
     return use;
   }
 
-  static constexpr std::uint64_t kMostCopies = 4;  ///< Of all buffers.
+  static constexpr std::uint64_t kMostCopies = 4;  ///< Limit on copies, in sizes of all buffers.
 
   const GltfFile& file_;
   Appearance& appearance_;
@@ -219,7 +218,7 @@ void report_gltf_images(const GltfFile& file) {
   for (const GltfValue image : file.array(GltfArray::kImages)) try {
       const std::string name = file_name_of(image);
       if (!name.empty()) file.named_files().report(file.source().folder / name);
-    } catch (const Error&) {  // It names no file.
+    } catch (const Error&) {  // The name of the file is unknown.
     }
 }
 

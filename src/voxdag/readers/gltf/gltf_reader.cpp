@@ -1,5 +1,5 @@
-/// Meshes are checked and counted first, once each; then every instance is written into arrays of
-/// their final size, straight from the bytes of the buffers.
+/// The reader first checks and counts each mesh once. Then it writes every instance into arrays of
+/// their final size, directly from the bytes of the buffers.
 #include "voxdag/readers/gltf/gltf_reader.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 Vec3f to_vec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Returns a unit normal, or zero for one without a direction.
+/// Returns a unit normal, or zero if the normal has no direction.
 Vec3f transformed_normal(const GltfTransform& transform, Vec3f normal) {
   return static_cast<Vec3f>(normalized_or(transform.normal(static_cast<Vec3d>(normal)), {}));
 }
@@ -48,7 +48,7 @@ class GltfReader {
   }
 
  private:
-  /// Checks each mesh that is shown.
+  /// Checks each mesh that an instance shows.
   void compile(const CountedVector<GltfInstance>& instances) {
     const GltfItems& meshes = file_.array(GltfArray::kMeshes);
     meshes_.reserve(meshes.size());
@@ -70,7 +70,8 @@ class GltfReader {
     }
   }
 
-  /// Adds up what the instances make before memory is taken: a small file can ask for a lot.
+  /// Adds up the sizes of all instances before it reserves memory, because a small file can ask for
+  /// a lot.
   void make_room(const CountedVector<GltfInstance>& instances) {
     std::uint64_t vertices = 0, triangles = 0;
     for (const GltfInstance& instance : instances) {
@@ -163,8 +164,8 @@ class GltfReader {
     }
   }
 
-  /// Once in 65,536 vertices and triangles: reports, polls cancellation, and drops the buffers'
-  /// pages from memory.
+  /// Counts a vertex or triangle. Once in 65,536, reports, polls cancellation, and drops the
+  /// buffers' pages from memory.
   void step() {
     if ((++steps_ & 0xFFFF) != 0) return;
     file_.release_pages();

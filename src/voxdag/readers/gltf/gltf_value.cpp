@@ -48,7 +48,7 @@ std::uint64_t GltfValue::whole() const {
     std::uint64_t number = 0;
     const auto result = std::from_chars(digits.data(), end, number);
     if (result.ec == std::errc() && result.ptr == end && number <= kLimit) return number;
-    // Some writers put 3.0 for 3.
+    // Some writers write 3.0 for 3.
     const double real = to_double(digits);
     const bool is_real = digits.find_first_of(".eE") != digits.npos;
     if (is_real && real >= 0 && real <= static_cast<double>(kLimit) && real == std::floor(real))

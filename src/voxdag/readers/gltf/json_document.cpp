@@ -148,7 +148,7 @@ class JsonDocument::Parser {
     if (!take(c)) fail(at_);
   }
 
-  /// Starts a value: the whole of a scalar, the opening bracket of a container.
+  /// Reads the start of a value: a complete scalar, or the opening bracket of a container.
   JsonNode begin_value() {
     poll_.step();
     skip_space();
@@ -205,7 +205,8 @@ class JsonDocument::Parser {
     return node;
   }
 
-  /// Reads a string; gives the place between its quotes. Returns whether it has escape sequences.
+  /// Reads a string and sets the position of the text between its quotes. Returns whether it has
+  /// escape sequences.
   bool read_string(std::uint32_t& start, std::uint32_t& size) {
     ++at_;
     start = static_cast<std::uint32_t>(at_);
@@ -247,8 +248,8 @@ class JsonDocument::Parser {
     expect(':');
   }
 
-  /// Adds a complete value to its container and reads what follows, until another value begins.
-  /// Returns whether the document is complete.
+  /// Adds a complete value to its container. Reads commas and closing brackets until another value
+  /// begins. Returns whether the document is complete.
   bool end_value(JsonNode node) {
     for (;;) {
       skip_space();
@@ -310,7 +311,7 @@ class JsonDocument::Parser {
   const std::string_view text_;
   CancelPoll poll_;
   std::size_t at_ = 0;
-  JsonNode key_;                     ///< The key of the value that comes next, in an object.
+  JsonNode key_;                     ///< In an object: the key of the next value.
   CountedVector<JsonNode> pending_;  ///< Complete values of open containers.
   CountedVector<Container> open_;
 };

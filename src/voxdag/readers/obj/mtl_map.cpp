@@ -65,7 +65,7 @@ MtlMap parse_mtl_map(std::string_view text) {
              option == "-imfchan" || option == "-type")
       next_token(rest);
     else
-      break;  // A file whose name starts with a dash.
+      break;  // Not an option: a file whose name starts with a dash.
     text = rest;
   }
   map.file = text;

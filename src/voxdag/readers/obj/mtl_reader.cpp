@@ -63,14 +63,14 @@ class MtlReader::Impl {
     is_described_[*found] = true;
   }
 
-  /// Adds what is wrong with the statement at hand, and what replaces it.
+  /// Adds a warning about the current statement, with its fault and its replacement.
   void warn(const std::string& what) {
     warnings_.add(file_ + ": " + ErrorPlace::line(line_number_).text() + ": " +
                   in_quotes(statement_) + ": " + what);
   }
 
-  /// Runs body(), which parses a statement. If that is malformed, warns that `replacement` holds:
-  /// callers set it before.
+  /// Runs body(), which parses a statement. If the statement is malformed, adds a warning that
+  /// names `replacement`, the value that the caller has set before.
   template <class Body>
   void attempt(const char* replacement, const Body& body) {
     try {
@@ -104,7 +104,7 @@ class MtlReader::Impl {
       set_normal_map(line, NormalMapKind::kTangentSpace);
     } else if (keyword == "bump" || keyword == "map_bump") {
       if (material.normal_map.exists() && material.normal_kind == NormalMapKind::kTangentSpace)
-        return;  // `norm` is exact; `bump` may be either kind.
+        return;  // `norm` has one meaning; `bump` may be of either kind.
       set_normal_map(line, NormalMapKind::kEither);
     } else if (keyword == "disp" || keyword == "map_disp") {
       material.displacement_map = {};
@@ -123,7 +123,7 @@ class MtlReader::Impl {
       throw MalformedMtl("spectral curves and CIEXYZ are not supported");
     std::array<float, 3> kd{};
     const std::size_t count = take_numbers(line, kd);
-    // One number is for all three channels.
+    // A single number stands for all three channels.
     const bool is_grey = count == 1 && next_corner(line).empty();
     if (is_grey) kd[1] = kd[2] = kd[0];
     if ((count != 3 && !is_grey) || !all_finite(kd)) throw MalformedMtl(kColorNumbers);
@@ -161,7 +161,7 @@ class MtlReader::Impl {
 
   /// Returns the index of an image, which it adds if it is new.
   int image(std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');  // Written on Windows.
+    std::replace(name.begin(), name.end(), '\\', '/');  // Files from Windows use backslashes.
     std::vector<TextureImage>& images = appearance_.images;
     const std::string key = (folder_ / name).string();
     if (const auto known = images_.find(key)) return static_cast<int>(*known);
@@ -189,11 +189,11 @@ class MtlReader::Impl {
   const NamedFiles& files_;
   Appearance& appearance_;
   Warnings& warnings_;
-  NameTable names_;   ///< Of the materials.
+  NameTable names_;   ///< Names of the materials.
   NameTable images_;  ///< Paths of the images.
   MemoryReservation image_memory_;
   std::vector<bool> is_described_;
-  std::filesystem::path folder_;  ///< Of the file at hand.
+  std::filesystem::path folder_;  ///< Folder of the current file.
   std::string file_;              ///< Its name in messages.
   std::size_t line_number_ = 1;
   std::string_view statement_;

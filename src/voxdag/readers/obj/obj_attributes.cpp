@@ -53,7 +53,7 @@ void ObjAttributes::set_uv(std::size_t index, std::string_view numbers) {
   std::array<float, 2> uv{};
   if (parse_numbers(numbers, uv) < 1) return;
   if (!std::isfinite(uv[1])) uv[1] = 0;
-  uvs_[index] = {uv[0], 1 - uv[1]};  // The file's v runs up.
+  uvs_[index] = {uv[0], 1 - uv[1]};  // In the file, v points up.
 }
 
 void ObjAttributes::set_normal(std::size_t index, std::string_view numbers) {

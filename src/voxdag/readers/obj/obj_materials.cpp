@@ -59,7 +59,7 @@ std::vector<std::string> read_obj_materials(const MeshSource& source, const Mesh
                  "these corners have none");
   std::vector<Material>& materials = appearance.materials;
   const std::size_t count = std::max<std::size_t>(mesh.materials.size(), 1);
-  // The material and its name, here and in the MTL reader's table.
+  // Counts the material and its name, here and in the MTL reader's table.
   std::uint64_t bytes = count * sizeof(Material);
   for (const std::string& name : mesh.materials) bytes += name.size() + 1;
   const MemoryReservation memory(source.options.memory, bytes);

@@ -1,6 +1,6 @@
-/// Two parallel passes over chunks of whole lines: the first counts what each chunk holds, so that
-/// the second can parse into arrays of their final size. Then faces are cut, when all vertices are
-/// known.
+/// Makes two parallel passes over chunks of whole lines. The first counts the contents of each
+/// chunk, so that the second can parse into arrays of their final size. When all vertices are
+/// known, faces are cut.
 #include "voxdag/readers/obj/obj_reader.hpp"
 
 #include <limits>
@@ -16,20 +16,20 @@ namespace {
 
 constexpr std::uint32_t kNoMaterial = std::numeric_limits<std::uint32_t>::max();
 
-/// Where a chunk starts in the mesh, and what the second pass leaves for the cut.
+/// The start of a chunk in the mesh, and the data that the second pass leaves for the cut.
 struct PlacedChunk {
   explicit PlacedChunk(MemoryBudget* memory) : is_same_face(memory) {}
 
-  ObjCounts first;                       ///< What precedes the chunk.
-  std::size_t triangles = 0;             ///< In the chunk.
-  std::uint32_t material = kNoMaterial;  ///< In force at the start of the chunk.
+  ObjCounts first;                       ///< Counts of everything before the chunk.
+  std::size_t triangles = 0;             ///< Number of triangles in the chunk.
+  std::uint32_t material = kNoMaterial;  ///< The material at the start of the chunk.
   bool has_bad_vertex = false;           ///< A vertex of the chunk is NaN or infinite.
-  /// Whether a triangle of the chunk belongs to the face of the triangle before; empty if none
-  /// does.
+  /// For each triangle of the chunk: whether it belongs to the face of the previous triangle. Empty
+  /// if no triangle does.
   CountedVector<bool> is_same_face;
 };
 
-/// A corner as parsed.
+/// A parsed corner of a face.
 struct Corner {
   std::uint32_t vertex = 0;
   ObjReferences references;
@@ -93,7 +93,8 @@ class ObjReader {
   }
 
  private:
-  /// Counts what the chunks hold, turns the counts into places in the mesh, and makes room there.
+  /// Counts the contents of the chunks, turns the counts into positions in the mesh, and makes room
+  /// for them.
   void count_chunks() {
     std::vector<std::optional<ObjChunk>> counted(texts_.size());
     for_each_chunk(source_, texts_, line_end_, "scan",
@@ -107,7 +108,7 @@ class ObjReader {
       totals_ += chunk->counts;
       has_colors = has_colors || chunk->has_colors;
       if (material == kNoMaterial && chunk->faces_before_material)
-        material = material_ids_.find_or_add("");  // For the faces before any usemtl.
+        material = material_ids_.find_or_add("");  // The material of faces before any usemtl.
       placed.material = material;
       for (std::size_t i = 0; i < chunk->materials.size(); ++i)
         material_ids_.find_or_add(chunk->materials[i]);
@@ -146,7 +147,7 @@ class ObjReader {
 
   void parse(std::size_t i) {
     PlacedChunk& chunk = chunks_[i];
-    ObjCounts seen = chunk.first;  // What precedes the line.
+    ObjCounts seen = chunk.first;  // Counts of everything before the line.
     std::uint32_t material = chunk.material;
     CancelPoll poll(source_.options.progress);
     for_each_line(texts_[i], line_end_, source_.options.memory,
@@ -187,7 +188,7 @@ class ObjReader {
                   });
   }
 
-  /// Writes the fan of one face from seen.triangles on, which it moves behind the fan.
+  /// Writes the fan of one face from seen.triangles on, and adds the fan's size to seen.triangles.
   void parse_face(std::string_view corners, const char* position, ObjCounts& seen,
                   CancelPoll& poll) {
     Corner first, previous;
@@ -213,7 +214,7 @@ class ObjReader {
     }
   }
 
-  /// Notes that the triangles [first, end) are the fan of one face.
+  /// Records that the triangles [first, end) are the fan of one face.
   static void mark_face(PlacedChunk& chunk, std::size_t first, std::size_t end) {
     if (chunk.is_same_face.empty()) chunk.is_same_face.resize(chunk.triangles, false);
     for (std::size_t t = first + 1; t < end; ++t)

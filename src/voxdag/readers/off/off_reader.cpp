@@ -102,7 +102,8 @@ class OffReader {
   static std::size_t corner_count(std::string_view& row) {
     const std::string_view token = next_token(row);
     std::int64_t corners = 0;
-    // A corner takes two characters at least, so a greater count is refused before it is used.
+    // A corner needs at least two characters, so a count that is too large for the line is refused
+    // before it is used.
     if (!parse_int(token, corners) || corners < 0 ||
         static_cast<std::uint64_t>(corners) > row.size() / 2)
       throw Fault{row.data(),
@@ -144,7 +145,7 @@ class OffReader {
     return static_cast<std::uint32_t>(index);
   }
 
-  /// Releases the pages that have been read, a chunk at a time.
+  /// Releases the pages that have been read, one chunk at a time.
   void release() {
     const auto here = static_cast<std::size_t>(rest_.data() - source_.bytes.data());
     if (here < released_) released_ = here;  // The faces are read twice.

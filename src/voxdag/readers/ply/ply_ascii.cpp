@@ -1,5 +1,6 @@
-/// The body of an ascii PLY file: one row per line. One pass over chunks of lines counts the rows,
-/// a second one the triangles; then all values are parsed into their places.
+/// Reads the body of an ascii PLY file, which has one row per line. One pass over chunks of lines
+/// counts the rows, a second pass counts the triangles. Then all values are parsed into arrays of
+/// their final size.
 #include "voxdag/readers/ply/ply_attributes.hpp"
 #include "voxdag/readers/ply/ply_rows.hpp"
 
@@ -87,7 +88,7 @@ class AsciiReader {
           cutter(source) {}
 
     std::size_t index;
-    std::size_t triangle;  ///< The next one to write.
+    std::size_t triangle;  ///< The next triangle to write.
     CancelPoll poll;
     PlyRowValues values;
     FaceCutter cutter;
@@ -102,7 +103,8 @@ class AsciiReader {
     for (std::size_t i = 0; i < texts_.size(); ++i) first_rows_[i + 1] += first_rows_[i];
     std::size_t row = 0;
     for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty()) continue;  // Its rows have no lines.
+      if (element.properties.empty())
+        continue;  // The rows of an element without properties have no lines.
       const Rows rows{row, row + element.count};
       if (rows.last > first_rows_.back())
         throw_fault(
@@ -139,14 +141,16 @@ class AsciiReader {
                     [](std::string_view) {});
     const char* const start = row.data();
     std::int64_t corners = 0;
-    // A corner takes two characters at least, so a greater count is refused before it is summed.
+    // A corner needs at least two characters, so a count that is too large for the line is refused
+    // before it is summed.
     if (!parse_int(next_token(row), corners) || corners < 0 ||
         static_cast<std::uint64_t>(corners) > row.size() / 2 + 1)
       throw Fault{start, "the number of vertex indices is missing, or the row is too short for it"};
     return static_cast<std::size_t>(corners);
   }
 
-  /// Takes a value of the appearance. What is no number is 0, or the number that it starts with.
+  /// Stores a value of the appearance. A malformed number counts as the number that it starts with,
+  /// or as 0.
   static void take_value(const PlyColumns& columns, std::size_t property, std::string_view token,
                          PlyRowValues& values) {
     float value = 0;
@@ -177,7 +181,8 @@ class AsciiReader {
     if (has_values) body_.attributes->take_vertex(index, chunk.values);
   }
 
-  /// Writes the triangles of one face from chunk.triangle on, which it moves behind them.
+  /// Writes the triangles of one face from chunk.triangle on, and adds their number to
+  /// chunk.triangle.
   void parse_face(Chunk& chunk, std::string_view row) {
     const auto& properties = fields_.face.properties;
     const bool has_values = body_.attributes != nullptr;
@@ -236,8 +241,8 @@ class AsciiReader {
   const PlyFields& fields_;
   MemoryReservation& memory_;
   const std::vector<std::string_view> texts_;
-  std::vector<std::size_t> first_rows_, first_triangles_;  ///< By chunk and, last, the totals.
-  std::vector<char> has_bad_vertex_;                       ///< By chunk.
+  std::vector<std::size_t> first_rows_, first_triangles_;  ///< Per chunk, and then the totals.
+  std::vector<char> has_bad_vertex_;                       ///< Per chunk.
   Rows vertex_rows_, face_rows_;
   Mesh mesh_;
 };

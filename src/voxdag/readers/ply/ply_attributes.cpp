@@ -64,7 +64,7 @@ void find_normal(const PlyElement& element, PlyColumns& columns) {
   columns.has_normals = !found.empty();
 }
 
-/// Returns the factor from a colour's component to 0..1.
+/// Returns the factor that maps a component of a colour to 0..1.
 float color_scale(PlyType type) {
   switch (type) {
     case PlyType::kInt8:
@@ -78,7 +78,7 @@ float color_scale(PlyType type) {
   }
 }
 
-/// Turns the file's v, which runs up.
+/// Converts texture coordinates: in the file, v points up.
 Vec2f to_uv(float u, float v) {
   return std::isfinite(u) && std::isfinite(v) ? Vec2f{u, 1 - v} : Vec2f{};
 }
@@ -209,7 +209,8 @@ void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& w
   }
 }
 
-/// Some programs write an alpha of 0 everywhere and mean nothing by it.
+/// Makes all colours opaque if every alpha is 0, because some programs write an alpha of 0 without
+/// meaning it.
 void PlyAttributes::ignore_alpha_that_hides_all() {
   const auto is_visible = [](Rgba16 color) { return color.alpha() >= kBlendCutoff; };
   if (std::any_of(vertex_colors_.begin(), vertex_colors_.end(), is_visible) ||

@@ -1,5 +1,5 @@
-/// The binary body of a PLY file. Rows with lists differ in size, so a sequential pass finds where
-/// blocks of rows start and how many triangles they make; then threads read the blocks.
+/// Reads the binary body of a PLY file. Rows with lists differ in size, so a sequential pass finds
+/// the starts of blocks of rows and their numbers of triangles. Then threads read the blocks.
 #include <bit>
 
 #include "voxdag/readers/ply/ply_attributes.hpp"
@@ -22,7 +22,7 @@ struct Blocks {
   std::vector<std::string_view> parts;  ///< The bytes of each block.
 };
 
-/// Where the value of a property goes.
+/// The destination of a property's values.
 struct Column {
   int slot;  ///< PlyRowValues::Slot; -1: the list `texcoord`.
   PlyType type;
@@ -62,8 +62,8 @@ class BinaryReader {
   }
 
  private:
-  /// Removes an element's rows from `rest_` and cuts them into blocks. The blocks of faces have the
-  /// number of their triangles as `first_triangle`.
+  /// Removes an element's rows from `rest_` and divides them into blocks. In blocks of faces,
+  /// `first_triangle` is the block's number of triangles at this stage.
   Blocks split(const PlyElement& element) {
     const RowLayout layout(element);
     Blocks blocks;
@@ -114,7 +114,8 @@ class BinaryReader {
     rest_ = {p, static_cast<std::size_t>(end - p)};
   }
 
-  /// The properties of an element that make the appearance; none if it is not read.
+  /// Returns the properties of an element that belong to the appearance; none if the appearance is
+  /// not read.
   std::vector<Column> used_columns(const PlyElement& element, const RowLayout& layout,
                                    const PlyColumns& columns) const {
     std::vector<Column> used;
@@ -124,7 +125,7 @@ class BinaryReader {
     return used;
   }
 
-  /// Takes the values of one run of a row.
+  /// Stores the values of one run of a row.
   void take_values(const std::vector<Column>& columns, const RowLayout& layout, std::size_t run,
                    const char* fixed, std::size_t items, PlyRowValues& values) const {
     for (const Column& column : columns) {

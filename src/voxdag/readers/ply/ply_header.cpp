@@ -9,7 +9,8 @@
 namespace voxdag {
 namespace {
 
-/// Elements in a file, and properties in an element: far more than any real header declares.
+/// The maximum number of elements in a file, and of properties in an element: far more than real
+/// headers have.
 constexpr std::size_t kMaxDeclared = 1000;
 
 std::optional<PlyType> parse_type(std::string_view name) {
@@ -51,7 +52,8 @@ class HeaderParser {
       else if (keyword == "property")
         parse_property(text);
       else if (keyword != "obj_info" && !keyword.empty() && !header_.elements.empty())
-        // Before the first element such a line is harmless: old Blender writes "Created by ...".
+        // Before the first element an unknown line is harmless: old Blender writes "Created by
+        // ...".
         fail("unknown PLY header keyword " + in_quotes(keyword));
     }
     if (!has_format) fail("PLY header without a 'format' line");
@@ -65,7 +67,7 @@ class HeaderParser {
     throw Error(source_.name, ErrorPlace::line(line_), reason);
   }
 
-  /// The first line says how lines end: "\n" (also "\r\n") or "\r".
+  /// Finds the line end from the first line: "\n" (also "\r\n") or "\r".
   void find_line_end() {
     const std::size_t end = rest_.find_first_of("\r\n");
     if (end != rest_.npos && rest_[end] == '\r' && !rest_.substr(end).starts_with("\r\n"))
@@ -167,7 +169,7 @@ class HeaderParser {
       fail("the vertex indices of PLY faces must be a list of integers");
   }
 
-  /// Refuses a count that the rest of the file cannot hold, before memory is taken for it.
+  /// Refuses a count that is too large for the rest of the file, before memory is reserved for it.
   void check_size(const PlyElement& element) const {
     const std::size_t rest = source_.bytes.size() - header_.body;
     // A row of text has a digit and a separator per property. The last separator may be missing.
@@ -182,7 +184,7 @@ class HeaderParser {
   std::string_view rest_;
   std::size_t line_ = 0;
   CancelPoll poll_{source_.options.progress};
-  std::set<std::string_view> property_names_;  ///< Of the last element.
+  std::set<std::string_view> property_names_;  ///< Names in the last element.
   PlyHeader header_;
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 constexpr std::size_t kMaxFacets = 0xFFFFFFFF / 3;
-constexpr std::size_t kFacetsPerPart = 2048;  ///< About as many as a part of an ascii file has.
+constexpr std::size_t kFacetsPerPart = 2048;  ///< About the number in a part of an ascii file.
 
 /// Returns the number of facets in the header of a binary file.
 std::uint32_t binary_facet_count(std::string_view bytes) {
