@@ -20,8 +20,8 @@ namespace voxdag {
 namespace {
 
 const std::string kPlace = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
-const std::string kLook = ", ('normal', '<f4', (3,)), ('color', '|u1', (3,))";
-constexpr std::size_t kPlaceBytes = 18, kLookBytes = 15;
+const std::string kAttributes = ", ('normal', '<f4', (3,)), ('color', '|u1', (3,))";
+constexpr std::size_t kPlaceBytes = 18, kAttributeBytes = 15;
 
 /// Waves whose vertices have colours, all different.
 std::string colored_waves() {
@@ -41,7 +41,7 @@ std::string colored_waves() {
   return text.str();
 }
 
-struct Look {
+struct Attributes {
   Vec3f normal;
   Vec3<std::uint8_t> color;
 };
@@ -51,7 +51,7 @@ class Leaves {
  public:
   explicit Leaves(const EsvoView& esvo) : esvo_(esvo) { walk(esvo.root, {}, esvo.levels); }
 
-  const Look& at(Vec3i voxel) const { return looks_.at({voxel.x, voxel.y, voxel.z}); }
+  const Attributes& at(Vec3i voxel) const { return attributes_.at({voxel.x, voxel.y, voxel.z}); }
   std::size_t coarse = 0;
 
  private:
@@ -65,26 +65,26 @@ class Leaves {
         continue;
       }
       coarse += log2_size > 1 ? 1 : 0;
-      looks_[{at.x, at.y, at.z}] = look_of({slot, child});
+      attributes_[{at.x, at.y, at.z}] = attributes_of({slot, child});
     }
   }
 
-  Look look_of(const EsvoVoxel& voxel) const {
+  Attributes attributes_of(const EsvoVoxel& voxel) const {
     const std::uint64_t* const c = esvo_.attachment(voxel.slot, EsvoAttachmentKind::kColors);
     const std::uint64_t* const n = esvo_.attachment(voxel.slot, EsvoAttachmentKind::kNormals);
     NormalBlock normals;
     for (int i = 0; i < 4; ++i)
       normals.words[i] = static_cast<std::uint32_t>(n[i / 2] >> (i % 2 * 32));
-    Look look;
-    look.normal = normals.normal(attachment_value(voxel));
+    Attributes attributes;
+    attributes.normal = normals.normal(attachment_value(voxel));
     const Vec3f srgb = ColorBlock{c[0]}.color(attachment_value(voxel));
     for (int i = 0; i < 3; ++i)
-      look.color[i] = static_cast<std::uint8_t>(std::lround(255 * srgb[i]));
-    return look;
+      attributes.color[i] = static_cast<std::uint8_t>(std::lround(255 * srgb[i]));
+    return attributes;
   }
 
   EsvoView esvo_;
-  std::map<std::array<std::int32_t, 3>, Look> looks_;
+  std::map<std::array<std::int32_t, 3>, Attributes> attributes_;
 };
 
 class TraceCommand : public testing::Test {
@@ -132,19 +132,21 @@ TEST_F(TraceCommand, TellsWhatAnEsvoStoresOfTheVoxelsHit) {
   const Leaves leaves(file.view());
   ASSERT_GT(leaves.coarse, 0u);
   write_rays(file.grid());
-  const auto rows = rows_of(trace(scene), kPlace + kLook + "]", kPlaceBytes + kLookBytes);
+  const auto rows =
+      rows_of(trace(scene), kPlace + kAttributes + "]", kPlaceBytes + kAttributeBytes);
   std::size_t hits = 0;
   for (const std::string& row : rows) {
     Vec3i voxel;
-    Look look;
+    Attributes attributes;
     std::memcpy(&voxel, row.data() + 4, sizeof voxel);
-    std::memcpy(&look.normal, row.data() + kPlaceBytes, sizeof look.normal);
-    std::memcpy(&look.color, row.data() + kPlaceBytes + sizeof look.normal, sizeof look.color);
+    std::memcpy(&attributes.normal, row.data() + kPlaceBytes, sizeof attributes.normal);
+    std::memcpy(&attributes.color, row.data() + kPlaceBytes + sizeof attributes.normal,
+                sizeof attributes.color);
     const bool is_hit = row[17] != 0;
     hits += is_hit ? 1 : 0;
-    const Look expected = is_hit ? leaves.at(voxel) : Look{};
-    EXPECT_EQ(look.normal, expected.normal);
-    EXPECT_EQ(look.color, expected.color);
+    const Attributes expected = is_hit ? leaves.at(voxel) : Attributes{};
+    EXPECT_EQ(attributes.normal, expected.normal);
+    EXPECT_EQ(attributes.color, expected.color);
   }
   EXPECT_GT(hits, rows.size() / 10);
   EXPECT_LT(hits, rows.size());
@@ -155,7 +157,7 @@ TEST_F(TraceCommand, WithoutAttributesTheHitsAreTheSameAndNothingMoreIsTold) {
   const std::string without = build("without.esvo", {"--no-contours", "--no-attributes"});
   const std::string dag = build("dag.vdag");
   write_rays(EsvoFile(with).grid());
-  auto expected = rows_of(trace(with), kPlace + kLook + "]", kPlaceBytes + kLookBytes);
+  auto expected = rows_of(trace(with), kPlace + kAttributes + "]", kPlaceBytes + kAttributeBytes);
   for (std::string& row : expected) row.resize(kPlaceBytes);
   EXPECT_EQ(rows_of(trace(without), kPlace + "]", kPlaceBytes), expected);
   EXPECT_EQ(rows_of(trace(dag), kPlace + "]", kPlaceBytes), expected) << "cubes are a DAG's voxels";
@@ -164,7 +166,8 @@ TEST_F(TraceCommand, WithoutAttributesTheHitsAreTheSameAndNothingMoreIsTold) {
 TEST_F(TraceCommand, NoRaysMakeAnArrayWithTheSameFields) {
   const std::string scene = build("waves.esvo");
   write_text(dir_ / "rays.npy", rays_npy({}));
-  EXPECT_TRUE(rows_of(trace(scene), kPlace + kLook + "]", kPlaceBytes + kLookBytes).empty());
+  EXPECT_TRUE(
+      rows_of(trace(scene), kPlace + kAttributes + "]", kPlaceBytes + kAttributeBytes).empty());
 }
 
 }  // namespace

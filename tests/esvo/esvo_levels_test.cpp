@@ -20,11 +20,11 @@ namespace {
 constexpr int kTexels = 512;
 
 /// Linear light and weight (voxels of the finest level) of each voxel of a level.
-struct Look {
+struct WeightedColor {
   Vec3f color{};
   float weight = 0;
 };
-using Level = std::map<std::tuple<int, int, int>, Look>;
+using Level = std::map<std::tuple<int, int, int>, WeightedColor>;
 
 class EsvoLevels : public testing::Test {
  protected:
@@ -59,12 +59,12 @@ class EsvoLevels : public testing::Test {
       for (int i = 0; i < 8; ++i) {
         if ((d.valid_mask() >> i & 1) == 0) continue;
         const Vec3i at = cell * 2 + child_offset(i);
-        Look look;
-        EXPECT_TRUE(stored_color(esvo, {slot, i}, look.color));
+        WeightedColor value;
+        EXPECT_TRUE(stored_color(esvo, {slot, i}, value.color));
         const bool is_leaf = (d.leaf_mask() >> i & 1) != 0;
-        look.weight = is_leaf ? 1 : self(self, esvo.child(slot, d, i), level + 1, at);
-        sum += look.weight;
-        levels[static_cast<std::size_t>(level) + 1][{at.x, at.y, at.z}] = look;
+        value.weight = is_leaf ? 1 : self(self, esvo.child(slot, d, i), level + 1, at);
+        sum += value.weight;
+        levels[static_cast<std::size_t>(level) + 1][{at.x, at.y, at.z}] = value;
       }
       return sum;
     };
@@ -76,10 +76,10 @@ class EsvoLevels : public testing::Test {
   static double difference(const Level& a, const Level& b) {
     EXPECT_EQ(a.size(), b.size());
     double sum = 0;
-    for (const auto& [cell, look] : a) {
+    for (const auto& [cell, value] : a) {
       const auto other = b.find(cell);
       if (other == b.end()) return HUGE_VAL;
-      const Vec3f d = look.color - other->second.color;
+      const Vec3f d = value.color - other->second.color;
       sum += static_cast<double>(dot(d, d)) / 3;
     }
     return std::sqrt(sum / static_cast<double>(a.size()));
@@ -87,21 +87,21 @@ class EsvoLevels : public testing::Test {
 
   static Level average(const Level& fine) {
     Level coarse;
-    for (const auto& [cell, look] : fine) {
+    for (const auto& [cell, value] : fine) {
       const auto [x, y, z] = cell;
-      Look& sum = coarse[{x / 2, y / 2, z / 2}];
-      sum.color = sum.color + look.color * look.weight;
-      sum.weight += look.weight;
+      WeightedColor& sum = coarse[{x / 2, y / 2, z / 2}];
+      sum.color = sum.color + value.color * value.weight;
+      sum.weight += value.weight;
     }
-    for (auto& [cell, look] : coarse) look.color = look.color * (1 / look.weight);
+    for (auto& [cell, value] : coarse) value.color = value.color * (1 / value.weight);
     return coarse;
   }
 
   static double spread(const Level& level) {
     double sum = 0, squares = 0;
-    for (const auto& [cell, look] : level) {
-      sum += static_cast<double>(look.color.x);
-      squares += static_cast<double>(look.color.x * look.color.x);
+    for (const auto& [cell, value] : level) {
+      sum += static_cast<double>(value.color.x);
+      squares += static_cast<double>(value.color.x * value.color.x);
     }
     const auto n = static_cast<double>(level.size());
     return std::sqrt(squares / n - sum * sum / (n * n));
@@ -115,7 +115,7 @@ class EsvoLevels : public testing::Test {
 TEST_F(EsvoLevels, AreTheMeansOfTheFinerOnes) {
   const Esvo esvo = build(7);
   const std::vector<Level> levels = levels_of(esvo.view());
-  // What is stored is off by the compression: less at levels whose voxels look more alike.
+  // What is stored is off by the compression: less at levels whose voxels are more alike.
   for (std::size_t level = 2; level < 7; ++level)
     EXPECT_LT(difference(levels[level], average(levels[level + 1])), 0.02) << level;
 }

@@ -182,12 +182,13 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
                        const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
   const std::uint64_t count = count_for_export(path, voxels, window, sizeof(Vec3f), options);
-  const auto write_voxels = [](PlyFile& file, Vec3i origin, std::uint64_t mask, const auto& look) {
+  const auto write_voxels = [](PlyFile& file, Vec3i origin, std::uint64_t mask,
+                               const auto& after_vertex) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
           origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
       file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
-      look();
+      after_vertex();
     }
   };
   if (const EsvoView* esvo = voxels.esvo(); esvo != nullptr && !esvo->is_empty()) {
