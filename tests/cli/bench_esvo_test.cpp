@@ -75,7 +75,7 @@ TEST_F(BenchEsvo, AVariantOfASceneOfThePaperStandsBesideItsFiguresOfEqualDepth) 
   EXPECT_TRUE(json.at("rays").back().at("contours_beams").at("paper_mrays_per_s").is_null());
 }
 
-TEST_F(BenchEsvo, TheMeshIsTheMeasureOfSilhouettes) {
+TEST_F(BenchEsvo, SilhouettesAreComparedWithTheMesh) {
   const ProcessResult result = bench({"Sponge=" + path("sponge.ply"), "-r", "16,32,64", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json json = Json::parse(result.out);

@@ -31,7 +31,7 @@ class BenchBuild : public testing::Test {
   std::string mesh_ = dir_ / "lucy.obj";  // a name of the paper's table
 };
 
-TEST_F(BenchBuild, JsonHasWhatEachBuildTook) {
+TEST_F(BenchBuild, JsonHasTheCostOfEachBuild) {
   const ProcessResult result =
       bench({mesh_, "-r", "128,32", "--method", "hash,sort", "--threads", "1", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -55,7 +55,7 @@ TEST_F(BenchBuild, JsonHasWhatEachBuildTook) {
   EXPECT_EQ(builds[1].at("voxels"), builds[3].at("voxels"));
 }
 
-TEST_F(BenchBuild, GrowthIsThatOfOneLevel) {
+TEST_F(BenchBuild, GrowthIsPerLevel) {
   const Json json = Json::parse(bench({mesh_, "-r", "32,128", "--json"}).out);
   const Json& builds = json.at("builds");
   EXPECT_FALSE(builds[0].contains("growth_per_level"));
@@ -120,7 +120,7 @@ TEST_F(BenchBuild, ARivalThatFailsOrHangsIsRecorded) {
   EXPECT_EQ(rivals[1].at("failure"), "stopped at the time limit of 0.2 s");
 }
 
-TEST_F(BenchBuild, AProceduralSceneIsMadeForTheRun) {
+TEST_F(BenchBuild, AProceduralSceneIsGeneratedForTheRun) {
   const ProcessResult result = bench({"sponge:2", "-r", "64", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json builds = Json::parse(result.out).at("builds");

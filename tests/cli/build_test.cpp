@@ -48,7 +48,7 @@ TEST_F(Build, QuietPrintsNothing) {
   EXPECT_EQ(result.out + result.err, "");
 }
 
-TEST_F(Build, InfoAndBuildTellTheSame) {
+TEST_F(Build, InfoAndBuildPrintTheSameValues) {
   const ProcessResult built = build({"-r", "32", "--json"});
   ASSERT_EQ(built.status, 0) << built.err;
   const Json summary = Json::parse(built.out);
@@ -149,7 +149,7 @@ TEST_F(Build, BadUsageIsRefusedBeforeAnyWork) {
   expect_nothing_left();
 }
 
-TEST_F(Build, AMeshThatIsNotThereIsNamed) {
+TEST_F(Build, AMissingMeshIsNamed) {
   const std::string absent = dir_ / "absent.obj";
   expect_failure(run_voxdag({"build", absent, "-r", "64", "-o", output_}), 1, absent);
   expect_nothing_left();

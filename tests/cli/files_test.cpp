@@ -47,7 +47,7 @@ TEST_F(Files, FilesThatTheMeshNamesAreNotOverwritten) {
   }
 }
 
-TEST_F(Files, WhatIsReadIsNotOverwritten) {
+TEST_F(Files, InputsAreNotOverwritten) {
   const std::string mesh = copy("sponge.ply", "a.ply"), dag = copy("in.vdag", "a.png");
   write_text(path("rays.npy"), rays_npy({{0, 9, 0, 0, 0, -1, 0, 1}}));
   const std::string rays = read_text(path("rays.npy"));
@@ -80,7 +80,7 @@ TEST_F(Files, WhatIsReadIsNotOverwritten) {
   EXPECT_EQ(read_text(path("b.npy.json")), dag);
 }
 
-TEST_F(Files, LinksToNothingAreNamesOfTheirFile) {
+TEST_F(Files, DanglingLinksCountAsTheFileTheyPointTo) {
   std::filesystem::create_symlink("d.png", path("link.png"));
   expect_failure(run_voxdag({"render", path("in.vdag"), "-o", path("link.png"), "--depth",
                              path("d.png"), "--size", "16x9"}),
@@ -93,7 +93,7 @@ TEST_F(Files, LinksToNothingAreNamesOfTheirFile) {
                  1, "two files of the film have this name");
 }
 
-TEST_F(Files, StandardOutputIsWrittenFromWhereItStands) {
+TEST_F(Files, StandardOutputIsWrittenFromItsPosition) {
   ASSERT_EQ(run_voxdag(build_to(path("plain.vdag"))).status, 0);
   const std::string dag = read_text(path("plain.vdag"));
   for (const char* name : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {

@@ -37,7 +37,7 @@ TEST_F(CgroupMemoryLimit, OfVersion1IsThatOfTheMemoryController) {
   EXPECT_EQ(limit(), 4000u);
 }
 
-TEST_F(CgroupMemoryLimit, IsFoundAtTheTopInsideOfAContainer) {
+TEST_F(CgroupMemoryLimit, IsFoundAtTheRootInsideAContainer) {
   write("proc/self/cgroup", "0::/\n");
   EXPECT_EQ(limit(), std::nullopt);
   write("sys/fs/cgroup/memory.max", "max\n");

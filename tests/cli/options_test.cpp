@@ -75,7 +75,7 @@ TEST_F(Options, ViewsAndLightsAreCheckedAtOnce) {
   expect_failure(render(lamps), 2, "--light: is given 16 times; at most 15 are allowed");
 }
 
-TEST_F(Options, FilesThatAreTheSameAreRefused) {
+TEST_F(Options, OutputsToTheSameFileAreRefused) {
   const std::string roundabout = (std::filesystem::path(path(".")) / "." / "bad.png").string();
   expect_refused({{"--pass depth", "--pass", "depth=" + roundabout}}, [](const Words& words) {
     return render({words.begin() + 1, words.end()});
@@ -91,7 +91,7 @@ TEST_F(Options, FilesThatAreTheSameAreRefused) {
   EXPECT_EQ(files_like("f0"), 0);
 }
 
-TEST_F(Options, FramesOfAFilmHaveNamesOfTheirOwn) {
+TEST_F(Options, FramesOfAFilmHaveDistinctNames) {
   write_text(path("long.json"), R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0]},
                                              {"time": 3, "eye": [2,2,2], "target": [0,0,0]}]})");
   expect_failure(
@@ -101,7 +101,7 @@ TEST_F(Options, FramesOfAFilmHaveNamesOfTheirOwn) {
   EXPECT_EQ(files_like("g"), 0);
 }
 
-TEST_F(Options, WhatHasNoEffectIsRefused) {
+TEST_F(Options, WithoutEffectAreRefused) {
   expect_refused({{"--filter", "--no-filter"},
                   {"--fps", "5"},
                   {"--timings", path("bad.csv")},
@@ -133,7 +133,7 @@ TEST_F(Options, WhatHasNoEffectIsRefused) {
   EXPECT_EQ(files_like("bad"), 0);
 }
 
-TEST_F(Options, ThatAnotherOptionSwitchesOffAreRefused) {
+TEST_F(Options, SwitchedOffByAnotherOptionAreRefused) {
   const auto expect_no_effect = [](const ProcessResult& result, const std::string& text) {
     expect_failure(result, 2, text);
   };
@@ -193,7 +193,7 @@ TEST_F(Options, AViewIsRefusedForTheRightReason) {
   expect_failure(render({"--eye", "1e-200,0,0", "--target", "0,0,0"}), 2, "is too close to --eye");
 }
 
-TEST_F(Options, AreNotEmpty) {
+TEST_F(Options, WithEmptyValuesAreRefused) {
   expect_refused({{"--mesh", ""}, {"--path", ""}, {"--depth", ""}, {"--light", ""}},
                  [](const Words& words) { return render(words); });
   expect_failure(run_voxdag({"verify", path("in.vdag"), "--mesh", ""}), 2, "--mesh: is empty");
@@ -202,7 +202,7 @@ TEST_F(Options, AreNotEmpty) {
                  "--output: is empty");
 }
 
-TEST_F(Options, OneOfSeveralWordsIsOneOfThem) {
+TEST_F(Options, WordsOutsideTheListAreRefused) {
   for (const char* word : {"7", "1", "0", "HASH", "hashes"})
     expect_failure(build({"--method", word}, "bad.vdag"), 2, "is neither hash nor sort");
   for (const char* word : {"2", "-1", "1e5", "svo"})
@@ -222,19 +222,19 @@ TEST_F(Options, MemoryIsForEsvos) {
   expect_failure(render({"--memory", "1M"}), 1, "in.vdag: --memory is for ESVOs only");
 }
 
-TEST_F(Options, ABenchedMeshIsThatOfTheVoxels) {
+TEST_F(Options, TheMeshOfABenchmarkMustBelongToTheVoxels) {
   ASSERT_EQ(run_voxdag({"scene", "hairball", "--size", "1", "-o", path("hair.ply")}).status, 0);
   expect_failure(run_voxdag({"bench", "trace", path("in.vdag"), "--mesh", path("hair.ply"),
                              "--size", "40x32", "--repeat", "1", "--views", "1"}),
                  1, "hair.ply: the ");
 }
 
-TEST_F(Options, AFolderOfScenesThatIsNotThereIsNamed) {
+TEST_F(Options, AMissingFolderOfScenesIsNamed) {
   expect_failure(run_voxdag({"bench", "trace", "--scenes", path("absent"), "-r", "64"}), 1,
                  path("absent") + ": No such file");
 }
 
-TEST_F(Options, AnEsvoIsWrittenToAFile) {
+TEST_F(Options, AnEsvoMustBeWrittenToARegularFile) {
   expect_failure(
       run_voxdag({"build", path("absent.ply"), "-r", "16", "-o", "/dev/null", "--as", "esvo"}), 1,
       "/dev/null: an ESVO needs a regular file as its output");

@@ -26,7 +26,7 @@ constexpr const char* kFilm =
     R"({"keys": [{"time": 1, "eye": [2, 1, 2], "target": [0.3, 0.3, 0.3], "fov": 50},
                  {"time": 2, "eye": [2, 1.5, -2], "target": [0.3, 0.3, 0.3]}]})";
 
-TEST_F(RenderPath, WritesAFrameForEachMomentAndWhatItTook) {
+TEST_F(RenderPath, WritesEachFrameAndItsTimings) {
   const ProcessResult result = film(kFilm, {"--pass", "depth=" + path("z_%d.exr")});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("5 frames"), std::string::npos) << result.out;
@@ -103,7 +103,7 @@ TEST_F(StreamedPath, FramesAreThoseOfTheWholeOctree) {
   EXPECT_NE(result.out.find(" read, 0 blocks more than once"), std::string::npos) << result.out;
 }
 
-TEST_F(RenderPath, NamesThePlaceOfWhatIsWrong) {
+TEST_F(RenderPath, NamesThePlaceOfTheFault) {
   expect_failure(film("{\"keys\": [}"), 1, "keys.json: byte 11: syntax error");
   expect_failure(film("[]"), 1, "keys.json: must be an object");
   expect_failure(film(R"({"keys": []})"), 1, "keys.json: key 0");

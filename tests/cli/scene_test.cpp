@@ -29,7 +29,7 @@ TEST_F(Sponge, EverySceneHasAFlight) {
   }
 }
 
-TEST_F(Sponge, QuietScenesSayNothingButJson) {
+TEST_F(Sponge, QuietScenesPrintOnlyJson) {
   const auto scene = [&](const std::string& option) {
     return run_voxdag(
         {"scene", "hairball", "--size", "10", "-o", path("quiet.ply"), "--quiet", option});

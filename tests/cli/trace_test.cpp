@@ -126,7 +126,7 @@ class TraceCommand : public testing::Test {
   TempDir dir_;
 };
 
-TEST_F(TraceCommand, TellsWhatAnEsvoStoresOfTheVoxelsHit) {
+TEST_F(TraceCommand, WritesTheStoredAttributesOfTheHitVoxels) {
   const std::string scene = build("waves.esvo", {"--color-error", "0.2", "--max-error", "2"});
   const EsvoFile file(scene);
   const Leaves leaves(file.view());
@@ -152,7 +152,7 @@ TEST_F(TraceCommand, TellsWhatAnEsvoStoresOfTheVoxelsHit) {
   EXPECT_LT(hits, rows.size());
 }
 
-TEST_F(TraceCommand, WithoutAttributesTheHitsAreTheSameAndNothingMoreIsTold) {
+TEST_F(TraceCommand, WithoutAttributesTheHitsAreTheSame) {
   const std::string with = build("with.esvo", {"--no-contours"});
   const std::string without = build("without.esvo", {"--no-contours", "--no-attributes"});
   const std::string dag = build("dag.vdag");

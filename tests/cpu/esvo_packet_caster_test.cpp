@@ -158,7 +158,7 @@ class CountedLeaves : public LeafListener {
   mutable std::map<std::uint64_t, int> counts_;
 };
 
-TEST(EsvoPacketCaster, TellsOfTheSameLeavesWhereBlocksMayBeMissing) {
+TEST(EsvoPacketCaster, ReportsTheSameLeavesWhereBlocksMayBeMissing) {
   const int levels = 5;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const Esvo esvo = random_esvo(seed, levels);

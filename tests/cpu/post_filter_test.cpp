@@ -7,7 +7,7 @@
 namespace voxdag {
 namespace {
 
-TEST(FilterPicture, EveryPixelIsThatOfTheFilter) {
+TEST(FilterPicture, EqualsTheFilterAtEveryPixel) {
   std::mt19937 random(1);
   constexpr int kWidth = 53, kHeight = 31;
   std::vector<Vec3f> color(kWidth * kHeight);

@@ -68,7 +68,7 @@ class OpennessOfAFloor : public testing::Test {
   }
 };
 
-TEST_F(OpennessOfAFloor, IsWholeWithoutAnythingNear) {
+TEST_F(OpennessOfAFloor, IsOneWithoutAnythingNear) {
   const Esvo esvo = build_esvo(floor_and_wall(false), unit_grid());
   const SurfaceOpenness openness(esvo.view(), unit_grid(), 256, kReach);
   for (double x = 1; x < 80; x += 1.7) EXPECT_EQ(open_at(openness, x), 1.0f) << x;

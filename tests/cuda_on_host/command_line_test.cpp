@@ -72,7 +72,7 @@ TEST_F(DeviceCommands, BenchTraceMeasuresIt) {
   }
 }
 
-TEST_F(DeviceCommands, ADeviceThatIsNotThereIsRefused) {
+TEST_F(DeviceCommands, AMissingDeviceIsRefused) {
   expect_failure(run_on("cuda:1", {"render", path("in.vdag"), "-o", path("none.png")}), 1,
                  "no CUDA device 1: the driver lists 1, numbered from 0");
   EXPECT_FALSE(exists("none.png"));

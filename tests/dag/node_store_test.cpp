@@ -63,7 +63,7 @@ TEST(NodeStore, CountsTheMemoryItHolds) {
   EXPECT_EQ(budget.used(), 0u);
 }
 
-TEST(MemoryBudget, SaysWhenItsLimitIsPassed) {
+TEST(MemoryBudget, ReportsThatItsLimitWasExceeded) {
   MemoryBudget budget(100);
   budget.add(100);
   EXPECT_FALSE(budget.exceeded());

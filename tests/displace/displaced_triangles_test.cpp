@@ -57,7 +57,7 @@ TEST(DisplacedTriangles, NeighboursOfDifferentMappingLeaveNoCracks) {
   }
 }
 
-TEST(DisplacedTriangles, WhatMeetsASurfaceThatIsNotDisplacedStaysThere) {
+TEST(DisplacedTriangles, EdgesAtASurfaceThatIsNotDisplacedStay) {
   Crate crate;
   crate.mesh.triangle_materials[0] = crate.mesh.triangle_materials[1] = 1;
   auto displacements = displace_all(crate.mesh, crate.appearance, stones(), 0.1);
@@ -157,7 +157,7 @@ TEST(DisplacedTriangles, EdgesAreNotLongerThanTheLimit) {
     }
 }
 
-TEST(Displacement, AmountsBesideWhichTheMeshIsNothingAreRefused) {
+TEST(Displacement, AmountsMuchLargerThanTheMeshAreRefused) {
   Crate crate;
   crate.appearance.images = {{"h.png", "h.png", {}}};
   Material& material = crate.appearance.materials[0];
@@ -189,7 +189,7 @@ TEST(DisplacedTriangles, BarycentricsNameThePlaceInTheBaseTriangle) {
     });
 }
 
-TEST(DisplacedTriangles, OctreesEncloseWhatWasTessellated) {
+TEST(DisplacedTriangles, OctreesEncloseTheTessellatedSurface) {
   const Crate crate;
   const DisplacedTriangles triangles(crate.mesh, crate.appearance,
                                      {{stones(), -0.1, 0.3, {}, 0}, Displacement{}});
@@ -245,7 +245,7 @@ TEST(DisplacedTriangles, AMicroTriangleIsFoundByItsPlace) {
   }
 }
 
-TEST(DisplacedTriangles, GridsThatHoldAPartOfTheSurfaceAreFinished) {
+TEST(DisplacedTriangles, GridsThatContainAPartOfTheSurfaceAreBuilt) {
   const Crate crate;
   const DisplacedTriangles triangles(crate.mesh, crate.appearance,
                                      {{stones(), -0.1, 0.3, {}, 0}, Displacement{}});

@@ -16,7 +16,7 @@ std::vector<Contour> list_of(std::initializer_list<int> lows) {
   return list;
 }
 
-TEST(ContourPool, ListsThatAreAlikeStandOnce) {
+TEST(ContourPool, EqualListsAreStoredOnce) {
   ContourPool pool;
   const std::uint32_t first = pool.add(list_of({1, 2, 3}));
   EXPECT_EQ(pool.add(list_of({4, 1})), 3u);
@@ -24,7 +24,7 @@ TEST(ContourPool, ListsThatAreAlikeStandOnce) {
   EXPECT_EQ(pool.contours().size(), 5u);
 }
 
-TEST(ContourPool, PartsOfListsNeedNoPlaceOfTheirOwn) {
+TEST(ContourPool, PartsOfListsNeedNoStorage) {
   ContourPool pool;
   pool.add(list_of({1, 2, 3, 4}));
   EXPECT_EQ(pool.add(list_of({2, 3})), 1u);
@@ -33,7 +33,7 @@ TEST(ContourPool, PartsOfListsNeedNoPlaceOfTheirOwn) {
   EXPECT_EQ(pool.add(list_of({3, 2})), 4u) << "another order is another list";
 }
 
-TEST(ContourPool, EveryListIsWhereItIsSaidToBe) {
+TEST(ContourPool, EveryListIsAtItsReturnedIndex) {
   std::mt19937 random(3);
   ContourPool pool;
   std::vector<std::pair<std::vector<Contour>, std::uint32_t>> added;

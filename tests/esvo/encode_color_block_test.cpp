@@ -107,7 +107,7 @@ TEST(EncodeColorBlock, BlackBesideWhiteIsExact) {
   EXPECT_EQ(squared_error(colors, 0xFFFF, encode_color_block(colors, 0xFFFF)), 0.0);
 }
 
-TEST(EncodeColorBlock, ABlockThatExistsIsFound) {
+TEST(EncodeColorBlock, ValuesOfABlockAreEncodedExactly) {
   // All four selectors used, between ends far apart.
   std::mt19937 random(2);
   for (int round = 0; round < 500; ++round) {
@@ -165,7 +165,7 @@ TEST(EncodeColorBlock, UnusedValuesDoNotMatter) {
   }
 }
 
-TEST(EncodeColorBlock, WeightsOfOneAreNoWeights) {
+TEST(EncodeColorBlock, WeightsOfOneChangeNothing) {
   std::mt19937 random(6);
   const std::vector<float> ones(16, 1.0f);
   for (int round = 0; round < 50; ++round) {
@@ -174,7 +174,7 @@ TEST(EncodeColorBlock, WeightsOfOneAreNoWeights) {
   }
 }
 
-TEST(EncodeColorBlock, HeavyValuesAreNearer) {
+TEST(EncodeColorBlock, ValuesWithMoreWeightAreCloser) {
   std::mt19937 random(7);
   std::vector<float> weights(16, 1.0f);
   weights[3] = weights[9] = 200.0f;

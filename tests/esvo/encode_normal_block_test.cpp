@@ -82,7 +82,7 @@ TEST(EncodeNormalBlock, NothingUsedGivesZeroBits) {
   EXPECT_EQ(encode_normal_block(Normals{}, 0), NormalBlock{});
 }
 
-TEST(EncodeNormalBlock, EqualNormalsAreMetToAThousandthOfADegree) {
+TEST(EncodeNormalBlock, EqualNormalsAreExactToAThousandthOfADegree) {
   std::mt19937 random(2);
   for (int round = 0; round < 2000; ++round) {
     Normals normals;
@@ -102,7 +102,7 @@ TEST(EncodeNormalBlock, AxisAlignedNormalsAreExact) {
     }
 }
 
-TEST(EncodeNormalBlock, SmoothNormalsAreMetToMuchLessThanADegree) {
+TEST(EncodeNormalBlock, SmoothNormalsAreExactToMuchLessThanADegree) {
   // Means and maxima measured, with a margin of a fifth.
   const Angles far = sphere_angles(1000), near = sphere_angles(100), close = sphere_angles(20);
   EXPECT_LT(far.mean(), 0.009);
@@ -112,7 +112,7 @@ TEST(EncodeNormalBlock, SmoothNormalsAreMetToMuchLessThanADegree) {
   EXPECT_LT(close.max, 2.0);
 }
 
-TEST(EncodeNormalBlock, ABlockThatExistsIsFound) {
+TEST(EncodeNormalBlock, ValuesOfABlockAreEncodedExactly) {
   // All sixteen points of a grid whose axes make a right angle and are of a few degrees.
   std::mt19937 random(3);
   Angles angles;
@@ -149,7 +149,7 @@ TEST(EncodeNormalBlock, NormalsAlongALineGetSixteenSteps) {
   EXPECT_LT(angles.mean(), 0.6);
 }
 
-TEST(EncodeNormalBlock, TheSidesOfBoxesAreMet) {
+TEST(EncodeNormalBlock, TheSidesOfBoxesAreEncodedWell) {
   const Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   std::mt19937 random(5);
   for (const std::vector<Vec3f>& sides : std::vector<std::vector<Vec3f>>{
@@ -157,7 +157,7 @@ TEST(EncodeNormalBlock, TheSidesOfBoxesAreMet) {
     EXPECT_LT(mixed_angles(sides, random).max, 0.5);
 }
 
-TEST(EncodeNormalBlock, DirectionsThatDifferEntirelyAreMet) {
+TEST(EncodeNormalBlock, EntirelyDifferentDirectionsAreEncodedWell) {
   std::mt19937 random(6);
   double two = 0, three = 0, opposite = 0;
   for (int round = 0; round < 200; ++round) {
@@ -185,7 +185,7 @@ TEST(EncodeNormalBlock, UnusedValuesDoNotMatter) {
   }
 }
 
-TEST(EncodeNormalBlock, WhatWasEncodedBeforeDoesNotMatter) {
+TEST(EncodeNormalBlock, EarlierBlocksDoNotMatter) {
   // Blocks of one normal each; a thread keeps what it found for some of them. The first are equal
   // as numbers, not to the bit.
   std::vector<Vec3f> directions = {{0, 0, 1},         {-0.0f, 0, 1},   {0, -0.0f, 1},
@@ -205,7 +205,7 @@ TEST(EncodeNormalBlock, WhatWasEncodedBeforeDoesNotMatter) {
   }
 }
 
-TEST(EncodeNormalBlock, WhatHasNoDirectionDoesNotCount) {
+TEST(EncodeNormalBlock, NormalsWithoutADirectionAreIgnored) {
   std::mt19937 random(8);
   Normals normals = sphere_normals(random, 5);
   const NormalBlock block = encode_normal_block(normals, 0x7FF8);
@@ -227,7 +227,7 @@ TEST(EncodeNormalBlock, LengthsDoNotMatter) {
   }
 }
 
-TEST(EncodeNormalBlock, HeavyNormalsAreNearer) {
+TEST(EncodeNormalBlock, NormalsWithMoreWeightAreCloser) {
   std::mt19937 random(10);
   std::vector<float> weights(16, 1.0f);
   const NormalBlock plain = encode_normal_block(sphere_normals(random, 3), 0xFFFF, weights.data());
@@ -258,7 +258,7 @@ TEST(EncodeNormalBlock, TheBitsAreTheSameOnEveryMachine) {
   EXPECT_EQ(hash, 16909430294251302497u) << "changes with the encoder, not with the machine";
 }
 
-TEST(EncodePair, LeavesAreMetBetterThanInnerVoxels) {
+TEST(EncodePair, LeavesAreEncodedBetterThanInnerVoxels) {
   std::mt19937 random(17);
   double leaf = 0, inner = 0;
   for (int round = 0; round < 200; ++round) {

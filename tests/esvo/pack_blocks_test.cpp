@@ -63,7 +63,7 @@ TEST(PackBlocks, SiblingsShareAPageAndPairsHaveOneParent) {
     }
 }
 
-TEST(PackBlocks, EveryBlockSaysWhereItIsAndWhoReachesIt) {
+TEST(PackBlocks, EveryBlockEntryHasItsPlaceAndItsParent) {
   EsvoTree tree = random_tree({.levels = 6, .leaf_chance = 0.1}, 3);
   add_super_root(tree);
   const PackedBlocks packed = pack_blocks(tree, -1, {}, 0, {.max_slots = 300});

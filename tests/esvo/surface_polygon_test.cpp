@@ -9,7 +9,7 @@
 namespace voxdag {
 namespace {
 
-TEST(SurfacePolygon, LiesInOneOctantOrTwoOrNobodyKnows) {
+TEST(SurfacePolygon, LiesInOneOctantOrTwoOrTheResultIsUnknown) {
   const auto octants = [](Vec3d a, Vec3d b, Vec3d c) {
     return SurfacePolygon::triangle(a, b, c).octants();
   };

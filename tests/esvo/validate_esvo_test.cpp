@@ -34,7 +34,7 @@ std::uint64_t read_everything(const EsvoView& view) {
   return sum;
 }
 
-TEST(ValidateEsvo, SoundOctreesPassWithTheirCounts) {
+TEST(ValidateEsvo, ValidOctreesPassWithTheirCounts) {
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
     const PackedEsvo esvo = packed_esvo(3 + static_cast<int>(seed % 4), 100, seed);
     EXPECT_EQ(validate_esvo(esvo.view(), esvo.packed.blocks), esvo.packed.counts);
@@ -43,7 +43,7 @@ TEST(ValidateEsvo, SoundOctreesPassWithTheirCounts) {
   EXPECT_EQ(validate_esvo({}, {}), EsvoCounts{});
 }
 
-TEST(ValidateEsvo, WhatPassesIsSafeToReadWhateverTheBytesAre) {
+TEST(ValidateEsvo, AnAcceptedOctreeIsSafeToReadWithAnyBytes) {
   // Under the address sanitizer this finds every read out of bounds.
   std::mt19937_64 random(1);
   std::vector<PackedEsvo> sound;

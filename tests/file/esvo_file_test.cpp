@@ -57,7 +57,7 @@ TEST(EsvoFile, AWriterThatIsNotFinishedLeavesNothing) {
   EXPECT_EQ(dir.count(), 0);
 }
 
-TEST(EsvoFile, DagsAndEsvosAreToldApart) {
+TEST(EsvoFile, DagsAndEsvosAreDistinguished) {
   const TempDir dir;
   write_esvo(dir / "a.esvo", packed_esvo(3, 64, 5));
   EXPECT_THROW(VdagFile(dir / "a.esvo"), Error);

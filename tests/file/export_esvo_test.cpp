@@ -86,7 +86,7 @@ TEST_F(ExportEsvo, WindowsAndLookupsAgreeWithTheWhole) {
   }
 }
 
-TEST_F(ExportEsvo, PointsCarryNormalsAndColours) {
+TEST_F(ExportEsvo, PointsHaveNormalsAndColours) {
   const TempDir dir;
   const Esvo esvo = build_esvo(hills(), unit_grid());
   export_voxels(dir.path() / "points.ply", esvo.view(), unit_grid(), PlyContent::kPoints);

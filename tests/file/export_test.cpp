@@ -251,7 +251,7 @@ std::map<std::pair<Key, Key>, int> faces_of(const Ply& ply, const Grid& grid) {
   return faces;
 }
 
-TEST(ExportPly, FacesAreThoseWithoutANeighbourAndLookOutwards) {
+TEST(ExportPly, FacesHaveNoNeighbourAndPointOutwards) {
   const TempDir dir;
   for (const bool cropped : {false, true}) {
     const Scene scene(4, 1500);
@@ -337,7 +337,7 @@ struct FullCube {
   std::uint64_t block = ~std::uint64_t{0};
 };
 
-TEST(Export, OfMoreThanADiskHoldsIsRefusedAtOnce) {
+TEST(Export, AnOutputLargerThanTheDiskIsRefusedAtOnce) {
   FullCube cube(20);
   SvdagView view;
   view.levels = 20;

@@ -29,7 +29,7 @@ std::size_t chunk_offset(const std::string& bytes, std::size_t index) {
   return peek<VdagChunkEntry>(bytes, entry_offset(index)).offset;
 }
 
-TEST(VdagCorruption, TheSmallFileIsSound) { EXPECT_EQ(error_of(small_file()), "no error"); }
+TEST(VdagCorruption, TheSmallFileIsValid) { EXPECT_EQ(error_of(small_file()), "no error"); }
 
 TEST(VdagCorruption, EveryTruncationIsRefused) {
   const std::string bytes = small_file();

@@ -27,7 +27,7 @@ std::string verify(const std::string& bytes) {
   return summary(report);
 }
 
-TEST(VerifyVdag, ASoundFilePassesEveryCheck) {
+TEST(VerifyVdag, AValidFilePassesEveryCheck) {
   for (int levels = 2; levels <= 7; ++levels)
     for (const int count : {0, 1, 100})
       EXPECT_EQ(verify(vdag_file_bytes(brute_svdag(levels, random_voxels(levels, count, 3)))),
@@ -40,7 +40,7 @@ TEST(VerifyVdag, ADamagedContainerSkipsTheRest) {
             "-canonical order, -minimality, -counts");
 }
 
-TEST(VerifyVdag, AWrongChecksumIsTheOnlyFaultOfAFileOtherwiseSound) {
+TEST(VerifyVdag, AWrongChecksumIsTheOnlyFaultOfAnOtherwiseValidFile) {
   std::string bytes = vdag_file_bytes(brute_svdag(4, {{0, 0, 0}, {15, 15, 15}}));
   bytes[bytes.find("bunny")] = 'f';
   EXPECT_EQ(verify(bytes),

@@ -66,7 +66,7 @@ TEST(CameraPath, AngleAndUpDoNotOvershoot) {
   }
 }
 
-TEST(CameraPath, RestsBetweenEqualKeys) {
+TEST(CameraPath, StandsStillBetweenEqualKeys) {
   const CameraPath path(
       {key(0, {0, 0, 9}), key(1, {3, 0, 9}), key(2, {3, 0, 9}), key(3, {3, 5, 9})});
   for (double time = 1; time <= 2; time += 0.1)

@@ -17,7 +17,7 @@ TEST(FrameNames, TakeOneNumber) {
   }
 }
 
-TEST(FrameNames, PatternsSayWhatIsWrongWithThem) {
+TEST(FrameNames, FaultsOfPatternsAreNamed) {
   EXPECT_EQ(frame_pattern_fault("a%04d.png"), "");
   for (const char* none : {"a.png", "a%s.png", "a%4d.png"})
     EXPECT_NE(frame_pattern_fault(none).find("no placeholder"), std::string::npos) << none;

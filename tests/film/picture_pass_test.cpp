@@ -7,7 +7,7 @@
 namespace voxdag {
 namespace {
 
-TEST(PicturePass, EveryKindHasANameOfItsOwnAndIsFoundByIt) {
+TEST(PicturePass, KindsHaveDistinctNamesAndAreFoundByThem) {
   std::set<std::string_view> names;
   for (const PictureKind& kind : picture_kinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;

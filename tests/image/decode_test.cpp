@@ -71,7 +71,7 @@ TEST(DecodeImage, TruncationAtEveryByteIsRefused) {
   }
 }
 
-TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
+TEST(DecodeImage, DamagedFilesAreRefusedOrReadButNeverCrash) {
   const TempDir dir;
   write_test_png(dir / "a.png", 9, 5, 4, 8, ramp(180, 1));
   const std::string bytes = read_text(dir / "a.png");
@@ -86,7 +86,7 @@ TEST(DecodeImage, DamageIsRefusedOrReadButNeverWorse) {
   }
 }
 
-TEST(DecodeImage, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
+TEST(DecodeImage, OnlyRegularFilesAreReadAndPipesAreNotWaitedFor) {
   const TempDir dir;
   ASSERT_EQ(::mkfifo((dir / "pipe.png").c_str(), 0600), 0);
   for (const auto& [path, reason] :

@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-TEST(Dither, NeighboursTogetherShowWhatLiesBetweenCodes) {
+TEST(Dither, TheMeanOverNeighboursIsTheExactValue) {
   constexpr int kSide = 8;
   for (const float value : {0.1f / 255, 100.25f / 255, 100.5f / 255, 254.9f / 255})
     for (const int corner : {0, 1000, 100'000}) {

@@ -52,7 +52,7 @@ std::string encode(const ImageRgb8& image) {
   return out;
 }
 
-TEST(Jpeg, SmoothPixelsComeBackNearly) {
+TEST(Jpeg, SmoothPixelsSurviveApproximately) {
   const TempDir dir;
   const ImageRgb8 image = smooth(40, 24);
   write_text(dir / "a.jpg", encode(image));

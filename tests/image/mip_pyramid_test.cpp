@@ -95,7 +95,7 @@ TEST(MipPyramid, MeansOfRegionsAreNearThoseOfManySamples) {
     }
 }
 
-TEST(MipPyramid, TheMeanOfAllIsTheMeanWhateverTheShape) {
+TEST(MipPyramid, TheMeanOfALargeRegionIsTheMeanOfTheImage) {
   const Grey texture = random_texture(64, 64);
   const float mean = texture.sample(6, {0.5f, 0.5f})[0];
   for (const Parallelogram& p : random_regions(50, 30, 4))
@@ -133,7 +133,7 @@ TEST(MipPyramid, BoundsOfSmallBoxesAreTight) {
   EXPECT_EQ(there.hi[0], 60000);
 }
 
-TEST(MipPyramid, WrapModesShowWhatTheySay) {
+TEST(MipPyramid, WrapModesContinueTheTextureAsNamed) {
   const auto at = [](TextureWrap wrap, float u) {
     const Grey texture(4, 1, {{0}, {100}, {200}, {300}}, wrap, wrap);
     return texture.sample(0, {u, 0.5f})[0];
@@ -148,7 +148,7 @@ TEST(MipPyramid, WrapModesShowWhatTheySay) {
   EXPECT_FLOAT_EQ(at(TextureWrap::kClamp, -7.0f), 0);
 }
 
-TEST(MipPyramid, CoordinatesThatAreNoNumbersGiveSomeValue) {
+TEST(MipPyramid, NotFiniteCoordinatesGiveSomeValue) {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
   for (const TextureWrap wrap : {TextureWrap::kRepeat, TextureWrap::kMirror, TextureWrap::kClamp}) {

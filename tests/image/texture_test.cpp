@@ -24,7 +24,7 @@ TEST(Texture, ColoursAverageInLinearLight) {
   EXPECT_NEAR(linear_to_srgb(mean[0] / 65535), 0.7354f, 1e-3f);  // not 0.5
 }
 
-TEST(Texture, WhatIsCutAwayDoesNotBleed) {
+TEST(Texture, MaskedTexelsDoNotBleed) {
   const DecodedImage image = image_of(2, 1, {{kFull, 0, 0, 40000}, {0, kFull, 0, 20000}});
   const Texture texture = make_color_texture(image, 0.5f);
   const Texture::Value mean = texture.sample(1, {0.5f, 0.5f});
@@ -76,7 +76,7 @@ TEST(Texture, BumpsLeanAwayFromWhatIsHigh) {
   EXPECT_GT(unpack_component(b[1]), 0.005f);
 }
 
-TEST(Texture, NormalMapsAreToldFromHeights) {
+TEST(Texture, NormalMapsAreDistinguishedFromHeights) {
   EXPECT_TRUE(looks_like_normal_map(
       image_of(2, 1, {{33000, 32000, 65000, kFull}, {50000, 32768, 58000, kFull}})));
   EXPECT_FALSE(looks_like_normal_map(

@@ -66,7 +66,7 @@ void forbid_linkat() {
     std::exit(2);
 }
 
-TEST(AtomicFile, IsCopiedWhereFilesWithoutANameMayNotHaveOne) {
+TEST(AtomicFile, IsCopiedIfTheSystemRefusesToNameIt) {
   const TempDir dir;
   const std::string text(3 << 20, 'x');
   const auto write_without_names = [&] {
@@ -95,7 +95,7 @@ TEST(AtomicFile, AnExceptionLeavesNothingAndKeepsTheOldFile) {
   EXPECT_EQ(dir.count(), 1);
 }
 
-TEST(AtomicFile, UnfinishedOnesAreRemovedBeforeASignalEndsTheProcess) {
+TEST(AtomicFile, UnfinishedFilesAreRemovedBeforeASignalEndsTheProcess) {
   const TempDir dir;
   AtomicFile complete(dir / "complete"), partial(dir / "partial");
   complete.write("whole");
@@ -140,7 +140,7 @@ std::filesystem::path leftover_of_a_process_killed_in(const TempDir& dir, unsign
   return {};
 }
 
-TEST(AtomicFile, RemovesWhatAKilledProcessLeftWhenItWritesTheSameOutput) {
+TEST(AtomicFile, RemovesTheLeftoverOfAKilledProcessForTheSameOutput) {
   for (const unsigned call :
        {static_cast<unsigned>(__NR_rename), static_cast<unsigned>(__NR_write)})
     for (const bool only_named : {false, true}) {
@@ -160,7 +160,7 @@ TEST(AtomicFile, RemovesWhatAKilledProcessLeftWhenItWritesTheSameOutput) {
     }
 }
 
-TEST(AtomicFile, RemovesOnlyFilesThatACertainlyDeadProcessOfThisProgramLeft) {
+TEST(AtomicFile, RemovesLeftoversOfDeadProcessesOnly) {
   const TempDir dir;
   write_text(dir / "out", "old");
   const auto left = leftover_of_a_process_killed_in(dir, __NR_rename, true);
@@ -205,7 +205,7 @@ TEST(AtomicFile, ReplacesTheOldFileAndKeepsItsMode) {
   EXPECT_EQ(info.st_mode & 0777, 0640u);
 }
 
-TEST(AtomicFile, ReplacesWhatASymbolicLinkPointsTo) {
+TEST(AtomicFile, ReplacesTheTargetOfASymbolicLink) {
   const TempDir dir;
   write_text(dir / "real", "old");
   std::filesystem::create_symlink("real", dir / "link");
@@ -216,7 +216,7 @@ TEST(AtomicFile, ReplacesWhatASymbolicLinkPointsTo) {
   EXPECT_EQ(read_text(dir / "real"), "new");
 }
 
-TEST(AtomicFile, MakesWhatASymbolicLinkPointsTo) {
+TEST(AtomicFile, CreatesTheTargetOfASymbolicLink) {
   const TempDir dir;
   std::filesystem::create_symlink("absent", dir / "link");
   std::filesystem::create_symlink(dir / "link", dir / "second");
@@ -230,7 +230,7 @@ TEST(AtomicFile, MakesWhatASymbolicLinkPointsTo) {
   EXPECT_TRUE(std::filesystem::is_symlink(dir / "round"));
 }
 
-TEST(AtomicFile, WritesToADescriptorFromWhereItStands) {
+TEST(AtomicFile, WritesToADescriptorFromItsPosition) {
   const TempDir dir;
   for (const int flags : {O_RDWR, O_WRONLY | O_APPEND}) {
     write_text(dir / "out", "0123456789");
@@ -276,7 +276,7 @@ TEST(AtomicFile, OverwritesEarlierBytes) {
   EXPECT_EQ(read_text(dir / "out"), "count=42, data!");
 }
 
-TEST(AtomicFile, TwoOfOneNameDoNotMeet) {
+TEST(AtomicFile, TwoWritersOfOneOutputDoNotConflict) {
   const TempDir dir;
   AtomicFile first(dir / "out"), second(dir / "out");
   first.write("first");
@@ -333,7 +333,7 @@ TEST(AtomicFile, AFileThatGrowsPastTheLimitIsAnErrorAndIsRemoved) {
   EXPECT_EQ(dir.count(), 0);
 }
 
-TEST(AtomicFile, AMissingDirectoryIsKnownAtOnce) {
+TEST(AtomicFile, AMissingDirectoryIsReportedAtOnce) {
   const TempDir dir;
   EXPECT_EQ(error_of([&] { AtomicFile file(dir / "none/out"); }),
             (dir / "none/out").string() + ": byte 0: cannot write: No such file or directory");

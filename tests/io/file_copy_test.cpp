@@ -15,7 +15,7 @@ std::string text_of(const FileCopy& file) {
   return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
 }
 
-TEST(FileCopy, HasTheBytesOfTheFileAsTheyWere) {
+TEST(FileCopy, KeepsTheBytesOfTheFile) {
   const TempDir dir;
   for (const std::size_t size : {0, 1, 4096, 3 << 20}) {
     std::string text(size, '\0');

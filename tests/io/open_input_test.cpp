@@ -58,7 +58,7 @@ TEST(ReadInput, RefusesDevicesOfEndlessBytes) {
 }
 
 /// Every way to open an input reports the same faults in the same words.
-TEST(OpenInput, FaultsReadAlikeHoweverAFileIsOpened) {
+TEST(OpenInput, FaultsHaveTheSameTextHoweverAFileIsOpened) {
   const TempDir dir;
   ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
   write_text(dir / "large", std::string(2000, 'x'));

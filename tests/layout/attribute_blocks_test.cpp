@@ -19,7 +19,7 @@ TEST(ColorBlock, EveryRgb565SurvivesPacking) {
   for (std::uint32_t bits = 0; bits < 65536; ++bits) ASSERT_EQ(Rgb565::unpack(bits).pack(), bits);
 }
 
-TEST(ColorBlock, BitsStandWhereTheHeaderSays) {
+TEST(ColorBlock, BitsAreWhereTheHeaderSays) {
   const ColorBlock block = ColorBlock::pack({1, 2, 3}, {4, 5, 6}, 0xE4u);
   EXPECT_EQ(block.bits,
             0xE4ull << 32 | (4u << 11 | 5u << 5 | 6u) << 16 | (1u << 11 | 2u << 5 | 3u));
@@ -67,7 +67,7 @@ TEST(NormalBlock, EveryFieldSurvivesPacking) {
   }
 }
 
-TEST(NormalBlock, BitsStandWhereTheHeaderSays) {
+TEST(NormalBlock, BitsAreWhereTheHeaderSays) {
   const NormalBlock block = NormalBlock::pack({5, 3, 9}, {-1, 2, -8, 4}, {7, 0, -3, 15}, 1, 2);
   EXPECT_EQ(block.words[0], 5u << 29 | 3u << 14 | 9u);
   EXPECT_EQ(block.words[1], 0xFD07482Fu);

@@ -77,7 +77,7 @@ void expect_cut_well(const Polygon& polygon) {
 
 const Polygon kDart = {{0, 0, 0}, {2, 2, 0}, {0, 1, 0}, {-2, 2, 0}};
 
-TEST(Polygon, ConvexOnesKeepTheirFan) {
+TEST(Polygon, ConvexPolygonsKeepTheirFan) {
   Polygon circle;
   for (int i = 0; i < 60; ++i) {
     const double angle = i * std::numbers::pi / 30;
@@ -124,7 +124,7 @@ TEST(Polygon, AnyDirectionIsSeenFromItsOwnSide) {
   }
 }
 
-TEST(Polygon, StarsCombsAndSpiralsTile) {
+TEST(Polygon, StarsCombsAndSpiralsAreTiled) {
   Polygon comb{{0, 0, 0}, {60, 0, 0}}, spiral, star;
   for (int i = 29; i >= 0; --i) {
     comb.push_back({static_cast<float>(2 * i + 1.5), 10, 0});
@@ -149,7 +149,7 @@ TEST(Polygon, StarsCombsAndSpiralsTile) {
   expect_cut_well(spiral);
 }
 
-TEST(Polygon, RandomSimpleOnesTile) {
+TEST(Polygon, RandomSimplePolygonsAreTiled) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int n = 4; n < 200; ++n) {

@@ -15,7 +15,7 @@ Vec3f winding_normal(const Mesh& mesh, const Triangle& triangle) {
 
 float distance(Vec3f a, Vec3f b) { return std::sqrt(dot(a - b, a - b)); }
 
-TEST(PackedNormal, GivesBackEveryDirection) {
+TEST(PackedNormal, KeepsEveryDirection) {
   std::mt19937 random(1);
   std::normal_distribution<float> normal;
   for (int i = 0; i < 10000; ++i) {

@@ -75,7 +75,7 @@ TEST_F(MeshAppearanceTest, FiltersTexturesOverThePixel) {
   EXPECT_GT(most - least, 0.02f);
 }
 
-TEST_F(MeshAppearanceTest, NormalsAreTheFilesOnTheViewersSide) {
+TEST_F(MeshAppearanceTest, NormalsComeFromTheFileAndFaceTheViewer) {
   Square square;
   const Vec3f left = normalized(Vec3f{-1, 0, 2}), right = normalized(Vec3f{1, 0, 2});
   square.appearance.normals = {left, right, right, -left, -right, -left};

@@ -272,7 +272,7 @@ TEST_F(ReadAppearance, FormatsWithoutAppearanceAreGrey) {
               {srgb_to_linear(0.8f), srgb_to_linear(0.8f), srgb_to_linear(0.8f)});
 }
 
-TEST_F(ReadAppearance, TheMeshIsTheOneThatReadMeshGives) {
+TEST_F(ReadAppearance, TheMeshEqualsTheOneOfReadMesh) {
   const char* scenes = std::getenv("VOXDAG_SCENES");
   if (scenes == nullptr) GTEST_SKIP() << "VOXDAG_SCENES is not set";
   for (const char* name :

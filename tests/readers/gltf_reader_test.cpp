@@ -245,7 +245,7 @@ TEST(GltfReader, RefusalsNameTheValueAndTheReason) {
       "mesh: buffers[0]: a buffer must be in the glTF file, in a data URI or in a file beside it");
 }
 
-TEST(GltfReader, ManyInstancesOfMuchAreRefusedBeforeTheyAreMade) {
+TEST(GltfReader, TooManyInstancesAreRefusedBeforeTheyAreMade) {
   Asset asset;
   asset.accessor(asset.view(kPoints), 5126, 4, "VEC3");
   asset.accessor(asset.view(std::vector<std::uint8_t>(60'000, 0)), 5121, 60'000, "SCALAR");

@@ -55,7 +55,7 @@ TEST_F(ReadMtl, MissingMaterialFilesAndMaterialsAreWarnings) {
               {srgb_to_linear(0.8f), srgb_to_linear(0.8f), srgb_to_linear(0.8f)});
 }
 
-TEST_F(ReadMtl, MalformedMtlStatementsAreWarningsThatSayWhatStandsIn) {
+TEST_F(ReadMtl, MalformedMtlStatementsAreWarningsThatNameTheReplacement) {
   const std::string grey = "the material's colour is grey", opaque = "the material is opaque",
                     numbers = "not one or three finite numbers: " + grey,
                     mm = "-mm takes two finite numbers: the surface is not displaced",

@@ -35,7 +35,7 @@ TEST(StlReader, AsciiCornersAreWelded) {
   EXPECT_EQ(mesh.triangles, kTriangles);
 }
 
-TEST(StlReader, BinaryIsToldByItsSizeNotByItsFirstWord) {
+TEST(StlReader, BinaryIsRecognisedByItsSizeNotByItsFirstWord) {
   for (const std::string header : {"made by hand", "solid, says the header"}) {
     const Mesh mesh = read_text(read_stl, binary_stl(kFacets, header));
     EXPECT_EQ(mesh.vertices, kWelded);
@@ -43,7 +43,7 @@ TEST(StlReader, BinaryIsToldByItsSizeNotByItsFirstWord) {
   }
 }
 
-TEST(StlReader, BytesAfterTheLastFacetArePassedOver) {
+TEST(StlReader, BytesAfterTheLastFacetAreIgnored) {
   EXPECT_EQ(read_text(read_stl, binary_stl(kFacets, "") + "more").triangles, kTriangles);
 }
 

@@ -47,7 +47,7 @@ TEST(FrameScene, ShowsEveryVoxelOfAnObject) {
   }
 }
 
-TEST(FrameScene, TakesZForUpWhereTheSceneLiesOnIt) {
+TEST(FrameScene, TakesZAsUpIfTheSceneLiesOnIt) {
   std::vector<Vec3i> voxels;
   for (std::int32_t y = 0; y < 64; ++y)
     for (std::int32_t x = 0; x < 64; ++x) voxels.push_back({x, y, 5});
@@ -72,7 +72,7 @@ Svdag room() {
   return brute_svdag(6, voxels);
 }
 
-TEST(FrameScene, LooksFromInsideWhereTheSceneIsARoom) {
+TEST(FrameScene, LooksFromInsideIfTheSceneIsARoom) {
   const Svdag dag = room();
   const Grid grid = grid_of(6);
   const View view = frame_scene(dag.view(), grid, 1.5, {});
@@ -114,7 +114,7 @@ TEST(SceneViews, AnEmptySceneHasViews) {
     EXPECT_NE(view.eye, view.target);
 }
 
-TEST(FrameScene, KeepsWhatIsAskedFor) {
+TEST(FrameScene, KeepsTheRequestedValues) {
   const Svdag dag = room();
   const Grid grid = grid_of(6);
   ViewRequest request;

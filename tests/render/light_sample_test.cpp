@@ -137,7 +137,7 @@ TEST(LightSample, WithoutAColourALightIsAsBrightAsTheSun) {
   }
 }
 
-TEST(LightSample, RefusesLightsThatCannotBe) {
+TEST(LightSample, RefusesImpossibleLights) {
   LightSpec spec;
   EXPECT_THROW(make_light(spec, test_grid()), Error);  // no radius
   spec.radius = 1;

@@ -51,7 +51,7 @@ Vec3d figure_11(const Picture& picture, int x, int y) {
   return rgb * (1 / w_sum);
 }
 
-TEST(CellPixels, EveryCodeIsASizeOfItsOwn) {
+TEST(CellPixels, EveryCodeIsADistinctSize) {
   for (int code = 0; code < 256; ++code)
     EXPECT_EQ(pack_cell_pixels(unpack_cell_pixels(static_cast<std::uint8_t>(code))), code);
   EXPECT_EQ(unpack_cell_pixels(0), 1.0f);

@@ -35,7 +35,7 @@ class EsvoStreamTest : public testing::Test {
   PackedEsvo esvo = packed_esvo(7, 120, 3);
 };
 
-TEST_F(EsvoStreamTest, IsTheWholeOctreeOnceAllIsLoadedInWhateverOrder) {
+TEST_F(EsvoStreamTest, IsTheWholeOctreeAfterLoadingAllBlocksInAnyOrder) {
   std::mt19937 random(1);
   for (int run = 0; run < 5; ++run) {
     EsvoStream stream(path(), bytes());
@@ -52,7 +52,7 @@ TEST_F(EsvoStreamTest, IsTheWholeOctreeOnceAllIsLoadedInWhateverOrder) {
   }
 }
 
-TEST_F(EsvoStreamTest, WithLessMemoryBlocksComeAndGo) {
+TEST_F(EsvoStreamTest, WithLessMemoryBlocksAreLoadedAndEvicted) {
   std::mt19937 random(2);
   const std::uint64_t memory = bytes() / 3;
   EsvoStream stream(path(), memory);

@@ -187,7 +187,7 @@ TEST(SurfaceShading, CornerColoursAndNormalsAreInterpolated) {
   expect_near(shading.mean(0, kWhole).normal, sum * (2.0f / (kSide * (kSide + 1))), 0.03f);
 }
 
-TEST(SurfaceShading, NormalMapsLeanAsTheImageIsSeen) {
+TEST(SurfaceShading, NormalMapsFollowTheAxesOfTheImage) {
   // Red leans to the right of the image, green to its upper edge.
   Square square;
   square.material().normal_map = square.texture("n.png", 1, 1, 3, {218, 128, 218});
@@ -279,7 +279,7 @@ TEST(SurfaceShading, UniformMeansThatEveryPointIsNearTheMean) {
   EXPECT_LT(uniform, 450);
 }
 
-TEST(SurfaceShading, MissingTexturesAreWarningsThatSayWhatStandsIn) {
+TEST(SurfaceShading, MissingTexturesAreWarningsThatNameTheReplacement) {
   Square square;
   square.material().base_color = {0.2f, 0.4f, 0.6f};
   const auto path = square.directory.path() / "no.png";

@@ -52,7 +52,7 @@ TEST(GridFromVoxelSize, IsTheSmallestThatHoldsTheMesh) {
   EXPECT_THROW(grid_from_voxel_size(mesh, 1e-7), Error);
 }
 
-TEST(GridFromBounds, PlacesTheGridWhereItIsTold) {
+TEST(GridFromBounds, PlacesTheGridAtTheBounds) {
   const Grid grid = grid_from_bounds(Box3d{{-4, 0, 4}, {4, 2, 5}}, 5);
   EXPECT_EQ(grid.origin, (Vec3d{-4, 0, 4}));
   EXPECT_EQ(grid.voxel_size, 0.25);
