@@ -34,7 +34,7 @@ TEST_F(BenchEsvo, JsonHasBothFormsOfEveryResolution) {
       EXPECT_GT(builds[i].at(key), 0) << key;
     EXPECT_FALSE(builds[i].contains("paper"));
   }
-  // Its sides lie along the axes: leaves end early with contours.
+  // The sides of the mesh are parallel to the axes, so leaves with contours are coarse.
   EXPECT_LT(builds[2].at("voxels"), builds[3].at("voxels"));
   ASSERT_EQ(json.at("rays").size(), 2u);
   for (const Json& row : json.at("rays")) {
@@ -42,7 +42,7 @@ TEST_F(BenchEsvo, JsonHasBothFormsOfEveryResolution) {
     EXPECT_GT(row.at("ray_count"), 0);
     for (const char* form : {"cubes", "contours", "contours_beams"})
       EXPECT_GT(row.at(form).at("mrays_per_s"), 0) << form;
-    // It is not known which grid would be as good.
+    // No silhouettes were measured, so no coarse grid is known.
     EXPECT_TRUE(row.at("coarse_resolution").is_null());
     EXPECT_TRUE(row.at("coarse_contours").at("mrays_per_s").is_null());
   }
@@ -86,7 +86,7 @@ TEST_F(BenchEsvo, SilhouettesAreComparedWithTheMesh) {
   for (const Json& row : rows) EXPECT_LE(row.at("contours_wrong"), row.at("cubes_wrong"));
   EXPECT_LT(rows[2].at("cubes_wrong"), rows[0].at("cubes_wrong"));
 
-  // The coarsest that is as good as the finest cubes.
+  // The coarsest grid that is as good as the finest cubes.
   std::size_t coarse = 0;
   while (rows[coarse].at("contours_wrong") > rows[2].at("cubes_wrong")) ++coarse;
   ASSERT_LT(coarse, 2u);

@@ -28,7 +28,7 @@ class BenchBuild : public testing::Test {
   }
 
   TempDir dir_;
-  std::string mesh_ = dir_ / "lucy.obj";  // a name of the paper's table
+  std::string mesh_ = dir_ / "lucy.obj";  // a name in the paper's table
 };
 
 TEST_F(BenchBuild, JsonHasTheCostOfEachBuild) {
@@ -115,7 +115,7 @@ TEST_F(BenchBuild, ARivalThatFailsOrHangsIsRecorded) {
              "--rival", "hangs=sleep 100", "--rival-seconds", "0.2"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json rivals = Json::parse(result.out).at("rivals");
-  ASSERT_EQ(rivals.size(), 2u);  // the greater resolution is not tried
+  ASSERT_EQ(rivals.size(), 2u);  // the higher resolution is skipped
   EXPECT_EQ(rivals[0].at("failure"), "broken");
   EXPECT_EQ(rivals[1].at("failure"), "stopped at the time limit of 0.2 s");
 }

@@ -32,7 +32,7 @@ TEST_F(BenchTrace, JsonHasEveryKindOfRays) {
     for (const char* key : {"mrays_per_s", "cells_per_ray", "bytes_per_ray", "ray_count"})
       EXPECT_GT(json[i].at(key), 0) << kinds[i] << " " << key;
   }
-  // Beams only shorten rays: they meet what the rays from the eye meet.
+  // Beams only shorten rays: shortened rays meet the cells that rays from the eye meet.
   EXPECT_EQ(json[0].at("ray_count"), json[1].at("ray_count"));
   EXPECT_EQ(json[0].at("hit_part"), json[1].at("hit_part"));
 }

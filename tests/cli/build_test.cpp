@@ -26,7 +26,7 @@ class Build : public testing::Test {
   }
   ProcessResult build(std::vector<std::string> options) const { return build(options, output_); }
 
-  /// The only file is the mesh: no output, no half of one.
+  /// Expects that the mesh is the only file: no output and no partial output.
   void expect_nothing_left() const { EXPECT_EQ(dir_.count(), 1); }
 
   TempDir dir_;
@@ -101,7 +101,8 @@ TEST_F(Build, BoundsPlaceTheGrid) {
 }
 
 TEST_F(Build, ABuildWithoutVoxelsIsAWarningAndAFileThatAllCommandsTake) {
-  // Its point has no sides that would keep it out of a grid that lies elsewhere.
+  // A degenerate triangle has no edges, so only its box can keep it out of a grid that lies
+  // elsewhere.
   write_text(mesh_, std::string(kMesh) + "f 1 1 1\n");
   for (const std::string output : {dir_ / "none.vdag", dir_ / "none.esvo"}) {
     const ProcessResult built = build({"-r", "16", "--bounds", "9,9,9,10,10,10"}, output);
@@ -177,7 +178,7 @@ TEST_F(Build, AFileNameWithALineBreakStillMakesOneLine) {
   expect_failure(run_voxdag({"build", dir_ / "a\nb.obj", "-r", "64", "-o", output_}), 1, "a b.obj");
 }
 
-/// Starts a build that takes long, waits until it listens to signals, and sends it one.
+/// Starts a long build, waits until it handles signals, and sends it one.
 ProcessResult interrupted_build(const std::string& mesh, const std::string& output, int number) {
   Process build(voxdag_command({"build", mesh, "-r", "1048576", "-o", output, "--threads", "1"}));
   build.wait_until_it_catches(SIGINT);
@@ -185,7 +186,7 @@ ProcessResult interrupted_build(const std::string& mesh, const std::string& outp
   return build.wait();
 }
 
-/// Triangles in all directions, which take long at a high resolution.
+/// Returns triangles in all directions, which take long at a high resolution.
 std::string long_work(unsigned triangles = 3000) {
   std::string text;
   for (unsigned i = 0; i < 3 * triangles; ++i)
@@ -212,7 +213,7 @@ TEST_F(Build, AKilledBuildLeavesNothing) {
 }
 
 TEST_F(Build, AKilledBuildOfAnEsvoLeavesNothing) {
-  // Blocks are written from early on.
+  // An ESVO build writes blocks from early on.
   write_text(mesh_, long_work(300));
   const std::string output = dir_ / "out.esvo";
   Process build(voxdag_command({"build", mesh_, "-r", "2048", "-o", output, "--threads", "1"}));
@@ -255,7 +256,7 @@ TEST_F(Build, VerifyFindsTheWrongMesh) {
   write_text(mesh_, "v 1 2 3\nv 5 2 3\nv 1 4 3.5\nf 1 2 3\n");
   EXPECT_EQ(run_voxdag({"verify", output_, "--mesh", mesh_}).status, 1);
   EXPECT_EQ(run_voxdag({"verify", octree, "--mesh", mesh_}).status, 1);
-  // Nowhere near.
+  // A mesh that is far away.
   write_text(mesh_, "v 1001 2 3\nv 1005 2 3\nv 1001 4 3.5\nf 1 2 3\n");
   ProcessResult result = run_voxdag({"verify", octree, "--mesh", mesh_});
   result.out.clear();

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 const fs::path kSource = VOXDAG_SOURCE_DIR;
 
-/// Every Markdown page of the repository.
+/// Returns every Markdown page of the repository.
 std::vector<fs::path> documents() {
   std::vector<fs::path> pages = {kSource / "README.md", kSource / "HACKING.md",
                                  kSource / "CHANGELOG.md", kSource / "bench/README.md",

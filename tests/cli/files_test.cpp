@@ -1,5 +1,4 @@
-/// What becomes of files: those that are read, outputs that are pipes or descriptors, names of any
-/// bytes.
+/// Tests of files: inputs are kept, outputs may be pipes or descriptors, names may have any bytes.
 #include <sys/stat.h>
 
 #include <chrono>
@@ -20,14 +19,14 @@ class Files : public Sponge {
   static Words build_to(const std::string& output) {
     return {"build", path("sponge.ply"), "-r", "16", "-q", "-o", output};
   }
-  /// A shell's command with $V as the program and $IN as the mesh.
+  /// Runs a shell command in which $V is the program and $IN the mesh.
   static ProcessResult shell(const std::string& text) {
     return Process({"bash", "-c",
                     "V='" + voxdag_command({})[0] + "' IN='" + path("sponge.ply") + "'; cd '" +
                         path(".") + "' || exit; " + text})
         .wait();
   }
-  /// A copy, and what it holds.
+  /// Copies a file and returns its contents.
   static std::string copy(const std::string& from, const std::string& to) {
     write_text(path(to), read_text(path(from)));
     return read_text(path(to));
@@ -185,7 +184,8 @@ TEST_F(Files, NamesThatAreTooLongAreFoundBeforeTheWork) {
 }
 
 TEST_F(Files, AMappedFileThatIsCutShortIsAnError) {
-  // A binary STL of six million triangles, all zeros: long enough to be read when it is cut short.
+  // A binary STL of six million triangles, all zeros: reading takes so long that the file can be
+  // truncated meanwhile.
   constexpr std::uint32_t kTriangles = 6'000'000;
   std::string header(84, '\0');
   std::memcpy(header.data() + 80, &kTriangles, sizeof kTriangles);

@@ -1,12 +1,12 @@
 #pragma once
-/// Rays as files for `voxdag trace`.
+/// Makes files of rays for `voxdag trace`.
 #include <array>
 #include <string>
 #include <vector>
 
 namespace voxdag {
 
-/// Rays as the file that NumPy writes for a float32 array of shape (N, 8).
+/// Returns the bytes of the file that NumPy writes for a float32 array of shape (N, 8).
 inline std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {
   std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
                        std::to_string(rays.size()) + ", 8), }";

@@ -1,5 +1,5 @@
-/// What the command line refuses: values that are none, options without effect, outputs that
-/// overwrite each other.
+/// Tests of refused command lines: wrong values, options without effect, outputs that overwrite
+/// each other.
 #include <filesystem>
 #include <sstream>
 
@@ -25,7 +25,8 @@ class Options : public Sponge {
     more.insert(more.begin(), {"--path", path("keys.json")});
     return render(more, "f%d.png");
   }
-  /// Every one of these, alone, is bad usage whose line names the option.
+  /// Expects that each of these options, by itself, is bad usage, and that the error names the
+  /// option.
   template <class Command>
   static void expect_refused(const std::vector<Words>& cases, const Command& command) {
     for (const Words& words : cases) {

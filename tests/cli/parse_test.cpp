@@ -7,7 +7,7 @@
 namespace voxdag {
 namespace {
 
-/// The reason with which `parse` refuses `text`, or "" where it does not.
+/// Returns the reason with which `parse` refuses `text`, or "" if it accepts the text.
 template <class T>
 std::string refusal(T (*parse)(const std::string&), const std::string& text) {
   try {

@@ -13,11 +13,11 @@ struct ProcessResult {
   std::string out, err;
 };
 
-/// A program that runs; the destructor kills and reaps what was not waited for.
+/// A running program. The destructor kills it, unless wait() was called, and reaps it.
 class Process {
  public:
   /// Starts `command` (command[0] is searched in PATH). stdin is empty. stdout goes to the file
-  /// `stdout_path` where one is given, and is collected otherwise.
+  /// `stdout_path` if one is given, else it is collected.
   explicit Process(const std::vector<std::string>& command, const std::string& stdout_path = {});
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -26,8 +26,8 @@ class Process {
   void send_signal(int number) const;
   /// Waits until the program has a handler for the signal, or has ended.
   void wait_until_it_catches(int number) const;
-  /// Waits until the program has written to a file in `folder`, one without a name too. False if it
-  /// has ended.
+  /// Waits until the program has written to a file in `folder`, which may have no name. Returns
+  /// false if the program has ended.
   bool wait_until_it_writes(const std::filesystem::path& folder) const;
   /// Waits until the program has mapped the file into its memory, or has ended.
   void wait_until_it_maps(const std::filesystem::path& file) const;
@@ -38,13 +38,13 @@ class Process {
   int out_ = -1, err_ = -1;  ///< Temporary files without a name.
 };
 
-/// The voxdag command line of this build with these arguments.
+/// Runs the voxdag command line of this build with these arguments.
 ProcessResult run_voxdag(std::vector<std::string> arguments, const std::string& stdout_path = {});
-/// The command to give to Process.
+/// Returns the command for Process.
 std::vector<std::string> voxdag_command(std::vector<std::string> arguments);
 
-/// Passes where a failure was reported as it must be: nothing on stdout, one line on stderr that
-/// begins with "voxdag: " and holds `text`, and the exit status.
+/// Expects a failure that is reported correctly: nothing on stdout, one line on stderr that begins
+/// with "voxdag: " and contains `text`, and the exit status.
 void expect_failure(const ProcessResult& result, int status, const std::string& text);
 
 }  // namespace voxdag

@@ -65,7 +65,7 @@ class StreamedPath : public RenderPath {
               0);
   }
 
-  /// The bytes of the frames, and of their depths.
+  /// Renders a film and returns the bytes of the frames and of their depths.
   static std::string film(const std::string& keys, const std::vector<std::string>& more,
                           ProcessResult& result) {
     write_text(path("keys.json"), keys);

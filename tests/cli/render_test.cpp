@@ -156,7 +156,7 @@ TEST_F(RenderCommand, TakesEsvoFiles) {
   EXPECT_EQ(render("--no-beams", "esvo_whole.png"), picture);
   EXPECT_NE(render("--no-sun", "esvo_night.png"), picture);
 
-  // Two rays at a corner of the sponge, whose side is 0.56, and one that goes away.
+  // Two rays at a corner of the sponge, whose side is 0.56, and one that points away from it.
   std::ofstream(path("rays.npy"), std::ios::binary)
       << rays_npy({{0.03f, 0.03f, 9, 0, 0, 0, -1, 1e9f},
                    {0.03f, 9, 0.03f, 0, 0, -1, 0, 1e9f},

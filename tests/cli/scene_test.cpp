@@ -1,4 +1,4 @@
-/// Procedural scenes through every command that follows.
+/// Runs every command on procedural scenes.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -75,7 +75,7 @@ TEST_F(Sponge, ASecondSignalLeavesNothingEither) {
 }
 
 TEST_F(Sponge, TraceWritesOneHitForEachRay) {
-  // Down the middle of the sponge there is a hole; beside it there is a wall.
+  // The sponge has a vertical hole in the middle and walls beside it.
   const float up = std::numeric_limits<float>::infinity();
   const std::vector<std::array<float, 8>> rays = {{0.01F, 9, 0.01F, 0, 0, -1, 0, up},
                                                   {0.01F, 9, 0.01F, 0, 0, 1, 0, up},

@@ -1,5 +1,5 @@
 #pragma once
-/// The smallest procedural scene as a mesh and as a DAG, for tests of what uses them.
+/// The smallest procedural scene as a mesh and as a DAG.
 #include <gtest/gtest.h>
 
 #include "cli/process.hpp"
@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Made once for all tests of a program.
+/// A fixture with files that are made once for all tests of a program.
 class Sponge : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -20,7 +20,7 @@ class Sponge : public testing::Test {
 
   static std::string path(const std::string& name) { return *dir_ / name; }
   static bool exists(const std::string& name) { return std::filesystem::exists(path(name)); }
-  /// How many files have names that begin so: temporary ones too.
+  /// Returns the number of files, with temporary ones, whose names begin with `start`.
   static int files_like(const std::string& start) {
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(dir_->path()))

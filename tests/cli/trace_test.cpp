@@ -1,4 +1,4 @@
-// `voxdag trace` at an ESVO: what it tells of the voxels that rays hit.
+// Tests `voxdag trace` at an ESVO: the attributes of the voxels that rays hit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ const std::string kPlace = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1
 const std::string kAttributes = ", ('normal', '<f4', (3,)), ('color', '|u1', (3,))";
 constexpr std::size_t kPlaceBytes = 18, kAttributeBytes = 15;
 
-/// Waves whose vertices have colours, all different.
+/// Returns a wavy mesh whose vertices all have different colours.
 std::string colored_waves() {
   constexpr int kSide = 20;
   std::ostringstream text;
@@ -46,7 +46,7 @@ struct Attributes {
   Vec3<std::uint8_t> color;
 };
 
-/// What every leaf looks like, by its lowest voxel.
+/// The attributes of every leaf, by its lowest voxel.
 class Leaves {
  public:
   explicit Leaves(const EsvoView& esvo) : esvo_(esvo) { walk(esvo.root, {}, esvo.levels); }
@@ -97,7 +97,7 @@ class TraceCommand : public testing::Test {
     EXPECT_EQ(result.status, 0) << result.err;
     return dir_ / name;
   }
-  /// Rays at a grid, of every kind.
+  /// Writes rays of every kind at a grid.
   void write_rays(const Grid& grid) const {
     TestRays source(grid, 1);
     std::vector<std::array<float, 8>> rays(4000);
@@ -114,7 +114,7 @@ class TraceCommand : public testing::Test {
     EXPECT_EQ(result.status, 0) << result.err;
     return hits;
   }
-  /// Every row, as bytes.
+  /// Returns every row, as bytes.
   static std::vector<std::string> rows_of(const std::string& hits, const std::string& dtype,
                                           std::size_t row_bytes) {
     NpyReader reader(hits, dtype, {}, row_bytes);

@@ -49,7 +49,8 @@ TEST(CountedVector, CountsItsCapacityAndStopsAtTheLimit) {
     CountedVector<int> values{CountedAllocator<int>(&budget)};
     values.reserve(100);
     EXPECT_EQ(budget.used(), 400u);
-    EXPECT_THROW(values.reserve(200), OverMemory);  // old and new are held at once
+    EXPECT_THROW(values.reserve(200),
+                 OverMemory);  // the old and the new array exist at the same time
     EXPECT_EQ(budget.used(), 400u);
     CountedVector<int> moved = std::move(values);
     EXPECT_EQ(budget.used(), 400u);

@@ -1,4 +1,4 @@
-// Beams in packets against beams one by one.
+// Compares beams in packets with beams that are cast one at a time.
 #include "voxdag/cpu/packets/beam_packet.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-/// Beams like those of 8×8 pixels each, side by side from one point, in any direction.
+/// Returns beams like those of 8×8 pixels each, side by side from one point, in any direction.
 BeamPacket random_packet(std::mt19937& rng, std::size_t size) {
   std::uniform_real_distribution<double> unit(-1, 1);
   BeamPacket packet;
@@ -30,7 +30,7 @@ BeamPacket random_packet(std::mt19937& rng, std::size_t size) {
   return packet;
 }
 
-/// Where beam i alone meets anything.
+/// Returns the t at which beam i alone meets anything.
 template <class Nodes>
 double expected_first(const Nodes& nodes, const BeamPacket& packet, std::size_t i) {
   Beam beam;
@@ -43,7 +43,7 @@ double expected_first(const Nodes& nodes, const BeamPacket& packet, std::size_t 
   return first_met(nodes, beam, packet.stop, first) ? first : HUGE_VAL;
 }
 
-/// Returns how many beams meet something.
+/// Returns the number of beams that meet something.
 template <class Nodes>
 int expect_same_starts(const Nodes& nodes, unsigned seed) {
   constexpr double kRounding = 0x1p-18;
@@ -58,7 +58,8 @@ int expect_same_starts(const Nodes& nodes, unsigned seed) {
         const double expected = expected_first(nodes, packet, i);
         const auto first = static_cast<double>(packet.first[i]);
         EXPECT_LE(first, expected) << hwy::TargetName(target);
-        // Beside beams that run otherwise along an axis some are taken for wider ones.
+        // In a packet whose beams run in different directions along an axis, some beams count as
+        // wider.
         if (size == 1 && expected < HUGE_VAL) {
           EXPECT_GE(first, expected * (1 - kRounding));
         } else if (size == 1) {

@@ -1,4 +1,4 @@
-// The boxes beside a DAG's pointers against the voxels that they bound.
+// Compares the boxes beside a DAG's pointers with the voxels that they bound.
 #include "voxdag/cpu/packets/bounded_dag.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace voxdag {
 namespace {
 
-/// The voxels of the grid that are in the cell of `level` at `cell`, in 32nds of that cell.
+/// Returns the box of the voxels in the cell of `level` at `cell`, in 32nds of that cell.
 CellBox expected_box(const std::vector<Vec3i>& voxels, int levels, int level, Vec3i cell) {
   const int shift = levels - level;
   Vec3i first{31, 31, 31}, last{};
@@ -30,7 +30,7 @@ CellBox expected_box(const std::vector<Vec3i>& voxels, int levels, int level, Ve
   return box;
 }
 
-/// Counts the pointers whose box is another, from the node at `cell` on down.
+/// Counts the pointers with a wrong box, in the subtree of the node at `cell`.
 int wrong_boxes(const BoundedDag& dag, const std::vector<Vec3i>& voxels, std::uint32_t node,
                 int level, Vec3i cell) {
   const int levels = dag.nodes().levels();

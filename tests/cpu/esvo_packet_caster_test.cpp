@@ -1,4 +1,4 @@
-// Packets at an ESVO against the scalar cast, ray by ray.
+// Compares packets at an ESVO with the scalar cast, ray by ray.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns how many rays enter their shape through a contour.
+/// Returns the number of rays that enter their shape through a contour.
 template <class Nodes>
 int expect_same_results(const Nodes& nodes, const std::vector<CastRay>& rays,
                         const std::string& what) {
@@ -70,7 +70,7 @@ TEST(EsvoPacketCaster, EndsAtTheSameLevelOfDetail) {
   }
 }
 
-// Narrow ones are taken for one wide ray at coarse voxels.
+// Narrow bundles are tested as one wide ray at coarse voxels.
 TEST(EsvoPacketCaster, CoherentRaysMeetTheSame) {
   int through_contours = 0;
   for (const double width : {0.0005, 0.01, 0.1})
@@ -92,7 +92,7 @@ TEST(EsvoPacketCaster, ShortRaysOfOnePointMeetTheSame) {
   }
 }
 
-// The planes of a contour are moved outwards by where the ray leaves the cube, even where its range
+// The slack of a contour's planes depends on where the ray leaves the cube, even if the ray's range
 // ends long before.
 TEST(EsvoPacketCaster, ShortRaysBesideAContourMeetTheSame) {
   TestVoxel root;
@@ -129,7 +129,7 @@ TEST(EsvoPacketCaster, RaysThatStartAlongOneAxisMeetTheSame) {
     }
 }
 
-// Where one ray or another is parallel to each axis, the range of their directions bounds nothing.
+// If for each axis some ray is parallel to it, the range of the rays' directions bounds nothing.
 TEST(EsvoPacketCaster, RaysAlongAllAxesFromOnePointMeetTheSame) {
   for (int levels = 2; levels <= 18; ++levels) {
     const int middle = 1 << (levels - 1);
@@ -148,7 +148,7 @@ TEST(EsvoPacketCaster, RaysAlongAllAxesFromOnePointMeetTheSame) {
   }
 }
 
-/// How often rays ended at the leaves of each descriptor.
+/// Counts how often rays end at the leaves of each descriptor.
 class CountedLeaves : public LeafListener {
  public:
   void on_leaf(std::uint64_t slot) const override { ++counts_[slot]; }

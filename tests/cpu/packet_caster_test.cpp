@@ -1,4 +1,4 @@
-// Packets at a DAG against the scalar cast, ray by ray.
+// Compares packets at a DAG with the scalar cast, ray by ray.
 #include "voxdag/cpu/packets/packet_caster.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Beams change nothing; occlusion and soft shadows are what mathematics says.
+// Tests that beams change nothing, and compares occlusion and soft shadows with analytic values.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// The grid of 2^levels voxels is [-1,1]³.
+/// Returns a grid of 2^levels voxels a side over [-1,1]³.
 Grid test_grid(int levels) {
   Grid grid;
   grid.levels = levels;
@@ -25,7 +25,7 @@ Grid test_grid(int levels) {
   return grid;
 }
 
-/// Voxels (x,y,z) of 2^levels for which keep(x,y,z).
+/// Returns a DAG of the voxels (x,y,z) of a grid of 2^levels for which keep(x,y,z) is true.
 template <class Keep>
 Svdag voxels_where(int levels, const Keep& keep) {
   std::vector<Vec3i> voxels;
@@ -37,7 +37,7 @@ Svdag voxels_where(int levels, const Keep& keep) {
   return brute_svdag(levels, voxels);
 }
 
-/// Blocks, a shell and dust on a floor.
+/// Returns blocks, a shell and dust on a floor.
 Svdag mixed_scene(int levels, unsigned seed) {
   std::mt19937 rng(seed);
   const double n = 1 << levels;
@@ -149,7 +149,7 @@ TEST(RenderBeams, ChangeNoSoftShadowOfAnyLight) {
     EXPECT_GT(shadow, 0);
     EXPECT_LT(shadow, static_cast<double>(with.shadow.size()));
   }
-  EXPECT_GE(fewer, 3);  // wide beams meet something everywhere
+  EXPECT_GE(fewer, 3);  // wide beams meet something almost everywhere
 }
 
 TEST(RenderBeams, VoxelsRightBehindALampAreNotInItsWay) {
@@ -187,7 +187,7 @@ TEST(RenderEffects, PicturesDependNeitherOnTilesNorThreads) {
     }
 }
 
-/// Straight down on the middle of the picture's plane, cells shown as cubes.
+/// Returns options for a view straight down on the middle of the plane, with cells as cubes.
 RenderOptions from_above(double height_of_picture) {
   RenderOptions options;
   options.width = options.height = 24;
@@ -202,7 +202,7 @@ RenderOptions from_above(double height_of_picture) {
   return options;
 }
 
-/// World x of a column's middle, on the plane at y.
+/// Returns the world x of the middle of a column, on the plane at y.
 double column_x(const RenderedImage& image, int column, double y) {
   const double half = std::tan(image.view.vertical_fov_degrees * kPi / 360) * (40 - y);
   return (2 * (column + 0.5) / image.width - 1) * half;
@@ -268,7 +268,7 @@ TEST(AmbientOcclusion, TheEdgeOfAWallHidesHalfOfTheSky) {
   RenderOptions options = from_above(0.001);  // 24 pixels in an eighth of a voxel
   options.view.eye = {0.0009, 40, 0};
   options.view.target = {0.0009, 0, 0};
-  options.occlusion_distance = 1000;  // nothing is too far to count
+  options.occlusion_distance = 1000;  // no wall is too far away to count
   const RenderedImage image = render_image(dag.view(), grid, options);
   double mean = 0;
   for (const float open : image.occlusion)
@@ -319,7 +319,7 @@ TEST(SoftShadow, ThePenumbraOfAStraightEdgeIsACircularSegment) {
       voxels_where(kLevels, [](int x, int y, int) { return y == 8 || (y == kTop && x < 64); });
   const Grid grid = test_grid(kLevels);
   RenderOptions options = from_above(1);
-  // From below the cover the floor is not to be seen from above: look from the side that is open.
+  // The cover hides the floor from above, so the camera is below the floor.
   options.view.eye = {0, -1 + 50 * grid.voxel_size, 0};
   options.view.target = {0, -1, 0};
   options.view.vertical_fov_degrees = 70;

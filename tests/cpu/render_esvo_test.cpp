@@ -1,4 +1,4 @@
-// Pictures of ESVOs.
+// Tests pictures of ESVOs.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -33,7 +33,7 @@ RenderOptions small_picture() {
   return options;
 }
 
-/// Red where x is high, blue where it is low.
+/// Returns red where x is high, blue where x is low.
 VoxelValue ball_value(Vec3d middle) {
   VoxelValue value;
   value.color[middle.x > 0.5 ? 0 : 2] = 255;
@@ -174,7 +174,7 @@ TEST(RenderEsvo, AFloorSeenAlongItFacesUpWhicheverWayItsNormalsPoint) {
     const RenderedImage image = render_image(floor.view(), picture_grid(), options);
     int seen = 0;
     for (std::size_t i = 0; i < image.depth.size(); ++i) {
-      if (!(image.depth[i] < HUGE_VALF) || image.depth[i] < 2.2f) continue;  // not its edge
+      if (!(image.depth[i] < HUGE_VALF) || image.depth[i] < 2.2f) continue;  // not the edge
       EXPECT_GT(image.normal[i].y, 0.9f);
       ++seen;
     }

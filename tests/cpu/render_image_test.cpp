@@ -15,7 +15,7 @@ namespace {
 using test::kPictureLevels;
 using test::picture_grid;
 
-/// A floor at y < 8 voxels and a block on it.
+/// Returns a floor at y < 8 voxels and a block on it.
 Svdag block_on_a_floor() {
   std::vector<Vec3i> voxels;
   for (std::int32_t z = 0; z < 64; ++z)
@@ -77,7 +77,7 @@ TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
   EXPECT_TRUE(plain.cell_pixels.empty());
   options.filter = true;
   const RenderedImage filtered = render_image(dag.view(), picture_grid(), options);
-  // The voxels' side over a pixel's at their distance.
+  // The side of a voxel divided by the side of a pixel at its distance.
   const double size = 2.0 / 64 / (2 * std::tan(3.14159265 / 180) / 61 * 2.75);
   for (const std::uint8_t code : filtered.cell_pixels)
     EXPECT_NEAR(unpack_cell_pixels(code), size, 0.02 * size);

@@ -1,4 +1,4 @@
-// Baked ambient occlusion: of points whose occlusion is known, and in the colours of an ESVO.
+// Tests baked ambient occlusion: at points with known occlusion, and in the colours of an ESVO.
 #include "voxdag/cpu/surface_openness.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ constexpr double kReach = 32;
 
 Grid unit_grid() { return {kLevels, {0, 0, 0}, 1.0, kSubvoxels}; }
 
-/// A floor at y = 8.5 and, from there up, a wall at x = 40.5.
+/// Returns a floor at y = 8.5 and, if `with_wall`, a wall at x = 40.5 that stands on it.
 Mesh floor_and_wall(bool with_wall) {
   Mesh mesh = test::grid_mesh(1, [](int i, int j) {
     return Vec3f{128.0f * static_cast<float>(j), 8.5f, 128.0f * static_cast<float>(i)};
@@ -62,7 +62,7 @@ std::vector<Leaf> leaves_of(const EsvoView& esvo) {
 
 class OpennessOfAFloor : public testing::Test {
  protected:
-  /// At a distance from the wall.
+  /// Returns the openness at a distance from the wall.
   static float open_at(const SurfaceOpenness& openness, double distance) {
     return openness({40.5 + distance, 8.5, 64}, {0, 1, 0}, {0, 1, 0});
   }
@@ -78,7 +78,7 @@ TEST_F(OpennessOfAFloor, FallsTowardsAWallToOneHalf) {
   const Esvo esvo = build_esvo(floor_and_wall(true), unit_grid());
   const SurfaceOpenness openness(esvo.view(), unit_grid(), 1024, kReach);
   EXPECT_EQ(open_at(openness, kReach + 1), 1.0f);
-  // A wall that touches hides half of the sky, however short rays are.
+  // A wall at the point hides half of the sky, even for short rays.
   EXPECT_NEAR(open_at(openness, 0.3), 0.58f, 0.12f) << "rays start beside the voxels of the wall";
   float before = 0;
   for (const double distance : {1.0, 4.0, 8.0, 16.0, 28.0}) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Tests of what runs on a CUDA device, skipped where there is none.
+/// The fixture of tests that need a CUDA device. It skips them if there is none.
 #include <gtest/gtest.h>
 
 #include "voxdag/cuda/device.hpp"

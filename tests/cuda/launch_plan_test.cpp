@@ -37,7 +37,7 @@ TEST(LaunchPlan, EverySampleOfEveryBlockComesOnceAndInOrder) {
 }
 
 TEST(LaunchPlan, LaunchesFollowTheMeasuredSpeed) {
-  // A device that does 1000 units of work a second, with pieces planned one ahead.
+  // A device that does 1000 units of work per second. Launches are planned one ahead.
   LaunchPlan plan(1'000'000, 1, 1, 16, 1'000'000, 1);
   auto range = plan.next();
   for (int i = 0; i < 20; ++i) {

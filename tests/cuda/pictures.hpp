@@ -18,7 +18,7 @@ inline Grid picture_grid() {
   return grid;
 }
 
-/// A floor with a block, a ball and a thin roof.
+/// Returns a floor with a block, a ball and a thin roof.
 inline Svdag picture_scene() {
   std::vector<Vec3i> voxels;
   for (std::int32_t z = 0; z < 64; ++z)
@@ -39,7 +39,8 @@ struct Picture {
   RenderOptions options;
 };
 
-/// `scale` 1 gives pictures of some thousand pixels with sizes that no tile divides.
+/// Returns the pictures. With `scale` 1 they have a few thousand pixels, in sizes that are not
+/// multiples of a tile's.
 inline std::vector<Picture> pictures(int scale) {
   RenderOptions options;
   options.width = 75 * scale;
@@ -79,7 +80,7 @@ inline std::vector<Picture> pictures(int scale) {
   return list;
 }
 
-/// Sees the world plane y = -0.9, above the scene's floor.
+/// A source that sees the world plane y = -0.9, above the scene's floor.
 class PlaneSource : public ViewSource {
  public:
   void sample(const Camera& camera, const ViewTile& tile,

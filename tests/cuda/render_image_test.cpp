@@ -19,7 +19,7 @@ using CudaRender = OnCudaDevice;
 
 int grey_level(float linear) { return static_cast<int>(linear_to_srgb(linear) * 255 + 0.5f); }
 
-/// What the user sees is within one grey level, and so are the passes.
+/// Expects pictures and passes that differ by at most one grey level.
 void expect_like(const RenderedImage& image, const RenderedImage& expected) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < expected.rgb.size(); ++i) {
@@ -80,7 +80,7 @@ TEST_F(CudaRender, TakesPointsFromASource) {
       render_image(dag.view(), picture_grid(), options, nullptr, &source));
 }
 
-/// Fails at the second sample of a pixel.
+/// A source that fails at the second sample of a pixel.
 class FailingSource : public PlaneSource {
  public:
   void sample(const Camera& camera, const ViewTile& tile,

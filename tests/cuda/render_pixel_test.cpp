@@ -1,4 +1,4 @@
-/// The render kernel's body, run on the host thread by thread.
+/// Runs the render kernel's body on the host, thread by thread.
 #include "voxdag/cuda/render_pixel.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ std::vector<ViewSample> samples_of(const ViewSource& source, const RenderSetup& 
   return samples;
 }
 
-/// As the device does it, in launches of a few blocks.
+/// Renders a picture in launches of a few blocks, as the device does.
 template <class Nodes, class Caster>
 RenderedImage render_as_device(const VoxelSet& scene, const Nodes& nodes, const Caster& caster,
                                const RenderOptions& options, const ViewSource* source) {

@@ -7,7 +7,7 @@
 
 /// A queue of steps that run one after the other.
 struct CUstream_st {
-  /// Queues the step; an eager device runs it now.
+  /// Queues the step; an eager device runs it immediately.
   cudaError_t add(std::function<cudaError_t()> step);
   /// Runs all queued steps, up to the first that fails.
   cudaError_t finish();

@@ -23,7 +23,7 @@ struct HostDevice {
   int compute_capability = 90;  ///< 10 * major + minor.
   std::size_t memory_bytes = std::size_t{1} << 30;
   bool is_eager = false;
-  /// This many more calls succeed, then one fails. Calls that release something never fail.
+  /// The number of calls that succeed before one fails. Calls that release something never fail.
   std::optional<int> failing_call;
 
   // Resources that the program holds.

@@ -142,7 +142,7 @@ TEST_F(CudaOnHost, ACallThatFailsIsAnErrorThatLeavesNothingBehind) {
     for (;; ++failing) {
       host_device().failing_call = failing;
       const std::string why = failure(work);
-      if (host_device().failing_call) break;  // fewer calls than that
+      if (host_device().failing_call) break;  // the work has fewer calls
       // The result of a wait before a queue is destroyed is ignored.
       EXPECT_TRUE(why.empty() || why.find("unknown error") != std::string::npos)
           << "call " << failing << ": " << why;

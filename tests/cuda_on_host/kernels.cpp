@@ -48,7 +48,7 @@ void Warp::run(const std::function<void()>& thread, const dim3& block, unsigned 
       left -= is_done_[lane_] ? 1 : 0;
     }
     if (left == 0 || left == size_) continue;
-    // Undefined behaviour in CUDA.
+    // This is undefined behaviour in CUDA.
     std::fputs("a thread ended while others of its warp waited for it\n", stderr);
     std::abort();
   }
@@ -56,7 +56,7 @@ void Warp::run(const std::function<void()>& thread, const dim3& block, unsigned 
 
 unsigned long long Warp::value_down(unsigned long long value, unsigned by) {
   const unsigned lane = lane_;
-  // Other threads still read the values of the previous round.
+  // Two rounds alternate, because other threads still read the values of the previous round.
   auto& values = values_[round_ % 2];
   values[lane] = value;
   swapcontext(&contexts_[lane], &caller_);

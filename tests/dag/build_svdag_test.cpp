@@ -16,7 +16,7 @@
 namespace voxdag {
 namespace {
 
-/// World units are voxels.
+/// Returns a grid whose voxels are world units.
 Grid unit_grid(int levels) {
   const double n = static_cast<double>(std::int64_t{1} << levels);
   return grid_from_bounds(Box3d{{0, 0, 0}, {n, n, n}}, levels);
@@ -33,7 +33,7 @@ Mesh mesh_of(const std::vector<QuantizedTriangle>& triangles) {
   return mesh;
 }
 
-/// Every voxel of the grid by the definition, then the slow merge.
+/// Tests every voxel of the grid by the definition, then merges by the slow reference builder.
 Svdag brute_force(const std::vector<QuantizedTriangle>& triangles, int levels) {
   std::vector<Vec3i> voxels;
   const std::int32_t last = (1 << levels) - 1;
@@ -97,7 +97,7 @@ TEST(BuildSvdag, TrianglesManyTimesLargerThanTheGridAreExactInIt) {
   std::mt19937_64 random(7);
   for (int round = 0; round < 120; ++round) {
     const int levels = 5;
-    // From edges that 32-bit sums hold to edges that only 64-bit sums do.
+    // From edges that fit 32-bit sums to edges that need 64-bit sums.
     const int log2_size = 14 + round % 15;
     const auto coordinate = [&](int log2_below) {
       const auto value = static_cast<std::int32_t>(random() & ((1u << log2_below) - 1));
@@ -109,7 +109,7 @@ TEST(BuildSvdag, TrianglesManyTimesLargerThanTheGridAreExactInIt) {
       for (int axis = 0; axis < 3; ++axis) {
         const std::int32_t half = 1 << (log2_size - 1);
         std::int32_t inside = coordinate(levels + 8);
-        // Through a corner of voxels: the ties that no rounded number decides.
+        // Through corners of voxels: ties that rounded numbers could not decide.
         if (round % 2 == 1) inside &= -kSubvoxels;
         t.x[axis] = inside + coordinate(log2_size) - half;
         t.y[axis] = inside + coordinate(log2_size) - half;

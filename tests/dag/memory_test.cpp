@@ -1,5 +1,5 @@
-/// Memory limits of builds: kept, or refused with a true estimate. A program of its own: it looks
-/// at the process's resident memory.
+/// Tests that memory limits of builds are kept, or refused with a correct estimate. It is a
+/// separate program, because it measures the process's resident memory.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <tbb/task_arena.h>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
-/// Resident bytes of this process.
+/// Returns the resident bytes of this process.
 std::uint64_t resident_bytes() {
   std::ifstream statm("/proc/self/statm");
   std::uint64_t total = 0, resident = 0;
@@ -28,7 +28,7 @@ std::uint64_t resident_bytes() {
   return resident * 4096;
 }
 
-/// Sets the process's peak of resident memory to what is resident now.
+/// Resets the process's peak of resident memory to its current value.
 void reset_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 std::uint64_t peak_bytes() {
@@ -38,7 +38,7 @@ std::uint64_t peak_bytes() {
   return 0;
 }
 
-/// Triangles much smaller than a voxel, all in a few voxels of a grid of the unit cube.
+/// Returns triangles much smaller than a voxel, all in a few voxels of a grid of the unit cube.
 Mesh spot(std::size_t triangles) {
   std::mt19937 random(1);
   const auto coordinate = [&](double scale) {
@@ -55,7 +55,7 @@ Mesh spot(std::size_t triangles) {
   return mesh;
 }
 
-/// Bumpy spheres: a curved surface, whose DAG grows as that of real meshes does.
+/// Returns bumpy spheres: a curved surface, whose DAG grows like the DAGs of real meshes.
 Mesh bumpy_spheres(int side) {
   Mesh mesh;
   for (int sphere = 0; sphere < 8; ++sphere) {
@@ -98,7 +98,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// The number before " MiB" behind `words`.
+/// Returns the number between `words` and " MiB".
 double mebibytes_behind(const std::string& text, const std::string& words) {
   const std::size_t at = text.find(words);
   return at == std::string::npos ? 0 : std::stod(text.substr(at + words.size()));
@@ -136,8 +136,8 @@ TEST(BuildMemory, ALimitIsKeptOrRefusedWithATrueEstimate) {
         if (about == 0) {
           EXPECT_NE(std::string(refusal.what()).find("needs more than"), std::string::npos);
         } else {
-          // Tables double as they grow, so that the need of such small builds itself varies by a
-          // third from run to run.
+          // Tables grow by doubling, so the memory of such small builds varies by a third from run
+          // to run.
           EXPECT_LT(about, 2 * real + 2) << test.name << ": " << refusal.what();
           EXPECT_GT(about * 2 + 2, real) << test.name << ": " << refusal.what();
         }

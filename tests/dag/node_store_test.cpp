@@ -56,7 +56,7 @@ TEST(NodeStore, CountsTheMemoryItHolds) {
     EXPECT_EQ(store.word_count(), 20000u);
     EXPECT_GE(budget.used(), 10000u * (8 + 8));
     store.release_slots();
-    // All that the words take, and what is left of the last run.
+    // The memory of all words, and the unused part of the last run.
     EXPECT_GE(budget.used(), 80000u);
     EXPECT_LT(budget.used(), 90000u);
   }

@@ -18,7 +18,7 @@ struct Reference {
   std::uint64_t voxels, svo_nodes, dag_nodes, dag_bytes;
 };
 
-// By an independent brute-force program from the same definition of the cover.
+// Counted by an independent brute-force program with the same definition of the cover.
 constexpr Reference kSponza[] = {
     {11, 39'553'439, 12'677'367, 171'432, 2'905'104},
     {12, 159'037'076, 52'230'809, 484'570, 9'096'816},

@@ -27,7 +27,7 @@ std::vector<MicroTriangle> tessellate(const DisplacedTriangles& triangles, const
   return all;
 }
 
-/// Directed edges of micro triangles that no other has the other way around.
+/// Returns the number of directed edges of micro triangles without an opposite edge.
 std::size_t open_edges(const std::vector<MicroTriangle>& all) {
   using Point = std::tuple<double, double, double>;
   const auto key = [](Vec3d p) { return Point{p.x, p.y, p.z}; };
@@ -67,7 +67,7 @@ TEST(DisplacedTriangles, EdgesAtASurfaceThatIsNotDisplacedStay) {
   std::size_t moved = 0, stayed = 0;
   for (const MicroTriangle& m : tessellate(triangles, crate.mesh, 0.07))
     for (const Vec3d p : m.positions) {
-      // The face x = 0 is the one that stays.
+      // The face x = 0 is not displaced.
       const bool is_on_its_rim = p.x == 0 && (p.y == 0 || p.y == 1.5 || p.z == 0 || p.z == 1.25);
       stayed += is_on_its_rim;
       moved += p.x < 0;
@@ -132,7 +132,7 @@ TEST(DisplacedTriangles, PointsOfAPlaneMoveByTheirHeight) {
   appearance.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 1}, {1, 0}, {0, 0}};
   const DisplacedTriangles triangles(mesh, appearance,
                                      displace_all(mesh, appearance, stones(), 0.1));
-  // Spacing below half a texel: the texture itself.
+  // Edges are shorter than half a texel, so heights are those of the texture.
   for (const MicroTriangle& m : tessellate(triangles, mesh, 0.005))
     for (const Vec3d p : m.positions) {
       const Vec2f uv{static_cast<float>(p.x), static_cast<float>(1 - p.y)};
@@ -218,7 +218,7 @@ TEST(DisplacedTriangles, OctreesEncloseTheTessellatedSurface) {
   EXPECT_GT(check.points, micro.triangles.size());
   EXPECT_FALSE(check.outside);
 
-  // The same by the displacement itself, and that of another wall is noticed.
+  // Checks with the displacement itself, and checks that a different displacement is noticed.
   const QuantizedMesh crate_in_grid(crate.mesh, grid);
   const EnclosureCheck own =
       check_enclosure(esvo, crate_in_grid, grid, nullptr, &triangles, 20'000);
@@ -253,8 +253,8 @@ TEST(DisplacedTriangles, GridsThatContainAPartOfTheSurfaceAreBuilt) {
   const auto place = [&](double lo, double hi) {
     return lo + (hi - lo) * static_cast<double>(random()) / 4294967296.0;
   };
-  // Grids that reach into the topmost stones of a side: there are cells that bounds of the heights
-  // meet, and the surface does not.
+  // Grids that reach into the topmost stones of a side. Some cells meet the bounds of the heights,
+  // but not the surface.
   int with_voxels = 0;
   for (int round = 0; round < 12; ++round) {
     Grid grid;

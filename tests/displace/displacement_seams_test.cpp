@@ -67,7 +67,8 @@ TEST(DisplacementSeams, AFanOfManyTrianglesIsTessellatedInLinearTime) {
   for (std::uint32_t t = 0; t < fan.mesh.triangles.size(); ++t)
     triangles.tessellate(t, everywhere, 0.1, [&](const MicroTriangle&) { ++count; });
   EXPECT_GT(count, 4000u * 50);
-  // 0.2 s; over 10 s if every point of the edge took the mean of 4000 displacements.
+  // This takes 0.2 s. It would take over 10 s if every point of the edge averaged 4000
+  // displacements.
   EXPECT_LT(cpu_seconds() - start, 3.0);
 }
 

@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-/// Random triangles with their vertices on 1/256 voxels of the grid, which is the unit of length.
+/// Returns random triangles with vertices at multiples of 1/256 voxel. World units are voxels.
 Mesh random_mesh(std::uint64_t seed, int levels, int triangles) {
   std::mt19937_64 random(seed);
   Mesh mesh;
@@ -31,7 +31,7 @@ Mesh random_mesh(std::uint64_t seed, int levels, int triangles) {
 
 Grid unit_grid(int levels) { return {levels, {0, 0, 0}, 1.0, kSubvoxels}; }
 
-/// A sphere of radius `radius` about `centre`, of 2 * n² triangles.
+/// Returns a sphere around `centre` of 2 * n² triangles.
 Mesh sphere_mesh(Vec3f centre, float radius, int n) {
   return test::grid_mesh(n, [=](int i, int j) {
     const float a = 3.14159265f * static_cast<float>(i) / static_cast<float>(n);
@@ -98,7 +98,7 @@ TEST(BuildEsvo, LeavesWithContoursCoverTheSameVoxels) {
     for (const Leaf& leaf : leaves_of(esvo.view()))
       cells.push_back(morton_encode(leaf.cell) << 3 * (levels - leaf.level) << 8 |
                       static_cast<std::uint64_t>(leaf.level));
-    // Every voxel is in one leaf, and every leaf has one.
+    // Every voxel is in one leaf, and every leaf contains a voxel.
     std::size_t at = 0;
     for (const std::uint64_t code : codes_of_voxels(dag.view())) {
       while (at < cells.size() &&
@@ -130,7 +130,7 @@ TEST(BuildEsvo, ContoursEncloseTheSurface) {
 }
 
 TEST(BuildEsvo, ContoursMakePlanesAndSpheresOfFewVoxels) {
-  // A slanted plane across the grid: a few contours say it all.
+  // A slanted plane across the grid: a few contours represent it.
   Mesh plane;
   plane.vertices = {{0, 0, 10}, {64, 0, 20}, {64, 64, 50}, {0, 64, 40}};
   plane.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -192,7 +192,8 @@ TEST(BuildEsvo, AMeshOutsideOfTheGridGivesAnEmptyOctree) {
 }
 
 TEST(BuildEsvo, PointsAndNeedlesOutsideOfTheGridGiveNothing) {
-  // They have no sides that would keep them off a voxel at the grid's face, only their boxes.
+  // Points and needles have no edge conditions: only their boxes keep them out of a voxel at the
+  // grid's side.
   Mesh mesh;
   mesh.vertices = {{-3, 5, 5}, {5, -9, 5}, {5, 5, 20}, {-3, 5, 5.5f}};
   mesh.triangles = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 3, 3}};

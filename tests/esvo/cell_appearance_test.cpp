@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-/// A cell of 8 voxels a side with `count` triangles, all of one colour that is given by corner.
+/// A cell of 8 voxels a side with `count` triangles. All corners have the same colour.
 struct ColoredCell {
   Mesh mesh;
   Appearance appearance;
@@ -41,7 +41,7 @@ TEST(CellAppearance, FewPiecesOfOneColorAreUniform) {
 }
 
 TEST(CellAppearance, MorePiecesThanTheTestHoldsAreNotUniform) {
-  // An empty shape is near the surface, however many polygons there are: so this may be asked.
+  // An empty shape is near the surface for any number of polygons, so this function may be called.
   const ColoredCell cell(200);
   const SurfaceShading shading(cell.mesh, cell.appearance);
   const EsvoSettings settings;

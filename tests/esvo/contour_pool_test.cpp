@@ -1,4 +1,4 @@
-// Lists of contours that share their places.
+// Tests lists of contours that share storage.
 #include "voxdag/esvo/encode/contour_pool.hpp"
 
 #include <gtest/gtest.h>

@@ -25,7 +25,8 @@ double squared_error(const Colors& colors, std::uint32_t used, ColorBlock block,
   return sum;
 }
 
-/// The least sum of squared differences in one channel of `steps` steps over all pairs of ends.
+/// Returns the least sum of squared differences in a channel of `steps` steps, over all pairs of
+/// ends.
 double best_channel(const std::vector<double>& values, const std::vector<int>& thirds, int steps) {
   double best = std::numeric_limits<double>::infinity();
   for (int p = 0; p <= steps; ++p)
@@ -40,14 +41,14 @@ double best_channel(const std::vector<double>& values, const std::vector<int>& t
   return best;
 }
 
-/// The least error of any block: all selectors, and for each all ends.
+/// Returns the least error of any block: tries all selectors, and for each all ends.
 double optimum(const std::vector<Vec3f>& colors) {
   double best = std::numeric_limits<double>::infinity();
   std::vector<int> thirds(colors.size());
   for (unsigned code = 0; code < 1u << (2 * colors.size()); ++code) {
     for (std::size_t i = 0; i < thirds.size(); ++i)
       thirds[i] = static_cast<int>(code >> (2 * i) & 3u);
-    if (thirds[0] < 2) continue;  // The ends exchanged.
+    if (thirds[0] < 2) continue;  // The same block with exchanged ends was tried.
     double sum = 0;
     for (int c = 0; c < 3 && sum < best; ++c) {
       std::vector<double> channel;
@@ -64,7 +65,7 @@ Vec3f random_color(std::mt19937& random) {
   return {unit(random), unit(random), unit(random)};
 }
 
-/// Colours within `spread` of a random one, in [0,1].
+/// Returns colours within `spread` of a random colour, in [0,1].
 Colors random_colors(std::mt19937& random, float spread) {
   const Vec3f center = random_color(random);
   Colors colors;
@@ -194,7 +195,7 @@ TEST(EncodeColorBlock, ColoursOutsideTheRangeAreClamped) {
 }
 
 TEST(EncodeColorBlock, TheBitsAreTheSameOnEveryMachine) {
-  // FNV-1a over blocks of all kinds.
+  // Computes FNV-1a over blocks of all kinds.
   std::mt19937 random(8);
   std::uint64_t hash = 0xCBF29CE484222325ull;
   for (int round = 0; round < 2000; ++round) {

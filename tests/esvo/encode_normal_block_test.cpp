@@ -47,7 +47,8 @@ Vec3f random_direction(std::mt19937& random) {
   }
 }
 
-/// Of a sphere of so many voxels, at the centres of 4x2x2 voxels around a point of its surface.
+/// Returns normals of a sphere (its radius in voxels), at the centres of 4x2x2 voxels around a
+/// point of its surface.
 Normals sphere_normals(std::mt19937& random, float radius) {
   const Vec3f center = random_direction(random) * radius;
   Normals normals;
@@ -69,7 +70,7 @@ Angles sphere_angles(float radius) {
   return angles;
 }
 
-/// As many directions as given, at random among the values.
+/// Returns the errors for blocks with these directions, randomly distributed over the values.
 Angles mixed_angles(const std::vector<Vec3f>& directions, std::mt19937& random) {
   Normals normals;
   for (Vec3f& normal : normals) normal = directions[random() % directions.size()];
@@ -103,7 +104,7 @@ TEST(EncodeNormalBlock, AxisAlignedNormalsAreExact) {
 }
 
 TEST(EncodeNormalBlock, SmoothNormalsAreExactToMuchLessThanADegree) {
-  // Means and maxima measured, with a margin of a fifth.
+  // The limits are measured means and maxima, with a margin of a fifth.
   const Angles far = sphere_angles(1000), near = sphere_angles(100), close = sphere_angles(20);
   EXPECT_LT(far.mean(), 0.009);
   EXPECT_LT(near.mean(), 0.09);
@@ -112,8 +113,8 @@ TEST(EncodeNormalBlock, SmoothNormalsAreExactToMuchLessThanADegree) {
   EXPECT_LT(close.max, 2.0);
 }
 
-TEST(EncodeNormalBlock, ValuesOfABlockAreEncodedExactly) {
-  // All sixteen points of a grid whose axes make a right angle and are of a few degrees.
+TEST(EncodeNormalBlock, PointsOfAGridAreEncodedWell) {
+  // All sixteen points of a grid with perpendicular axes of a few degrees.
   std::mt19937 random(3);
   Angles angles;
   double step = 0;
@@ -145,7 +146,8 @@ TEST(EncodeNormalBlock, NormalsAlongALineGetSixteenSteps) {
     }
     angles.add(normals, 0xFFFF, encode_normal_block(normals, 0xFFFF));
   }
-  // Sixteen steps over half a radian: a quarter of a step is 0.45 degrees. Four would be 2.4.
+  // Sixteen steps over half a radian: a quarter of a step is 0.45 degrees. With four steps it would
+  // be 2.4.
   EXPECT_LT(angles.mean(), 0.6);
 }
 
@@ -167,7 +169,7 @@ TEST(EncodeNormalBlock, EntirelyDifferentDirectionsAreEncodedWell) {
     two += mixed_angles({a, b}, random).mean() / 200;
     three += mixed_angles({a, b, c}, random).mean() / 200;
   }
-  // Axes are of four bits: a half step of the greatest is a fifteenth, about four degrees.
+  // Axes have four bits: half a step is at most a fifteenth of the axis, about four degrees.
   EXPECT_LT(opposite, 0.5);
   EXPECT_LT(two, 1.0);
   EXPECT_LT(three, 3.0);
@@ -186,8 +188,8 @@ TEST(EncodeNormalBlock, UnusedValuesDoNotMatter) {
 }
 
 TEST(EncodeNormalBlock, EarlierBlocksDoNotMatter) {
-  // Blocks of one normal each; a thread keeps what it found for some of them. The first are equal
-  // as numbers, not to the bit.
+  // Blocks of one normal each. A thread caches the results of some of them. The first normals are
+  // equal as numbers, but not to the bit.
   std::vector<Vec3f> directions = {{0, 0, 1},         {-0.0f, 0, 1},   {0, -0.0f, 1},
                                    {-0.0f, -0.0f, 1}, {0.6f, 0, 0.8f}, {0.6f, -0.0f, 0.8f}};
   std::mt19937 random(11);
@@ -244,7 +246,7 @@ TEST(EncodeNormalBlock, NormalsWithMoreWeightAreCloser) {
 }
 
 TEST(EncodeNormalBlock, TheBitsAreTheSameOnEveryMachine) {
-  // FNV-1a over blocks of all kinds.
+  // Computes FNV-1a over blocks of all kinds.
   std::mt19937 random(11);
   std::uint64_t hash = 0xCBF29CE484222325ull;
   for (int round = 0; round < 1000; ++round) {

@@ -1,5 +1,6 @@
-// Colours over the levels: a coarse voxel looks like the mean of the finer ones in it, and like the
-// leaf of an octree that ends there; detail finer than voxels averages out.
+// Tests colours over the levels. The colour of a coarse voxel is the mean of the finer voxels in
+// it, and the colour of the leaf of an octree that ends there. Detail finer than voxels averages
+// out.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr int kTexels = 512;
 
-/// Linear light and weight (voxels of the finest level) of each voxel of a level.
+/// Linear light of a voxel, and its weight (voxels of the finest level).
 struct WeightedColor {
   Vec3f color{};
   float weight = 0;
@@ -28,7 +29,7 @@ using Level = std::map<std::tuple<int, int, int>, WeightedColor>;
 
 class EsvoLevels : public testing::Test {
  protected:
-  /// The plane z = 0.3 of the unit cube, all noise, grey: compression holds that well.
+  /// Makes the plane z = 0.3 of the unit cube with grey noise, which compression represents well.
   EsvoLevels() {
     mesh_.vertices = {{0, 0, 0.3f}, {1, 0, 0.3f}, {1, 1, 0.3f}, {0, 1, 0.3f}};
     mesh_.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -72,7 +73,8 @@ class EsvoLevels : public testing::Test {
     return levels;
   }
 
-  /// Root mean square of the differences between the channels of two levels of the same voxels.
+  /// Returns the root mean square of the differences between the channels of two levels with equal
+  /// voxels.
   static double difference(const Level& a, const Level& b) {
     EXPECT_EQ(a.size(), b.size());
     double sum = 0;
@@ -115,7 +117,8 @@ class EsvoLevels : public testing::Test {
 TEST_F(EsvoLevels, AreTheMeansOfTheFinerOnes) {
   const Esvo esvo = build(7);
   const std::vector<Level> levels = levels_of(esvo.view());
-  // What is stored is off by the compression: less at levels whose voxels are more alike.
+  // Stored colours have the error of the compression. It is smaller at levels whose voxels are more
+  // similar.
   for (std::size_t level = 2; level < 7; ++level)
     EXPECT_LT(difference(levels[level], average(levels[level + 1])), 0.02) << level;
 }

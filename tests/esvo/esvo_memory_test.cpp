@@ -13,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-/// A bumpy sheet of 2 * n² triangles in a grid of 256³ voxels.
+/// Returns a bumpy sheet of 2 * n² triangles in a grid of 256³ voxels.
 Mesh sheet(int n) {
   return test::grid_mesh(n, [=](int i, int j) {
     const float x = static_cast<float>(i) / static_cast<float>(n),
@@ -24,7 +24,7 @@ Mesh sheet(int n) {
 
 const Grid kGrid{8, {0, 0, 0}, 1.0, kSubvoxels};
 
-/// Builds on four threads; nothing if the memory does not suffice. The blocks are not counted.
+/// Builds on four threads. Returns nothing if the memory is too small. Does not count the blocks.
 std::optional<std::vector<std::uint64_t>> build_within(const Mesh& mesh, MemoryBudget* memory) {
   EsvoOptions options;
   options.memory = memory;

@@ -86,7 +86,7 @@ TEST(PackBlocks, EveryBlockEntryHasItsPlaceAndItsParent) {
     const ChildDescriptor parent = view.descriptor(block.parent);
     EXPECT_TRUE(parent.is_far());
     EXPECT_EQ(view.first_child(block.parent, parent), block.begin + info.first_descriptor);
-    // The way down to its cell leads to the parent.
+    // Walking down to the block's cell leads to its parent descriptor.
     std::uint64_t at = view.root;
     for (int level = 0; level < block.level; ++level) {
       const int shift = block.level - 1 - level;
@@ -136,7 +136,7 @@ TEST(PackBlocks, ABlockPackedEarlierIsReachedByAFarPointer) {
 }
 
 TEST(PackBlocks, EveryVoxelHasItsOwnValueInTheAttachments) {
-  // One colour for each block of values, so that nothing is lost in the coding.
+  // One colour for each block of values, so that the coding is lossless.
   EsvoTree tree = random_tree({.levels = 5}, 11);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const EsvoNode& n = tree.nodes[i];

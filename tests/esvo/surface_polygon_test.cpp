@@ -1,4 +1,4 @@
-// Polygons and the octants of their cell.
+// Tests polygons and the octants of their cell.
 #include "voxdag/esvo/shape/surface_polygon.hpp"
 
 #include <gtest/gtest.h>
@@ -50,13 +50,13 @@ TEST(SurfacePolygon, TheOctantsShareItsArea) {
     for (int child = 0; child < 8; ++child) {
       SurfacePolygon part;
       part.become_octant(whole, child, 0b111);
-      // Twice as large along each axis.
+      // Octants are enlarged twice along each axis.
       const Vec3d area = part.area() * 0.25;
       sum = sum + area;
       if (!octants || std::sqrt(dot(area, area)) < 1e-12) continue;
       EXPECT_TRUE(static_cast<std::uint32_t>(child) == octants->first ||
                   static_cast<std::uint32_t>(child) == octants->last);
-      // To cut where it is not cut changes nothing.
+      // A cut that misses the polygon changes nothing.
       SurfacePolygon same;
       same.become_octant(whole, child, octants->first ^ octants->last);
       ASSERT_EQ(same.count, part.count);

@@ -11,8 +11,8 @@ namespace voxdag {
 namespace {
 
 TEST(TopCells, EveryCellIsATaskOrHasChildren) {
-  // What encloses pieces of a slanted surface is looser for large cells than for small ones: there
-  // are cells that it meets, and none of their children.
+  // The volumes that enclose pieces of a slanted surface are larger for large cells than for small
+  // ones. So some cells meet such a volume, but none of their children does.
   Crate crate;
   for (Vec3f& v : crate.mesh.vertices)
     v = {0.6f * v.x - 0.8f * v.y, 0.48f * v.x + 0.36f * v.y - 0.8f * v.z,

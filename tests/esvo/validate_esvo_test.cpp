@@ -15,7 +15,7 @@ namespace {
 using test::packed_esvo;
 using test::PackedEsvo;
 
-/// Reads all that a walk may read; returns something that depends on it.
+/// Reads everything that a walk may read. Returns a value that depends on all of it.
 std::uint64_t read_everything(const EsvoView& view) {
   std::uint64_t sum = 0;
   std::vector<std::uint64_t> open{view.root};
@@ -44,7 +44,7 @@ TEST(ValidateEsvo, ValidOctreesPassWithTheirCounts) {
 }
 
 TEST(ValidateEsvo, AnAcceptedOctreeIsSafeToReadWithAnyBytes) {
-  // Under the address sanitizer this finds every read out of bounds.
+  // Under AddressSanitizer this finds every read out of bounds.
   std::mt19937_64 random(1);
   std::vector<PackedEsvo> sound;
   for (std::uint32_t seed = 0; seed < 5; ++seed) sound.push_back(packed_esvo(4, 60, seed));
@@ -52,7 +52,7 @@ TEST(ValidateEsvo, AnAcceptedOctreeIsSafeToReadWithAnyBytes) {
   for (std::size_t run = 0; run < 3000; ++run) {
     PackedEsvo esvo = sound[run % 5];
     for (std::size_t change = 0; change < 1 + run % 3; ++change) {
-      // Half of them among the descriptors, where they matter most.
+      // Half of the changes are in descriptors, where they matter most.
       std::size_t slot = random() % esvo.packed.slots.size();
       if (random() % 2 == 0)
         slot = esvo.packed.blocks[random() % esvo.packed.blocks.size()].begin + random() % 100;

@@ -1,4 +1,4 @@
-// ESVOs in the formats of other programs: which voxels their leaves stand for.
+// Tests exports of ESVOs: the voxels that leaves stand for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr int kLevels = 7;
 
 Grid unit_grid() { return {kLevels, {0, 0, 0}, 1.0, kSubvoxels}; }
 
-/// Hills over the grid's floor.
+/// Returns hills over the grid's floor.
 Mesh hills() {
   return test::grid_mesh(24, [](int i, int j) {
     const float x = 126.0f * static_cast<float>(i) / 24, z = 126.0f * static_cast<float>(j) / 24;

@@ -117,7 +117,7 @@ TEST(ExportRaw, TheWholeGridHasXFastest) {
   EXPECT_EQ(placement_of(dir / "v.raw")["array"]["axes_slowest_to_fastest"], "zyx");
 }
 
-/// Arrays of more than one strip, cut between layers and within one.
+/// Arrays of more than one strip. Strips end between layers and within a layer.
 TEST(ExportRaw, LargeArraysAreWrittenInStrips) {
   const TempDir dir;
   for (const auto& [levels, size] : {std::pair{11, Vec3i{2048, 2048, 11}}, {13, {8192, 6000, 1}}}) {
@@ -166,7 +166,7 @@ TEST(Export, AWindowMustLieInTheGrid) {
             "v.npy: window: is empty: each end must be greater than its start");
 }
 
-/// A binary PLY as the exporters make it.
+/// A binary PLY file from an exporter.
 struct Ply {
   explicit Ply(const std::string& bytes) {
     const std::size_t end = bytes.find("end_header\n") + 11;
@@ -234,7 +234,8 @@ TEST(ExportPly, FarFromTheOriginCoordinatesAreDoubles) {
   EXPECT_EQ(std::fmod(ply.vertices[0].x, 0.25), 0.125);
 }
 
-/// Faces by voxel and outward direction, from the PLY: centre and normal of each quad.
+/// Returns the faces by voxel and outward direction, computed from the centre and normal of each
+/// quad of the PLY.
 std::map<std::pair<Key, Key>, int> faces_of(const Ply& ply, const Grid& grid) {
   std::map<std::pair<Key, Key>, int> faces;
   for (const auto& face : ply.faces) {

@@ -12,7 +12,7 @@
 namespace voxdag {
 namespace {
 
-/// A version 1.0 file as NumPy writes it.
+/// Returns the bytes of a version 1.0 file as NumPy writes it.
 std::string npy_bytes(std::string dictionary, const std::string& data) {
   dictionary.resize((dictionary.size() + 10 + 64) / 64 * 64 - 11, ' ');
   dictionary += '\n';
@@ -26,7 +26,7 @@ std::string rays_header(const std::string& shape) {
   return "{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + ", }";
 }
 
-/// What opening `bytes` as rays and reading all of it says, without the file's name.
+/// Opens `bytes` as rays and reads them all. Returns the error without the file's name.
 std::string error_of(const std::string& bytes) {
   const TempDir dir;
   write_text(dir / "a.npy", bytes);

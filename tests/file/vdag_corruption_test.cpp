@@ -1,4 +1,4 @@
-// A reader that no file can hurt: every truncation, every bit flip, and faults behind right
+// Tests the reader with damaged files: every truncation, every bit flip, and faults with correct
 // checksums.
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ std::string error_of(const std::string& bytes) {
 
 std::string small_file() { return vdag_file_bytes(brute_svdag(4, {{0, 0, 0}, {15, 15, 15}})); }
 
-/// The bytes with one value changed and the checksums made right again.
+/// Returns the bytes with one value changed and the checksums corrected.
 template <class T>
 std::string repaired_with(std::size_t offset, T value) {
   std::string bytes = small_file();
@@ -58,7 +58,8 @@ TEST(VdagCorruption, EveryBitFlipIsRefused) {
   }
 }
 
-/// Behind right checksums a flip may make another sound file; what counts is that nothing breaks.
+/// With correct checksums, a flip may make another valid file. The test only checks that nothing
+/// crashes.
 TEST(VdagCorruption, EveryBitFlipWithRightChecksumsIsSurvived) {
   const std::string bytes = small_file();
   int refused = 0;

@@ -19,7 +19,7 @@ std::string error_of(const std::string& json) {
   return voxdag::error_of([&] { parse_vdag_metadata(json); });
 }
 
-/// The example's JSON with one piece of text changed.
+/// Returns the example's JSON with one piece of text changed.
 std::string with(const std::string& from, const std::string& to) {
   std::string json = vdag_metadata_json(example());
   const std::size_t at = json.find(from);
@@ -47,7 +47,7 @@ TEST(VdagMetadata, DoublesReadBackBitForBit) {
   };
   for (int i = 0; i < 20000; ++i) {
     double value = std::bit_cast<double>(rng());
-    // Random exponents reach where the grid's far corner would overflow; those are refused.
+    // Skips values for which the grid's far corner would overflow, because they are refused.
     if (!std::isfinite(value) || std::abs(value) > 1e300) continue;
     metadata.grid.origin = {value, -value, -0.0};
     const Grid grid = parse_vdag_metadata(vdag_metadata_json(metadata)).grid;

@@ -7,7 +7,8 @@
 namespace voxdag {
 namespace {
 
-/// "container checksums! metadata -structure ...": failed with "!", skipped with "-".
+/// Returns a summary: "container checksums! metadata -structure ...". "!" marks failed checks, "-"
+/// skipped ones.
 std::string summary(const VerifyReport& report) {
   std::string text;
   for (const VerifyCheck& check : report.checks) {

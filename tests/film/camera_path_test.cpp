@@ -14,7 +14,7 @@ CameraKey key(double time, Vec3d eye, Vec3d target = {0, 0, 0}, double fov = 50)
   return {time, {eye, target, {0, 1, 0}, fov}};
 }
 
-/// Keys at uneven times and distances, with a rest of the target.
+/// Returns keys at uneven times and distances; the target rests between two of them.
 std::vector<CameraKey> walk() {
   return {key(0, {0, 0, 9}), key(1, {1, 0, 8}, {0, 0, 0}, 50), key(1.5, {6, 1, 3}, {0, 0, 0}, 70),
           key(4, {6, 1, 2.9}, {2, 0, 0}, 70), key(9, {-5, 2, -7}, {2, 1, 0}, 40)};

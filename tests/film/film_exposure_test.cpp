@@ -16,7 +16,7 @@ std::vector<double> frames(int count, double per_second) {
   return times;
 }
 
-/// The same mean over all frames.
+/// Returns the weighted mean, computed over all frames.
 std::vector<float> over_all(const std::vector<double>& times, const std::vector<double>& logs) {
   std::vector<float> smooth;
   for (const double time : times) {

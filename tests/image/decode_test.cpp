@@ -19,7 +19,7 @@ std::vector<std::uint16_t> ramp(std::size_t count, unsigned step) {
   return samples;
 }
 
-/// All pixels as four values of 16 bits.
+/// Returns all pixels as four values of 16 bits.
 std::vector<std::uint16_t> pixels_of(const DecodedImage& image) {
   std::vector<std::uint16_t> pixels;
   for (int y = 0; y < image.height(); ++y)

@@ -19,7 +19,8 @@ ImageF pattern() {
   return image;
 }
 
-const std::vector<std::string> kNames = {"N.X", "N.Y", "N.Z", "Z"};  // sorted, as they come back
+const std::vector<std::string> kNames = {"N.X", "N.Y", "N.Z",
+                                         "Z"};  // sorted, as OpenEXR returns them
 
 TEST(Exr, ChannelsSurviveTheRoundTripBitForBit) {
   const TempDir dir;

@@ -1,4 +1,4 @@
-/// Small files that would cost much memory or time.
+/// Tests small files that would cost much memory or time.
 #include <gtest/gtest.h>
 #include <png.h>
 

@@ -19,7 +19,7 @@ Grey random_texture(int width, int height, TextureWrap wrap = TextureWrap::kRepe
   return Grey(width, height, std::move(texels), wrap, wrap);
 }
 
-/// A parallelogram about a centre, spanned by two sides.
+/// A parallelogram around a centre, spanned by two sides.
 struct Parallelogram {
   Vec2f center, a, b;
 
@@ -75,8 +75,8 @@ TEST(MipPyramid, SmallRegionsHaveTheBilinearValue) {
 }
 
 TEST(MipPyramid, MeansOfRegionsAreNearThoseOfManySamples) {
-  // Of white noise the means of regions of n texels differ by 0.29 / sqrt(n) from each other: there
-  // is nothing to go by but the region's very texels, and the filter has to err by less than that.
+  // The means of regions of n texels of white noise differ by 0.29 / sqrt(n). Only the texels of
+  // the region itself determine its mean, so the filter's error must be smaller than that.
   const Grey noise = random_texture(256, 256);
   const Grey stones = make_stone_heights(3, 256);
   for (const float size : {2.0f, 5.0f, 13.0f, 30.0f})
@@ -123,7 +123,7 @@ TEST(MipPyramid, BoundsHoldEveryValueOfTheBox) {
 }
 
 TEST(MipPyramid, BoundsOfSmallBoxesAreTight) {
-  // Inside one texel's neighbourhood nothing but its four values counts.
+  // Between four neighbouring texels, only their four values count.
   Grey::Texels texels(64 * 64, {100});
   texels[40 * 64 + 40] = {60000};
   const Grey texture(64, 64, std::move(texels));

@@ -44,7 +44,7 @@ TEST(Png, TruncationAtEveryByteIsRefused) {
 
 TEST(Png, AbsurdSizeInTheHeaderIsRefused) {
   const TempDir dir;
-  // IHDR of 999,999 x 999,999 with its right checksum, an empty IDAT and IEND.
+  // An IHDR of 999,999 x 999,999 with a correct checksum, an empty IDAT, and IEND.
   const unsigned char bytes[] = {
       0x89, 'P',  'N',  'G',  '\r', '\n', 0x1A, '\n', 0,    0,    0,    13,   'I',  'H',  'D',
       'R',  0x00, 0x0F, 0x42, 0x3F, 0x00, 0x0F, 0x42, 0x3F, 8,    2,    0,    0,    0,    0x2E,

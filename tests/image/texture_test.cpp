@@ -29,7 +29,7 @@ TEST(Texture, MaskedTexelsDoNotBleed) {
   const Texture texture = make_color_texture(image, 0.5f);
   const Texture::Value mean = texture.sample(1, {0.5f, 0.5f});
   EXPECT_NEAR(mean[3], 32768, 1);    // half is visible
-  EXPECT_NEAR(mean[0], mean[3], 1);  // and that is red
+  EXPECT_NEAR(mean[0], mean[3], 1);  // and the visible part is red
   EXPECT_EQ(mean[1], 0);
   EXPECT_EQ(make_color_texture(image, 0).sample(1, {0, 0})[3], 65535);
 }
@@ -59,7 +59,8 @@ TEST(Texture, NormalScaleFlattensOrSteepens) {
 }
 
 TEST(Texture, BumpsLeanAwayFromWhatIsHigh) {
-  // A ramp up to the right: the normal leans to the left; up to the lower edge: to the upper.
+  // If heights rise to the right, the normal leans to the left. If they rise to the lower edge, it
+  // leans to the upper edge.
   DecodedImage right(8, 8, 4, 2, nullptr), down(8, 8, 4, 2, nullptr);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {

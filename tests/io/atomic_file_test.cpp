@@ -37,7 +37,7 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(dir.count(), 1);
 }
 
-/// Whether files without a name can be made there.
+/// Returns whether the file system of `dir` supports files without a name.
 bool has_nameless_files(const TempDir& dir) {
   const int descriptor = open_nameless_file(dir.path());
   if (descriptor >= 0) close(descriptor);
@@ -52,7 +52,7 @@ TEST(AtomicFile, HasNoNameAtAllUntilCommitted) {
   EXPECT_EQ(dir.count(), 0);
 }
 
-/// From here on this process may not give names to files.
+/// Forbids this process to give names to files from now on.
 void forbid_linkat() {
   sock_filter filter[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -107,8 +107,8 @@ TEST(AtomicFile, UnfinishedFilesAreRemovedBeforeASignalEndsTheProcess) {
   EXPECT_NE(error_of([&] { partial.commit(); }).find("partial"), std::string::npos);
 }
 
-/// The file that a process leaves that dies in the system call `number` of writing "out". With
-/// `only_named`, the process makes no nameless files.
+/// Returns the file that a process leaves behind if it dies in the system call `number` while it
+/// writes "out". With `only_named`, the process uses no nameless files.
 std::filesystem::path leftover_of_a_process_killed_in(const TempDir& dir, unsigned number,
                                                       bool only_named) {
   const pid_t child = fork();

@@ -57,7 +57,7 @@ TEST(ReadInput, RefusesDevicesOfEndlessBytes) {
             "is neither a regular file nor a pipe");
 }
 
-/// Every way to open an input reports the same faults in the same words.
+/// All functions that open an input report faults with the same text.
 TEST(OpenInput, FaultsHaveTheSameTextHoweverAFileIsOpened) {
   const TempDir dir;
   ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);

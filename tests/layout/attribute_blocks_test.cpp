@@ -87,7 +87,8 @@ TEST(NormalBlock, AxesAndDiagonalsAreExact) {
 }
 
 TEST(NormalBlock, TheGridIsThePapers) {
-  // Base z, axes x/2 and y/2: the corner steps give (±1/2, ±1/2, 1), the inner ones a third of it.
+  // Base z, axes x/2 and y/2. The outer steps give (±1/2, ±1/2, 1), the inner ones a third of that
+  // offset.
   const GridAxis x{4, 0, 0, 13}, y{0, 4, 0, 13};
   for (int u = 0; u < 4; ++u)
     for (int v = 0; v < 4; ++v) {
@@ -100,7 +101,7 @@ TEST(NormalBlock, TheGridIsThePapers) {
 }
 
 TEST(NormalBlock, AZeroPointOfTheGridGivesTheBase) {
-  // Base z, u axis z: its step -1 lies at zero.
+  // Base z, u axis z: the step -1 gives the zero vector.
   const NormalBlock block = NormalBlock::pack({4, 16384, 8192}, {0, 0, 2, 15}, {}, 0, 0);
   EXPECT_EQ(block.normal(0), (Vec3f{0, 0, 1}));
 }

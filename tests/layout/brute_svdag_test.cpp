@@ -1,4 +1,5 @@
-// The reference builder itself: small cases worked out by hand, and counts against the octree.
+// Tests the reference builder itself: small cases worked out by hand, and counts compared with the
+// octree.
 #include "support/brute_svdag.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-/// Voxels by walking the view from the root, Morton order.
+/// Lists the voxels in Morton order by walking the view from the root.
 void walk(const SvdagView& dag, int level, std::uint64_t at, Vec3i cell,
           std::vector<Vec3i>& voxels) {
   const auto child_cell = [](Vec3i c, int i) { return c * 2 + child_offset(i); };
@@ -58,7 +59,8 @@ TEST(BruteSvdag, EqualBlocksAreMerged) {
 }
 
 TEST(BruteSvdag, OrderIsDepthFirstFirstVisit) {
-  // Two level-1 nodes; the first one's only child is met before the second one's.
+  // Two level-1 nodes. The walk meets the only child of the first one before that of the second
+  // one.
   const Svdag dag = brute_svdag(4, {{0, 0, 0}, {15, 15, 15}});
   EXPECT_EQ(dag.nodes,
             (std::vector<std::uint32_t>{0b10000001, 3, 5, 0b00000001, 0, 0b10000000, 1}));

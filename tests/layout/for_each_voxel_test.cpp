@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-/// The voxels inside the window, once each, in Morton order: by sorting their codes.
+/// Returns the voxels inside the window, once each, in Morton order. Sorts their codes.
 std::vector<Vec3i> sorted_inside(const std::vector<Vec3i>& voxels, const Box3i& window) {
   std::set<std::uint64_t> codes;
   for (const Vec3i v : voxels)

@@ -24,7 +24,7 @@ std::string fault(Check check, const Svdag& dag) {
   return "";
 }
 
-/// Root with children 0 and 7, both nodes of one child; two leaf blocks.
+/// Returns a DAG whose root has children 0 and 7. Both have one child, one of two leaf blocks.
 Svdag two_corners() { return brute_svdag(4, {{0, 0, 0}, {15, 15, 15}}); }
 
 TEST(ValidateSvdag, AcceptsWhatTheReferenceBuilds) {
@@ -160,8 +160,8 @@ TEST(CheckMinimal, RefusesEqualLeafBlocks) {
   EXPECT_EQ(fault(check_minimal, dag), "leaf block 1: leaf block equals an earlier leaf block");
 }
 
-/// Any one bit of a canonical minimal DAG changed: either a check objects, or the words
-/// are those that the reference makes of the voxels that they now stand for.
+/// Changes each bit of a canonical minimal DAG. Either a check fails, or the words equal the
+/// reference's DAG of the voxels that they now represent.
 TEST(ValidateSvdag, EveryBitFlipIsFoundOrMakesAnotherCanonicalDag) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     const Svdag original = brute_svdag(5, random_voxels(5, 12, seed));

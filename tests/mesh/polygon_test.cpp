@@ -33,7 +33,7 @@ std::vector<Triangle> cut(const Polygon& polygon) {
   return triangles;
 }
 
-/// Twice the area, with its sign, of a polygon in a plane of constant z.
+/// Returns twice the signed area of a polygon in a plane of constant z.
 double flat_area(const Polygon& polygon, const std::vector<std::uint32_t>& corners) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -43,8 +43,8 @@ double flat_area(const Polygon& polygon, const std::vector<std::uint32_t>& corne
   return sum;
 }
 
-/// Expects triangles that tile a flat polygon, which goes around to the left. Their boundary is
-/// the polygon and none turns right, so that they cover each of its points once and no others.
+/// Expects triangles that tile a flat, counter-clockwise polygon. Their boundary is the polygon and
+/// none is clockwise, so they cover each of its points once and no other points.
 void expect_tiles(const Polygon& polygon, const std::vector<Triangle>& triangles) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   double sum = 0, whole = 0;
@@ -65,7 +65,7 @@ void expect_tiles(const Polygon& polygon, const std::vector<Triangle>& triangles
   EXPECT_NEAR(sum, whole, 1e-9 * std::abs(whole));
 }
 
-/// The polygon in every order of its corners that goes around to the left tiles.
+/// Expects that the polygon is tiled from every first corner, in counter-clockwise order.
 void expect_cut_well(const Polygon& polygon) {
   Polygon turned = polygon;
   for (std::size_t first = 0; first < std::min<std::size_t>(polygon.size(), 40); ++first) {
@@ -106,7 +106,7 @@ TEST(Polygon, ConcaveQuadsAreCutWhereTheyBend) {
     });
   };
   EXPECT_FALSE(has_long_diagonal(cut(kDart)));
-  EXPECT_EQ(cut(kDart), fan_of(kDart));  // Its first corner sees all others.
+  EXPECT_EQ(cut(kDart), fan_of(kDart));  // Every other corner is visible from its first corner.
   const Polygon turned{kDart[1], kDart[2], kDart[3], kDart[0]};
   EXPECT_NE(cut(turned), fan_of(turned));
 }
@@ -196,7 +196,7 @@ TEST(Polygon, CrossingAndDegenerateOnesUseEveryCornerAndEnd) {
   }
 }
 
-/// Ear clipping as in polygon.cpp, but every test looks at every corner.
+/// Ear clipping as in polygon.cpp, but every test tries every corner.
 class BruteForceClipper {
  public:
   explicit BruteForceClipper(const Polygon& points) : points_(points) {
@@ -286,7 +286,7 @@ TEST(Polygon, CutsTheEarsThatABruteForceClipperCuts) {
   EXPECT_GT(compared, 1000);
 }
 
-/// Before, every test of a corner looked at every other corner of these polygons: over a minute.
+/// If every test of a corner tried every other corner, these polygons would take over a minute.
 TEST(Polygon, RepeatedPositionsCostNothing) {
   std::mt19937 random(7);
   Polygon polygon(200000);
@@ -295,7 +295,7 @@ TEST(Polygon, RepeatedPositionsCostNothing) {
   std::size_t polls = 0;
   std::vector<Triangle> triangles = fan_of(polygon);
   cut_polygon(triangles, polygon, [&] { ++polls; });
-  EXPECT_LT(polls, 10u);  // one for each million of nodes
+  EXPECT_LT(polls, 10u);  // one poll per million nodes
   EXPECT_NE(triangles, fan_of(polygon));
 }
 

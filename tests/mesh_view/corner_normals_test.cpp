@@ -20,7 +20,8 @@ TEST(PackedNormal, KeepsEveryDirection) {
   std::normal_distribution<float> normal;
   for (int i = 0; i < 10000; ++i) {
     const Vec3f v{normal(random), normal(random), normal(random)};
-    // Half a step of 2/65534 along both sides of the square, which is up to sqrt(3) as steep.
+    // The error is half a step of 2/65534 along both sides of the square, times a slope of up to
+    // sqrt(3).
     EXPECT_LT(distance(PackedNormal(v).unpack(), normalized(v)), 8e-5f);
   }
   for (int axis = 0; axis < 3; ++axis)
@@ -43,7 +44,7 @@ TEST(CornerNormals, AreTheFacesOfACube) {
 TEST(CornerNormals, AreTheDiagonalsOfACubeWithoutCreases) {
   const Mesh mesh = cube_mesh();
   const auto normals = corner_normals(mesh, 90);
-  // Weights by angle do not see that faces are cut into triangles.
+  // Weights by angle do not depend on the triangulation of the faces.
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t corner = 0; corner < 3; ++corner)
       EXPECT_LT(distance(normals[t][corner].unpack(),

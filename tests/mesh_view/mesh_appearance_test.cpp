@@ -1,4 +1,4 @@
-// View samples of meshes whose files say what they look like.
+// Tests view samples of meshes with appearances from their files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ class MeshAppearanceTest : public testing::Test {
     if (!VOXDAG_HAS_EMBREE) GTEST_SKIP() << "built without Embree";
   }
 
-  /// What a camera above the middle of the unit square sees, rows from y = 1 down.
+  /// Returns the samples of a camera above the middle of the unit square; rows start at y = 1.
   static std::vector<ViewSample> look(const Square& square, double height = 0.5,
                                       double degrees = 90) {
     const MeshViewSource source(square.mesh, square.appearance, {});
@@ -32,7 +32,7 @@ class MeshAppearanceTest : public testing::Test {
 
 TEST_F(MeshAppearanceTest, ShowsItsTextureAndWhatIsBehindItsHoles) {
   Square square;
-  // Red on the left, nothing on the right; 0.5 of blue behind all of it.
+  // Red on the left, transparent on the right; a square of half blue is behind it.
   std::vector<std::uint16_t> texels;
   for (int i = 0; i < 16; ++i)
     texels.insert(texels.end(), {255, 0, 0, static_cast<std::uint16_t>(i % 4 < 2 ? 255 : 0)});
@@ -69,7 +69,7 @@ TEST_F(MeshAppearanceTest, FiltersTexturesOverThePixel) {
     least = std::min(least, sample.albedo.y);
     most = std::max(most, sample.albedo.y);
   }
-  // Of 256 texels in linear light the mean is 0.33, and deviates by 0.29 / 16.
+  // The mean of 256 texels in linear light is 0.33, with a deviation of 0.29 / 16.
   EXPECT_GT(least, 0.2f);
   EXPECT_LT(most, 0.46f);
   EXPECT_GT(most - least, 0.02f);

@@ -1,5 +1,5 @@
-/// Pictures of triangles with the voxels' light: a mesh does not shadow itself where it should not,
-/// and lets no light through where it should not, at any resolution.
+/// Tests pictures of triangles with the voxels' light. At every resolution, a mesh must not shadow
+/// itself wrongly and must not let light through.
 #include <gtest/gtest.h>
 
 #include "meshes.hpp"
@@ -46,8 +46,8 @@ TEST_P(MeshPrimary, AConvexBodyDoesNotShadowItself) {
     for (std::size_t i = 0; i < image.depth.size(); ++i) {
       if (std::isinf(image.depth[i])) continue;
       ++hits;
-      // Facets of the sphere are flat: within a voxel of their edges, neighbours stand 1 or 2
-      // degrees over the horizon for a few of the 64 rays.
+      // Facets of the sphere are flat. Within a voxel of their edges, a few of the 64 rays meet a
+      // neighbour that rises 1 or 2 degrees above the horizon.
       EXPECT_GT(image.occlusion[i], 0.93f) << i;
       const Vec3f direction = normalized(static_cast<Vec3f>(sun));
       if (!(dot(image.normal[i], direction) > 0.1f)) continue;
@@ -63,8 +63,8 @@ TEST_P(MeshPrimary, NoSunShinesIntoAClosedRoom) {
       const RenderedImage image = render(mesh, from({0.1, 0.2, -0.15}, target, {0.3, 1, 0.4}));
       for (std::size_t i = 0; i < image.depth.size(); ++i) {
         ASSERT_FALSE(std::isinf(image.depth[i])) << i;
-        // Where the sun stands below the surface, or the facet, the pass says 1: there is no light
-        // to lose. Facets turn from the smooth normal by less than 4 degrees.
+        // Where the sun is below the surface or the facet, the pass is 1, because no light is lost.
+        // Facets differ from the smooth normal by less than 4 degrees.
         if (!(dot(image.normal[i], Vec3f{0.27f, 0.9f, 0.36f}) > 0.1f)) continue;
         EXPECT_EQ(image.shadow[i], 0) << i;
       }

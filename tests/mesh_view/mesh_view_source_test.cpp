@@ -12,7 +12,7 @@
 namespace voxdag {
 namespace {
 
-constexpr int kWidth = 53, kHeight = 37;  // no multiples of a packet
+constexpr int kWidth = 53, kHeight = 37;  // not multiples of a packet's size
 
 Camera camera_at(Vec3d eye, Vec3d target, double degrees = 60) {
   return make_camera({eye, target, {0.1, 1, 0}, degrees}, kWidth, kHeight);
@@ -28,11 +28,11 @@ std::vector<ViewSample> samples_of(const MeshViewSource& source, const Camera& c
 struct BruteHit {
   double t = HUGE_VAL;
   std::size_t triangle = 0;
-  double margin = 0;  ///< How far inside of the triangle, as its least barycentric coordinate.
+  double margin = 0;  ///< The least barycentric coordinate of the hit.
 };
 
-/// The nearest triangle, in double: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
-/// Intersection", 1997. Also the second nearest distance, to tell ties.
+/// Finds the nearest triangle, in double: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
+/// Intersection", 1997. Also finds the second nearest distance, to recognise ties.
 BruteHit brute_force(const Mesh& mesh, Vec3d origin, Vec3d direction, double& second) {
   BruteHit best;
   second = HUGE_VAL;
@@ -58,8 +58,8 @@ BruteHit brute_force(const Mesh& mesh, Vec3d origin, Vec3d direction, double& se
   return best;
 }
 
-/// Compares all pixels of a picture with brute force; pixels whose answer floats may not know
-/// (edges, ties) are counted, and must be few.
+/// Compares all pixels of a picture with brute force. Counts the pixels that floats may decide
+/// differently (edges, ties); there must be few of them.
 void expect_brute_force(const Mesh& mesh, const Camera& camera, double scale) {
   const MeshViewSource source(mesh);
   const auto samples = samples_of(source, camera, 0.25, 0.75);
@@ -82,7 +82,7 @@ void expect_brute_force(const Mesh& mesh, const Camera& camera, double scale) {
         continue;
       }
       ++hits;
-      // Vertices were moved by a rounded float: 2^-25 of the mesh's 2 units.
+      // Rounding to float moved the vertices by up to 2^-25 of the mesh's 2 units.
       const Vec3d off = sample.point - (camera.eye + direction * brute.t);
       const double steepness = std::fabs(
           static_cast<double>(dot(sample.face, static_cast<Vec3f>(normalized(direction)))));
@@ -92,7 +92,7 @@ void expect_brute_force(const Mesh& mesh, const Camera& camera, double scale) {
       EXPECT_LT(dot(static_cast<Vec3d>(sample.normal), direction), 0);
       EXPECT_NEAR(dot(sample.face, sample.face), 1, 1e-5);
       EXPECT_NEAR(dot(sample.normal, sample.normal), 1, 1e-5);
-      // Nothing is smooth among triangles that share no corners.
+      // Triangles without common corners are not smoothed.
       EXPECT_GT(dot(sample.face, sample.normal), 0.999f);
     }
   EXPECT_GT(hits, kWidth * kHeight / 12);
@@ -112,7 +112,8 @@ TEST_F(MeshViewSourceTest, SeesWhatBruteForceSees) {
 }
 
 TEST_F(MeshViewSourceTest, IsAsExactFarFromTheOriginOfTheWorld) {
-  // Floats there are 2^-9 apart: coarse vertices, which are the mesh, but no coarser points.
+  // Floats there are 2^-9 apart. The vertices are coarse, but points must not be coarser than
+  // elsewhere.
   const Vec3d offset{30000, -20000, 25000};
   expect_brute_force(random_mesh(800, 3, offset), camera_at(offset + Vec3d{0.1, 0.4, 2.5}, offset),
                      1);

@@ -8,7 +8,7 @@
 
 namespace voxdag {
 
-/// [-1,1]³, twelve triangles that wind counter-clockwise seen from outside.
+/// Returns the cube [-1,1]³: twelve triangles that wind counter-clockwise seen from outside.
 inline Mesh cube_mesh() {
   Mesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -26,7 +26,7 @@ inline Mesh cube_mesh() {
   return mesh;
 }
 
-/// The unit sphere by latitude and longitude; every other triangle winds the wrong way round.
+/// Returns the unit sphere by latitude and longitude. Every second triangle has the wrong winding.
 inline Mesh disordered_sphere_mesh(int rows) {
   constexpr double kPi = std::numbers::pi;
   const int columns = 2 * rows;
@@ -52,7 +52,7 @@ inline Mesh disordered_sphere_mesh(int rows) {
   return mesh;
 }
 
-/// Triangles of many sizes in the cube [-1,1]³ moved by `offset`.
+/// Returns triangles of many sizes in the cube [-1,1]³, moved by `offset`.
 inline Mesh random_mesh(int triangles, std::uint64_t seed, Vec3d offset = {}) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);

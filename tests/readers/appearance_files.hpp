@@ -1,5 +1,5 @@
 #pragma once
-/// Small files of meshes and what they say of their look, as tests write them.
+/// Writes and reads small files of meshes with appearance.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -16,7 +16,7 @@ class ReadAppearance : public testing::Test {
     std::ofstream(directory_.path() / name, std::ios::binary) << bytes;
     return directory_.path() / name;
   }
-  /// Reads a file that has nothing wrong.
+  /// Writes and reads a file; expects no warnings.
   MeshWithAppearance read(const std::string& name, const std::string& bytes) {
     MeshWithAppearance result = read_mesh_with_appearance(write(name, bytes));
     EXPECT_TRUE(result.warnings.empty()) << result.warnings[0];

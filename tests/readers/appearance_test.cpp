@@ -1,4 +1,4 @@
-/// The appearance that mesh files describe.
+/// Tests the appearance that mesh files describe.
 #include "voxdag/mesh/appearance.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST_F(ReadAppearance, ObjCornersHaveTheirCoordinatesAndNormals) {
                                         "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\nvn 3 0 0\n"
                                         "f 1/1/1 2/2/2 3/3/1\nf -4//-1 -2/-1 -1\n");
   const Appearance& a = result.appearance;
-  // The file's v runs up, ours down.
+  // In the file v points up, in the library down.
   EXPECT_EQ(a.uvs, (std::vector<Vec2f>{{0, 1}, {1, 1}, {1, 0}, {}, {1, 0}, {}}));
   EXPECT_EQ(a.normals, (std::vector<Vec3f>{{0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {}, {}}));
   EXPECT_TRUE(a.colors.empty());
@@ -27,7 +27,7 @@ TEST_F(ReadAppearance, ObjCornersHaveTheirCoordinatesAndNormals) {
 }
 
 TEST_F(ReadAppearance, ObjPolygonsKeepTheirCornersHoweverTheyAreCut) {
-  // An arrow head: its fan would leave it. vt number i is (i / 10, 0).
+  // An arrow head, whose fan would not stay inside it. vt number i is (i / 10, 0).
   std::string text = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv 0.5 1 0\n";
   for (int i = 1; i <= 4; ++i) text += "vt 0." + std::to_string(i) + " 0\n";
   for (const char* face : {"f 1/1 2/2 3/3 4/4\n", "f 2/2 3/3 4/4 1/1\n", "f 3/3 4/4 1/1 2/2\n"}) {
@@ -132,7 +132,8 @@ TEST_F(ReadAppearance, PlyFacesMayHaveColoursAndCoordinates) {
 }
 
 TEST_F(ReadAppearance, PlyPolygonsKeepTheirCoordinatesHoweverTheyAreCut) {
-  // An arrow head, whose fan would leave it, from each of its corners; corner i has (i / 10, 0).
+  // An arrow head, whose fan would not stay inside it, starting at each of its corners. Corner i
+  // has (i / 10, 0).
   for (int first = 0; first < 4; ++first) {
     std::string corners, uvs;
     for (int i = 0; i < 4; ++i) {
@@ -168,7 +169,7 @@ TEST_F(ReadAppearance, PlyAlphaThatWouldHideAllIsIgnored) {
   EXPECT_EQ(shown.appearance.materials[0].alpha_mode, AlphaMode::kBlend);
 }
 
-/// A triangle with all attributes; `extra` goes into the asset, `primitive` into its primitive.
+/// Returns a triangle with all attributes. `extra` is added to the asset, `node` to its node.
 std::string gltf(const std::string& extra, const std::string& node = "") {
   std::string bytes;
   for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f})
@@ -239,14 +240,15 @@ TEST_F(ReadAppearance, GltfTexturesChooseTheirCoordinates) {
   EXPECT_EQ(result.appearance.uvs[0], (Vec2f{0, 1}));
   EXPECT_NEAR(result.appearance.uvs[2].x, 0.5f, 1e-4f);
   EXPECT_EQ(result.appearance.images[0].bytes.size(), 120u);
-  // Scaled to (0.2, 0.6), turned counter-clockwise as the image is seen (v runs down), moved.
+  // Scaled to (0.2, 0.6), rotated counter-clockwise as seen in the image (v points down), moved.
   const Vec2f uv = result.appearance.materials[0].color_map.uv({0.1f, 0.2f});
   EXPECT_NEAR(uv.x, 0.6f + 0.5f, 1e-5f);
   EXPECT_NEAR(uv.y, -0.2f + 0.25f, 1e-5f);
 }
 
 TEST_F(ReadAppearance, GltfNormalsTurnWithTheirNodes) {
-  // Squeezed along x and mirrored along y: normals lean the other way than the surface.
+  // Scaled by a half along x and mirrored along y: normals tilt in the opposite direction to the
+  // surface.
   const auto result = read("a.gltf", gltf(R"("materials":[{}])", R"(,"scale":[0.5,-1,1])"));
   EXPECT_EQ(result.appearance.normals, (std::vector<Vec3f>{{0, 0, 1}, {0, -1, 0}, {1, 0, 0}}));
   EXPECT_EQ(result.mesh.vertices[1], (Vec3f{0.5f, 0, 0}));
@@ -299,7 +301,7 @@ TEST_F(ReadAppearance, TheMeshEqualsTheOneOfReadMesh) {
   }
 }
 
-/// Makes a folder the current one while it lives.
+/// Makes a folder the current folder while the object lives.
 class CurrentFolder {
  public:
   explicit CurrentFolder(const std::filesystem::path& folder) {

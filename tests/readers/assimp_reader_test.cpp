@@ -1,4 +1,4 @@
-/// Which of assimp's importers may read a file.
+/// Tests which of assimp's importers may read a file.
 #include <gtest/gtest.h>
 
 #include <string>

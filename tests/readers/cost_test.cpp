@@ -1,4 +1,4 @@
-/// The work of readers grows with the size of their input, not with its square.
+/// Tests that the work of readers grows with the size of their input, not with its square.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-/// Processor time of this process, in seconds: other processes do not add to it.
+/// Returns the CPU time of this process, in seconds. Other processes do not affect it.
 double processor_seconds() {
   std::timespec time{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -30,13 +30,14 @@ class ReaderCost : public ReadAppearance {
     return least;
   }
 
-  /// Eight times the input must not take 30 times as long: n log n is below 12, the square is 64.
-  /// `make(n)` writes the files of an input of size `n` and returns the mesh file.
+  /// Expects that eight times the input takes less than 30 times as long. n log n gives a factor
+  /// below 12, n² a factor of 64. `make(n)` writes the files of an input of size `n` and returns
+  /// the mesh file.
   void expect_no_square(int n, const std::function<std::filesystem::path(int)>& make) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const double small = cost(make(n));
     const double large = cost(make(8 * n));
-    constexpr double kClock = 0.004;  // What the clock and the system add.
+    constexpr double kClock = 0.004;  // Time that the clock and the system may add.
     EXPECT_LT(large, 30 * (small + kClock));
   }
 
@@ -98,7 +99,7 @@ const std::string kGltfBuffer =
     R"("bufferViews":[{"buffer":0,"byteLength":12}],"buffers":[{"byteLength":12,"uri":)"
     R"("data:;base64,AAAAAAAAAAAAAAAA"}])";
 
-/// Positions of `count` zeros.
+/// Returns positions of `count` zeros.
 std::string zeros(int count) {
   return R"({"componentType":5126,"count":)" + std::to_string(count) +
          R"(,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},)" +

@@ -105,9 +105,9 @@ TEST(GltfReader, EveryIndexTypeAndEveryTriangleMode) {
   add(5, 1);
   add(6, 2);
   add(4, 3);
-  add(4, 0);  // 4 vertices: the one that is left over is ignored
+  add(4, 0);  // 4 vertices: the last one is ignored
   add(5, 0);
-  add(0, 1);  // points and lines are left out
+  add(0, 1);  // points and lines are ignored
   add(3, 1);
   const Mesh mesh = read_text(read_gltf, asset.text());
   EXPECT_EQ(mesh.vertices, kVertices);  // shared by all primitives of the mesh

@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 MeshSource source_of(std::string_view text) { return {text, "mesh", {}, nullptr, {}}; }
 
-/// Returns the value of a document as nlohmann's library has it.
+/// Returns a value of the document as a value of nlohmann's library.
 Json to_json(const JsonDocument& document, std::uint32_t index) {
   const JsonNode& node = document.node(index);
   switch (node.kind) {

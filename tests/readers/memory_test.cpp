@@ -1,5 +1,5 @@
-/// The memory of readers: it stays within 1.3 times the finished mesh, and within a budget. A
-/// program of its own, because it replaces operator new to count all allocations.
+/// Tests that the memory of readers stays within 1.3 times the finished mesh, and within a budget.
+/// It is a separate program, because it replaces operator new to count all allocations.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -64,7 +64,7 @@ void for_each_triangle(const Body& body) {
 
 class MeshMemory : public testing::Test {
  protected:
-  /// Peak allocation while reading, over the bytes of the finished mesh.
+  /// Returns the peak allocation during a read, divided by the bytes of the finished mesh.
   double ratio(const char* name, std::size_t triangles = std::size_t{2} * (kSide - 1) * (kSide - 1),
                std::size_t vertices = std::size_t{kSide} * kSide) {
     const auto path = directory_.path() / name;
@@ -183,9 +183,9 @@ class ReaderBudget : public testing::Test {
     return directory_.path() / name;
   }
 
-  /// Reads a file within `limit` bytes (0: counts only). Checks that what is allocated keeps to the
-  /// count, and the count to the limit. Returns the peak of the count, or nothing if the limit was
-  /// too small.
+  /// Reads a file within `limit` bytes (0: counts only). Checks that allocations stay within the
+  /// count, and the count within the limit. Returns the peak of the count, or nothing if the limit
+  /// was too small.
   std::optional<std::uint64_t> read(const std::filesystem::path& file, std::uint64_t limit,
                                     bool with_appearance) {
     MemoryBudget budget(limit);
@@ -213,7 +213,7 @@ class ReaderBudget : public testing::Test {
     }
   }
 
-  /// A file is read within the memory that it needs, and refused below, by memory that is taken.
+  /// Expects that a file is read with the memory that it needs, and refused with less.
   void expect_bounded(const std::filesystem::path& file) {
     for (const bool with_appearance : {false, true}) {
       const auto needed = read(file, 0, with_appearance);
@@ -304,7 +304,7 @@ TEST_F(ReaderBudget, GltfInstancesJsonAndDataUrisCount) {
   };
   EXPECT_FALSE(read(write("bomb.gltf", bomb("16777216")), 100 * kMiB, false));
   expect_bounded(write("small.gltf", bomb("9999")));
-  // A triangle beside values that nothing uses.
+  // A triangle and values that nothing uses.
   const std::string triangle =
       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,)"
       R"("componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],)";

@@ -30,7 +30,7 @@ inline Mesh read_text(const Reader& reader, std::string_view text) {
   return reader({text, "mesh", {}, nullptr, {}});
 }
 
-/// The message of the Error that reading throws; fails the test if there is none.
+/// Returns the message of the Error that reading throws. Fails the test if there is none.
 inline std::string refusal(const Reader& reader, std::string_view text) {
   try {
     read_text(reader, text);
@@ -42,7 +42,7 @@ inline std::string refusal(const Reader& reader, std::string_view text) {
   return "";
 }
 
-/// Reading a prefix of any length must give a mesh or an Error, nothing else.
+/// Expects that reading a prefix of any length gives a mesh or an Error, nothing else.
 inline void expect_any_prefix_is_safe(const Reader& reader, std::string_view text) {
   for (std::size_t size = 0; size <= text.size(); ++size) {
     const std::vector<char> exact(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size));

@@ -1,4 +1,4 @@
-/// Materials of MTL files, and what stands in for malformed ones.
+/// Tests materials of MTL files, and the replacements of malformed ones.
 #include "readers/appearance_files.hpp"
 #include "voxdag/image/color.hpp"
 
@@ -24,7 +24,7 @@ TEST_F(ReadMtl, MtlStatementsFillTheirMaterial) {
   EXPECT_EQ(wall.texture_tint, (Vec3f{1, 1, 1}));
   EXPECT_EQ(a.images[static_cast<std::size_t>(wall.color_map.image)].path,
             directory_.path() / "a wall.png");
-  // The file's coordinates (u, v): 2 u + 0.5, 4 v + 0.25, then turned over.
+  // The file's coordinates (u, v) become 2 u + 0.5 and 4 v + 0.25; then v is turned over.
   const Vec2f uv = wall.color_map.uv({0.1f, 1 - 0.2f});
   EXPECT_FLOAT_EQ(uv.x, 0.7f);
   EXPECT_FLOAT_EQ(uv.y, 1 - (4 * 0.2f + 0.25f));

@@ -1,4 +1,5 @@
-/// Files that a mesh file names: they must be inside of its folder, and the caller learns of them.
+/// Tests files that a mesh file names: they must be inside its folder, and the caller gets their
+/// names.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with a mesh beside a folder that no mesh may look into.
+/// A folder with a mesh, and a folder beside it that meshes must not read.
 class NamedFilesTest : public ReadAppearance {
  protected:
   NamedFilesTest() {
@@ -25,7 +26,7 @@ class NamedFilesTest : public ReadAppearance {
     write("meshes/m.mtl", "newmtl m\nKd 1 0 0\n");
   }
 
-  /// Returns the message of the Error that reading throws, or how many warnings there are.
+  /// Returns the message of the Error that reading throws, or the number of warnings.
   std::string outcome(const fs::path& file, const ReadOptions& options = {}) {
     try {
       return std::to_string(read_mesh_with_appearance(file, options).warnings.size());
@@ -85,7 +86,7 @@ TEST_F(NamedFilesTest, ImagesOutsideOfTheFolderAreErrors) {
       gltf("b.bin", R"(,"images":[{"uri":"textures/a.png"},{"uri":"%2e%2e/secret/a.png"}])");
   EXPECT_EQ(outcome(file), refused("a.gltf: images[1]", "../secret/a.png"));
   EXPECT_EQ(outcome(file, {.allow_outside = true}), "0");
-  EXPECT_NO_THROW(read_mesh(file));  // It does not need the images.
+  EXPECT_NO_THROW(read_mesh(file));  // read_mesh() does not need the images.
 }
 
 TEST_F(NamedFilesTest, MtlFilesAndTheirTexturesOutsideOfTheFolderAreErrors) {

@@ -1,6 +1,6 @@
 /// Runs the reader over a directory of files that were made, or found, to break readers. The files
 /// are not part of the project: the environment variable VOXDAG_SCENES names the directory that has
-/// them in pathological/. What is expected of each is in pathological_expectations.txt.
+/// them in pathological/. pathological_expectations.txt has the expected result of each.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,10 +47,11 @@ void expect_sound(const Mesh& mesh) {
     ASSERT_LT(material, mesh.materials.size());
 }
 
-/// Whatever is wrong with the attributes of a mesh that is read, they are read or left out.
+/// Expects that the attributes of a readable mesh are read or left out, whatever is wrong with
+/// them.
 void expect_appearance(const Mesh& mesh, const fs::path& path) {
   const MeshWithAppearance result = read_mesh_with_appearance(path);
-  // Compared as bits: a vertex that nothing uses may be NaN.
+  // Compares bits, because an unused vertex may be NaN.
   ASSERT_EQ(result.mesh.vertices.size(), mesh.vertices.size());
   EXPECT_EQ(result.mesh.triangles, mesh.triangles);
   EXPECT_EQ(result.mesh.triangle_materials, mesh.triangle_materials);

@@ -17,7 +17,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text.replace(at, from.size(), to);
 }
 
-/// A square with extra properties, lists and elements around what counts.
+/// Returns a square with extra properties, lists and elements that the reader must skip.
 std::string binary_square(bool big_endian, bool with_lists = true) {
   std::string text = "ply\nformat ";
   text += big_endian ? "binary_big_endian 1.0\n" : "binary_little_endian 1.0\n";

@@ -79,7 +79,7 @@ TEST_F(ReadMesh, WhatIsNoFileIsRefused) {
   const auto pipe = directory_.path() / "pipe.obj";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(refused(pipe), "is not a regular file");
-  // Another file that assimp goes on to.
+  // Another file that assimp opens.
   ASSERT_EQ(::mkfifo((directory_.path() / "pipe.lwo").c_str(), 0600), 0);
   EXPECT_NE(
       refused(write("a.lws", "LWSC\n3\n\nFirstFrame 0\nLastFrame 1\n\nLoadObject pipe.lwo\n")),

@@ -1,4 +1,4 @@
-/// Float32 values are the correctly rounded ones, in every text format.
+/// Tests that float32 values are correctly rounded in every text format.
 #include <cstdlib>
 #include <random>
 
@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-/// Decimal numbers near the middle between two floats, and others that are easily got wrong.
+/// Returns decimal numbers near the middle between two floats, and others that are hard to round.
 std::vector<std::string> hard_numbers() {
   std::vector<std::string> numbers = {"0",
                                       "-0",

@@ -58,7 +58,7 @@ TEST(FrameScene, TakesZAsUpIfTheSceneLiesOnIt) {
   EXPECT_EQ(frame_scene(flat.view(), grid_of(6), 1.5, {}).up, (Vec3d{0, 1, 0}));
 }
 
-/// A closed box of 64³ voxels with pillars and shelves.
+/// Returns a closed box of 64³ voxels with pillars and shelves.
 Svdag room() {
   std::vector<Vec3i> voxels;
   for (std::int32_t z = 0; z < 64; ++z)

@@ -1,4 +1,4 @@
-// The renderer instantiated in kernels: that it compiles as device code is the test.
+// Instantiates the renderer in kernels. The test is that it compiles as device code.
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_tile.hpp"

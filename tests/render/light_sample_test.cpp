@@ -1,4 +1,4 @@
-// Light without shadows against closed forms.
+// Compares light without shadows with closed forms.
 #include "voxdag/render/light_sample.hpp"
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ Grid test_grid() {
   return grid;
 }
 
-/// The irradiance at the origin on a surface that faces up, from a light of the colour 1, and that
-/// every sample lies within the light's bounds. Rays start so high above.
+/// Returns the irradiance at the origin on a surface that faces up, from a light of the colour 1.
+/// Expects that every sample lies within the light's bounds. Rays start `lift` above the surface.
 double irradiance(LightSpec spec, double lift = 0) {
   spec.color = Vec3f{1, 1, 1};
   const SampleSets sets(kSamples, 1);
@@ -89,7 +89,7 @@ TEST(LightSample, ADiscOverheadGivesPiTimesTheSquareOfItsSine) {
   spec.normal = {0, -3, 0};
   spec.radius = 1;
   EXPECT_NEAR(irradiance(spec) / (kPi / 5), 1, 1e-3);
-  spec.normal = {0, 1, 0};  // it shines to one side only
+  spec.normal = {0, 1, 0};  // it shines only to one side
   EXPECT_EQ(irradiance(spec), 0);
 }
 
@@ -106,7 +106,7 @@ TEST(LightSample, ARectangleGivesLambertsPolygonFormula) {
     const Vec3d a = normalized(corners[i]), b = normalized(corners[(i + 1) % 4]);
     expected += std::acos(dot(a, b)) * normalized(cross(a, b)).y / 2;
   }
-  // Which side shines: from below the normal must point down.
+  // Chooses the side that shines: the normal must point down.
   if (cross(spec.edge_u, spec.edge_v).y > 0) std::swap(spec.edge_u, spec.edge_v);
   EXPECT_NEAR(irradiance(spec) / std::fabs(expected), 1, 2e-3);
 }

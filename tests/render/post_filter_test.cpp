@@ -28,7 +28,7 @@ struct Picture {
   }
 };
 
-/// Figure 11, line by line, in double precision.
+/// Computes Figure 11, line by line, in double precision.
 Vec3d figure_11(const Picture& picture, int x, int y) {
   const auto size = [&](int px, int py) {
     return std::exp2(picture.size[picture.at(px, py)] / 32.0);
@@ -81,7 +81,7 @@ TEST(FilterTable, IsSortedFromTheCentreToTheRim) {
 }
 
 TEST(FilterTable, DensityFallsAsTheSquareRootOfTheDistance) {
-  // So that distance^(3/2) of the samples lie within.
+  // The number of samples within a distance must be proportional to distance^(3/2).
   for (const float r : {4.0f, 8.0f, 12.0f, 16.0f, 20.0f, 24.0f}) {
     const auto within = std::count_if(filter_table().begin(), filter_table().end(),
                                       [r](const FilterSample& s) { return s.distance <= r; });
@@ -142,7 +142,7 @@ TEST(PostFilter, AConstantPictureStays) {
 }
 
 TEST(PostFilter, LightIsKept) {
-  // The light of one pixel, all of it, goes to the pixels around.
+  // All light of one pixel is distributed over the pixels around it.
   for (const float size : {2.5f, 6.0f, 13.0f, 24.0f}) {
     Picture picture(101, 101, size);
     picture.color[picture.at(50, 50)] = {1, 1, 1};
@@ -161,7 +161,7 @@ TEST(PostFilter, CellsOfAPixelStaySharp) {
 }
 
 TEST(PostFilter, TheBackgroundNeitherBlursNorBleeds) {
-  // Black cells of 20 pixels before a bright background on the right.
+  // Black cells of 20 pixels next to a bright background on the right.
   Picture picture(80, 40, 20);
   for (int y = 0; y < 40; ++y)
     for (int x = 40; x < 80; ++x) {
@@ -205,7 +205,7 @@ TEST(PostFilter, BlocksOfNoiseBecomeSmooth) {
       EXPECT_LT(std::fabs(picture.filtered(x + 1, y).x - picture.filtered(x, y).x), 0.35f);
 }
 
-/// A checkerboard of 24 pixel voxels on a plane that leans away from the viewer.
+/// A checkerboard of voxels of 24 pixels on a plane that tilts away from the viewer.
 struct GuidedPicture : Picture {
   std::vector<float> depth, occlusion, shadow;
   std::vector<Vec3f> normal;

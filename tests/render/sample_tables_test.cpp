@@ -68,7 +68,7 @@ TEST(SampleTables, PixelsDiffer) {
         EXPECT_TRUE(pixel.shift.x >= 0 && pixel.shift.x < 1);
         seen.insert({pixel.set, pixel.rotation.x, pixel.rotation.y});
       }
-  EXPECT_GT(seen.size(), 2600u);  // of 3072; a few of 16384 meet by chance
+  EXPECT_GT(seen.size(), 2600u);  // of 3072; a few of the 16384 values collide by chance
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 constexpr int kLevels = 6;
 constexpr double kDegrees = 57.29577951308232;
 
-/// The voxels near the zero set of `distance`, a signed distance in voxels: a layer.
+/// Returns a layer: the voxels near the zero set of `distance`, a signed distance in voxels.
 std::vector<Vec3i> surface_voxels(const std::function<double(Vec3d)>& distance) {
   std::vector<Vec3i> voxels;
   const std::int32_t n = 1 << kLevels;
@@ -60,7 +60,8 @@ TEST(SurfaceNormal, FollowsTheRadiusOfASphere) {
     const Vec3f estimate = surface_normal(SvdagNodes(dag.view()), kLevels, v,
                                           static_cast<Vec3f>(radial), static_cast<Vec3f>(radial));
     const double error = degrees_between(estimate, radial);
-    // The cells within 4.5 of one on a sphere of radius 25 lean by up to 10 degrees to either side.
+    // On a sphere of radius 25, the surface within 4.5 cells of a cell turns by up to 10 degrees to
+    // each side.
     ASSERT_LT(error, 10);
     sum += error;
   }

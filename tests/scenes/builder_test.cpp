@@ -11,7 +11,8 @@ namespace {
 TEST(SceneMath, SineAgreesWithTheLibrary) {
   for (int i = -4000; i <= 4000; ++i) {
     const double t = i / 1000.0;
-    // A few roundings of a value of at most 1, plus the error of 2 pi t in the library's argument.
+    // The tolerance covers a few roundings of a value of at most 1, and the error of 2 pi t in the
+    // library's argument.
     EXPECT_NEAR(sin_turns(t), std::sin(6.283185307179586 * t), 1e-14);
     EXPECT_NEAR(cos_turns(t), std::cos(6.283185307179586 * t), 1e-14);
   }

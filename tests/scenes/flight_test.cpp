@@ -1,4 +1,5 @@
-/// The flights of scene_preset as films: they are paths, and keep clear of what they fly through.
+/// Tests the flights of scene_preset(): they are valid camera paths, and the camera stays away from
+/// the scene.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,12 +17,12 @@ namespace {
 struct Flight {
   const char* scene;
   double size;
-  double clearance;  ///< World units that the camera keeps from everything.
+  double clearance;  ///< Least distance of the camera from the scene, world units.
 };
 
 void PrintTo(const Flight& flight, std::ostream* out) { *out << flight.scene << flight.size; }
 
-/// How far it is from `eye` to anything, at most, in one of many directions.
+/// Returns the distance from `eye` to the nearest surface in many directions.
 double nearest(const SvdagNodes& nodes, const Grid& grid, Vec3d eye) {
   constexpr int kDirections = 600;
   double least = HUGE_VAL;

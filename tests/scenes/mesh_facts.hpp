@@ -1,5 +1,5 @@
 #pragma once
-/// What can be said of a mesh without knowing how it was made.
+/// Computes facts about a mesh: volume, closedness, hash.
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -33,7 +33,8 @@ inline std::size_t degenerate_count(const Mesh& mesh) {
   return count;
 }
 
-/// The volume inside a closed surface whose triangles wind counter-clockwise seen from outside.
+/// Returns the volume inside a closed surface whose triangles wind counter-clockwise seen from
+/// outside.
 inline double signed_volume(const Mesh& mesh) {
   double six_volumes = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -41,7 +42,7 @@ inline double signed_volume(const Mesh& mesh) {
   return six_volumes / 6;
 }
 
-/// Every directed edge has as many partners that run the other way.
+/// Returns whether every directed edge has an equal number of opposite edges.
 inline bool is_closed(const Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
   for (const Triangle& t : mesh.triangles)
@@ -54,7 +55,7 @@ inline bool is_closed(const Mesh& mesh) {
   return true;
 }
 
-/// FNV-1a over vertices, indices and materials.
+/// Returns FNV-1a over vertices, indices and materials.
 inline std::uint64_t hash_of(const Mesh& mesh) {
   std::uint64_t hash = 0xCBF29CE484222325ull;
   const auto add = [&hash](const void* data, std::size_t bytes) {

@@ -20,11 +20,11 @@ namespace {
 struct SmallScene {
   std::string_view name;
   double size;
-  std::uint64_t hash;  ///< Of seed 1, on every machine.
+  std::uint64_t hash;  ///< Hash for seed 1, on every machine.
 };
 
-/// Sizes that are made in well under a second. A scene that changes on purpose gets a new hash
-/// here.
+/// Small sizes that are generated in much less than a second. If a scene is changed on purpose, its
+/// hash must be changed here.
 constexpr SmallScene kSmall[] = {
     {"city", 1, 0x53f8789889480855},      {"courtyard", 0.4, 0x1b8e25bd4cc4ecc},
     {"hairball", 20, 0x3e682f539f47fcc1}, {"sponge", 2, 0x48f77797a24deb0},
@@ -123,7 +123,7 @@ TEST(Sponge, FacesAndVolumeAreTheAnalyticOnes) {
     SceneOptions options;
     options.size = depth;
     const Mesh mesh = make_scene("sponge", options);
-    // 20^n cubes show 2 * 20^n + 4 * 8^n faces.
+    // 20^n cubes have 2 * 20^n + 4 * 8^n outer faces.
     EXPECT_EQ(mesh.triangles.size(), 2 * (2 * cubes + 4 * eights));
     EXPECT_TRUE(is_closed(mesh));
     const double cell = 1.0 / (depth == 1 ? 4 : depth == 2 ? 16 : depth == 3 ? 32 : 128);

@@ -64,7 +64,7 @@ TEST_F(EsvoStreamTest, WithLessMemoryBlocksAreLoadedAndEvicted) {
       stream.load(block);
     EXPECT_LE(stream.counts().bytes_loaded, memory);
     if (step % 100 != 0) continue;
-    // Whole, and no finer than the octree in the file.
+    // The loaded octree is complete, and not finer than the octree in the file.
     const EsvoTree tree = unpack(stream.view());
     EXPECT_LE(tree.nodes.size(), unpack(esvo.view()).nodes.size());
   }
@@ -99,7 +99,7 @@ TEST_F(EsvoStreamTest, TooLittleMemoryForTheRootIsRefused) {
 
 TEST_F(EsvoStreamTest, ADamagedBlockIsNamedWhenItIsLoaded) {
   std::string text = read_text(path());
-  // In the first block, which is not the root's.
+  // Damages the first block, which is not the root's.
   text[256 + 4000] = static_cast<char>(text[256 + 4000] ^ 1);
   write_text(path(), text);
   EsvoStream stream(path(), bytes());

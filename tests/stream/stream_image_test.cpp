@@ -1,4 +1,4 @@
-// Pictures of an ESVO that is loaded while they are made.
+// Tests pictures of an ESVO whose blocks are loaded during rendering.
 #include <gtest/gtest.h>
 
 #include "support/grid_mesh.hpp"
@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-/// Waves of some thousand triangles.
+/// Returns waves of some thousand triangles.
 Mesh waves(int n) {
   return test::grid_mesh(n, [n](int i, int j) {
     const float x = static_cast<float>(i) / static_cast<float>(n);
@@ -86,7 +86,8 @@ TEST_F(StreamImage, IsTheSameInLessMemoryThanItsBlocksNeed) {
   test::expect_same_picture(image, whole());
 }
 
-/// What it takes to render these pictures one after the other, all blocks kept.
+/// Returns the bytes of blocks that are read to render these pictures one after the other with
+/// enough memory.
 std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,
                         const std::vector<RenderOptions>& pictures) {
   StreamBlocks blocks(path, bytes);
@@ -109,7 +110,7 @@ TEST_F(StreamImage, APictureUsesTheBlocksOfTheOneBefore) {
 }
 
 TEST_F(StreamImage, APictureReplacesTheBlocksOfEarlierOnes) {
-  // Near the surface, so that either view needs few of the other's blocks.
+  // The cameras are near the surface, so that each view needs few of the other's blocks.
   options.occlusion_samples = 0;
   options.shadows = false;
   std::vector<RenderOptions> pictures(2, options);
@@ -128,8 +129,8 @@ TEST_F(StreamImage, APictureReplacesTheBlocksOfEarlierOnes) {
     int passes = 0;
     const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options,
                                                 [&](const RenderedImage&) { ++passes; });
-    // Blocks come level after level, for all tiles at once; without room after a pass or two for
-    // one tile after the other.
+    // Blocks are loaded level by level, for all tiles together. Without room, after a pass or two
+    // they are loaded for one tile after the other.
     EXPECT_GT(passes, 3);
     test::expect_same_picture(image, whole());
   }
@@ -139,7 +140,7 @@ TEST_F(StreamImage, APictureReplacesTheBlocksOfEarlierOnes) {
   EXPECT_LE(counts.bytes_read, 6 * one) << "no picture reads a block twice";
 }
 
-/// Of a block and those above it, at most.
+/// Returns the maximum bytes of a block and its ancestors.
 std::uint64_t least_memory(const EsvoStream& stream) {
   std::uint64_t least = 0;
   for (std::size_t i = 0; i < stream.directory().size(); ++i) {

@@ -71,7 +71,7 @@ std::vector<std::string> linked_targets(const std::filesystem::path& cmake_lists
   return targets;
 }
 
-/// Returns the name of the package that gives a target: "PNG" of "PNG::PNG".
+/// Returns the name of the package that provides a target: "PNG" for "PNG::PNG".
 std::string package_of(const std::string& target) {
   static const std::map<std::string, std::string> kOthers = {{"CUDA", "CUDAToolkit"}};
   const std::string package = target.substr(0, target.find("::"));

@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// What one folder may use.
+/// The folders and packages that one folder may use.
 struct Room {
   std::set<std::string> rooms;     ///< Folders, itself among them; transitively closed.
   std::set<std::string> packages;  ///< Packages that it may link itself.

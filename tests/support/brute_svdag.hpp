@@ -1,5 +1,5 @@
 #pragma once
-/// Builds the minimal DAG of a set of voxels the slow and obvious way: the reference for the
+/// Builds the minimal DAG of a set of voxels by a slow and obvious method: the reference for the
 /// builders.
 #include <algorithm>
 #include <array>

@@ -43,7 +43,7 @@ CastResults<Found> closest_hits(const Caster& caster, const std::vector<CastRay>
   return results;
 }
 
-/// Hands the caster references to the rays; closest_hits() hands it copies.
+/// Casts with references to the rays; closest_hits() passes copies.
 template <class Caster>
 std::vector<char> any_hits(const Caster& caster, const std::vector<CastRay>& rays) {
   std::vector<char> results(rays.size());
@@ -107,8 +107,8 @@ inline void set_random_stops(std::vector<CastRay>& rays, float at_start, float p
   }
 }
 
-/// Returns bundles of rays like the primary rays of 8×8 pixels after a beam: the rays of a bundle
-/// leave one point and start at one distance from it. They end at cells of up to six times
+/// Returns bundles of rays like the primary rays of 8×8 pixels after a beam. The rays of a bundle
+/// have a common origin and start at one distance from it. They end at cells of up to six times
 /// `size_per_t`.
 inline std::vector<CastRay> ray_bundles(const Grid& grid, double width, double size_per_t) {
   const auto n = static_cast<double>(grid.resolution());

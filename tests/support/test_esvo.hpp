@@ -1,6 +1,6 @@
 #pragma once
-/// Makes octrees with contours and packs them in the plainest way: the reference for readers of
-/// ESVOs. Shares only the stored words with the library.
+/// Makes octrees with contours and packs them in the simplest way: the reference for readers of
+/// ESVOs. Shares only the types of stored words with the library.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -32,7 +32,7 @@ inline TestVoxel& first_leaf(TestVoxel& voxel) {
 }
 
 /// Packs an octree into one block. Descriptors are in depth-first order; siblings start at an even
-/// slot. About one in `far_in` child pointers is far, and all that must be.
+/// slot. About one in `far_in` child pointers is far, and every pointer that must be.
 class TestEsvoAssembler {
  public:
   TestEsvoAssembler(unsigned far_in, unsigned seed) : far_in_(far_in), rng_(seed) {}

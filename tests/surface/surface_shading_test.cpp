@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<Vec2f, 3> kWhole{Vec2f{0, 0}, {1, 0}, {0, 1}};
 
-/// A convex polygon around a place in the triangle.
+/// Returns a convex polygon around a point of the triangle.
 std::vector<Vec2f> polygon_around(Vec2f center, float size, std::mt19937& rng) {
   std::uniform_real_distribution<float> unit(0, 1);
   const auto corners = static_cast<int>(3 + rng() % 4);
@@ -27,7 +27,7 @@ std::vector<Vec2f> polygon_around(Vec2f center, float size, std::mt19937& rng) {
   return polygon;
 }
 
-/// Parts of a convex polygon: its fan, each triangle in four.
+/// Returns parts of a convex polygon: the triangles of its fan, each divided into four.
 std::vector<std::array<Vec2f, 3>> subdivide(const std::vector<Vec2f>& polygon) {
   std::vector<std::array<Vec2f, 3>> parts;
   for (std::size_t i = 2; i < polygon.size(); ++i) {
@@ -62,7 +62,7 @@ TEST(SurfaceShading, TexturesStandUpright) {
   square.material().color_map =
       square.texture("a.png", 2, 2, 3, {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255});
   const SurfaceShading shading(square.mesh, square.appearance);
-  const auto at = [&](float x, float y) {  // in the triangle where it is
+  const auto at = [&](float x, float y) {  // in the triangle that contains the point
     const bool lower = x > y;
     const std::array<Vec2f, 1> point{lower ? Vec2f{x - y, y} : Vec2f{x, y - x}};
     return shading.mean(lower ? 0 : 1, point).color;
@@ -92,7 +92,7 @@ TEST(SurfaceShading, AMeanIsTheMeanOfItsParts) {
         for (const Vec2f p : {part[0] * 0.6f + part[1] * 0.2f + part[2] * 0.2f,
                               part[0] * 0.2f + part[1] * 0.6f + part[2] * 0.2f,
                               part[0] * 0.2f + part[1] * 0.2f + part[2] * 0.6f}) {
-          // Many points: each part in parts again.
+          // Divides each part again, to sample many points.
           for (const auto& tiny : subdivide({part[0], part[1], part[2]}))
             for (const auto& dot : subdivide({tiny[0], tiny[1], tiny[2]})) {
               const std::array<Vec2f, 1> point{(dot[0] + dot[1] + dot[2]) * (1 / 3.0f) +
@@ -107,7 +107,8 @@ TEST(SurfaceShading, AMeanIsTheMeanOfItsParts) {
       error_of_parts += static_cast<double>(dot(d, d)) / 3;
       error += static_cast<double>(dot(e, e)) / 3;
     }
-    // Noise of standard deviation 0.3: what the filter misplaces at the rim of the polygon.
+    // The texture is noise of standard deviation 0.3. The error is the filter's error at the
+    // polygon's border.
     EXPECT_LT(std::sqrt(error_of_parts / kCount), size < 0.02f ? 0.06 : 0.03) << size;
     EXPECT_LT(std::sqrt(error / kCount), size < 0.02f ? 0.06 : 0.03) << size;
   }
@@ -136,7 +137,7 @@ TEST(SurfaceShading, CoverageIsThePartThatPassesTheAlphaTest) {
   const SurfaceSample lower = shading.mean(0, kWhole), upper = shading.mean(1, kWhole);
   EXPECT_NEAR(lower.coverage, 0.25f, 0.09f);
   EXPECT_NEAR(upper.coverage, 0.75f, 0.09f);
-  expect_near(lower.color, {1, 0, 0}, 1e-3f);  // the green that is cut away does not show
+  expect_near(lower.color, {1, 0, 0}, 1e-3f);  // the masked green has no effect
   const std::array<Vec2f, 3> left{Vec2f{0.1f, 0}, {0.3f, 0}, {0.2f, 0.1f}},
       right{Vec2f{0.7f, 0.1f}, {0.8f, 0}, {0.7f, 0.2f}};
   EXPECT_EQ(shading.mean(0, left).coverage, 1);
@@ -175,7 +176,7 @@ TEST(SurfaceShading, CornerColoursAndNormalsAreInterpolated) {
   const SurfaceSample sample = shading.mean(0, middle);
   expect_near(sample.color, {0.75f, 0.25f, 0.25f}, 1e-4f);
   expect_near(sample.normal, {std::sqrt(0.5f), 0, std::sqrt(0.5f)}, 1e-4f);
-  // The mean of normals that disagree is shorter; here against the mean of many.
+  // The mean of different normals is shorter than 1. Compares it with the mean of many samples.
   Vec3f sum{};
   constexpr int kSide = 200;
   for (int i = 0; i < kSide; ++i)
@@ -188,7 +189,7 @@ TEST(SurfaceShading, CornerColoursAndNormalsAreInterpolated) {
 }
 
 TEST(SurfaceShading, NormalMapsFollowTheAxesOfTheImage) {
-  // Red leans to the right of the image, green to its upper edge.
+  // Red tilts normals to the right of the image, green to its upper edge.
   Square square;
   square.material().normal_map = square.texture("n.png", 1, 1, 3, {218, 128, 218});
   expect_near(SurfaceShading(square.mesh, square.appearance).mean(0, kWhole).normal,
@@ -206,7 +207,7 @@ TEST(SurfaceShading, NormalMapsFollowTheAxesOfTheImage) {
 }
 
 TEST(SurfaceShading, TangentsFollowTheSurfaceNotTheTriangles) {
-  // A bent strip: the tangent at the bend is the mean of both sides'.
+  // A bent strip: the tangent at the bend is the mean of the tangents of both sides.
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, -1}, {1, 1, -1}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};

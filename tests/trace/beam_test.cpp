@@ -36,7 +36,8 @@ class RandomBeams {
   }
   Vec3d point(double lo, double hi) { return {number(lo, hi), number(lo, hi), number(lo, hi)}; }
 
-  /// Apexes inside and outside, narrow and wide beams, along axes and across.
+  /// Returns a random beam: its apex is inside or outside the grid; it is narrow or wide, parallel
+  /// to an axis or not.
   Beam beam() {
     Beam beam;
     beam.apex = number(0, 1) < 0.5 ? point(0, 1) : point(-1.5, 2.5);
@@ -47,7 +48,7 @@ class RandomBeams {
     beam.highest = middle + half;
     return beam;
   }
-  /// A direction within the beam, often on its border.
+  /// Returns a direction within the beam, often on its border.
   Vec3d direction(const Beam& beam) {
     Vec3d direction;
     for (int axis = 0; axis < 3; ++axis) {
@@ -66,7 +67,8 @@ struct BeamCounts {
   int met = 0, hits = 0;
 };
 
-/// Casts beams and rays within them; what the beams leave of a ray must meet what the ray does.
+/// Casts beams and rays within them. A ray that the beam shortens must meet the same cell as the
+/// whole ray.
 template <class Nodes>
 void expect_bounds_hold(const Nodes& nodes, const std::string& name, RandomBeams& random,
                         BeamCounts& counts) {
@@ -142,7 +144,7 @@ TEST(Beam, ABeamOfOneRayEndsWhereTheRayDoes) {
       ASSERT_TRUE(first_met(nodes, beam, {}, bound));
       const double hit = ray.to_world_t(static_cast<double>(cell.t));
       EXPECT_LE(bound, hit * (1 + 1e-6));
-      // A cell that the ray only just misses may end the beam: then that is near the line.
+      // The beam may end at a cell that the ray barely misses. Then this cell is near the line.
       const Vec3d at = beam.apex + beam.lowest * bound;
       const auto gap = [&](Vec3i v) {
         double most = 0;

@@ -1,4 +1,4 @@
-// The corners of the definition of a hit, one fact each.
+// Tests the special cases in the definition of a hit, one fact each.
 #include <gtest/gtest.h>
 
 #include <cmath>

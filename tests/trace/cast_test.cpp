@@ -1,4 +1,4 @@
-// The octree traversal against walks of the same rays that know no tree.
+// Compares the octree traversal with walks of the same rays without a tree.
 #include "voxdag/trace/cast.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace voxdag {
 namespace {
 
-/// A plain grid, on which lattice points are exact, or one with an awkward placement.
+/// Returns a plain grid, in which lattice points are exact, or a grid with an awkward placement.
 Grid test_grid(int levels, bool is_plain) {
   Grid grid;
   grid.levels = levels;
@@ -100,8 +100,8 @@ TEST(Cast, VisitsExactlyTheVoxelsOfTheDefinition) {
                                  });
 }
 
-/// A slab of voxels across the middle of the grid with a rough surface, near one point of it: dense
-/// enough for rays at that point to hit, small enough for the brute-force builder.
+/// Returns a patch of a rough slab of voxels in the middle of the grid. It is dense enough for rays
+/// at that point to hit, and small enough for the brute-force builder.
 std::vector<Vec3i> rough_patch(int levels) {
   std::mt19937 rng(5);
   std::vector<Vec3i> voxels = random_voxels(levels, 2000, 5);
@@ -117,7 +117,7 @@ TEST(Cast, EqualsTheDdaOnHugeGrids) {
   for (const int levels : {12, 17, 20}) {
     const Grid grid = test_grid(levels, false);
     const std::vector<Vec3i> voxels = rough_patch(levels);
-    // All kinds of rays; few of them meet one of the few voxels.
+    // Rays of all kinds; not many of them meet one of the few voxels.
     expect_same_hits<SparseSet>(grid, voxels, levels == 20 ? 12 : 100, 19, kDda);
 
     // Short rays near the patch meet it.

@@ -1,5 +1,5 @@
-// Casts through an ESVO: as cubes against those through the DAG of the same voxels, with contours
-// against every shape in double precision.
+// Compares casts at an ESVO with references. Cubes are compared with the DAG of the same voxels,
+// contours with every shape in double precision.
 #include "voxdag/trace/esvo_cast.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Grid test_grid(int levels) {
   return grid;
 }
 
-/// Whether a walk down the layout finds the voxel.
+/// Returns whether a walk down the layout finds the voxel.
 template <class Nodes>
 bool voxel_is_set(const Nodes& nodes, Vec3i voxel) {
   const int last = nodes.levels() - 1;
@@ -81,13 +81,13 @@ TEST(EsvoCast, CoarseLeavesAreHitWhereTheirVoxelsAre) {
     ASSERT_EQ(hit.hit, expected.hit);
     if (!hit.hit) return;
     EXPECT_EQ(hit.t, expected.t);
-    // The planes between the voxels of a coarse leaf are none of its sides.
+    // The planes between the voxels of a coarse leaf are not sides of the leaf.
     EXPECT_TRUE(hit.face == expected.face || hit.level < kLevels);
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_EQ(hit.voxel[axis] >> (kLevels - hit.level),
                 expected.voxel[axis] >> (kLevels - hit.level));
     coarse += hit.level < kLevels ? 1 : 0;
-    // The layout adaptor gives a walk that knows no leaves the voxels in them.
+    // A walk that does not know coarse leaves sees all voxels in them.
     EXPECT_TRUE(voxel_is_set(EsvoNodes(esvo.view()), expected.voxel));
   });
   EXPECT_GT(coarse, 100);
@@ -107,7 +107,7 @@ struct ContourScene {
   Esvo esvo;
 };
 
-/// Lists all planes of contours: a point on it and the normal, in the grid's [0,1]³.
+/// Lists the planes of all contours: a point on each plane and its normal, in the grid's [0,1]³.
 void list_planes(const TestVoxel& voxel, int level, Vec3i cell,
                  std::vector<std::pair<Vec3d, Vec3d>>& planes) {
   const double side = std::ldexp(1.0, -level);
@@ -125,12 +125,13 @@ void list_planes(const TestVoxel& voxel, int level, Vec3i cell,
       list_planes(*child, level + 1, cell * 2 + child_offset(i), planes);
 }
 
-/// What no arithmetic can be blamed for: a shape that is met by more than a margin is met, and what
-/// is met is there. Returns whether there was a hit.
+/// Checks hits up to rounding: a ray that meets a shape by more than a margin must hit it, and a
+/// hit must lie on a shape. Returns whether there was a hit.
 bool expect_sound_hit(const ContourScene& scene, const Ray& ray, int last_level) {
-  // Past the rounding of single precision planes of cubes, and of contours beyond their slack.
+  // Margins larger than the rounding of single precision: for planes of cubes, and for planes of
+  // contours beyond their slack.
   constexpr double kCube = 0x1p-21, kSlack = 0x1p-18;
-  // The contours' own slack is proven to make up for all rounding.
+  // The contours' own slack is proven to cover all rounding errors.
   constexpr double kContour = 1e-12;
   const GridRay grid_ray = make_grid_ray(scene.grid, ray);
   EsvoHit hit;
@@ -234,7 +235,7 @@ TEST(EsvoCast, FarRaysAtTheFinestVoxelsMissNothing) {
 }
 
 TEST(EsvoCast, TheEnteredPlaneHasTheNormalThatFacesTheRay) {
-  // A slab across the whole of one voxel: x + y between its middle and half way up.
+  // A slab across one voxel: x + y lies between the middle and half way up.
   auto root = test_octree(2, {{1, 1, 1}});
   root->children[0]->children[7]->contour = Contour::make({10, 10, 0}, 63, 96);
   const Esvo esvo = TestEsvoAssembler(1, 1).assemble(*root, 2);

@@ -1,4 +1,4 @@
-// The traversal instantiated in a kernel: that it compiles as device code is the test.
+// Instantiates the traversal in a kernel. The test is that it compiles as device code.
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"

@@ -1,4 +1,5 @@
-// Hits against the true line, in long double: how far the traversal's rounding can move a picture.
+// Compares hits with the true line, in long double: measures how far the traversal's rounding can
+// move a picture.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +19,7 @@ namespace {
 using Real = long double;
 using Vec3r = Vec3<Real>;
 
-/// The ray as given, without any rounding of the library's, in voxel units.
+/// The given ray without the library's rounding, in voxel units.
 struct TrueLine {
   Vec3r origin, direction;
 
@@ -38,7 +39,7 @@ Real tolerance_voxels(const Grid& grid) {
   return std::ldexp(static_cast<Real>(grid.resolution()), -21);
 }
 
-/// How far inside the voxel p is; negative outside.
+/// Returns the depth of p inside the voxel; negative outside.
 Real depth_voxels(Vec3r p, Vec3i voxel) {
   Real depth = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,13 +49,13 @@ Real depth_voxels(Vec3r p, Vec3i voxel) {
   return depth;
 }
 
-/// The point at hit.t is in the hit voxel.
+/// Expects that the point at hit.t is in the hit voxel.
 void expect_hit_point_in_voxel(const Grid& grid, const Ray& ray, const Hit& hit) {
   const Vec3r p = TrueLine(grid, ray).at(static_cast<Real>(hit.t));
   EXPECT_GE(depth_voxels(p, hit.voxel), -tolerance_voxels(grid));
 }
 
-/// No voxel of `set` into which the true line goes by more than the tolerance lies before `t_end`.
+/// Expects that before `t_end` the true line enters no voxel of `set` by more than the tolerance.
 template <class Set>
 void expect_nothing_missed(const Grid& grid, const Set& set, const Ray& ray, Real t_end) {
   const TrueLine line(grid, ray);
@@ -69,7 +70,7 @@ void expect_nothing_missed(const Grid& grid, const Set& set, const Ray& ray, Rea
   }
   end -= slack;
   while (t < end) {
-    // The voxel just ahead, and where the line leaves it.
+    // Finds the next voxel, and the t at which the line leaves it.
     const Vec3r ahead = line.at(t + slack / 8);
     Vec3i voxel;
     Real leave = end;
@@ -127,7 +128,7 @@ TEST(CastPrecision, IsWithinASixteenthOfAVoxelAt131072Cubed) {
     const Vec3d target = Vec3d{1, 1, 1} * static_cast<double>(middle) +
                          Vec3d{spread(rng), spread(rng), spread(rng) / 10};
     const Vec3d towards{spread(rng), spread(rng), spread(rng)};
-    const double distance = i % 50 == 0 ? 500 : 2;  // near by, or from far across the grid
+    const double distance = i % 50 == 0 ? 500 : 2;  // near the grid, or far away
     Ray ray;
     ray.origin = static_cast<Vec3f>(grid.to_world(target - towards * distance));
     ray.direction = static_cast<Vec3f>(grid.to_world(target)) - ray.origin;

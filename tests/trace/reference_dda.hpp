@@ -1,7 +1,7 @@
 #pragma once
 /// The reference for ray casts: voxel sets without any tree, and walks that visit every voxel on
-/// the way. It shares with the library only GridRay, that is the T of each plane, and walks in the
-/// grid's own orientation with integer voxel coordinates.
+/// the way. It shares only GridRay (the T of each plane) with the library. It walks in the grid's
+/// own orientation, with integer voxel coordinates.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace voxdag {
 
-/// One bit per voxel for small grids.
+/// A set with one bit per voxel, for small grids.
 class DenseSet {
  public:
   DenseSet(int levels, const std::vector<Vec3i>& voxels)
@@ -31,7 +31,7 @@ class DenseSet {
   std::vector<bool> bits_;
 };
 
-/// A hash set for sparse voxels of large grids.
+/// A hash set, for sparse voxels of large grids.
 class SparseSet {
  public:
   SparseSet(int levels, const std::vector<Vec3i>& voxels) : levels_(levels) {
@@ -49,14 +49,15 @@ class SparseSet {
   std::unordered_set<std::uint64_t> keys_;
 };
 
-/// T at plane i (0..N) of an axis, in the order of the grid's own coordinates.
+/// Returns T at plane i (0..N) of an axis, in the order of the grid's own coordinates.
 inline float reference_plane_t(const GridRay& ray, int levels, int axis, std::int32_t i) {
   const double plane = static_cast<double>(i) / static_cast<double>(1 << levels);
   const bool is_mirrored = (ray.mirrored >> axis & 1u) != 0;
   return ray.plane_t(axis, static_cast<float>(is_mirrored ? 2 - plane : 1 + plane));
 }
 
-/// Along `axis`: the plane by which the ray enters the voxels with coordinate i, and leaves them.
+/// Return T at the plane of `axis` through which the ray enters (leaves) the voxels with coordinate
+/// i.
 inline float reference_enter(const GridRay& ray, int levels, int axis, std::int32_t i) {
   return reference_plane_t(ray, levels, axis, (ray.mirrored >> axis & 1u) != 0 ? i : i + 1);
 }
@@ -80,7 +81,8 @@ inline Hit reference_hit(const GridRay& ray, int levels, Vec3i voxel, float at, 
   return hit;
 }
 
-/// 3D-DDA: starts in the voxel of t_min and steps over every plane that the next T reaches.
+/// Casts a ray by 3D-DDA: starts in the voxel of t_min and steps over every plane that the next T
+/// reaches.
 template <class Set>
 Hit reference_dda(const Set& set, const GridRay& ray, float t_min, float t_max) {
   if (ray.misses()) return {};
@@ -89,7 +91,7 @@ Hit reference_dda(const Set& set, const GridRay& ray, float t_min, float t_max) 
   float at = ray.t_min;
   Vec3i voxel, step;
   for (int axis = 0; axis < 3; ++axis) {
-    // Bisection for the first voxel, in walking order, that the ray has not left at `at`.
+    // Bisects for the first voxel, in walking order, that the ray has not left at `at`.
     const bool runs_up = (ray.mirrored >> axis & 1u) != 0;
     std::int32_t passed = 0, above = n;
     while (passed < above) {
@@ -119,8 +121,8 @@ Hit reference_dda(const Set& set, const GridRay& ray, float t_min, float t_max) 
   }
 }
 
-/// The definition itself, with no walk: at t_min and at the T of every plane of the grid, in order,
-/// counts on each axis the planes that lie behind. O(N²) per ray.
+/// Applies the definition itself, without a walk: at t_min and at the T of every plane of the grid,
+/// in order, counts on each axis the planes that the ray has passed. O(N²) per ray.
 template <class Set>
 Hit reference_by_definition(const Set& set, const GridRay& ray, float t_min, float t_max) {
   if (ray.misses()) return {};

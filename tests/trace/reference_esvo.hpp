@@ -1,6 +1,6 @@
 #pragma once
-/// The reference for casts through an ESVO: every leaf with its cube and the contours of all its
-/// ancestors, in double precision, on the tree that the ESVO was made from.
+/// The reference for casts at an ESVO. It tests every leaf with its cube and the contours of all
+/// its ancestors, in double precision, on the tree that the ESVO was made from.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -30,7 +30,7 @@ struct ReferenceRay {
   Vec3d at(double t) const { return origin + direction * t; }
 };
 
-/// How much the half-spaces that make up a shape are moved inwards (or, negative, outwards), in
+/// The distance by which the half-spaces of a shape are moved inwards (outwards if negative), in
 /// units of the grid's side.
 struct Inset {
   double cube = 0, contour = 0;
@@ -46,7 +46,7 @@ class ReferenceCast {
  public:
   ReferenceCast(const ReferenceRay& ray, Inset inset) : ray_(ray), inset_(inset) {}
 
-  /// The nearest leaf, or voxel of `last_level` if that is coarser.
+  /// Returns the nearest leaf, or voxel of `last_level` if that is coarser.
   std::optional<ReferenceHit> nearest(const TestVoxel& root, int last_level) {
     last_level_ = last_level;
     visit(root, 0, {}, {ray_.t_min, ray_.t_max});
@@ -57,7 +57,7 @@ class ReferenceCast {
   struct Range {
     double enter, leave;
     bool is_empty() const { return !(enter <= leave); }
-    /// To where a - t * b <= 0.
+    /// Clips the range to the t with a - t * b <= 0.
     void clip(double a, double b) {
       if (b == 0) {
         if (a > 0) leave = -HUGE_VAL;
@@ -91,7 +91,7 @@ class ReferenceCast {
         r->clip(o - (high - inset_.contour * length), -d);
       }
     }
-    // Descendants lie in the cube too, but their insets do not add up with its.
+    // Descendants also lie in this cube, but their insets must not be added to its inset.
     if (cube.is_empty()) return;
     if (voxel.is_leaf() || level == last_level_) {
       if (!best_ || cube.enter < best_->t) best_ = {cube.enter, level, cell};
@@ -108,7 +108,7 @@ class ReferenceCast {
   std::optional<ReferenceHit> best_;
 };
 
-/// Whether a point lies in the shape of the voxel `cell` of `level`, to `slack`.
+/// Returns whether a point lies in the shape of the voxel `cell` of `level`, within `slack`.
 inline bool is_in_shape(const TestVoxel& root, int level, Vec3i cell, Vec3d point, double slack) {
   const TestVoxel* voxel = &root;
   for (int l = 0; l <= level; ++l) {

@@ -1,4 +1,4 @@
-// The wide layout against the paper's: the same cell for every ray.
+// Compares the wide layout with the paper's: both must find the same cell for every ray.
 #include "voxdag/trace/wide_cast.hpp"
 
 #include <gtest/gtest.h>

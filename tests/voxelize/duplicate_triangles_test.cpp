@@ -12,14 +12,14 @@
 namespace voxdag {
 namespace {
 
-/// World units are voxels.
+/// Returns a grid whose voxels are world units.
 Grid unit_grid() { return grid_from_bounds(Box3d{{0, 0, 0}, {64, 64, 64}}, 6); }
 
-/// `count` triangles with corners among few points, so that many are duplicates.
+/// Returns `count` triangles with corners among few points, so that many are duplicates.
 Mesh crowded_mesh(std::size_t count) {
   std::mt19937 random(1);
   Mesh mesh;
-  // Points that quantization cannot tell apart are one corner, too.
+  // Points that quantise to the same integers are also one corner.
   for (int i = 0; i < 40; ++i) {
     const auto x = static_cast<float>(random() % 4) + static_cast<float>(random() % 2) * 1e-4f;
     mesh.vertices.push_back({x, static_cast<float>(random() % 4), 1});

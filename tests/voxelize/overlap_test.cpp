@@ -10,7 +10,8 @@
 namespace voxdag {
 namespace {
 
-// An independent twin: clip the triangle to the cube in exact rationals and see what is left.
+// An independent reference: clips the triangle to the cube in exact rationals and tests what
+// remains.
 struct Rational3 {
   Int128 x, y, z, w;  // the point (x, y, z) / w, w > 0
   Int128 operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
@@ -32,7 +33,7 @@ Rational3 reduced(Rational3 p) {
   return g > 1 ? Rational3{p.x / g, p.y / g, p.z / g, p.w / g} : p;
 }
 
-/// Keeps the part with sign * p[axis] >= sign * limit. Vertices on the boundary stay.
+/// Returns the part with sign * p[axis] >= sign * limit. Vertices on the boundary stay.
 std::vector<Rational3> clip(const std::vector<Rational3>& polygon, int axis, int sign,
                             Int128 limit) {
   std::vector<Rational3> kept;
@@ -50,8 +51,8 @@ std::vector<Rational3> clip(const std::vector<Rational3>& polygon, int axis, int
   return kept;
 }
 
-/// The clipped polygon is convex: it has a point with every coordinate below `hi` if for each axis
-/// some vertex is, since the mean of those vertices' positions is.
+/// Returns whether the clipped polygon has a point with every coordinate below `hi`. It is convex.
+/// So it has one if each axis has a vertex below `hi`: the mean of these vertices.
 bool reference_overlaps(const QuantizedTriangle& t, Vec3i lo, int size) {
   std::vector<Rational3> polygon;
   for (int corner = 0; corner < 3; ++corner)
@@ -112,7 +113,8 @@ TEST(TriangleOverlapsCube, AWallOnAVoxelFaceIsOneVoxelThick) {
 }
 
 TEST(TriangleOverlapsCube, ADiagonalPlaneThroughCornersMissesTheCubesItTouchesAtFarCorners) {
-  // The plane x + y = 512: cube (0,0) only reaches it at its far edge, which is not its own.
+  // The plane x + y = 512: cube (0,0) reaches it only at its far edge, which is not part of the
+  // cube.
   const Vec3i a{512, 0, 0}, b{0, 512, 0}, c{0, 512, 1024};
   EXPECT_FALSE(triangle_overlaps_cube(a, b, c, {0, 0, 0}, 256));
   EXPECT_TRUE(triangle_overlaps_cube(a, b, c, {256, 0, 0}, 256));

@@ -1,4 +1,4 @@
-// The builder's linear conditions against the definition, at every level of the octree.
+// Compares the builder's linear conditions with the definition, at every level of the octree.
 #include "voxdag/voxelize/triangle_setup.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ void check_random_path(std::mt19937_64& random, const QuantizedTriangle& t, int 
       const Vec3i at = cell + child_offset(child) * half;
       const bool expected = overlaps(t, origin + at, half);
       const bool alive = ((children.alive >> child) & 1) != 0;
-      // Where the plane's 64-bit sums could overflow the cell is kept for its children to tell.
+      // If the plane's 64-bit sums could overflow, the cell is kept and its children decide.
       if (alive && !expected && slab_range(setup, cell, 2 * half) == 2) continue;
       ASSERT_EQ(alive, expected) << "cell of " << half << " voxels at " << at.x << "," << at.y
                                  << "," << at.z;

@@ -1,4 +1,4 @@
-// Builds the DAG of a cube of 16³ voxels and prints how many of them its surface has.
+// Builds the DAG of a cube in a grid of 16³ voxels and prints the number of voxels of its surface.
 #include <cstdio>
 
 #include "voxdag/dag/build_svdag.hpp"
