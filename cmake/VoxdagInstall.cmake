@@ -7,7 +7,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/voxdag)
 get_property(parts GLOBAL PROPERTY VOXDAG_TARGETS)
 
-# What voxdagConfig.cmake knows of each part.
+# The table of parts for voxdagConfig.cmake.
 set(VOXDAG_ROOM_TABLE "")
 foreach(room ${VOXDAG_ROOMS})
   set(packages ${VOXDAG_ROOM_${room}_PACKAGES})

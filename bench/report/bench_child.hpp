@@ -11,7 +11,7 @@ namespace voxdag {
 
 /// The cost of a process and of the children that it waited for.
 struct ProcessCost {
-  double wall_seconds = 0;       ///< From before it starts until it has ended.
+  double wall_seconds = 0;       ///< Time from before its start to its end.
   double user_seconds = 0;       ///< CPU time in the program, all threads together.
   double system_seconds = 0;     ///< CPU time in the kernel.
   std::uint64_t peak_bytes = 0;  ///< Largest resident set, of the largest process.

@@ -38,7 +38,7 @@ struct RaySet {
 /// The time of a rival for a set that it cast by itself.
 struct RivalTime {
   RayClass rays_class;
-  double seconds = 0;   ///< For the whole set.
+  double seconds = 0;   ///< Time for the whole set.
   double agreeing = 0;  ///< Rays that hit for both rival and voxdag, or for neither.
 };
 

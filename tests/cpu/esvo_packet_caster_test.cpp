@@ -129,7 +129,7 @@ TEST(EsvoPacketCaster, RaysThatStartAlongOneAxisMeetTheSame) {
     }
 }
 
-// If for each axis some ray is parallel to it, the range of the rays' directions bounds nothing.
+// Each axis has rays that are parallel to it, so the range of the rays' directions bounds nothing.
 TEST(EsvoPacketCaster, RaysAlongAllAxesFromOnePointMeetTheSame) {
   for (int levels = 2; levels <= 18; ++levels) {
     const int middle = 1 << (levels - 1);

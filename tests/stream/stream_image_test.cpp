@@ -86,8 +86,8 @@ TEST_F(StreamImage, IsTheSameInLessMemoryThanItsBlocksNeed) {
   test::expect_same_picture(image, whole());
 }
 
-/// Returns the bytes of blocks that are read to render these pictures one after the other with
-/// enough memory.
+/// Renders these pictures one after the other, with memory for `bytes` of blocks. Returns the bytes
+/// of the blocks that are loaded at the end.
 std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,
                         const std::vector<RenderOptions>& pictures) {
   StreamBlocks blocks(path, bytes);

@@ -15,7 +15,7 @@ namespace voxdag {
 struct BakeArguments {
   int rays = 0;         ///< Rays per point; 0: nothing is baked.
   double distance = 0;  ///< Length of the rays, world units; 0: kDefaultDistance grid sides.
-  static constexpr double kDefaultDistance = 0.15;  ///< As for `render --ao`.
+  static constexpr double kDefaultDistance = 0.15;  ///< The default of `render --ao`, too.
 
   double distance_in(const Grid& grid) const {
     if (distance > 0) return distance;

@@ -16,7 +16,7 @@ struct CudaDevice {
 
 struct CudaDevices {
   std::vector<CudaDevice> devices;
-  std::string why_none;  ///< If there is no device, the reason: half a sentence.
+  std::string why_none;  ///< The reason why there is no device, without a full stop.
 };
 
 /// Lists the devices. Never throws: if there is no CUDA, driver or device, why_none has the reason.

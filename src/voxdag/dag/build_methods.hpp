@@ -52,7 +52,7 @@ std::size_t thread_count(std::size_t items);
 /// The unique nodes of all sub-volumes and of the levels above them. `root` is kNoNode if there are
 /// no voxels.
 struct HashConsedNodes {
-  std::vector<std::unique_ptr<NodeStore>> stores;  ///< By level.
+  std::vector<std::unique_ptr<NodeStore>> stores;  ///< Per level.
   NodeId root;
 };
 int hash_bin_level(int levels, std::size_t triangles);

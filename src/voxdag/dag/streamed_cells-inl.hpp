@@ -53,7 +53,7 @@ class StreamedCells {
   /// 4 MiB of setups.
   static constexpr std::size_t kMostSetups = std::size_t{1} << 14;
 
-  /// Where the children's lists are on the stack.
+  /// The positions of the children's lists on the stack.
   struct Lists {
     std::size_t stack;
     std::array<std::size_t, 65> begin{};

@@ -69,7 +69,7 @@ class DagCounter {
   const Box3i& window_;
   std::uint64_t most_;
   const std::function<void()>& poll_;
-  std::vector<std::unordered_map<std::uint32_t, std::uint64_t>> whole_;  ///< By level.
+  std::vector<std::unordered_map<std::uint32_t, std::uint64_t>> whole_;  ///< Per level.
   std::uint64_t steps_ = 0;
 };
 

@@ -39,7 +39,7 @@ struct UvTransform {
   float xx = 1, xy = 0, yx = 0, yy = 1, x = 0, y = 0;
 
   Vec2f operator()(Vec2f uv) const { return linear(uv) + Vec2f{x, y}; }
-  /// Maps a difference of texture coordinates: without the translation.
+  /// Maps a difference of texture coordinates, without the translation.
   Vec2f linear(Vec2f uv) const { return {xx * uv.x + xy * uv.y, yx * uv.x + yy * uv.y}; }
   friend bool operator==(const UvTransform&, const UvTransform&) = default;
 };

@@ -68,7 +68,8 @@ Wedge wedge_at(const Mesh& mesh, std::uint64_t corner) {
 
 std::vector<std::array<PackedNormal, 3>> corner_normals(const Mesh& mesh, float crease_degrees) {
   constexpr double kRadiansPerDegree = 0.017453292519943295;
-  /// If more triangles meet, as at the tip of a fan, comparing all pairs would take too long.
+  /// If more triangles meet at a corner, as at the tip of a fan, comparing all pairs would take too
+  /// long.
   constexpr std::uint64_t kMostTriangles = 1024;
   constexpr std::size_t kBlock = 1024;
   // Slightly larger than requested, so that planes that differ by exactly the angle are smoothed in

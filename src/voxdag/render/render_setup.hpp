@@ -37,8 +37,9 @@ struct ImageBuffers {
   float* depth = nullptr;     ///< First sample's depth, world units; +infinity if it hit nothing.
   Vec3f* normal = nullptr;    ///< First sample's normal; zero if it hit nothing.
   float* occlusion =
-      nullptr;              ///< Mean part of the sky's light that arrives; 1 where nothing was hit.
-  float* shadow = nullptr;  ///< Mean part of the lights' light that arrives; 1 where there is none.
+      nullptr;  ///< Mean part of the sky's light that arrives; 1 where nothing was hit.
+  float* shadow =
+      nullptr;  ///< Mean part of the lights' light that arrives; 1 if there is no light.
   float* steps =
       nullptr;  ///< Steps of the first sample's primary ray, and its share of the beams' steps.
   /// Size of the first sample's cell, see pack_cell_pixels(); 0 if the sample hit nothing.
@@ -56,7 +57,8 @@ struct RenderSetup {
   int light_count = 0;
   SampleTables tables;
   ImageBuffers image;
-  /// Where the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without beams.
+  /// The t at which the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without
+  /// beams.
   const float* beam_starts = nullptr;
 
   VOXDAG_HD double side() const { return grid.side(); }

@@ -27,7 +27,7 @@ std::uint32_t scramble(std::uint32_t v, std::uint32_t seed) {
   return reverse_bits(v);
 }
 
-/// Returns point `index` of the first three dimensions of the Sobol sequence.
+/// Computes point `index` of the Sobol sequence in its first three dimensions.
 void sobol(std::uint32_t index, std::uint32_t point[3]) {
   // Direction numbers: single bits for dimension 0; polynomial x + 1 and m = {1} for 1; x² + x + 1
   // and m = {1, 3} for 2 (S. Joe and F. Kuo).

@@ -33,7 +33,7 @@ struct ViewTile {
 /// The sides in pixels of a beam, and of the coarse beam that finds its start.
 inline constexpr int kBeamPixels = 4, kCoarseBeamPixels = 8;
 
-/// Returns the number of beams in a row of a picture; their coarse beams are whole.
+/// Returns the number of beams in a row of a picture, rounded up to whole coarse beams.
 VOXDAG_HD constexpr int beams_across(int pixels) {
   return (pixels + kCoarseBeamPixels - 1) / kCoarseBeamPixels * (kCoarseBeamPixels / kBeamPixels);
 }

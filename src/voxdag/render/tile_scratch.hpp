@@ -6,7 +6,7 @@
 
 namespace voxdag {
 
-/// For tiles of up to kPixels pixels: many for the packets of a CPU, one for a thread of a GPU.
+/// Arrays for tiles of up to kPixels pixels: many for packets on the CPU, one for a GPU thread.
 /// Every array but `active` is indexed by the tile's pixel, in the order of ViewTile.
 template <int kPixels>
 struct TileScratch {

@@ -44,7 +44,7 @@ struct BeamStop {
   double per_exit = 0;   ///< t: where the beam leaves the cell
 };
 
-/// How far cells are widened, in units of the grid's side.
+/// The distance by which cells are widened, in units of the grid's side.
 inline constexpr double kBeamSlack = 0x1p-21;
 
 /// The two inequalities of one axis: t * lowest <= hi - apex and t * highest >= lo - apex.

@@ -16,7 +16,7 @@
 
 namespace voxdag {
 
-/// Where a cast ended, in the ray's mirrored coordinates.
+/// The cell at which a cast ended, in the ray's mirrored coordinates.
 struct CellHit {
   float t = 0;  ///< T at which the ray is first in the cell, within its range.
   std::uint32_t x = 0, y = 0, z = 0;  ///< The float bits of the cell's lower corner.

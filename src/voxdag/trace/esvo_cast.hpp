@@ -23,8 +23,8 @@ struct ContourPlane {
   int level = 0;    ///< Level of its voxel.
 };
 
-/// Where a cast ended: t is where the ray enters the shape, which may be later than it enters the
-/// cube.
+/// The voxel at which a cast ended. `t` is where the ray enters the shape, which may be after it
+/// enters the cube.
 struct EsvoHit : CellHit {
   EsvoVoxel voxel;  ///< The leaf, or the coarser voxel at which `stop` ended the cast.
   /// The contour, of the voxel or an ancestor, through whose plane the ray enters the shape; none

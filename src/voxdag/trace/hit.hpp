@@ -31,7 +31,7 @@ VOXDAG_HD constexpr Vec3i face_normal(Face face) {
 struct Hit {
   float t = 0;              ///< In units of the ray's direction; t_min if the ray starts inside.
   Vec3i voxel{};            ///< The voxel, or the lowest voxel of a coarser cell.
-  Face face = Face::kNone;  ///< Where the ray enters the cell.
+  Face face = Face::kNone;  ///< The face through which the ray enters the cell.
   std::int8_t level =
       0;  ///< L for a voxel, less if the level of detail ended the cast at a coarser cell.
   bool hit = false;

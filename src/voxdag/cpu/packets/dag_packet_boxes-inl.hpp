@@ -26,7 +26,7 @@ HWY_INLINE void DagPacketWalk::set_planes(const std::uint32_t corner[3], int lev
   const std::uint32_t rounded = (1u << below) - 1;
   const auto kept = hn::Set(d, ~rounded & (CellBox::kParts - 1)), filled = hn::Set(d, rounded);
   const auto side = hn::Set(d, 1u << (22 - level));
-  const int shift = 22 - CellBox::kBits - level;  // a part's side
+  const int shift = 22 - CellBox::kBits - level;  // log2 of a part's side
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     // Mirroring makes the last part the first.
     const bool is_mirrored = (rays_.mirrored >> axis & 1u) != 0;

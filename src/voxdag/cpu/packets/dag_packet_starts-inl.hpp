@@ -1,4 +1,4 @@
-// Finds where the walk of a packet may begin: the finest cells that hold all its rays.
+// Finds the cells at which the walk of a packet may begin: the finest cells that hold all its rays.
 #if defined(VOXDAG_DAG_PACKET_STARTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VOXDAG_DAG_PACKET_STARTS_INL
 #undef VOXDAG_DAG_PACKET_STARTS_INL

@@ -72,7 +72,7 @@ class EsvoPacketWalk : PacketRays {
   /// The results of end_at_children(), per ray and child.
   struct Tried {
     alignas(32) float enter[kFew][8], leave[kFew][8];
-    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< What the ray crosses at `enter`, by child.
+    std::uint32_t by_contour[kFew], by_cube[kFew];  ///< The plane at `enter`, by child.
     Rays rays;
   };
 
@@ -143,7 +143,7 @@ class EsvoPacketWalk : PacketRays {
   alignas(64) std::int32_t position_[3][RayPacket::kMaxRays], direction_[3][RayPacket::kMaxRays];
   /// The least and greatest positions and directions, by axis.
   std::int32_t position_range_[3][2], direction_range_[3][2];
-  std::int32_t sign_[3];  ///< By axis: -1 where mirrored, else 0.
+  std::int32_t sign_[3];  ///< Per axis: -1 if mirrored, else 0.
   std::size_t top_ = 0;
   Visit stack_[8 * kMaxLevels];
   /// The path to the visited voxel, by level: the slots of the descriptors, and the indices of the

@@ -18,8 +18,8 @@ struct LanesVec {
   Vec3f sum() const { return {sum_of(x), sum_of(y), sum_of(z)}; }
 };
 
-/// For four normals: the differences from their grid points to the nearest points on the normals'
-/// rays, and their weights. The angle of a difference is inversely proportional to the point's
+/// The differences from the grid points of four normals to the nearest points on the normals' rays,
+/// and the normals' weights. The angle of a difference is inversely proportional to the point's
 /// distance.
 struct Residuals {
   LanesVec difference;

@@ -357,7 +357,7 @@ void add_super_root(EsvoTree& tree) {
   EsvoNode top;
   top.valid_mask = 1;
   top.first_child = 1;
-  // If there are values, the new node needs one, which no descriptor stores.
+  // If the tree has values, the new node needs one too. No descriptor stores it.
   if (tree.has_values()) {
     top.first_value = static_cast<std::uint32_t>(tree.values.size());
     tree.values.emplace_back();

@@ -181,7 +181,7 @@ class GltfReader {
   const bool has_appearance_;
   const GltfFile file_;
   GltfAccessors accessors_;
-  CountedVector<GltfMesh> meshes_;  ///< By index; empty unless an instance shows it.
+  CountedVector<GltfMesh> meshes_;  ///< Per mesh of the file; empty unless an instance shows it.
   bool has_normals_ = false, has_uvs_ = false, has_colors_ = false;
   bool has_default_material_ = false;
   std::uint32_t steps_ = 0;

@@ -51,7 +51,7 @@ class GltfValue {
 
   const MeshSource* source_;
   const JsonDocument* document_;
-  std::uint32_t node_;              ///< If absent: the value that lacks the member.
+  std::uint32_t node_;              ///< The value; if absent, the object without the member.
   std::uint32_t absent_count_ = 0;  ///< Number of keys that lead from `node_` to an absent value.
   std::array<const char*, kMostAbsent> absent_{};
 };

@@ -271,7 +271,7 @@ class ObjReader {
   ObjCounts totals_;
   MemoryReservation memory_;  ///< The arrays of the mesh.
   NameTable material_ids_, libraries_;
-  std::optional<ObjAttributes> attributes_;  ///< If the appearance is read.
+  std::optional<ObjAttributes> attributes_;  ///< Set if the appearance is read.
   Mesh mesh_;
 };
 
