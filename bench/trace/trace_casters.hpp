@@ -33,7 +33,7 @@ class TraceLayout {
   virtual WalkCost cost(std::span<const CastRay> casts) const = 0;
 };
 
-/// Return the names of the layouts, of all kinds of voxels or of these voxels; the default comes
+/// Returns the names of the layouts, of all kinds of voxels or of these voxels; the default comes
 /// first.
 std::vector<std::string> trace_layouts();
 std::vector<std::string> trace_layouts(const VoxelSet& voxels);

@@ -19,8 +19,8 @@ class Warp {
 
   /// Runs `thread` for the threads of the warp that begins with thread `first` of the block.
   void run(const std::function<void()>& thread, const dim3& block, unsigned first);
-  /// Called by a running thread: waits until all threads of the warp have called it, and returns
-  /// the value of the thread `by` lanes on.
+  /// Waits until all threads of the warp have called it, and returns the value of the thread `by`
+  /// lanes on. A running thread calls it.
   unsigned long long value_down(unsigned long long value, unsigned by);
 
  private:

@@ -56,8 +56,7 @@ inline float reference_plane_t(const GridRay& ray, int levels, int axis, std::in
   return ray.plane_t(axis, static_cast<float>(is_mirrored ? 2 - plane : 1 + plane));
 }
 
-/// Return T at the plane of `axis` through which the ray enters (leaves) the voxels with coordinate
-/// i.
+/// Returns T at the plane of `axis` through which the ray enters the voxels with coordinate i.
 inline float reference_enter(const GridRay& ray, int levels, int axis, std::int32_t i) {
   return reference_plane_t(ray, levels, axis, (ray.mirrored >> axis & 1u) != 0 ? i : i + 1);
 }

@@ -9,7 +9,7 @@ namespace voxdag {
 
 class CommandLine {
  public:
-  /// `version` is the text that --version prints.
+  /// Makes the parser of `program`; `version` is the text that --version prints.
   CommandLine(const std::string& program, const std::string& purpose, const std::string& version);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;

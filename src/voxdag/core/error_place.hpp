@@ -33,7 +33,7 @@ class ErrorPlace {
       : ErrorPlace(std::string(name)) {}
 
   static ErrorPlace byte(std::uint64_t offset) { return numbered(Kind::kByte, "byte", offset); }
-  /// `number` counts from 1.
+  /// Returns the place of a line; `number` counts from 1.
   static ErrorPlace line(std::uint64_t number) { return numbered(Kind::kLine, "line", number); }
   static ErrorPlace chunk(const std::string& id) { return {Kind::kChunk, "chunk " + id}; }
   static ErrorPlace level_table() { return {Kind::kLevelTable, "level table"}; }

@@ -24,8 +24,8 @@ class OverMemory : public Error {
 /// Counts the bytes that work allocates, up to a limit. Thread-safe.
 class MemoryBudget {
  public:
-  /// `limit` is in bytes and includes `base`, the bytes that the process holds already. 0 means no
-  /// limit.
+  /// Makes a budget of `limit` bytes, which include `base`, the bytes that the process holds
+  /// already. A limit of 0 means no limit.
   explicit MemoryBudget(std::uint64_t limit = 0, std::uint64_t base = 0)
       : limit_(limit), base_(base) {}
 

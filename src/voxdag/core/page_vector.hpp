@@ -23,7 +23,7 @@ class PageVector {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
-  /// A null budget counts nothing.
+  /// Makes an empty array. A null budget counts nothing.
   explicit PageVector(MemoryBudget* budget = nullptr) : budget_(budget) {}
   PageVector(PageVector&& other) noexcept { swap(other); }
   PageVector& operator=(PageVector&& other) noexcept {
@@ -46,7 +46,7 @@ class PageVector {
   const T& operator[](std::size_t i) const { return data_[i]; }
   T& back() { return data_[size_ - 1]; }
 
-  /// `value` must not be an element of this array.
+  /// Appends `value`, which must not be an element of this array.
   void push_back(const T& value) {
     if (size_ == capacity()) grow(size_ + 1);
     data_[size_++] = value;

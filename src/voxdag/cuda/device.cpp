@@ -5,7 +5,7 @@
 namespace voxdag {
 namespace {
 
-/// CUDA counts versions as 1000 * major + 10 * minor.
+/// Formats a CUDA version, which is 1000 * major + 10 * minor.
 std::string version_text(int version) {
   return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
 }

@@ -13,7 +13,8 @@ namespace voxdag {
 /// free memory. `what` names the content for the error: "the DAG".
 void require_device_memory(std::uint64_t bytes, const char* what);
 
-/// The untyped functions behind DeviceBuffer and PinnedBuffer. Allocation throws Error.
+/// Allocates, frees and copies for DeviceBuffer and PinnedBuffer. Allocation and copies throw
+/// Error.
 void* allocate_device(std::uint64_t bytes, const char* what);
 void free_device(void* memory) noexcept;
 void* allocate_pinned(std::uint64_t bytes, const char* what);

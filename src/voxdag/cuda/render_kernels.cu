@@ -11,8 +11,8 @@ namespace {
 constexpr std::uint32_t kBeamThreads = 64;
 constexpr int kFilterSide = 16;  // pixels along a side of a block
 
-/// At least sixteen blocks run per multiprocessor. So 130 multiprocessors run all beams of a
-/// picture of 1920×1080 at once.
+/// Casts beams. At least sixteen blocks run per multiprocessor, so that 130 multiprocessors run all
+/// beams of a picture of 1920×1080 at once.
 template <class Nodes>
 __global__ void __launch_bounds__(kBeamThreads, 16)
     beams_kernel(Nodes nodes, const __grid_constant__ RenderSetup setup, std::uint32_t first,

@@ -31,9 +31,9 @@ VOXDAG_HD inline ViewTile block_tile(const Camera& camera, std::uint32_t block) 
   return tile;
 }
 
-/// Return the position of a thread's pixel in its block. The lowest five bits of the thread index
-/// are x y x y x within the warp's 8×4 pixels, lowest first; the next ones are x, y and y of the
-/// warp.
+/// Returns the x position of a thread's pixel in its block. The lowest five bits of the thread
+/// index are x y x y x within the warp's 8×4 pixels, lowest first; the next ones are x, y and y of
+/// the warp.
 VOXDAG_HD constexpr int thread_x(std::uint32_t thread) {
   return static_cast<int>((thread & 1u) | (thread >> 1 & 2u) | (thread >> 2 & 4u) |
                           (thread >> 2 & 8u));

@@ -17,8 +17,8 @@ class TimedCasts {
   /// Throws Error if memory is short.
   TimedCasts(const DeviceScene& dag, std::span<const CastRay> rays);
 
-  /// closest() finds the first cell along each ray, any() whether there is one. Both return the
-  /// time of the kernel in seconds.
+  /// Finds the first cell along each ray (closest) or whether there is one (any). Returns the time
+  /// of the kernel in seconds.
   double closest() const;
   double any() const;
   /// Sets hits[i] to 1 if ray i met something in the last of these casts, else to 0.

@@ -55,14 +55,21 @@ struct HashConsedNodes {
   std::vector<std::unique_ptr<NodeStore>> stores;  ///< Per level.
   NodeId root;
 };
+/// Returns the level whose cells are the sub-volumes of kHashConsed.
 int hash_bin_level(int levels, std::size_t triangles);
+/// Builds the unique nodes. Adds to `report` and `bytes`. Throws OverMemory and Cancelled.
 HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& report,
                                      StageBytes& bytes);
+/// Converts the nodes to the canonical DAG. Throws Error, OverMemory and Cancelled.
 Svdag number_nodes(HashConsedNodes nodes, const BuildInput& input, BuildReport& report);
 
-/// The reduced trees of all sub-volumes below a top tree. Level 0 is empty without voxels.
+/// Returns the level whose cells are the sub-volumes of kSort.
 int sort_bin_level(int levels);
+/// Returns the reduced trees of all sub-volumes below a top tree; level 0 is empty if there are no
+/// voxels. Adds to `report` and `bytes`. Throws OverMemory and Cancelled.
 SortTree voxelize_by_sorting(const BuildInput& input, BuildReport& report, StageBytes& bytes);
+/// Reduces the tree once more and converts it to the canonical DAG. Throws Error, OverMemory and
+/// Cancelled.
 Svdag merge_and_number(SortTree tree, const BuildInput& input, BuildReport& report);
 
 }  // namespace voxdag

@@ -1,6 +1,6 @@
 #pragma once
 /// Splits a triangle at the midpoints of its long edges. Only the length of an edge decides, so
-/// both of its triangles split it in the same way.
+/// both of its triangles split it equally.
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"

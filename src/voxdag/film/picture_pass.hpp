@@ -19,7 +19,7 @@ struct PictureKind {
   bool needs_steps = false;                  ///< Whether RenderOptions::with_steps must be set.
 };
 
-/// The table of all kinds. EXR holds the values: "picture", tone mapped in linear light;
+/// Returns the table of all kinds. EXR holds the values: "picture", tone mapped in linear light;
 /// "radiance"; "depth", world units (Z); "normal" (N.X N.Y N.Z); "occlusion", "shadow" and "steps".
 /// PNG shows them: picture and radiance in sRGB; depth from white (nearest) to dark grey, and black
 /// for the background; normals as (n + 1) / 2; steps as a heat map up to their maximum.

@@ -12,7 +12,7 @@ namespace voxdag {
 /// Decodes a PNG or a JPEG; the first bytes decide which. Errors call the file `name`. Counts its
 /// memory before it allocates: the pixels, and for a progressive JPEG twice as many bytes in
 /// addition. Throws Error if the image is truncated, damaged or beyond the limits of
-/// image_limits.hpp, OverMemory, and whatever `options.poll` throws.
+/// image_limits.hpp, OverMemory, and passes exceptions of `options.poll` on.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& name,
                           const ImageOptions& options = {});
 

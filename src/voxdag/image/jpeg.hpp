@@ -13,7 +13,8 @@ bool is_jpeg(std::span<const std::uint8_t> bytes);
 
 /// Decodes a grey, YCbCr or RGB JPEG, baseline or progressive, to 1 or 3 channels of 8 bits. Errors
 /// call the file `name`. Throws Error if the image is truncated, damaged, too large (see
-/// image_limits.hpp) or in another colour space, OverMemory, and whatever `options.poll` throws.
+/// image_limits.hpp) or in another colour space, OverMemory, and passes exceptions of
+/// `options.poll` on.
 DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name,
                          const ImageOptions& options = {});
 

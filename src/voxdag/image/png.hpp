@@ -20,7 +20,7 @@ bool is_png(std::span<const std::uint8_t> bytes);
 /// Decodes any PNG with its alpha. Palette indices become colours; values of less than 8 bits are
 /// expanded to 8 bits; gamma and colour profiles are ignored. Errors call the file `name`. Throws
 /// Error if the image is truncated, damaged or too large (see image_limits.hpp), OverMemory, and
-/// whatever `options.poll` throws.
+/// passes exceptions of `options.poll` on.
 DecodedImage decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
                         const ImageOptions& options = {});
 

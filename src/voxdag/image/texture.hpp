@@ -19,7 +19,7 @@ struct TextureWraps {
 
 // Every function below reserves the memory of its result from options.memory (16 bytes per pixel
 // for a Texture, 4 for a HeightTexture) and throws OverMemory. It calls options.poll once per row
-// of pixels and throws whatever that throws.
+// of pixels and passes its exceptions on.
 
 /// Makes a colour texture from sRGB. Texels whose alpha is at least `visible_alpha` (0..1) become
 /// opaque, the others transparent black; with 0 all become opaque. So the mean alpha of a region is

@@ -18,7 +18,7 @@ class FileCopy {
   /// cannot be read or is truncated during the read.
   explicit FileCopy(const std::filesystem::path& path, SizeLimit limit = {});
 
-  /// Aligned to 64 bytes or more; empty for an empty file.
+  /// Returns the bytes, aligned to at least 64; none for an empty file.
   std::span<const std::byte> bytes() const { return {bytes_.get(), size_}; }
 
  private:

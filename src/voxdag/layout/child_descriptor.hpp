@@ -24,18 +24,20 @@ struct ChildDescriptor {
 
   std::uint32_t children = 0, contours = 0;
 
-  /// Only valid children may be leaves or have contours.
+  /// Makes a descriptor without pointers. Only valid children may be leaves or have contours.
   static ChildDescriptor make(std::uint32_t valid_mask, std::uint32_t leaf_mask,
                               std::uint32_t contour_mask) {
     assert(valid_mask < 256 && (leaf_mask & ~valid_mask) == 0 && (contour_mask & ~valid_mask) == 0);
     return {valid_mask << 8 | leaf_mask, contour_mask};
   }
-  /// `slots` is the distance from this descriptor to the first child's, or to the far pointer.
+  /// Sets the child pointer: `slots` is the distance from this descriptor to the first child's
+  /// descriptor, or to the far pointer.
   void set_child_pointer(std::uint32_t slots, bool is_far) {
     assert(slots <= kMaxChildPointer);
     children = (children & 0xFFFFu) | slots << 17 | (is_far ? 1u << 16 : 0u);
   }
-  /// `words` is the distance from this descriptor to its first contour, in words of 32 bits.
+  /// Sets the contour pointer: `words` is the distance from this descriptor to its first contour,
+  /// in words of 32 bits.
   void set_contour_pointer(std::uint32_t words) {
     assert(words <= kMaxContourPointer);
     contours = (contours & 0xFFu) | words << 8;

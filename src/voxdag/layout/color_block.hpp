@@ -42,7 +42,7 @@ struct Rgb565 {
 struct ColorBlock {
   std::uint64_t bits = 0;
 
-  /// `selectors` is the content of bits 32..63.
+  /// Packs a block; `selectors` is the content of bits 32..63.
   VOXDAG_HD static constexpr ColorBlock pack(Rgb565 c0, Rgb565 c1, std::uint32_t selectors) {
     return {static_cast<std::uint64_t>(selectors) << 32 | c1.pack() << 16 | c0.pack()};
   }

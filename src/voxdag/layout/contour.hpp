@@ -25,7 +25,7 @@ struct Contour {
 
   std::uint32_t bits = 0;
 
-  /// `normal` must not be zero; low <= high.
+  /// Packs a contour. `normal` must not be zero, low <= high, and all values must be in range.
   VOXDAG_HD static Contour make(Vec3i normal, int low, int high) {
     assert(0 <= low && low <= high && high <= kMaxPosition);
     const auto field = [](std::int32_t v) { return static_cast<std::uint32_t>(v) & 63u; };

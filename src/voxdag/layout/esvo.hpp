@@ -84,7 +84,7 @@ struct EsvoView {
   std::uint64_t root = 0;   ///< Slot of the root's descriptor.
   int levels = kMinLevels;  ///< L: voxels of level L, the finest, have a side of 1.
 
-  /// An octree without voxels has no slots at all.
+  /// Returns whether there are no voxels: then there are no slots at all.
   VOXDAG_HD bool is_empty() const { return slot_count == 0; }
   VOXDAG_HD ChildDescriptor descriptor(std::uint64_t slot) const {
     return ChildDescriptor::from_slot(slots[slot]);

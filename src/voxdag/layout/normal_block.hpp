@@ -91,7 +91,7 @@ struct GridAxis {
 struct NormalBlock {
   std::uint32_t words[4] = {};
 
-  /// `u_steps` and `v_steps` are the contents of words 2 and 3.
+  /// Packs a block; `u_steps` and `v_steps` are the contents of words 2 and 3.
   VOXDAG_HD static constexpr NormalBlock pack(CubePoint base, GridAxis u_axis, GridAxis v_axis,
                                               std::uint32_t u_steps, std::uint32_t v_steps) {
     return {{base.pack(), u_axis.pack() | v_axis.pack() << 16, u_steps, v_steps}};
@@ -100,7 +100,7 @@ struct NormalBlock {
   VOXDAG_HD constexpr CubePoint base() const { return CubePoint::unpack(words[0]); }
   VOXDAG_HD constexpr GridAxis u_axis() const { return GridAxis::unpack(words[1] & 0xFFFFu); }
   VOXDAG_HD constexpr GridAxis v_axis() const { return GridAxis::unpack(words[1] >> 16); }
-  /// Return the steps, 0 to 3, of value `index` in [0, 16) along the axes.
+  /// Returns the step, 0 to 3, of value `index` in [0, 16) along the u axis.
   VOXDAG_HD constexpr int u_step(int index) const { return step(words[2], index); }
   VOXDAG_HD constexpr int v_step(int index) const { return step(words[3], index); }
 

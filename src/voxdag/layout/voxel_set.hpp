@@ -20,7 +20,7 @@ class VoxelSet {
     return std::visit([](const auto& view) { return view.levels; }, view_);
   }
 
-  /// See the functions of these names in for_each_voxel.hpp, and for an ESVO in
+  /// Calls the function of this name: for a DAG in for_each_voxel.hpp, for an ESVO in
   /// esvo_leaf_parts.hpp.
   template <class Fn>
   void for_each_leaf_block(const Box3i& window, const Fn& fn) const {
@@ -30,6 +30,7 @@ class VoxelSet {
   void for_each_voxel(const Box3i& window, const Fn& fn) const {
     std::visit([&](const auto& view) { voxdag::for_each_voxel(view, window, fn); }, view_);
   }
+  /// Returns the mask of the 4³ voxels around `voxel`, in Morton order; 0 if there are none.
   std::uint64_t leaf_block_at(Vec3i voxel) const {
     if (dag() != nullptr) return voxdag::leaf_block_at(*dag(), voxel);
     std::uint64_t found = 0;

@@ -100,7 +100,7 @@ class PointTree {
            search(corners, high, middle + 1, last, 1 - axis, visits, is_hit);
   }
 
-  /// Returns whether the box is empty or lies wholly outside one edge of the triangle.
+  /// Returns whether the box is empty or lies completely outside one edge of the triangle.
   static bool is_outside(const PlanePoint (&corners)[3], const Box& box) {
     if (box.lo.x > box.hi.x || box.lo.y > box.hi.y) return true;
     for (int i = 0; i < 3; ++i) {

@@ -7,7 +7,7 @@
 
 namespace voxdag {
 
-/// Host only. Fills `samples`, one for each pixel of the tile, row by row.
+/// Sets `samples`, one for each pixel of the tile, row by row. Host only.
 inline void find_source_samples(const ViewSource& source, const RenderSetup& setup,
                                 const ViewTile& tile, std::span<ViewSample> samples) {
   std::fill(samples.begin(), samples.end(), ViewSample{});

@@ -93,7 +93,7 @@ void streets(Builder& b, std::uint32_t seed, int blocks) {
   };
   for (int axis = 0; axis < 2; ++axis)
     b.at(placed({}, 0.25 * axis), [&] {
-      // In this frame the street runs along x. Streets along z have the pitch of the other axis.
+      // In this frame the streets run along x. In the turned frame the two pitches are exchanged.
       const double along = axis == 0 ? kPitchX : kPitchZ, across = axis == 0 ? kPitchZ : kPitchX;
       for (int line = 0; line <= blocks; ++line) {
         const double z = (line - blocks / 2.0) * across;

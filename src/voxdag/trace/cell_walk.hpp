@@ -28,7 +28,7 @@ class CellWalk {
     select_child(t);
   }
 
-  /// Return the float bits of the cell's lower corner.
+  /// Returns the float bits of a coordinate of the cell's lower corner.
   VOXDAG_HD std::uint32_t x() const { return x_; }
   VOXDAG_HD std::uint32_t y() const { return y_; }
   VOXDAG_HD std::uint32_t z() const { return z_; }

@@ -57,9 +57,9 @@ class BeamPacketWalk : PacketLanes {
     float low[2], high[2];
   };
 
-  /// A beam overlaps [low, high], relative to the apex, while t * lowest <= high and t * highest >=
-  /// low. The sign of `lowest` or `highest` decides whether the inequality gives the t at which the
-  /// beam enters or the t at which it leaves.
+  /// Prepares the factors of an axis. A beam overlaps [low, high], relative to the apex, while t *
+  /// lowest <= high and t * highest >= low. The sign of `lowest` or `highest` decides whether the
+  /// inequality gives the t at which the beam enters or the t at which it leaves.
   void prepare(int axis) {
     constexpr double kLeast = 1e-30;
     const double* const lowest = packet_.lowest[axis];

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kMostAtOnce = 1 << 18;  // samples
 
-/// splitmix64: returns a random number for each counter value.
+/// Returns a random number for each counter value, by splitmix64.
 std::uint64_t mix(std::uint64_t v) {
   v += 0x9E3779B97F4A7C15ull;
   v = (v ^ v >> 30) * 0xBF58476D1CE4E5B9ull;

@@ -232,9 +232,9 @@ class CutSearch {
            (kOffsets << 8) + (a << 16 | b << 8 | count_), kOffsets <= count_ - b, best);
   }
 
-  /// Let W be the weight of all values, S = (x, y, z) the sum of the three prefix sums of
-  /// differences from the mean, and aa, ab, bb the sums of products of the selectors in thirds. The
-  /// best ends then reduce the error by 9 W |S|² / (aa bb - ab²).
+  /// Updates the best cuts of the lanes. Let W be the weight of all values, S = (x, y, z) the sum
+  /// of the three prefix sums of differences from the mean, and aa, ab, bb the sums of products of
+  /// the selectors in thirds. The best ends then reduce the error by 9 W |S|² / (aa bb - ab²).
   void update(FloatLanes aa, FloatLanes ab, FloatLanes x, FloatLanes y, FloatLanes z, IntLanes code,
               IntLanes valid, BestCuts& best) const {
     const FloatLanes bb = nine_weight_ - aa - ab * 2.0f;
