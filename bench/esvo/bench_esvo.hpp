@@ -35,8 +35,8 @@ struct EsvoBenchPlan {
   bool silhouettes = true;
 };
 
-/// The compared forms: first those of the paper's Table 2, in its order; then contours on a coarse
-/// grid, the coarsest one whose silhouettes are as good as those of the cubes.
+/// The compared forms: first those of the paper's Table 2, in its order; then contours on the
+/// coarsest grid whose silhouettes are as good as those of the cubes.
 enum class EsvoForm {
   kTriangles,
   kCubes,
@@ -80,8 +80,7 @@ struct EsvoRateRow {
   ImageSize size;
   std::uint64_t rays = 0;
   std::array<double, kEsvoForms.size()> mrays_per_second{};
-  std::array<double, kEsvoForms.size()>
-      agreement{};  ///< Fraction of the rays that agree with the triangles.
+  std::array<double, kEsvoForms.size()> agreement{};  ///< Fraction that agrees with the triangles.
 };
 
 /// The silhouette errors at one resolution: the fraction of the rays to the finest voxels for which

@@ -9,8 +9,7 @@ namespace voxdag {
 namespace {
 
 double cast_all(const TraceRunner& runner, std::size_t count, std::uint8_t* hits) {
-  constexpr std::size_t kBlock =
-      8192;  // a multiple of Embree's packets of 16, and of the ray windows
+  constexpr std::size_t kBlock = 8192;  // a multiple of packets and ray windows
   if (runner.cast_set) return runner.cast_set(hits);
   const auto start = std::chrono::steady_clock::now();
   if (runner.before) runner.before();

@@ -52,7 +52,7 @@ class Descriptor {
 /// Runs in the child and never returns. Calls only functions that are safe between fork and exec.
 [[noreturn]] void become(char* const* arguments, const char* directory, int out, int err) {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends with a benchmark that is killed
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends the child if the benchmark is killed
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) signal(number, SIG_DFL);
   const int empty = open("/dev/null", O_RDONLY);
   dup2(empty, STDIN_FILENO);
@@ -123,7 +123,7 @@ ChildResult run_child(const std::vector<std::string>& command,
   struct rusage usage {};
   while (wait4(child, &status, 0, &usage) < 0)
     if (errno != EINTR) fail(command[0]);
-  kill(-child, SIGKILL);  // processes that the child left running
+  kill(-child, SIGKILL);  // ends processes that the child left running
   progress.throw_if_cancelled();
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.cost.user_seconds = seconds_of(usage.ru_utime);

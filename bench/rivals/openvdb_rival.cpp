@@ -16,7 +16,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::size_t kSampleRays = 100'000;  // rays of a set
+constexpr std::size_t kSampleRays = 100'000;  // rays of a set that are cast
 
 void write_rays(const std::filesystem::path& file, const Grid& grid,
                 const std::vector<CastRay>& casts) {

@@ -44,7 +44,7 @@ Process::Process(const std::vector<std::string>& command, const std::string& std
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("cannot fork");
   if (pid_ > 0) return;
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with a test that is killed
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends the program if the test is killed
   const int in = open("/dev/null", O_RDONLY);
   if (dup2(in, 0) < 0 || dup2(out_, 1) < 0 || dup2(err_, 2) < 0) _exit(126);
   execvp(arguments[0], arguments.data());

@@ -103,7 +103,7 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForEveryEffect) {
   const ScalarCaster wide(WideNodes(wide_dag.view()));
   for (Picture& picture : pictures(1)) {
     SCOPED_TRACE(picture.name);
-    picture.options.with_steps = false;  // another kernel's
+    picture.options.with_steps = false;  // another kernel counts steps
     const RenderedImage expected = render_image(dag.view(), picture_grid(), picture.options);
     expect_equal(
         render_as_device(dag.view(), SvdagNodes(dag.view()), paper, picture.options, nullptr),
@@ -130,7 +130,7 @@ TEST(RenderPixel, EqualsTheTilesOfTheCpuForAnEsvo) {
   const ContourNodes nodes(esvo.view());
   for (Picture& picture : pictures(1)) {
     SCOPED_TRACE(picture.name);
-    picture.options.with_steps = false;  // another kernel's
+    picture.options.with_steps = false;  // another kernel counts steps
     expect_equal(
         render_as_device(esvo.view(), nodes, ScalarCaster(nodes), picture.options, nullptr),
         render_image(esvo.view(), picture_grid(), picture.options));

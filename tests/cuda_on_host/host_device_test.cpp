@@ -111,7 +111,7 @@ void render_from_source(const DeviceScene& scene) {
 void measure(const DeviceScene& scene) {
   const RenderPlan plan(scene.host(), picture_grid(), small_picture());
   EXPECT_GT(TimedBeams(scene, plan.setup()).run(), 0);
-  const TimedCasts casts(scene, std::vector<CastRay>(10));  // they miss
+  const TimedCasts casts(scene, std::vector<CastRay>(10));  // rays that miss
   EXPECT_GT(casts.any() + casts.closest(), 0);
   std::vector<std::uint8_t> hits(10, 1);
   casts.copy_hits(hits);

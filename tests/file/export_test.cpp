@@ -134,7 +134,7 @@ TEST(ExportRaw, LargeArraysAreWrittenInStrips) {
     ASSERT_EQ(bytes.size(), std::size_t(size.x) * size.y * size.z);
     for (const Vec3i v : voxels) {
       char& byte = bytes[v.x + std::size_t(size.x) * (v.y + std::size_t(size.y) * v.z)];
-      byte = byte == 0 ? 2 : 3;  // 2: should have been set and was not
+      byte = byte == 0 ? 2 : 3;  // 2: the voxel was not set, but should be
       ASSERT_EQ(byte, 3);
     }
     EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 1), 0);

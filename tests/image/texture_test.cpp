@@ -51,7 +51,7 @@ TEST(Texture, NormalsAreUnitAndTheirMeansShorter) {
 }
 
 TEST(Texture, NormalScaleFlattensOrSteepens) {
-  const DecodedImage image = image_of(1, 1, {{49151, 32768, 65535, kFull}});  // x 0.5, z 1
+  const DecodedImage image = image_of(1, 1, {{49151, 32768, 65535, kFull}});  // x is 0.5, z is 1
   const Texture::Value flat = make_normal_texture(image, 0).sample(0, {0, 0});
   EXPECT_NEAR(unpack_component(flat[0]), 0, 1e-4f);
   const Texture::Value steep = make_normal_texture(image, 4).sample(0, {0, 0});

@@ -51,7 +51,7 @@ void expect_tiles(const Polygon& polygon, const std::vector<Triangle>& triangles
   for (const Triangle& t : triangles) {
     const double area = flat_area(polygon, {t[0], t[1], t[2]});
     sum += area;
-    EXPECT_GE(area, -1e-9);  // corners on one line, rounded
+    EXPECT_GE(area, -1e-9);  // rounding of corners on one line
     for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2]), std::pair(t[2], t[0])})
       a < b ? ++edges[{a, b}] : --edges[{b, a}];
   }

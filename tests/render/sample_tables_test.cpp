@@ -51,7 +51,7 @@ TEST(SampleTables, HemispheresFollowTheCosineAndLengthsTheFalloff) {
     for (int i = 0; i < 4; ++i) above[i] += sample.reach > static_cast<float>(i) / 4 ? 1 : 0;
   }
   const auto count = static_cast<double>(sets.hemisphere().size());
-  EXPECT_NEAR(cosine / count, 2.0 / 3, 1e-3);  // of a density of cos / pi
+  EXPECT_NEAR(cosine / count, 2.0 / 3, 1e-3);  // for a density of cos / pi
   for (int i = 0; i < 4; ++i)
     EXPECT_NEAR(above[i] / count, (1 - i / 4.0) * (1 - i / 4.0), 0.01) << i;
 }

@@ -32,9 +32,9 @@ struct TrueLine {
   Real speed() const { return std::sqrt(dot(direction, direction)); }
 };
 
-/// Origins and directions as rounded by the traversal differ from the true ones by at most 2^-24
-/// and 2^-23 of the grid, float t by 2^-24 of its size, which is up to four grids: 2^-21 N voxels
-/// in all.
+/// Returns the tolerance. The traversal rounds origins by at most 2^-24 and directions by at most
+/// 2^-23 of the grid. A float t has an error of 2^-24 of its size, which is up to four grids. The
+/// sum is at most 2^-21 N voxels.
 Real tolerance_voxels(const Grid& grid) {
   return std::ldexp(static_cast<Real>(grid.resolution()), -21);
 }

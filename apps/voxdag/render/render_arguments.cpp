@@ -69,7 +69,7 @@ void check_render_arguments(RenderArguments& arguments, Session& session) {
     throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
   check_view(arguments.options.view);
-  constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // besides the sun
+  constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // without the sun
   if (arguments.options.lights.size() > kMostLights)
     throw UsageError("--light", fmt::format("is given {} times; at most {} are allowed",
                                             arguments.options.lights.size(), kMostLights));

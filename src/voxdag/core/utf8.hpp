@@ -18,7 +18,7 @@ inline std::size_t utf8_character_bytes(std::string_view text) {
   if (text.empty()) return 0;
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {  // Neither overlong nor a surrogate.
+  if (first >= 0xE0 && first <= 0xEF) {  // Excludes overlong forms and surrogates.
     const bool second = follows(1, first == 0xE0 ? 0xA0 : 0x80, first == 0xED ? 0x9F : 0xBF);
     return second && follows(2) ? 3 : 0;
   }

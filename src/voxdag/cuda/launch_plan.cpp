@@ -21,8 +21,7 @@ LaunchPlan::LaunchPlan(std::uint32_t blocks, int samples, double work_per_sample
 
 std::optional<LaunchRange> LaunchPlan::next() {
   if (sample_ == samples_) return std::nullopt;
-  const double affordable =
-      std::max(work_per_launch_ / work_per_sample_, 1.0);  // samples of blocks
+  const double affordable = std::max(work_per_launch_ / work_per_sample_, 1.0);  // samples
   if (block_ == 0) {
     const double passes = std::clamp(affordable / blocks_, 1.0, static_cast<double>(max_samples_));
     end_sample_ = sample_ + static_cast<int>(std::min<double>(passes, samples_ - sample_));

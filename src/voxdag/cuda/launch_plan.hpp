@@ -36,7 +36,7 @@ class LaunchPlan {
   int samples_, max_samples_;
   double work_per_sample_, work_per_launch_;
   std::uint32_t block_ = 0;
-  int sample_ = 0, end_sample_ = 0;  // of the current pass over the blocks
+  int sample_ = 0, end_sample_ = 0;  // range of the current pass over the blocks
 };
 
 }  // namespace voxdag

@@ -100,7 +100,7 @@ class DagSink {
 
  private:
   std::span<const std::unique_ptr<NodeStore>> stores_;
-  std::vector<NodeStore::Run> runs_;  // by level
+  std::vector<NodeStore::Run> runs_;  // per level
   PageArray<CachedLeaf> leaf_cache_;
 };
 

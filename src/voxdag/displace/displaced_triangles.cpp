@@ -141,7 +141,7 @@ Interval DisplacedTriangles::heights_of(const Pass& pass, const DisplacedPiece& 
       const std::array<Vec3f, 3>& n = piece.normals;
       const float most =
           std::max({std::abs(n[0][axis]), std::abs(n[1][axis]), std::abs(n[2][axis])});
-      if (most / piece.shortest < 0.4f) continue;  // projection_weights() gives it no weight.
+      if (most / piece.shortest < 0.4f) continue;  // see projection_weights()
       const Vec2f lo = projected_uv(flat.lo, axis, d.box_size);
       const Vec3d extent = (flat.hi - flat.lo) * (1 / d.box_size);
       const Vec2f size{static_cast<float>(axis == 0 ? extent.z : extent.x),

@@ -43,7 +43,7 @@ MetadataJson parse_metadata_json(std::string_view text) {
     return MetadataJson::parse(text);
   } catch (const MetadataJson::parse_error& error) {
     throw Error("", ErrorPlace::byte(error.byte), "not valid JSON");
-  } catch (const MetadataJson::exception& error) {  // a number out of range
+  } catch (const MetadataJson::exception& error) {  // thrown for a number out of range
     throw Error("", "", std::string("not valid JSON: ") + error.what());
   }
 }

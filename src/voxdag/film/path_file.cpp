@@ -71,7 +71,7 @@ Json parse(const std::string& file) {
     if (const std::size_t at = reason.find("syntax error"); at != std::string::npos)
       reason.erase(0, at);
     throw Error(file, ErrorPlace::byte(error.byte), reason);
-  } catch (const Json::exception&) {  // a number that no double holds
+  } catch (const Json::exception&) {  // thrown for a number out of the range of double
     throw Error(file, "", "a number is out of range");
   }
 }

@@ -68,7 +68,7 @@ class MipPyramid {
   /// Interpolates between the two levels around `level`, which may be any number.
   Value sample_between(float level, Vec2f uv) const {
     const float clamped =
-        std::clamp(level, 0.0f, static_cast<float>(level_count() - 1));  // NaN fails both tests
+        std::clamp(level, 0.0f, static_cast<float>(level_count() - 1));  // clamp() keeps NaN
     const int lower = clamped > 0 ? static_cast<int>(clamped) : 0;
     const float weight = clamped > 0 ? clamped - static_cast<float>(lower) : 0;
     Value value = sample(lower, uv);
@@ -80,7 +80,8 @@ class MipPyramid {
 
   /// Returns the mean over a region.
   Value mean(const UvRegion& region) const {
-    constexpr float kMaxTaps = 8, kTapDistance = 1.2f;  // in texels of the level that is read
+    constexpr float kMaxTaps = 8,
+                    kTapDistance = 1.2f;  // distance in texels of the level that is read
     const auto w = static_cast<float>(width()), h = static_cast<float>(height());
     const float a = region.uu * w * w, b = region.uv * w * h, c = region.vv * h * h;
     const float middle = (a + c) / 2;

@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Leaves room for the suffix within the 255 bytes that file systems allow for a name.
+/// The maximum bytes of NAME. It leaves room for the suffix, because file systems allow 255 bytes
+/// for a name.
 constexpr std::size_t kMaxStem = 200;
 constexpr std::string_view kMark = ".voxdag-";
 

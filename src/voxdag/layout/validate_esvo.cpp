@@ -74,7 +74,7 @@ class BlockWalk {
  private:
   struct Step {
     std::uint64_t slot;
-    int level;  // of this descriptor's voxel
+    int level;  // level of this descriptor's voxel
     Vec3i cell;
   };
 

@@ -121,8 +121,7 @@ class EarClipper {
   bool is_ear(std::uint32_t i, Ear least) {
     if (least == Ear::kAny) return true;
     const double size = corner_area(i);
-    if (size <= 0 || least == Ear::kConvex)
-      return size >= 0;  // No corner can lie in a triangle without area.
+    if (size <= 0 || least == Ear::kConvex) return size >= 0;  // An area of 0 holds no corner.
     const Point a = points_[previous_[i]], b = points_[i], c = points_[next_[i]];
     const bool is_blocked = tree_.any_in(a, b, c, visits_, [&](Point p) {
       // Polygons with holes have several corners at one position.
@@ -210,7 +209,7 @@ std::vector<Point> project(std::span<const std::uint32_t> corners, std::span<con
 void cut_polygon(std::span<Triangle> fan, std::span<const Vec3f> vertices,
                  const std::function<void()>& poll) {
   if (fan.size() < 2) return;
-  Vec3d normal;  // M. Newell's normal: the sum of the area vectors, which is equal for all fans of
+  Vec3d normal;  // M. Newell's normal: the sum of the area vectors, equal for all fans of
                  // a polygon.
   for (const Triangle& triangle : fan) normal = normal + area_vector(triangle, vertices);
   normal = normalized_or(normal, {});

@@ -54,7 +54,7 @@ struct Wedge {
 
 Wedge wedge_at(const Mesh& mesh, std::uint64_t corner) {
   const Triangle& triangle = mesh.triangles[corner / 3];
-  const auto at = [&](std::uint64_t i) {  // counted from the corner
+  const auto at = [&](std::uint64_t i) {  // vertex i, counted from the corner
     return static_cast<Vec3d>(mesh.vertices[triangle[(corner % 3 + i) % 3]]);
   };
   const Vec3d a = at(0), ab = at(1) - a, ac = at(2) - a;

@@ -40,7 +40,7 @@ class EmbreeScene {
 
  private:
   Mesh mesh_;
-  Vec3d center_{};  // of the bounds, world units
+  Vec3d center_{};  // centre of the bounds, world units
   double scale_ = 1, radius_ = 0;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;

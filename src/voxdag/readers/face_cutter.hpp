@@ -94,8 +94,7 @@ class FaceCutter {
   const MeshSource& source_;
   MemoryBudget* memory_;
   CountedVector<Triangle> old_fan_;
-  CountedVector<std::uint32_t>
-      corners_;  ///< The polygon's corner, for each corner of the triangles.
+  CountedVector<std::uint32_t> corners_;  ///< For each corner of the triangles: the polygon's.
   bool is_cut_ = false;
   std::function<void()> poll_;
 };

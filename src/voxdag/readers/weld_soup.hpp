@@ -33,7 +33,7 @@ struct SoupSize {
 template <class Visit>
 SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_view>& parts,
                       char line_end, const Visit& visit) {
-  constexpr unsigned kOneIn = 16;  // vertices in the sample, by hash
+  constexpr unsigned kOneIn = 16;  // one in 16 vertices is in the sample, by hash
   SoupSize size{std::vector<std::size_t>(parts.size() + 1), 0};
   MemoryBudget* const memory = source.options.memory;
   std::vector<CountedVector<Vec3f>> samples(parts.size(), CountedVector<Vec3f>(memory));

@@ -16,7 +16,7 @@ VOXDAG_HD inline std::uint8_t pack_cell_pixels(float side) {
   if (!(side < 256.0f)) return 255;
   float rest = side * 1.010889286f;  // 2^(1/64): rounds the rest to the nearest
   std::uint32_t code = (bits_of_float(rest) >> 23) - 127;
-  rest *= float_from_bits((127 - code) << 23);  // to [1,2)
+  rest *= float_from_bits((127 - code) << 23);  // scales to [1,2)
   for (int bit = 0; bit < 5; ++bit) {
     rest *= rest;
     code = 2 * code + (rest >= 2.0f ? 1 : 0);

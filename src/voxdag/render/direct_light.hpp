@@ -78,7 +78,7 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
 template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  int index, const ViewTile& tile, Scratch& scratch) {
-  constexpr int kBatch = 64;  // a bit each in scratch.visible
+  constexpr int kBatch = 64;  // samples; scratch.visible has a bit for each
   constexpr Vec3f kLuminance{0.2126f, 0.7152f, 0.0722f};
   const Light& light = setup.lights[index];
   const int samples = light.is_extended() ? setup.settings.light_samples : 1;

@@ -172,8 +172,8 @@ View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
 
 std::vector<View> scene_views(const VoxelSet& voxels, const Grid& grid, double aspect, int count) {
   constexpr int kCoarseLevel = 7;
-  constexpr double kApart = 0.12;    // of the grid's side, for views with similar directions
-  constexpr double kOtherWay = 0.3;  // cosine
+  constexpr double kApart = 0.12;  // fraction of the grid's side, for views with similar directions
+  constexpr double kOtherWay = 0.3;  // least cosine of similar directions
   const CoarseCells scene(voxels, kCoarseLevel);
   const SceneExplorer explorer(voxels, grid);
   const Vec3d up = guess_up(scene);

@@ -57,7 +57,7 @@ VOXDAG_HD inline LightInterval cast_light_beam(const Nodes& nodes, const Light& 
     return interval;
   }
   beam.t_min = first;
-  constexpr double kRounding = 1e-6;  // to float, outwards
+  constexpr double kRounding = 1e-6;  // rounds to float outwards
   interval.first = static_cast<float>(first * (1 - kRounding));
   if (last_met(nodes, beam, stop, last)) {
     const auto rounded = static_cast<float>(last * (1 + kRounding));

@@ -29,8 +29,7 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
   const Vec3f to_light = light.position - point.surface.position;
   const int at = pixel.set * tables.light_count + i;
   LightSample sample;
-  float emitted =
-      1;  // multiplied below by the cosine at the surface, divided by the squared distance
+  float emitted = 1;  // multiplied below by cosine / distance²
   switch (light.kind) {
     case LightKind::kSun: {
       const Point2f p = pixel.rotated(tables.disc[at]);

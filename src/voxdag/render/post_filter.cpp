@@ -43,8 +43,7 @@ FilterSample roomiest(const FilterTable& table, int count, float distance) {
         continue;
       const float space =
           std::min(room(table, count, candidate),
-                   2.0f * candidate.distance /
-                       spacing(candidate.distance));  // distance to the opposite pixel
+                   2.0f * candidate.distance / spacing(candidate.distance));  // to the opposite
       if (space <= most) continue;
       most = space;
       best = candidate;

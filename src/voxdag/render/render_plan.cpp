@@ -12,7 +12,7 @@
 namespace voxdag {
 namespace {
 
-constexpr double kOcclusionDistance = 0.15;  // of the grid's side
+constexpr double kOcclusionDistance = 0.15;  // fraction of the grid's side
 
 void check(const RenderOptions& options) {
   constexpr int kMaxSide = 1 << 16, kMaxSamples = 1 << 16;

@@ -37,11 +37,9 @@ struct ImageBuffers {
   float* depth = nullptr;     ///< First sample's depth, world units; +infinity if it hit nothing.
   Vec3f* normal = nullptr;    ///< First sample's normal; zero if it hit nothing.
   float* occlusion =
-      nullptr;  ///< Mean part of the sky's light that arrives; 1 where nothing was hit.
-  float* shadow =
-      nullptr;  ///< Mean part of the lights' light that arrives; 1 if there is no light.
-  float* steps =
-      nullptr;  ///< Steps of the first sample's primary ray, and its share of the beams' steps.
+      nullptr;              ///< Mean part of the sky's light that arrives; 1 where nothing was hit.
+  float* shadow = nullptr;  ///< Mean part of the lights' light that arrives; 1 without light.
+  float* steps = nullptr;   ///< Steps of the first sample's primary ray and its part of the beams.
   /// Size of the first sample's cell, see pack_cell_pixels(); 0 if the sample hit nothing.
   std::uint8_t* cell_pixels = nullptr;
 };

@@ -117,7 +117,7 @@ void pitched_roof(Builder& b, Random& random, double x0, double x1, double z0, d
   // Each course is a step, like tiles that overlap.
   for (const double s : {-1.0, 1.0}) {
     const double edge = (z1 - z0) / 2 + over;
-    Profile outline;  // away from the ridge and height, from the eaves up
+    Profile outline;  // distance from the ridge and height, from the eaves up
     for (int i = courses; i >= 0; --i) {
       const double out = edge * i / courses;
       if (i < courses) outline.push_back({out, y + rise - slope * out + 0.07});

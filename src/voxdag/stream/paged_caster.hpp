@@ -81,7 +81,7 @@ class PagedCaster {
     };
     std::vector<Rest> rays;
     rays.reserve(static_cast<std::size_t>(count));
-    std::map<std::int64_t, std::vector<int>> waiting;  // by block
+    std::map<std::int64_t, std::vector<int>> waiting;  // rays that wait for each block
     const auto go_on = [&](int i) {
       Rest& rest = rays[static_cast<std::size_t>(i)];
       GridRay& ray = rest.cast.ray;

@@ -7,8 +7,8 @@
 namespace voxdag {
 
 /// The cell of some level that a ray is in at some T, as grid_ray.hpp defines it. Rays run down
-/// along every axis, so they leave a cell through the planes of its lower corner, and position bits
-/// only ever fall.
+/// along every axis, so they leave a cell through the planes of its lower corner, and coordinates
+/// only decrease.
 class CellWalk {
  public:
   /// T at the planes of the cell's lower corner. `t` is the least of them: the ray leaves the cell

@@ -139,7 +139,7 @@ VOXDAG_HD inline GridRay make_grid_ray(const Grid& grid, Vec3d world_origin, Vec
       p = direction[axis] > 0 ? 0.0 : 1.0;
     else if (enter != 0)
       p = std::fma(enter, direction[axis], p);
-    if (still && p >= 1 && direction[axis] > 0) return ray;  // leaves the grid where it enters
+    if (still && p >= 1 && direction[axis] > 0) return ray;  // it only touches the grid
     p = p < 0 ? 0.0 : p > 1 ? 1.0 : p;
     float q = static_cast<float>(1.0 + p);
     // Rounding must not carry a ray out of the grid along an axis on which it does not move.

@@ -35,8 +35,7 @@ inline bool have_one_origin(const RayPacket& packet) {
 }
 
 struct RayLanes {
-  static constexpr std::size_t kWidth =
-      hn::MaxLanes(hn::CappedTag<float, 16>());  ///< Lanes of a vector.
+  static constexpr std::size_t kWidth = hn::MaxLanes(hn::CappedTag<float, 16>());  ///< Lanes.
 
   /// Indexed by axis, then by ray. The last vector is padded with copies of the last ray.
   alignas(64) float origin[3][RayPacket::kMaxRays], inverse[3][RayPacket::kMaxRays];

@@ -118,8 +118,7 @@ class RayWindow {
     std::copy_n(sorted, size_, order_);
   }
 
-  alignas(
-      CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // rays that make_ray returns by value
+  alignas(CastRay) std::byte made_[kMaxRays * sizeof(CastRay)];  // rays returned by value
   const CastRay* rays_[kMaxRays];
   std::uint16_t order_[kMaxRays];
   int taken_ = 0, size_ = 0;

@@ -40,7 +40,7 @@ ContourCandidates contour_candidates(const Cell& cell) {
 }  // namespace
 
 bool CellDecider::is_too_thin(const Cell& cell, const ConvexPolyhedron& shape) {
-  constexpr std::size_t kMost = 6;       // Unlikely with more pieces.
+  constexpr std::size_t kMost = 6;       // with more pieces, such a shape is unlikely
   constexpr double kRounding = 0x1p-10;  // larger than the rounding errors of cutting shapes
   if (cell.pieces.size() > kMost) return false;
   const auto is_thin = [&](const ContourDirection& across) {

@@ -50,8 +50,8 @@ class ConvexPolyhedron {
 
  private:
   struct Edge {
-    std::uint8_t a, b;         // vertices
-    std::uint8_t left, right;  // faces
+    std::uint8_t a, b;         // its end vertices
+    std::uint8_t left, right;  // its faces
   };
 
   /// Becomes the part of `whole`, another polyhedron, where the interpolated `distances` of its

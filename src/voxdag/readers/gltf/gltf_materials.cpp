@@ -204,7 +204,7 @@ std::uint64_t gltf_uv_set(const GltfFile& file, const GltfValue& primitive) {
   try {
     return uv_set_of_material(file.item(GltfArray::kMaterials, index.whole(), primitive));
   } catch (const Error&) {
-    return 0;  // read_gltf_materials() warns of it.
+    return 0;  // read_gltf_materials() adds a warning.
   }
 }
 

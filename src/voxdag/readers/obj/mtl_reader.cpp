@@ -169,7 +169,7 @@ class MtlReader::Impl {
         files_.find(folder_, name, {file_, ErrorPlace::line(line_number_)});
     if (images.size() == images.capacity())
       images.reserve(grown(images.size(), sizeof(TextureImage)));
-    image_memory_.resize(image_memory_.bytes() + 3 * key.size());  // Name, path, its components.
+    image_memory_.resize(image_memory_.bytes() + 3 * key.size());  // name, path and its parts
     images.push_back({printable_path(folder_, name), path, {}});
     return static_cast<int>(images_.find_or_add(key));
   }

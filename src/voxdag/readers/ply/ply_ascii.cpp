@@ -103,8 +103,7 @@ class AsciiReader {
     for (std::size_t i = 0; i < texts_.size(); ++i) first_rows_[i + 1] += first_rows_[i];
     std::size_t row = 0;
     for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty())
-        continue;  // The rows of an element without properties have no lines.
+      if (element.properties.empty()) continue;  // Without properties, rows have no lines.
       const Rows rows{row, row + element.count};
       if (rows.last > first_rows_.back())
         throw_fault(
