@@ -34,9 +34,9 @@ class Option {
   /// Refuses the option where has_effect() is false once all options are parsed: "has no effect"
   /// and `why_not`. Call it while the Command lives.
   Option only_if(std::function<bool()> has_effect, const std::string& why_not) const;
-  /// Refuses the option without `other`.
+  /// Refuses the option if `other` is not given.
   Option needs(const Option& other) const;
-  /// Refuses the option with `other`.
+  /// Refuses the option if `other` is given.
   Option not_with(const Option& other) const;
 
  private:

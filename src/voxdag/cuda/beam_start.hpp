@@ -6,8 +6,8 @@
 namespace voxdag {
 
 /// Sets the start of one beam of 4×4 pixels: part i % 4 of coarse beam i / 4. Coarse beams are
-/// counted row by row. All four threads of a coarse beam cast it: one thread alone would take as
-/// long while three waited.
+/// counted row by row. All four threads of a coarse beam cast it. If only one cast it, the other
+/// three would have to wait.
 template <class Nodes>
 VOXDAG_HD inline void set_beam_start(const Nodes& nodes, const RenderSetup& setup, std::uint32_t i,
                                      float* picture) {

@@ -14,7 +14,7 @@ namespace voxdag {
 void launch_beams(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, float* starts, cudaStream_t stream);
 
-/// Sets the image's steps for the 8×8 pixels of the same range.
+/// Sets the image's steps for the 8×8 pixels of the coarse beams [first, last).
 void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uint32_t first,
                   std::uint32_t last, cudaStream_t stream);
 

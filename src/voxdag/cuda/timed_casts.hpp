@@ -14,7 +14,7 @@ namespace voxdag {
 /// A set of rays in the memory of a DAG's device.
 class TimedCasts {
  public:
-  /// Throws Error if memory is short.
+  /// Copies the rays to the DAG's device. Throws Error if there is not enough memory.
   TimedCasts(const DeviceScene& dag, std::span<const CastRay> rays);
 
   /// Finds the first cell along each ray (closest) or whether there is one (any). Returns the time

@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns the corner of a triangle at which two edges meet, given as bits.
+/// Returns the corner at which two edges of a triangle meet; `edges` is the bit mask of the edges.
 std::uint32_t corner_on(std::uint8_t edges) { return edges == 0b101 ? 0 : edges == 0b011 ? 1 : 2; }
 
 /// The least and greatest of the added heights, 0 to 65535.

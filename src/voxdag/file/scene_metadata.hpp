@@ -16,8 +16,9 @@ struct VdagSource {
   friend bool operator==(const VdagSource&, const VdagSource&) = default;
 };
 
-/// Must depend on the input alone, so that equal inputs make equal files. So it contains no times,
-/// folders or thread counts, and does not say which of two equivalent methods ran.
+/// The metadata that DAGs and ESVOs share. It must depend on the input alone, so that equal inputs
+/// make equal files: no times, no folders, no thread counts, and not the choice between two
+/// equivalent methods.
 struct SceneMetadata {
   Grid grid;
   VdagSource source;

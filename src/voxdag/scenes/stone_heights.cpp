@@ -37,7 +37,7 @@ double noise(std::uint32_t seed, double u, double v, int cells) {
   return top * (1 - wy) + bottom * wy;
 }
 
-/// Returns noise of several frequencies, around 0.
+/// Returns noise of several frequencies, with a mean of about 0.
 double roughness(std::uint32_t seed, double u, double v) {
   double sum = 0, weight = 0.5;
   for (int cells = 16; cells <= 128; cells *= 2, weight *= 0.55)

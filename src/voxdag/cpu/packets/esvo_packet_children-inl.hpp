@@ -112,8 +112,8 @@ HWY_INLINE void EsvoPacketWalk<kWithContours, kOneOrigin>::recall_spans(const Vi
   }
 }
 
-/// Ends those of `rays` that first meet a leaf, or a voxel at which they end, and returns them.
-/// Sets which children the others meet.
+/// Ends the rays whose first hit is a leaf, or a voxel at which the level of detail ends them.
+/// Returns these rays. Sets the children that the other rays meet.
 template <bool kWithContours, bool kOneOrigin>
 HWY_INLINE typename EsvoPacketWalk<kWithContours, kOneOrigin>::Rays
 EsvoPacketWalk<kWithContours, kOneOrigin>::end_at_children(const Visit& visit,

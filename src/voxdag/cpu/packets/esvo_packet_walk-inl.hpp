@@ -105,7 +105,7 @@ class EsvoPacketWalk : PacketRays {
     const float at = float_from_bits(position);
     return hn::Set(d, kOneOrigin ? origins_.least[axis] - at : at);
   }
-  /// Returns the distances of the origins of the vector of rays at `first` from a plane.
+  /// Returns the distances from the origins of rays to a plane, for the vector of rays at `first`.
   HWY_INLINE VF distance(int axis, std::size_t first, VF plane) const {
     if constexpr (kOneOrigin) return plane;
     return hn::Sub(hn::Load(DF(), rays_.origin[axis] + first), plane);
