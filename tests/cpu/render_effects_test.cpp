@@ -319,7 +319,7 @@ TEST(SoftShadow, ThePenumbraOfAStraightEdgeIsACircularSegment) {
       voxels_where(kLevels, [](int x, int y, int) { return y == 8 || (y == kTop && x < 64); });
   const Grid grid = test_grid(kLevels);
   RenderOptions options = from_above(1);
-  // The cover hides the floor from above, so the camera is below the floor.
+  // The cover hides the floor from above, so the camera is between cover and floor.
   options.view.eye = {0, -1 + 50 * grid.voxel_size, 0};
   options.view.target = {0, -1, 0};
   options.view.vertical_fov_degrees = 70;

@@ -30,8 +30,8 @@ class SceneExplorer {
   SceneExplorer(const VoxelSet& voxels, const Grid& grid)
       : voxels_(voxels), grid_(grid), stop_{std::ldexp(1.0f, -9), 0, 2} {}
 
-  /// Returns the distance in world units at which a unit direction hits anything; +infinity if
-  /// nothing.
+  /// Returns the distance in world units at which a unit direction hits anything; +infinity if it
+  /// hits nothing.
   double distance(Vec3d from, Vec3d direction) const {
     const GridRay ray = make_grid_ray(grid_, from, direction, 0, HUGE_VAL);
     CellHit cell;

@@ -74,8 +74,9 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   };
   if (can_start_at(lifted)) return point;
   // In corners, in gaps and at the edges of thin objects, that point may lie inside or behind a
-  // cell of another surface: the viewer sees the sample, but not the point. So move the point along
-  // the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few cells.
+  // cell of another surface: the viewer sees the sample, but not the point. So the point is moved
+  // along the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few
+  // cells.
   constexpr int kTries = 3, kFarthest = 9;  // cells
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));

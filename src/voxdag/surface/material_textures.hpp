@@ -32,8 +32,8 @@ std::vector<ResolvedMaterial> load_materials(const Appearance& appearance, bool 
                                              std::vector<std::string>& warnings, Progress* progress,
                                              MemoryBudget* memory);
 
-/// Decodes an image that a mesh names or contains. Throws Error, OverMemory, and what options.poll
-/// throws.
+/// Decodes an image that a mesh names or contains. Throws Error and OverMemory, and passes
+/// exceptions of options.poll on.
 DecodedImage decode_texture_image(const TextureImage& image, const ImageOptions& options);
 
 /// Returns options that count memory in `memory` and throw Cancelled when `progress` is cancelled.

@@ -11,7 +11,7 @@
 namespace voxdag {
 
 struct BuiltVoxel {
-  bool exists = false;  ///< False if there is no surface left by the alpha test.
+  bool exists = false;  ///< False without any surface that passes the alpha test.
   bool is_leaf = false;
   std::optional<Contour> contour;
   SurfaceSum sum;

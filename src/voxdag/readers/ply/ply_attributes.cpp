@@ -209,8 +209,8 @@ void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& w
   }
 }
 
-/// Makes all colours opaque if every alpha is 0, because some programs write an alpha of 0 without
-/// meaning it.
+/// Makes all materials opaque if every colour would be invisible: some programs write an alpha of 0
+/// everywhere without meaning it.
 void PlyAttributes::ignore_alpha_that_hides_all() {
   const auto is_visible = [](Rgba16 color) { return color.alpha() >= kBlendCutoff; };
   if (std::any_of(vertex_colors_.begin(), vertex_colors_.end(), is_visible) ||
