@@ -39,8 +39,8 @@ std::string describe(const Ray& ray, const Hit& hit, const Hit& expected) {
   return text;
 }
 
-/// Casts `count` rays of every kind at `voxels` and expects what `reference(set, ray, t_min,
-/// t_max)` says. Returns the number of hits.
+/// Casts `count` rays of every kind at `voxels` and expects the hits of `reference(set, ray, t_min,
+/// t_max)`. Returns the number of hits.
 template <class Set, class Reference>
 int expect_same_hits(const Grid& grid, const std::vector<Vec3i>& voxels, int count, unsigned seed,
                      const Reference& reference) {

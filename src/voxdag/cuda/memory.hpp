@@ -60,7 +60,8 @@ using DeviceBuffer = OwnedArray<T, free_device>;
 template <class T>
 using PinnedBuffer = OwnedArray<T, free_pinned>;
 
-/// Allocates on the current device. Throws Error if memory is short; `what` names the array.
+/// Allocates on the current device. Throws Error if there is not enough memory; `what` names the
+/// array.
 template <class T>
 DeviceBuffer<T> make_device_buffer(std::size_t count, const char* what) {
   return {allocate_device(array_bytes<T>(count), what), count};

@@ -54,9 +54,9 @@ class DisplacedTriangles {
   std::uint32_t regions_met(std::uint32_t triangle, std::span<const Box3d, 8> regions,
                             double edge_limit, double small) const;
 
-  /// Calls body(const DisplacedPiece&) for pieces of a displaced triangle that together enclose
-  /// what tessellate() with the limit emits in the region. Pieces are smaller than `small` world
-  /// units where the tessellation allows it.
+  /// Calls body(const DisplacedPiece&) for pieces of a displaced triangle that together enclose the
+  /// micro triangles that tessellate() emits in the region with this limit. Pieces are smaller than
+  /// `small` world units where the tessellation allows it.
   template <class Body>
   void for_each_piece(std::uint32_t triangle, const Box3d& region, double edge_limit, double small,
                       Body&& body) const {

@@ -113,7 +113,7 @@ struct Appearance {
 struct MeshWithAppearance {
   Mesh mesh;
   Appearance appearance;
-  std::vector<std::string> warnings;  ///< One line each: what is missing, and what replaces it.
+  std::vector<std::string> warnings;  ///< One line each: the missing part and its replacement.
 };
 
 }  // namespace voxdag

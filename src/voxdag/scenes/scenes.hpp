@@ -13,7 +13,7 @@
 namespace voxdag {
 
 struct SceneOptions {
-  double size = 0;         ///< Counts what SceneInfo::size_meaning says; 0: the default size.
+  double size = 0;         ///< In units of SceneInfo::size_meaning; 0: default.
   std::uint32_t seed = 1;  ///< Seed of the random numbers, if SceneInfo::uses_seed.
 };
 

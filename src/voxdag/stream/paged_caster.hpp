@@ -38,7 +38,7 @@ inline void begin_at(const EsvoHit& hit, GridRay& ray) {
   ray.t_min = hit.is_through_contour() && hit.t > ray.t_min ? std::max(before, ray.t_min) : hit.t;
 }
 
-/// Returns what cast() returns with all blocks loaded.
+/// Casts a ray. The result equals that of cast() with all blocks loaded.
 template <class Stop>
 bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit& hit) {
   GridRay rest = ray;

@@ -11,8 +11,8 @@ namespace voxdag {
 /// ignores those of fewer than three corners. The materials come from comments `material NUMBER
 /// NAME`, numbered from 0, and the face property `material_index`. In ascii, each row is one line.
 ///
-/// With its appearance: reads what PlyAttributes lists; a comment `TextureFile NAME` names the
-/// colour texture of all materials.
+/// With its appearance: reads the properties that PlyAttributes lists; a comment `TextureFile NAME`
+/// names the colour texture of all materials.
 ///
 /// Throws Error with the line (in a binary body with the byte): malformed headers and values,
 /// counts that need a longer file, truncation, references out of range, triangles with a vertex
