@@ -31,7 +31,9 @@ struct Grid {
   VOXDAG_HD constexpr Vec3d to_grid(Vec3d world) const {
     return (world - origin) * (1.0 / voxel_size);
   }
+  /// Returns the world position of a position in voxel units.
   VOXDAG_HD constexpr Vec3d to_world(Vec3d grid) const { return origin + grid * voxel_size; }
+  /// Returns the grid's cube, in world units.
   constexpr Box3d bounds() const {
     const double n = static_cast<double>(resolution());
     return {origin, to_world({n, n, n})};

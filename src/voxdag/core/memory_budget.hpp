@@ -49,11 +49,16 @@ class MemoryBudget {
     raise_peak(now);
     if (limit_ != 0 && now + base_ > limit_) exceeded_.store(true, std::memory_order_relaxed);
   }
+  /// Gives back bytes that add() counted.
   void remove(std::uint64_t bytes) noexcept { release(bytes); }
 
+  /// Returns the limit in bytes; 0 means no limit.
   std::uint64_t limit() const { return limit_; }
+  /// Returns the bytes that the process held before.
   std::uint64_t base() const { return base_; }
+  /// Returns the bytes that are counted now, without base().
   std::uint64_t used() const { return used_.load(std::memory_order_relaxed); }
+  /// Returns the largest used() so far.
   std::uint64_t peak() const { return peak_.load(std::memory_order_relaxed); }
   /// Returns the number of bytes that can still be reserved.
   std::uint64_t left() const {

@@ -37,6 +37,7 @@ VOXDAG_HD constexpr std::uint64_t morton_encode(Vec3i p) {
          spread_bits3(static_cast<std::uint32_t>(p.z)) << 2;
 }
 
+/// Returns the coordinates of a code: the inverse of morton_encode.
 VOXDAG_HD constexpr Vec3i morton_decode(std::uint64_t code) {
   return {static_cast<std::int32_t>(gather_bits3(code)),
           static_cast<std::int32_t>(gather_bits3(code >> 1)),

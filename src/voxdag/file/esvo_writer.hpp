@@ -17,6 +17,7 @@ namespace voxdag {
 /// place, reason). The file must be seekable.
 class EsvoFileWriter {
  public:
+  /// Creates the file, so that an unwritable folder is an error before the work begins.
   explicit EsvoFileWriter(const std::filesystem::path& path);
 
   /// Appends whole blocks.

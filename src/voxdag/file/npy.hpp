@@ -68,6 +68,7 @@ class NpyWriter {
             std::vector<std::uint64_t> row_shape, std::size_t item_bytes,
             std::optional<std::uint64_t> rows = {});
 
+  /// Appends `count` rows of row_bytes() each.
   void write_rows(const void* data, std::size_t count) { write_bytes(data, count * row_bytes_); }
   /// Appends any number of bytes, also parts of a row.
   void write_bytes(const void* data, std::size_t bytes);

@@ -21,7 +21,9 @@ class CameraPath {
   /// (0,180) degrees, and eye and target differ.
   explicit CameraPath(std::vector<CameraKey> keys);
 
+  /// Returns the time of the first key, in seconds.
   double start() const { return keys_.front().time; }
+  /// Returns the time of the last key, in seconds.
   double end() const { return keys_.back().time; }
   /// Returns the view at a time in seconds. Before the first key it is that key's view, after the
   /// last key the last one's.

@@ -63,6 +63,7 @@ struct EsvoBlockInfo {
   std::uint32_t attachment_count;
   EsvoAttachment attachments[kMaxAttachments];
 
+  /// Returns the attachment of this kind, or null.
   VOXDAG_HD const EsvoAttachment* find(EsvoAttachmentKind kind) const {
     for (std::uint32_t i = 0; i < attachment_count; ++i)
       if (attachments[i].kind == kind) return attachments + i;
@@ -86,6 +87,7 @@ struct EsvoView {
 
   /// Returns whether there are no voxels: then there are no slots at all.
   VOXDAG_HD bool is_empty() const { return slot_count == 0; }
+  /// Returns the descriptor in `slot`.
   VOXDAG_HD ChildDescriptor descriptor(std::uint64_t slot) const {
     return ChildDescriptor::from_slot(slots[slot]);
   }
@@ -116,6 +118,7 @@ struct EsvoView {
     const std::uint64_t page = slot & ~std::uint64_t{kEsvoPageSlots - 1};
     return page + static_cast<std::uint32_t>(slots[page]);
   }
+  /// Returns the info section of the block that holds descriptor slot `slot`.
   VOXDAG_HD const EsvoBlockInfo& info(std::uint64_t slot) const {
     return *reinterpret_cast<const EsvoBlockInfo*>(slots + info_slot(slot));
   }

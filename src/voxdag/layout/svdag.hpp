@@ -65,6 +65,7 @@ struct Svdag {
   friend bool operator==(const Svdag&, const Svdag&) = default;
 };
 
+/// Returns the 8-bit child mask of a node above the leaf blocks.
 VOXDAG_HD inline std::uint32_t child_mask(const std::uint32_t* node) { return node[0] & 0xFFu; }
 
 /// Returns the pointer to child `index`, which must be present.

@@ -30,6 +30,7 @@ class Progress {
   /// Asks the work to stop. Async-signal-safe.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  /// Throws Cancelled if cancel() was called.
   void throw_if_cancelled() const {
     if (cancelled()) throw Cancelled();
   }

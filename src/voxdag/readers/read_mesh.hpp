@@ -30,9 +30,11 @@ Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {
 MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                              const ReadOptions& options = {});
 
+/// Reads a mesh with default options.
 inline Mesh read_mesh(const std::filesystem::path& path, Progress* progress) {
   return read_mesh(path, ReadOptions{.progress = progress});
 }
+/// Reads a mesh and its appearance with default options.
 inline MeshWithAppearance read_mesh_with_appearance(const std::filesystem::path& path,
                                                     Progress* progress) {
   return read_mesh_with_appearance(path, ReadOptions{.progress = progress});

@@ -24,6 +24,8 @@ struct Camera {
   VOXDAG_HD double pixel_size() const { return 2 * std::sqrt(dot(up, up)) / height; }
 };
 
+/// Returns the camera of a view, which must be valid (see frame_scene), for a picture of this size
+/// in pixels.
 VOXDAG_HD inline Camera make_camera(const View& view, int width, int height) {
   constexpr double kRadiansPerDegree = 0.017453292519943295;
   Camera camera;

@@ -43,6 +43,7 @@ class SurfaceShading {
   /// of the polygon's size and shape.
   SurfaceSample mean(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
 
+  /// Returns whether the triangle's material has a normal map that was read.
   bool has_normal_map(std::uint32_t triangle) const;
   /// Returns whether the whole triangle is visible and has one colour.
   bool has_one_color(std::uint32_t triangle) const;

@@ -48,12 +48,14 @@ class QuantizedMesh {
   QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget = nullptr,
                 Progress* progress = nullptr);
 
+  /// Returns the number of triangles, with the pieces of clipped ones.
   std::size_t triangle_count() const { return mesh_->triangles.size() + clipped_.size(); }
   /// Returns the number of the mesh's triangles. They come first, then the pieces of clipped
   /// triangles.
   std::size_t mesh_triangle_count() const { return mesh_->triangles.size(); }
   /// Returns false if the triangle was clipped; its pieces are at the end.
   bool in_range(std::size_t index) const;
+  /// Returns triangle `index`, which must be in_range().
   QuantizedTriangle triangle(std::size_t index) const;
   /// Returns the index of the mesh's triangle that triangle `index` is, or is a piece of.
   std::uint32_t source(std::size_t index) const {

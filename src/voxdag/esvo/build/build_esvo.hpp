@@ -34,6 +34,7 @@ struct EsvoOptions {
 class EsvoSink {
  public:
   virtual ~EsvoSink() = default;
+  /// Appends whole blocks; `slots` is valid during the call only.
   virtual void append(std::span<const std::uint64_t> slots) = 0;
 };
 
