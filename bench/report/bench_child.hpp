@@ -14,7 +14,7 @@ struct ProcessCost {
   double wall_seconds = 0;       ///< Time from before its start to its end.
   double user_seconds = 0;       ///< CPU time in the program, all threads together.
   double system_seconds = 0;     ///< CPU time in the kernel.
-  std::uint64_t peak_bytes = 0;  ///< Largest resident set, of the largest process.
+  std::uint64_t peak_bytes = 0;  ///< Peak resident memory of the largest process.
 
   double cpu_seconds() const { return user_seconds + system_seconds; }
 };

@@ -213,7 +213,7 @@ TEST_F(Build, AKilledBuildLeavesNothing) {
 }
 
 TEST_F(Build, AKilledBuildOfAnEsvoLeavesNothing) {
-  // An ESVO build writes blocks from early on.
+  // An ESVO build writes blocks early.
   write_text(mesh_, long_work(300));
   const std::string output = dir_ / "out.esvo";
   Process build(voxdag_command({"build", mesh_, "-r", "2048", "-o", output, "--threads", "1"}));

@@ -203,7 +203,7 @@ TEST(EsvoCast, RaysInAndAlongThePlanesOfContoursMissNothing) {
 }
 
 TEST(EsvoCast, FarRaysAtTheFinestVoxelsMissNothing) {
-  // One voxel of 2^-16 with a thin contour, seen from across the grid.
+  // One voxel of side 2^-16 with a thin contour, seen from across the grid.
   constexpr int kLevels = 16;
   const Grid grid = test_grid(kLevels);
   std::mt19937 rng(9);

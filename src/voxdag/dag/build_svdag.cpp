@@ -21,7 +21,8 @@ std::string mebibytes(std::uint64_t bytes) {
 
 /// Throws OverMemory if the limit is clearly too small, before any long work.
 void check_memory(const BuildInput& input, BuildMethod method) {
-  // So many levels below that the estimate takes a hundredth of the time.
+  // The finer estimate is this many levels coarser than the build, and takes about a hundredth of
+  // its time.
   constexpr int kSteps = 4;
   const MemoryBudget& budget = input.budget;
   if (budget.limit() == 0 || area_bound(input.mesh, input.grid) < budget.left() / 2) return;

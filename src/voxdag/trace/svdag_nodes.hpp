@@ -14,8 +14,8 @@
 
 namespace voxdag {
 
-/// A node of level < L-2 is a word index, one of level L-2 the index of a leaf block, and one of
-/// level L-1 its own child mask, a byte of a leaf block.
+/// A node is a word index (level < L-2), the index of a leaf block (level L-2), or its own child
+/// mask, a byte of a leaf block (level L-1).
 class SvdagNodes {
  public:
   using Node = std::uint32_t;
