@@ -7,9 +7,10 @@
 
 namespace voxdag::test {
 
-/// Returns the grid of 64³ voxels over [-1,1]³.
+/// The levels of the test pictures' grid.
 inline constexpr int kPictureLevels = 6;
 
+/// Returns the grid of 64³ voxels over [-1,1]³.
 inline Grid picture_grid() {
   Grid grid;
   grid.levels = kPictureLevels;

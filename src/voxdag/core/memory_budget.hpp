@@ -96,7 +96,7 @@ class MemoryBudget {
 class MemoryReservation {
  public:
   MemoryReservation() = default;
-  /// Throws OverMemory.
+  /// Reserves `bytes`. Throws OverMemory.
   MemoryReservation(MemoryBudget* budget, std::uint64_t bytes) : budget_(budget), bytes_(bytes) {
     if (budget_ != nullptr) budget_->reserve(bytes_);
   }

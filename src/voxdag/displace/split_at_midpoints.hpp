@@ -52,7 +52,7 @@ void split_one_edge(PieceCorner& a, PieceCorner& b, PieceCorner& c, const Body& 
   body(d, b, c);
 }
 
-/// Splits a piece whose only edge that is not long is ab.
+/// Splits a piece whose edges bc and ca are long; ab is not.
 template <class Body>
 void split_two_edges(PieceCorner& a, PieceCorner& b, PieceCorner& c, const Body& body) {
   PieceCorner e = middle(b, c), f = middle(c, a);

@@ -77,7 +77,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   // cell of another surface: the viewer sees the sample, but not the point. So the point is moved
   // along the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few
   // cells.
-  constexpr int kTries = 3, kFarthest = 9;  // cells
+  constexpr int kTries = 3, kFarthest = 9;  // Distances in cells.
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
   const auto cells_before = [&](int cells) {

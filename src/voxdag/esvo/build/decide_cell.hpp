@@ -44,7 +44,7 @@ class CellDecider {
 
   const EsvoSettings& settings_;
   const CellAppearance& appearance_;
-  std::vector<PlanarPolygon> polygons_;  // of the current cell
+  std::vector<PlanarPolygon> polygons_;  // The polygons of the current cell.
 };
 
 }  // namespace voxdag
