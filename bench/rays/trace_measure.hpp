@@ -25,8 +25,8 @@ std::vector<Measured> measure(const std::vector<TraceRunner>& runners, std::size
 /// Returns the number of rays for which both or neither hit something.
 std::size_t agreeing(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
 
-/// Returns a sample of about `most` rays at most, in runs of 64 that are spread evenly over the
-/// set.
+/// Returns a sample of the rays, in runs of 64 that are spread evenly over the set: all of them if
+/// there are fewer than 2 * most, else about `most` to 1.5 * most.
 std::vector<CastRay> sample_of(std::span<const CastRay> rays, std::size_t most);
 
 }  // namespace voxdag

@@ -140,7 +140,7 @@ class CountedAllocator {
   template <class U>
   CountedAllocator(const CountedAllocator<U>& other) noexcept : budget_(other.budget()) {}
 
-  /// Throws OverMemory or std::bad_alloc.
+  /// Allocates `count` objects. Throws OverMemory or std::bad_alloc.
   T* allocate(std::size_t count) {
     if (count > std::numeric_limits<std::size_t>::max() / sizeof(T))
       throw std::bad_array_new_length();

@@ -19,7 +19,7 @@ class DagSink {
  public:
   static constexpr bool kMemo = true;
 
-  /// Throws OverMemory.
+  /// Allocates the memo. Throws OverMemory.
   DagSink(std::span<const std::unique_ptr<NodeStore>> stores, int log2_memo_sets,
           MemoryBudget& budget)
       : memory_(&budget, bytes(log2_memo_sets)),

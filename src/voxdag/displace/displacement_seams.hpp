@@ -29,7 +29,7 @@ class DisplacementSeams {
   static constexpr std::uint32_t kMostMembers = 64;
 
   DisplacementSeams() = default;
-  /// Throws Cancelled and OverMemory.
+  /// Finds the seams of the mesh. Throws Cancelled and OverMemory.
   explicit DisplacementSeams(const DisplacedMesh& mesh, Progress* progress = nullptr,
                              MemoryBudget* memory = nullptr);
 

@@ -12,7 +12,8 @@ namespace voxdag {
 /// FileCopy).
 class EsvoFile {
  public:
-  /// Throws Error(path, place, reason) for a file that cannot be read or fails a check.
+  /// Reads the file. Throws Error(path, place, reason) for a file that cannot be read or fails a
+  /// check.
   explicit EsvoFile(const std::filesystem::path& path);
 
   const EsvoContents& contents() const { return contents_; }

@@ -13,7 +13,8 @@ namespace voxdag {
 /// Move-only; views stay valid when it is moved.
 class SceneFile {
  public:
-  /// Throws Error(path, place, reason) if the file is neither, or is damaged.
+  /// Reads a .vdag or .esvo file. Throws Error(path, place, reason) if the file has neither format,
+  /// or is damaged.
   explicit SceneFile(const std::filesystem::path& path) : file_(open(path)) {}
 
   /// Returns a view of the file's bytes, which this object owns.

@@ -12,7 +12,8 @@ namespace voxdag {
 /// the object is moved, and when other programs change the file (see FileCopy).
 class VdagFile {
  public:
-  /// Throws Error(path, place, reason) for a file that cannot be read or fails a check.
+  /// Reads the file. Throws Error(path, place, reason) for a file that cannot be read or fails a
+  /// check.
   explicit VdagFile(const std::filesystem::path& path);
 
   const SvdagView& view() const { return contents_.view; }

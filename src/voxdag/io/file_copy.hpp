@@ -14,8 +14,8 @@ namespace voxdag {
 /// of the file, on large pages if the system grants them. Copies of this object share the bytes.
 class FileCopy {
  public:
-  /// Throws the errors of open_input, std::bad_alloc, and Error(path, place, reason) if the file
-  /// cannot be read or is truncated during the read.
+  /// Copies the file to memory. Throws the errors of open_input, std::bad_alloc, and
+  /// Error(path, place, reason) if the file cannot be read or is truncated during the read.
   explicit FileCopy(const std::filesystem::path& path, SizeLimit limit = {});
 
   /// Returns the bytes, aligned to at least 64; none for an empty file.

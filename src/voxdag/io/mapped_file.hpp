@@ -23,7 +23,7 @@ class MappedFile {
     kRandom       ///< Parts of it.
   };
 
-  /// Throws the errors of open_input, and "cannot map: ...".
+  /// Maps the file. Throws the errors of open_input, and "cannot map: ...".
   explicit MappedFile(const std::filesystem::path& path, Access access = Access::kSoon,
                       SizeLimit limit = {});
   MappedFile(MappedFile&& other) noexcept;
