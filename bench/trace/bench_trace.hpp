@@ -34,7 +34,7 @@ struct TracePlan {
 struct RivalRate {
   std::string name;
   double mrays_per_second = 0;
-  double agreement = 0;  ///< Fraction of the rays that hit for both or for neither.
+  double agreement = 0;  ///< Fraction of the rays with equal results: two hits or two misses.
 };
 
 /// One class of rays in one scene, all views together.

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A command keeps its limit if it uses at most a tenth and 8 MiB more.
+/// A command may use 10 % and 8 MiB more than its memory limit.
 constexpr double kLimitFactor = 1.1;
 constexpr std::uint64_t kLimitSlack = std::uint64_t{8} << 20;
 

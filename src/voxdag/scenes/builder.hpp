@@ -106,7 +106,7 @@ class Builder {
   std::uint32_t material_ = 0;
 };
 
-/// Returns the polyline as a Catmull-Rom curve with `steps` segments per segment.
+/// Returns the polyline as a Catmull-Rom curve with `steps` segments per segment of `points`.
 Profile rounded(const Profile& points, int steps);
 
 template <class F>
