@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <new>
 #include <type_traits>
 #include <utility>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/thread_sanitizer.hpp"
 
 namespace voxdag {
 
@@ -107,16 +109,31 @@ class PageVector {
     const std::size_t more = bytes_ < kSmall ? bytes_ : bytes_ / 8;
     const std::size_t bytes = std::max(page_bytes(count), page_bytes((bytes_ + more) / sizeof(T)));
     if (budget_ != nullptr) budget_->reserve(bytes - bytes_);
-    void* const memory = data_ == nullptr
-                             ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
-                             : ::mremap(data_, bytes_, bytes, MREMAP_MAYMOVE);
+    void* const memory = data_ == nullptr ? map_pages(bytes) : move_pages(bytes);
     if (memory == MAP_FAILED) {
       if (budget_ != nullptr) budget_->release(bytes - bytes_);
       throw std::bad_alloc();
     }
     data_ = static_cast<T*>(memory);
     bytes_ = bytes;
+  }
+
+  static void* map_pages(std::size_t bytes) {
+    return ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  }
+  void* move_pages(std::size_t bytes) {
+#ifdef VOXDAG_TSAN
+    // ThreadSanitizer does not follow mremap: it would take the last user of these addresses for
+    // one of this array.
+    void* const memory = map_pages(bytes);
+    if (memory == MAP_FAILED) return memory;
+    std::memcpy(memory, data_, size_ * sizeof(T));
+    ::munmap(data_, bytes_);
+    return memory;
+#else
+    return ::mremap(data_, bytes_, bytes, MREMAP_MAYMOVE);
+#endif
   }
 
   MemoryBudget* budget_ = nullptr;

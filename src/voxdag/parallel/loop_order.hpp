@@ -4,13 +4,7 @@
 /// loop. ThreadSanitizer cannot see this order, because Debian's TBB is not built with it. Without
 /// ThreadSanitizer these types are empty.
 
-#if defined(__SANITIZE_THREAD__)
-#define VOXDAG_TSAN 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define VOXDAG_TSAN 1
-#endif
-#endif
+#include "voxdag/core/thread_sanitizer.hpp"
 
 #ifdef VOXDAG_TSAN
 #include <sanitizer/tsan_interface.h>
@@ -44,11 +38,41 @@ class LoopOrder {
   char begin_ = 0, end_ = 0;
 };
 
+/// A point at which one thread hands data to another in an order that TBB guarantees.
+class OrderPoint {
+ public:
+  void acquire() { __tsan_acquire(&point_); }
+  void release() { __tsan_release(&point_); }
+
+  /// A step runs after all that was released, and releases what it did.
+  class Step {
+   public:
+    explicit Step(OrderPoint& point) : point_(point) { point_.acquire(); }
+    ~Step() { point_.release(); }
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+
+   private:
+    OrderPoint& point_;
+  };
+
+ private:
+  char point_ = 0;
+};
+
 #else
 
 struct LoopOrder {
   struct Items {
     explicit Items(const LoopOrder&) {}
+  };
+};
+
+struct OrderPoint {
+  void acquire() {}
+  void release() {}
+  struct Step {
+    explicit Step(const OrderPoint&) {}
   };
 };
 

@@ -1,10 +1,7 @@
 #include "voxdag/esvo/build/build_esvo.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-
-#include <memory>
 
 #include "voxdag/esvo/build/block_assembler.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
@@ -14,6 +11,7 @@
 #include "voxdag/esvo/build/open_edges.hpp"
 #include "voxdag/esvo/build/subtree_builder.hpp"
 #include "voxdag/esvo/build/top_cells.hpp"
+#include "voxdag/parallel/ordered_pipeline.hpp"
 
 namespace voxdag {
 namespace {
@@ -31,8 +29,8 @@ class TaskBuilder {
         scratch_([this] { return CellScratch(options_.settings, appearance_, options_.memory); }) {}
 
   /// Builds a task and frees its triangles.
-  std::shared_ptr<FinishedTask> build(std::size_t task) {
-    auto finished = std::make_shared<FinishedTask>();
+  FinishedTask build(std::size_t task) {
+    FinishedTask finished;
     TopCell& cell = cells_[task];
     const MemoryGate::Pass pass(gate_, expected_bytes(cell));
     CellScratch& scratch = scratch_.local();
@@ -45,18 +43,17 @@ class TaskBuilder {
                                              cells_[cell.parent].decision.is_near, cell.shape, sum);
     }
     cell.triangles = TriangleList(options_.memory);
-    finished->cell = task;
-    finished->voxel =
-        SubtreeBuilder(options_.settings, appearance_, scratch.decider, scratch.pieces)
-            .build(cell.decision, cell.shape);
+    finished.cell = task;
+    finished.voxel = SubtreeBuilder(options_.settings, appearance_, scratch.decider, scratch.pieces)
+                         .build(cell.decision, cell.shape);
     scratch.finish_cell();
-    finished->voxel.count_tree(options_.memory);
-    const EsvoTree& tree = finished->voxel.tree;
-    finished->has_blocks = needs_blocks(tree);
-    if (!finished->has_blocks) return finished;
-    finished->block_memory = {options_.memory, packed_slots(tree) * kPackingBytesPerSlot};
-    finished->blocks = pack_blocks(tree, cell.level, cell.cell, 0, options_.pack);
-    finished->block_memory.resize(finished->blocks.slots.capacity() * sizeof(std::uint64_t));
+    finished.voxel.count_tree(options_.memory);
+    const EsvoTree& tree = finished.voxel.tree;
+    finished.has_blocks = needs_blocks(tree);
+    if (!finished.has_blocks) return finished;
+    finished.block_memory = {options_.memory, packed_slots(tree) * kPackingBytesPerSlot};
+    finished.blocks = pack_blocks(tree, cell.level, cell.cell, 0, options_.pack);
+    finished.block_memory.resize(finished.blocks.slots.capacity() * sizeof(std::uint64_t));
     return finished;
   }
 
@@ -108,29 +105,16 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
 
   TaskBuilder builder(source, options, shading, cells);
   BlockAssembler assembler(cells, options, sink);
-  std::size_t next = 0;
-  const auto next_task = [&](tbb::flow_control& flow) {
-    if (next == tasks.size() || (progress != nullptr && progress->cancelled())) {
-      flow.stop();
-      return std::size_t{0};
-    }
-    return tasks[next++];
-  };
-  using Finished = std::shared_ptr<FinishedTask>;
-  const auto build = [&](std::size_t task) { return builder.build(task); };
-  const auto assemble = [&](const Finished& finished) {
-    weight_so_far += cells[finished->cell].weight;
-    assembler.add(*finished);
-    if (progress != nullptr)
-      progress->report("octree", weight_so_far / total_weight,
-                       static_cast<std::uint64_t>(weight_so_far));
-  };
-  tbb::parallel_pipeline(
-      2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next_task) &
-          tbb::make_filter<std::size_t, Finished>(tbb::filter_mode::parallel, build) &
-          tbb::make_filter<Finished, void>(tbb::filter_mode::serial_in_order, assemble));
-  if (progress != nullptr) progress->throw_if_cancelled();
+  ordered_pipeline(
+      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), progress,
+      [&](std::size_t i) { return builder.build(tasks[i]); },
+      [&](FinishedTask& finished) {
+        weight_so_far += cells[finished.cell].weight;
+        assembler.add(finished);
+        if (progress != nullptr)
+          progress->report("octree", weight_so_far / total_weight,
+                           static_cast<std::uint64_t>(weight_so_far));
+      });
   return assembler.finish();
 }
 
