@@ -28,6 +28,7 @@ void ordered_pipeline(std::size_t count, std::size_t most_waiting, Progress* pro
   OrderPoint taken, made;
   std::size_t next = 0;
   const auto take = [&](tbb::flow_control& flow) {
+    const LoopOrder::Items items(order);
     const OrderPoint::Step step(taken);
     if (next == count || (progress != nullptr && progress->cancelled())) flow.stop();
     return next++;
