@@ -51,7 +51,8 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
   command
       .number(
           "--color-error", settings.color_error, NumberRange::from(0, 1), "DIFFERENCE",
-          "Largest difference of the colours in a leaf, in the channel that differs most (sRGB)")
+          "Largest difference of a leaf's colours from their mean, in the channel that differs most "
+          "(sRGB)")
       .only_if(has_contours, "with --no-contours")
       .only_if(has_attributes, "with --no-attributes")
       .in_group(kEsvoOptions);
