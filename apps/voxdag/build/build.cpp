@@ -49,10 +49,10 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
       .only_if(has_contours, "with --no-contours")
       .in_group(kEsvoOptions);
   command
-      .number(
-          "--color-error", settings.color_error, NumberRange::from(0, 1), "DIFFERENCE",
-          "Largest difference of a leaf's colours from their mean, in the channel that differs most "
-          "(sRGB)")
+      .number("--color-error", settings.color_error, NumberRange::from(0, 1), "DIFFERENCE",
+              "Largest difference of a leaf's colours from their mean, in the channel that differs "
+              "most "
+              "(sRGB)")
       .only_if(has_contours, "with --no-contours")
       .only_if(has_attributes, "with --no-attributes")
       .in_group(kEsvoOptions);
