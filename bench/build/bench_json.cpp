@@ -22,7 +22,7 @@ Json cost_json(const ProcessCost& cost) {
 void add_published(Json& json, const BuildRun& run) {
   const auto paper = published::reduction_of(run.paper, run.levels);
   add_paper_scene(json, run.paper);
-  if (run.method != "sort" || !paper) return;
+  if (run.method != "paper" || !paper) return;
   json["published"] = {{"source", published::kSource},
                        {"scene", paper->scene},
                        {"reduce_seconds", paper->total},

@@ -11,7 +11,8 @@
 
 namespace voxdag::published {
 
-inline constexpr std::string_view kSource = "Kämpe et al. 2013, Table 1 (Core i7 3930K, 6 cores)";
+inline constexpr std::string_view kSource =
+    "Kämpe et al. 2013, Table 1 (Core i7-3930K of 2011, 6 cores)";
 inline constexpr int kCores = 6;
 inline constexpr int kFirstLevels = 9;  ///< The columns are 512³, 1024³, ... 8192³.
 

@@ -71,24 +71,28 @@ std::string stage_rows(const Builds& builds, std::size_t begin, std::size_t end)
   return text + "\n";
 }
 
-/// Returns the table of reduction and sorting with the paper's Table 1; empty for other methods.
+/// Returns the table of reduction and sorting, for the paper's method with the paper's Table 1;
+/// empty if the builds do not sort.
 std::string sorting_rows(const Builds& builds, std::size_t begin, std::size_t end) {
-  if (builds[begin].method != "sort") return "";
+  const bool is_paper = builds[begin].method == "paper";
+  if (!is_paper && builds[begin].method != "sort") return "";
   const std::vector<int> widths{9, 11, 11, 11, 11};
   const PaperMatch& paper_scene = builds[begin].paper;
   std::string text =
-      fmt::format(
-          "  Seconds of reduction: ours, summed over all threads; published, wall-clock time: {}\n",
-          published::kSource) +
+      (is_paper
+           ? fmt::format("  Wall-clock seconds of reduction: ours on {} threads; published: {}\n",
+                         builds[begin].threads, published::kSource)
+           : "  Seconds of reduction, summed over all threads\n") +
       (paper_scene.scene == nullptr ? "" : "  This mesh: " + paper_scene.label() + "\n") +
-      row({"grid", "reduction", "sorting", "published", "sorting"}, widths);
+      row({"grid", "reduction", "sorting", is_paper ? "published" : "", is_paper ? "sorting" : ""},
+          widths);
   for (std::size_t i = begin; i < end; ++i) {
     const BuildRun& run = builds[i];
     if (!run.failure.empty()) continue;
     std::vector<std::string> cells{resolution(run.levels),
                                    fmt::format("{:.3f}", run.stage("reduce")),
                                    fmt::format("{:.3f}", run.stage("sort"))};
-    if (const auto paper = published::reduction_of(run.paper, run.levels)) {
+    if (const auto paper = published::reduction_of(run.paper, run.levels); paper && is_paper) {
       cells.push_back(fmt::format("{:.4g}", paper->total));
       cells.push_back(fmt::format("{:.4g}", paper->sorting));
     }

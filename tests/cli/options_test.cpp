@@ -205,7 +205,7 @@ TEST_F(Options, WithEmptyValuesAreRefused) {
 
 TEST_F(Options, WordsOutsideTheListAreRefused) {
   for (const char* word : {"7", "1", "0", "HASH", "hashes"})
-    expect_failure(build({"--method", word}, "bad.vdag"), 2, "is neither hash nor sort");
+    expect_failure(build({"--method", word}, "bad.vdag"), 2, "is not hash, sort or paper");
   for (const char* word : {"2", "-1", "1e5", "svo"})
     expect_failure(build({"--as", word}, "bad.vdag"), 2, "is neither dag nor esvo");
   EXPECT_EQ(files_like("bad"), 0);

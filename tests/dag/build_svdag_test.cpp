@@ -161,7 +161,8 @@ TEST(BuildSvdag, TheWordsDependOnNeitherThreadsNorVectorWidth) {
 
 TEST(BuildSvdag, TrianglesOutsideTheGridGiveNoVoxels) {
   const Mesh outside{{{20, 20, 20}, {30, 20, 20}, {20, 30, 20}}, {{0, 1, 2}}, {}, {}};
-  for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
+  for (const BuildMethod method :
+       {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     const Svdag dag = build_svdag(outside, unit_grid(4), {method, nullptr}).dag;
     EXPECT_TRUE(dag.view().is_empty());
     EXPECT_EQ(count_svdag(dag.view()).voxels, 0u);
@@ -173,7 +174,8 @@ TEST(BuildSvdag, ATriangleThatReachesFarOutOfTheGridIsClipped) {
   // The plane y = 5.5 through the whole grid, by a triangle far larger than 32-bit units.
   const Mesh mesh{
       {{-1e9f, 5.5f, -1e9f}, {1e9f, 5.5f, -1e9f}, {0, 5.5f, 1e9f}}, {{0, 1, 2}}, {}, {}};
-  for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
+  for (const BuildMethod method :
+       {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     const Svdag dag = build_svdag(mesh, unit_grid(6), {method, nullptr}).dag;
     EXPECT_EQ(count_svdag(dag.view()).voxels, 64u * 64u);
   }
@@ -191,7 +193,8 @@ TEST(BuildSvdag, AnAxisAlignedPlaneTakesOneNodeALevelAtTheLargestGrid) {
 TEST(BuildSvdag, RefusesAMemoryLimitItCannotKeep) {
   std::mt19937_64 random(5);
   const Mesh mesh = mesh_of(random_triangles(random, 12, 40));
-  for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
+  for (const BuildMethod method :
+       {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     MemoryBudget memory(1000);
     try {
       build_svdag(mesh, unit_grid(12), {method, &memory});
@@ -205,7 +208,8 @@ TEST(BuildSvdag, RefusesAMemoryLimitItCannotKeep) {
 TEST(BuildSvdag, StopsWhenCancelled) {
   std::mt19937_64 random(6);
   const Mesh mesh = mesh_of(random_triangles(random, 12, 40));
-  for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
+  for (const BuildMethod method :
+       {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     Progress progress;
     progress.cancel();
     EXPECT_THROW(build_svdag(mesh, unit_grid(12), {method, nullptr}, &progress), Cancelled);

@@ -89,7 +89,8 @@ struct Case {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const BuildMethod method : {BuildMethod::kHashConsed, BuildMethod::kSort}) {
+  for (const BuildMethod method :
+       {BuildMethod::kHashConsed, BuildMethod::kSort, BuildMethod::kPaper}) {
     all.push_back({"spot", spot(200000), 10, method});
     all.push_back({"spheres", bumpy_spheres(60), 10, method});
     all.push_back({"spheres", bumpy_spheres(150), 11, method});

@@ -48,6 +48,7 @@ TEST_P(CrytekSponza, HasTheReferenceCounts) {
   EXPECT_EQ(check_cover(dag.view(), grid, mesh, 20000).mismatches, 0u);
   if (expected.levels == 11) {
     EXPECT_EQ(build_svdag(mesh, grid, {BuildMethod::kSort, 0}).dag, dag);
+    EXPECT_EQ(build_svdag(mesh, grid, {BuildMethod::kPaper, 0}).dag, dag);
   }
 }
 

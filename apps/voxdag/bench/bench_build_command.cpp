@@ -27,7 +27,8 @@ struct BenchArguments {
 };
 
 std::string parse_method(const std::string& text) {
-  if (text != "hash" && text != "sort") throw std::invalid_argument("is neither hash nor sort");
+  if (text != "hash" && text != "sort" && text != "paper")
+    throw std::invalid_argument("is not hash, sort or paper");
   return text;
 }
 
@@ -79,7 +80,7 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
   command.list("-r,--resolution", plan.levels, parse_levels, "N,N...",
                "Voxels per side (default: 512,1024,2048)");
   command.list("--method", plan.methods, parse_method, "METHOD,METHOD",
-               "hash, sort or both (default: hash)");
+               "Any of hash, sort and paper, as in voxdag build (default: hash)");
   const Option rival = command.repeated(
       "--rival", plan.rivals, parse_rival, "NAME=COMMAND",
       "Run another program for comparison: a shell command with {mesh}, {out}, {resolution} and "

@@ -23,9 +23,10 @@ bool parse_structure(const std::string& text) {
 }
 
 BuildMethod parse_method(const std::string& text) {
-  if (text != "hash" && text != "sort")
-    throw std::invalid_argument(fmt::format("\"{}\" is neither hash nor sort", text));
-  return text == "sort" ? BuildMethod::kSort : BuildMethod::kHashConsed;
+  if (text == "hash") return BuildMethod::kHashConsed;
+  if (text == "sort") return BuildMethod::kSort;
+  if (text == "paper") return BuildMethod::kPaper;
+  throw std::invalid_argument(fmt::format("\"{}\" is not hash, sort or paper", text));
 }
 
 void add_grid_options(const Command& command, BuildArguments& arguments) {
@@ -51,8 +52,7 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
   command
       .number("--color-error", settings.color_error, NumberRange::from(0, 1), "DIFFERENCE",
               "Largest difference of a leaf's colours from their mean, in the channel that differs "
-              "most "
-              "(sRGB)")
+              "most (sRGB)")
       .only_if(has_contours, "with --no-contours")
       .only_if(has_attributes, "with --no-attributes")
       .in_group(kEsvoOptions);
@@ -107,9 +107,11 @@ void add_build_command(const Command& program, Session& session) {
                      "(default: esvo if FILE ends in .esvo, else dag)");
   add_grid_options(command, *arguments);
   command
-      .parsed("--method", arguments->method, parse_method, "hash|sort",
-              "hash: depth-first with a hash table of nodes; sort: the paper's method. Both write "
-              "the same file (default: hash)")
+      .parsed(
+          "--method", arguments->method, parse_method, "hash|sort|paper",
+          "hash: depth-first with a hash table of nodes; sort: the paper's reduction by sorting, "
+          "sub-volumes in parallel; paper: one sub-volume at a time, as the paper does. All "
+          "write the same file (default: hash)")
       .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "

@@ -16,6 +16,7 @@ namespace voxdag {
 struct BuildInput {
   const Mesh& mesh;
   Grid grid;
+  BuildMethod method;
   int bin_level;  ///< The sub-volumes are the cells of this level.
   MemoryBudget& budget;
   Progress* progress;
@@ -27,7 +28,7 @@ struct StageBytes {
   double prepare = 0;         ///< Quantized mesh and binning.
   double voxelize_fixed = 0;  ///< Quantized mesh, lists and the threads' scratch memory.
   double voxelize = 0;        ///< * Nodes of all sub-volumes, and their builders.
-  double merge = 0;           ///< * kSort: the final reduction.
+  double merge = 0;           ///< * By sorting: the final reduction.
   double number = 0;          ///< * Numbering in canonical order.
 };
 
@@ -63,7 +64,7 @@ HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& repor
 /// Converts the nodes to the canonical DAG. Throws Error, OverMemory and Cancelled.
 Svdag number_nodes(HashConsedNodes nodes, const BuildInput& input, BuildReport& report);
 
-/// Returns the level whose cells are the sub-volumes of kSort.
+/// Returns the level whose cells are the sub-volumes of kSort and kPaper.
 int sort_bin_level(int levels);
 /// Returns the reduced trees of all sub-volumes below a top tree; level 0 is empty if there are no
 /// voxels. Adds to `report` and `bytes`. Throws OverMemory and Cancelled.

@@ -141,9 +141,13 @@ class SortedSubvolumes {
     if (root == kNoNode) return;
     SortTree reduced = std::move(context.sink.tree);
     bytes[i] = static_cast<double>(reduced.bytes() + reduction_bytes(reduced));
-    reduce_by_sorting(reduced, false, false, times, input_.budget, input_.progress);
+    const bool one_at_a_time = input_.method == BuildMethod::kPaper;
+    reduce_by_sorting(reduced, false, one_at_a_time, times, input_.budget, input_.progress);
+    StopWatch watch;
     const std::lock_guard guard(mutex_);
     roots[i] = append(tree, reduced, bins.level, input_.progress);
+    // With several threads, much of this time is spent in waiting for each other.
+    if (one_at_a_time) times.reduce += watch.lap();
   }
 
   SortTree tree;
@@ -156,6 +160,45 @@ class SortedSubvolumes {
   const BuildInput& input_;
 };
 
+/// Adds all sub-volumes, on all threads at the same time. Returns their seconds, summed over the
+/// threads.
+SortTimes add_in_parallel(SortedSubvolumes& subvolumes, const BuildInput& input) {
+  const std::size_t count = subvolumes.roots.size(), threads = thread_count(count);
+  tbb::enumerable_thread_specific<SortTimes> times;
+  // Sub-volumes that did not fit into memory together are built again, one at a time.
+  std::vector<std::size_t> postponed;
+  std::mutex postponed_mutex;
+  polled_for(count, 1, input.progress, "voxelize", [&](std::size_t i) {
+    try {
+      subvolumes.add(i, times.local());
+    } catch (const OverMemory&) {
+      if (threads == 1) throw;
+      const std::lock_guard guard(postponed_mutex);
+      postponed.push_back(i);
+    }
+  });
+  for (const std::size_t i : postponed) subvolumes.add(i, times.local());
+  SortTimes sum;
+  for (const SortTimes& t : times) {
+    sum.reduce += t.reduce;
+    sum.sort += t.sort;
+  }
+  return sum;
+}
+
+/// Adds one sub-volume after the other. Returns their wall-clock seconds.
+SortTimes add_in_order(SortedSubvolumes& subvolumes, const BuildInput& input) {
+  SortTimes times;
+  const std::size_t count = subvolumes.roots.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    poll(input.progress);
+    subvolumes.add(i, times);
+    if (input.progress != nullptr)
+      input.progress->report("voxelize", static_cast<double>(i + 1) / static_cast<double>(count));
+  }
+  return times;
+}
+
 }  // namespace
 
 int sort_bin_level(int levels) { return std::max(0, levels - kSubvolumeLevels); }
@@ -166,30 +209,17 @@ SortTree voxelize_by_sorting(const BuildInput& input, BuildReport& report, Stage
   const SubvolumeBins& bins = binned.bins;
   report.quantize_seconds = watch.lap();
   report.subvolumes = bins.cells.size();
-  const std::size_t threads = thread_count(bins.cells.size());
+  const bool one_at_a_time = input.method == BuildMethod::kPaper;
+  const std::size_t threads = one_at_a_time ? 1 : thread_count(bins.cells.size());
   bytes.prepare = binned.prepare_bytes;
   bytes.voxelize_fixed = static_cast<double>(input.budget.used()) +
                          static_cast<double>(threads) * list_scratch_bytes(bins);
 
   SortedSubvolumes subvolumes(binned, input);
-  tbb::enumerable_thread_specific<SortTimes> times;
-  // Sub-volumes that did not fit into memory together are built again, one at a time.
-  std::vector<std::size_t> postponed;
-  std::mutex postponed_mutex;
-  polled_for(bins.cells.size(), 1, input.progress, "voxelize", [&](std::size_t i) {
-    try {
-      subvolumes.add(i, times.local());
-    } catch (const OverMemory&) {
-      if (threads == 1) throw;
-      const std::lock_guard guard(postponed_mutex);
-      postponed.push_back(i);
-    }
-  });
-  for (const std::size_t i : postponed) subvolumes.add(i, times.local());
-  for (const SortTimes& t : times) {
-    report.reduce_seconds += t.reduce;
-    report.sort_seconds += t.sort;
-  }
+  const SortTimes times =
+      one_at_a_time ? add_in_order(subvolumes, input) : add_in_parallel(subvolumes, input);
+  report.reduce_seconds += times.reduce;
+  report.sort_seconds += times.sort;
 
   SortTree& tree = subvolumes.tree;
   std::vector<double>& largest = subvolumes.bytes;

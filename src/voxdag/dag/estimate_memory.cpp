@@ -7,7 +7,7 @@ namespace voxdag {
 namespace {
 
 /// Builds at 2^levels and returns the bytes of the stages. Throws OverMemory and Cancelled.
-StageBytes measure(const BuildInput& input, BuildMethod method, int levels) {
+StageBytes measure(const BuildInput& input, int levels) {
   const double scale = std::ldexp(1.0, input.grid.levels - levels);
   BuildInput coarse = input;
   coarse.grid.levels = levels;
@@ -16,23 +16,22 @@ StageBytes measure(const BuildInput& input, BuildMethod method, int levels) {
   coarse.bin_level = std::min(input.bin_level, levels - 2);
   BuildReport report;
   StageBytes bytes;
-  if (method == BuildMethod::kSort)
-    voxelize_by_sorting(coarse, report, bytes);
-  else
+  if (input.method == BuildMethod::kHashConsed)
     voxelize_hash_consed(coarse, report, bytes);
+  else
+    voxelize_by_sorting(coarse, report, bytes);
   return bytes;
 }
 
 }  // namespace
 
-std::optional<std::uint64_t> estimate_memory(const BuildInput& input, BuildMethod method,
-                                             int steps) {
+std::optional<std::uint64_t> estimate_memory(const BuildInput& input, int steps) {
   const int levels = input.grid.levels;
   const int fine = std::max(kMinLevels, levels - steps), coarse = std::max(kMinLevels, fine - 1);
   MemoryBudget budget(input.budget.left() == ~std::uint64_t{0} ? 0 : input.budget.left());
-  BuildInput probe{input.mesh, input.grid, input.bin_level, budget, input.progress};
+  BuildInput probe{input.mesh, input.grid, input.method, input.bin_level, budget, input.progress};
   try {
-    const StageBytes a = measure(probe, method, coarse), b = measure(probe, method, fine);
+    const StageBytes a = measure(probe, coarse), b = measure(probe, fine);
     const auto extrapolate = [&](double at_coarse, double at_fine) {
       // A surface has four times as many cells at the next level, and a DAG never grows faster.
       const double growth = fine == coarse ? 4 : std::clamp(at_fine / at_coarse, 1.0, 4.0);

@@ -10,7 +10,7 @@
 
 namespace voxdag {
 
-/// Seconds summed over the threads that did the work.
+/// Wall-clock seconds of the thread that called.
 struct SortTimes {
   double reduce = 0;  ///< The whole reduction, with sorting.
   double sort = 0;
