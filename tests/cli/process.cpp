@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,10 +25,18 @@ int nameless_file() {
   return descriptor;
 }
 
-std::string read_and_close(int& descriptor) {
-  std::string text(static_cast<std::size_t>(lseek(descriptor, 0, SEEK_END)), '\0');
+/// Returns the text of the file, and leaves the offset where the program writes.
+std::string text_of(int descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) throw std::runtime_error("cannot read a temporary file");
+  std::string text(static_cast<std::size_t>(status.st_size), '\0');
   if (pread(descriptor, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
     throw std::runtime_error("cannot read a temporary file");
+  return text;
+}
+
+std::string read_and_close(int& descriptor) {
+  std::string text = text_of(descriptor);
   close(std::exchange(descriptor, -1));
   return text;
 }
@@ -90,6 +99,15 @@ bool Process::wait_until_it_writes(const std::filesystem::path& folder) const {
     if (ended || all == fs::directory_iterator()) return false;
     for (; all != fs::directory_iterator(); all.increment(ended))
       if (is_written(all->path())) return true;
+  }
+}
+
+bool Process::wait_until_it_warns(const std::string& text) const {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    siginfo_t state{};
+    waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT);
+    if (text_of(err_).find(text) != std::string::npos) return true;
+    if (state.si_pid != 0) return false;
   }
 }
 

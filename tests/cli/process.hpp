@@ -29,6 +29,8 @@ class Process {
   /// Waits until the program has written to a file in `folder`, which may have no name. Returns
   /// false if the program has ended.
   bool wait_until_it_writes(const std::filesystem::path& folder) const;
+  /// Waits until the program has written `text` to stderr. Returns false if it has ended without.
+  bool wait_until_it_warns(const std::string& text) const;
   /// Waits until the program has mapped the file into its memory, or has ended.
   void wait_until_it_maps(const std::filesystem::path& file) const;
   ProcessResult wait();
