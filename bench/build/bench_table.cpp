@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bench/build/bench_published.hpp"
+#include "bench/papers/svdag_published.hpp"
 #include "bench/build/bench_report.hpp"
 #include "voxdag/report/human.hpp"
 

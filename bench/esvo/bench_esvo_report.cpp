@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench/esvo/bench_esvo.hpp"
-#include "bench/esvo/bench_esvo_published.hpp"
+#include "bench/papers/esvo_published.hpp"
 #include "bench/papers/paper_json.hpp"
 #include "bench/report/bench_machine.hpp"
 #include "voxdag/report/human.hpp"

@@ -48,6 +48,10 @@ constexpr std::array kKnown{
               "99,970 triangles, 28 million in the paper"},
     KnownMesh{Paper::kSvdag, "Hairball", 0, "hairball", false, SceneState::kStandIn,
               "a procedural hairball"},
+    KnownMesh{Paper::kSvdag, "EpicCitadel", 0, "city", false, SceneState::kStandIn,
+              "a procedural city"},
+    KnownMesh{Paper::kSvdag, "SanMiguel", 0, "courtyard", false, SceneState::kStandIn,
+              "a procedural courtyard"},
     KnownMesh{Paper::kEsvo, "Sibenik", 0x660b8c8b0c33e732, "", false, SceneState::kVariant,
               "80,479 triangles and no textures; the paper does not say how many it has"},
     KnownMesh{Paper::kEsvo, "Sibenik-D", 0x660b8c8b0c33e732, "", true, SceneState::kVariant,
@@ -104,6 +108,17 @@ std::string PaperMatch::label() const {
                      scene->name, difference);
 }
 
+std::string_view procedural_stand_in(const PaperScene& scene) {
+  for (const KnownMesh& known : kKnown)
+    if (known.paper == scene.paper && known.scene == scene.name && known.file_check == 0)
+      return known.procedural_name;
+  return "";
+}
+
+bool is_named_like(const PaperScene& scene, std::string_view mesh_name) {
+  return letters_of(mesh_name).find(letters_of(scene.name)) != std::string::npos;
+}
+
 PaperMatch match_paper_scene(Paper paper, const MeshIdentity& mesh) {
   for (const KnownMesh& known : kKnown) {
     const bool is_it = known.procedural_name.empty()
@@ -113,10 +128,9 @@ PaperMatch match_paper_scene(Paper paper, const MeshIdentity& mesh) {
       return {scene_of(paper, known.scene), known.state, std::string(known.difference)};
   }
   if (mesh.is_procedural || mesh.is_displaced) return {};
-  const std::string name = letters_of(mesh.name);
   for (const PaperScene& scene : kScenes)
     if (scene.paper == paper && is_about(mesh.triangles, scene.triangles) &&
-        name.find(letters_of(scene.name)) != std::string::npos)
+        is_named_like(scene, mesh.name))
       return {&scene, SceneState::kSame, ""};
   return {};
 }

@@ -54,6 +54,12 @@ struct PaperMatch {
   std::string label() const;
 };
 
+/// Returns the name of the procedural scene that can stand in for a paper's scene; empty: none.
+std::string_view procedural_stand_in(const PaperScene& scene);
+
+/// Returns whether a mesh of this name may be the scene: its name has the scene's name in it.
+bool is_named_like(const PaperScene& scene, std::string_view mesh_name);
+
 /// Returns the scene of `paper` that the mesh stands for. Known files are recognised by their
 /// content. Others are the same as a scene if their name has the scene's name in it and their
 /// number of triangles is the paper's, within the 4 % by which the papers round.

@@ -1,0 +1,97 @@
+/// The command line of `voxdag bench papers`.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "bench/papers/paper_scenes.hpp"
+#include "bench/reproduce/bench_papers.hpp"
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+struct PapersArguments {
+  PapersPlan plan;
+  std::string scenes, folder;
+  std::vector<int> table1, table2;  ///< Levels; empty: those of the plan.
+  bool quick = false;
+};
+
+std::vector<int> sorted(std::vector<int> levels) {
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+/// Returns the name of a scene in the papers' tables.
+std::string parse_paper_scene(const std::string& text) {
+  std::set<std::string_view> known;
+  for (const PaperScene& scene : paper_scenes()) known.insert(scene.name);
+  if (!known.contains(text))
+    throw std::invalid_argument(fmt::format("must be one of {}", fmt::join(known, ", ")));
+  return text;
+}
+
+void run(const PapersArguments& arguments, Session& session) {
+  PapersPlan plan = arguments.plan;
+  plan.scenes = arguments.scenes;
+  if (arguments.quick) make_quick(plan);
+  if (!arguments.table1.empty()) plan.table1_levels = sorted(arguments.table1);
+  if (!arguments.table2.empty()) plan.table2_levels = sorted(arguments.table2);
+  plan.folder = std::filesystem::absolute(arguments.folder);
+  plan.threads = session.threads;
+  if (!session.quiet)
+    fmt::print(stderr,
+               "voxdag: takes about {} on two cores; finished measurements are kept in {}\n",
+               human_duration(typical_seconds(plan)), arguments.folder);
+  const PapersReport report = bench_papers(plan, session.progress);
+  session.bar.clear();
+  fmt::print("{}: {} measured, {} kept from earlier runs{}\n", report.html.string(),
+             report.measured, report.kept,
+             report.has_charts ? "" : "; no charts, because matplotlib is not installed");
+}
+
+}  // namespace
+
+void add_bench_papers_command(const Command& bench, Session& session) {
+  const auto arguments = std::make_shared<PapersArguments>();
+  const Command command = bench.add(
+      "papers", "Measure the tables and figures of both papers again, and write a report",
+      "voxdag bench papers --scenes DIR -o report\n"
+      "voxdag bench papers --quick -o report       # procedural scenes, a few minutes\n"
+      "An interrupted run continues where it stopped if it is started again with the same folder.");
+  command.text("-o,--output", arguments->folder, "DIR", "The folder for the report").required();
+  const Option scenes =
+      command.text("--scenes", arguments->scenes, "DIR",
+                   "The folder of the meshes (default: the variable VOXDAG_SCENES; without it, "
+                   "procedural scenes alone)");
+  command.flag("--quick", arguments->quick, "Coarse resolutions and procedural scenes only")
+      .not_with(scenes);
+  command.list("--only", arguments->plan.only, parse_paper_scene, "SCENE,SCENE...",
+               "Only these scenes, as the papers name them (default: all)");
+  command.list("--table1", arguments->table1, parse_levels, "N,N...",
+               "Resolutions of the SVDAG paper's Table 1 (default: 512,1K,2K,4K,8K)");
+  command.list("--table2", arguments->table2, parse_levels, "N,N...",
+               "Resolutions of the SVDAG paper's Table 2 (default: 2K,4K,8K,16K,32K,64K)");
+  command.number("--cell-seconds", arguments->plan.cell_seconds, NumberRange::from(1, 1e6),
+                 "SECONDS", "Time limit of one run; the report names the runs that it excludes");
+  command.parsed("--memory", arguments->plan.memory_bytes, parse_memory, "LIMIT",
+                 "Maximum memory of one build: 512M, 16GiB (default: three quarters of the "
+                 "available memory)");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.when_parsed([arguments, &session] {
+    const char* variable = std::getenv("VOXDAG_SCENES");
+    if (arguments->scenes.empty() && variable != nullptr) arguments->scenes = variable;
+    session.work = [arguments, &session] { run(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,69 @@
+#include "bench/report/charts.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "bench/report/bench_child.hpp"
+#include "bench/report/scratch_folder.hpp"
+#include "charts_py.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/atomic_file.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json axis_json(const ChartAxis& axis) {
+  static constexpr const char* kScales[] = {"linear", "log2", "log10"};
+  return {{"label", axis.label}, {"scale", kScales[static_cast<int>(axis.scale)]}};
+}
+
+Json line_json(const ChartLine& line) {
+  return {{"label", line.label}, {"x", line.x},           {"y", line.y},  // NaN becomes null
+          {"color", line.color}, {"dashed", line.dashed}, {"markers", line.markers}};
+}
+
+Json chart_json(const Chart& chart, const std::filesystem::path& folder) {
+  Json panels = Json::array();
+  for (const ChartPanel& panel : chart.panels) {
+    Json lines = Json::array();
+    for (const ChartLine& line : panel.lines) lines.push_back(line_json(line));
+    panels.push_back({{"title", panel.title},
+                      {"x", axis_json(panel.x)},
+                      {"y", axis_json(panel.y)},
+                      {"lines", std::move(lines)}});
+  }
+  return {{"file", std::filesystem::absolute(folder / chart.file).string()}, {"panels", panels}};
+}
+
+/// Returns a Python interpreter that has matplotlib; empty if there is none.
+std::string python_with_matplotlib(const Progress& progress) {
+  // Debian's packages belong to /usr/bin/python3, which may not be the first in PATH.
+  for (const char* python : {"python3", "/usr/bin/python3"})
+    if (run_child({python, "-c", "import matplotlib"}, "/", 60, progress).status == 0)
+      return python;
+  return "";
+}
+
+}  // namespace
+
+bool draw_charts(const std::vector<Chart>& charts, const std::filesystem::path& folder,
+                 const Progress& progress) {
+  const std::string python = python_with_matplotlib(progress);
+  if (python.empty()) return false;
+  Json all = Json::array();
+  for (const Chart& chart : charts) all.push_back(chart_json(chart, folder));
+  const ScratchFolder scratch;
+  write_whole_file(scratch.path() / "charts.py", kChartsPy);
+  write_whole_file(scratch.path() / "charts.json", all.dump());
+  const ChildResult drawn =
+      run_child({python, "charts.py", "charts.json"}, scratch.path(), 0, progress);
+  if (drawn.status == 0) return true;
+  // Python prints the reason last.
+  const std::string error = drawn.err.substr(0, drawn.err.find_last_not_of('\n') + 1);
+  throw Error(folder, "", "matplotlib failed: " + error.substr(error.rfind('\n') + 1));
+}
+
+}  // namespace voxdag

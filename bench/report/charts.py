@@ -1,0 +1,92 @@
+"""Draws charts with matplotlib.
+
+Reads a list of charts as JSON from the file argv[1] and writes SVG files. bench/report/charts.hpp
+says what the fields mean.
+"""
+
+import json
+import sys
+
+import matplotlib
+
+matplotlib.use("svg")
+from matplotlib import pyplot, ticker  # noqa: E402
+
+# Okabe and Ito's colours, which colour-blind readers can tell apart.
+PALETTE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999"]
+MARKERS = "osD^vP*X"
+
+matplotlib.rcParams.update({
+    "svg.hashsalt": "voxdag",
+    "font.family": "sans-serif",
+    "font.size": 9,
+    "axes.grid": True,
+    "axes.grid.which": "major",
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "lines.linewidth": 1.4,
+    "lines.markersize": 4,
+})
+
+
+def resolution_name(value, _position=None):
+    """Returns "4K" for 4096."""
+    return f"{value / 1024:g}K" if value >= 1024 else f"{value:g}"
+
+
+def set_scale(axis, set_axis_scale, scale):
+    if scale == "log2":
+        set_axis_scale("log", base=2)
+        axis.set_major_formatter(ticker.FuncFormatter(resolution_name))
+        axis.set_minor_locator(ticker.NullLocator())
+    elif scale == "log10":
+        set_axis_scale("log")
+    else:
+        axis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
+
+
+def draw_panel(axes, panel):
+    for line in panel["lines"]:
+        color = line["color"] % len(PALETTE)
+        y = [float("nan") if value is None else value for value in line["y"]]
+        axes.plot(line["x"], y, color=PALETTE[color], label=line["label"] or None,
+                  linestyle="--" if line["dashed"] else "-",
+                  marker=MARKERS[color] if line["markers"] else None)
+    axes.set_title(panel["title"], fontsize=9, fontweight="bold")
+    axes.set_xlabel(panel["x"]["label"])
+    axes.set_ylabel(panel["y"]["label"])
+    set_scale(axes.xaxis, axes.set_xscale, panel["x"]["scale"])
+    set_scale(axes.yaxis, axes.set_yscale, panel["y"]["scale"])
+    if panel["y"]["scale"] == "linear":
+        axes.set_ylim(bottom=0)
+    if any(line["label"] for line in panel["lines"]):
+        axes.legend()
+
+
+def draw(chart):
+    panels = chart["panels"]
+    # Two panels beside each other have the width of a page.
+    columns = min(len(panels), 2)
+    rows = -(-len(panels) // columns)
+    figure, all_axes = pyplot.subplots(rows, columns, squeeze=False, layout="constrained",
+                                       figsize=(4.6 * columns if columns > 1 else 6.4, 3.4 * rows))
+    for axes in all_axes.flat[len(panels):]:
+        axes.set_axis_off()
+    for axes, panel in zip(all_axes.flat, panels):
+        draw_panel(axes, panel)
+    figure.savefig(chart["file"], format="svg", metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as file:
+        for chart in json.load(file):
+            draw(chart)
+
+
+main()

@@ -1,0 +1,56 @@
+/// Writes a document as Markdown.
+#include <fmt/core.h>
+
+#include "bench/report/document.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Returns the text of a table cell: a bar would end it.
+std::string cell_text(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? "\\|" : std::string(1, c);
+  return escaped;
+}
+
+std::string row_of(const std::vector<std::string>& cells) {
+  std::string line = "|";
+  for (const std::string& cell : cells) line += fmt::format(" {} |", cell_text(cell));
+  return line + "\n";
+}
+
+class MarkdownWriter {
+ public:
+  std::string text;
+
+  void operator()(const Paragraph& paragraph) { text += paragraph.text + "\n\n"; }
+  void operator()(const CommandLine& command) {
+    text += fmt::format("```\n{}\n```\n\n", command.text);
+  }
+  void operator()(const Table& table) {
+    text += fmt::format("**{}**\n\n", table.caption) + row_of(table.header) + "|";
+    for (std::size_t i = 0; i < table.header.size(); ++i)
+      text += i < table.text_columns ? "---|" : "---:|";
+    text += "\n";
+    for (const std::vector<std::string>& row : table.rows) text += row_of(row);
+    text += "\n";
+  }
+  void operator()(const Picture& picture) {
+    text += fmt::format("![{}]({})\n\n*{}*\n\n", picture.caption, picture.file.generic_string(),
+                        picture.caption);
+  }
+};
+
+}  // namespace
+
+std::string markdown_of(const Document& document) {
+  MarkdownWriter writer;
+  writer.text = fmt::format("# {}\n\n", document.title);
+  for (const Section& section : document.sections) {
+    writer.text += fmt::format("{:#<{}} {}\n\n", "", section.depth + 1, section.title);
+    for (const DocumentPart& part : section.parts) std::visit(writer, part);
+  }
+  return writer.text;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,90 @@
+#include "bench/reproduce/build_series.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+std::vector<std::string> options_of(BuildKind kind) {
+  switch (kind) {
+    case BuildKind::kPaper:
+      return {"--method", "paper"};
+    case BuildKind::kHash:
+      return {"--method", "hash"};
+    case BuildKind::kEsvo:
+      break;
+  }
+  return {"--as", "esvo", "--no-attributes"};
+}
+
+Cell build_cell(const PapersPlan& plan, BuildKind kind, const std::filesystem::path& mesh,
+                int levels) {
+  Cell cell;
+  // An ESVO's file cannot be a device.
+  cell.output = kind == BuildKind::kEsvo ? plan.folder / "build.esvo" : "/dev/null";
+  cell.arguments = {"build", mesh, "-r", std::to_string(1 << levels), "-o", cell.output, "--json"};
+  const std::vector<std::string> options = options_of(kind);
+  cell.arguments.insert(cell.arguments.end(), options.begin(), options.end());
+  if (plan.memory_bytes > 0)
+    cell.arguments.insert(cell.arguments.end(), {"--memory", std::to_string(plan.memory_bytes)});
+  if (plan.threads > 0)
+    cell.arguments.insert(cell.arguments.end(), {"--threads", std::to_string(plan.threads)});
+  cell.inputs = {mesh};
+  cell.seconds_limit = plan.cell_seconds;
+  return cell;
+}
+
+/// Returns why the build after `last` is not worth a try; empty if it is.
+std::string reason_to_stop(const PapersPlan& plan, const SeriesBuild& last, int levels) {
+  if (!last.result.failure.empty())
+    return fmt::format("not run, because {}³ failed: {}", 1 << last.levels, last.result.failure);
+  // The seconds of reading the mesh do not grow; the others grow by four at most, as surfaces do.
+  const double predicted = last.result.cost.wall_seconds * std::exp2(levels - last.levels);
+  if (plan.cell_seconds > 0 && predicted > plan.cell_seconds)
+    return fmt::format("not run, because {}³ took {}, and the limit is {}", 1 << last.levels,
+                       human_duration(last.result.cost.wall_seconds),
+                       human_duration(plan.cell_seconds));
+  return "";
+}
+
+}  // namespace
+
+std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
+                                      const std::filesystem::path& mesh,
+                                      const std::vector<int>& levels, CellStore& cells,
+                                      Progress& progress) {
+  std::vector<SeriesBuild> builds;
+  std::string reason;
+  for (const int level : levels) {
+    progress.throw_if_cancelled();
+    SeriesBuild build{level, build_cell(plan, kind, mesh, level), {}};
+    if (reason.empty() && !builds.empty()) reason = reason_to_stop(plan, builds.back(), level);
+    if (reason.empty()) {
+      build.result = cells.run(build.cell);
+      if (kind == BuildKind::kEsvo) std::filesystem::remove(build.cell.output);
+    } else {
+      build.result.failure = reason;
+    }
+    builds.push_back(std::move(build));
+  }
+  return builds;
+}
+
+double typical_seconds(BuildKind kind, const std::vector<int>& levels) {
+  // Measured with Crytek Sponza: seconds at 2048³, and the factor from one level to the next.
+  struct Cost {
+    double seconds, growth;
+  };
+  static constexpr Cost kCosts[] = {{0.9, 3}, {0.4, 2.4}, {4, 3.5}};
+  const Cost& cost = kCosts[static_cast<int>(kind)];
+  double seconds = 0;
+  for (const int level : levels) seconds += cost.seconds * std::pow(cost.growth, level - 11);
+  return seconds;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,145 @@
+#include "bench/reproduce/cells.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <span>
+
+#include "bench/build/bench_mesh.hpp"
+#include "bench/report/bench_machine.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/checksum.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json cost_json(const ProcessCost& cost) {
+  return {{"wall_seconds", cost.wall_seconds},
+          {"user_seconds", cost.user_seconds},
+          {"system_seconds", cost.system_seconds},
+          {"peak_memory_bytes", cost.peak_bytes}};
+}
+
+/// Returns the kept result in a file, or nothing if there is none or it is damaged.
+std::optional<CellResult> read_result(const fs::path& file) {
+  std::ifstream stream(file);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  try {
+    CellResult result;
+    result.is_kept = true;
+    result.failure = json.at("failure");
+    result.json = json.at("result");
+    const Json& cost = json.at("cost");
+    result.cost = {cost.at("wall_seconds"), cost.at("user_seconds"), cost.at("system_seconds"),
+                   cost.at("peak_memory_bytes")};
+    return result;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+bool is_one_of(const std::vector<fs::path>& files, const std::string& argument) {
+  return std::find(files.begin(), files.end(), fs::path(argument)) != files.end();
+}
+
+}  // namespace
+
+std::string command_of(const Cell& cell) {
+  std::string line = "voxdag";
+  for (const std::string& argument : cell.arguments) {
+    const bool is_file = is_one_of(cell.inputs, argument) ||
+                         (argument == cell.output && !argument.starts_with("/dev/"));
+    line += " " + (is_file ? fs::path(argument).filename().string() : argument);
+  }
+  return line;
+}
+
+CellStore::CellStore(fs::path folder, Progress& progress)
+    : folder_(std::move(folder)), progress_(progress) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw Error(folder_, "", "cannot make the folder: " + error.message());
+  const Json machine = machine_json();
+  machine_ = fmt::format("{}\n{}\n{}", program_name(), machine.at("processor").get<std::string>(),
+                         machine.at("cores").get<int>());
+}
+
+void CellStore::add_input(const fs::path& file, std::uint64_t check) {
+  contents_[file] = fmt::format("{:016x}", check);
+}
+
+std::string CellStore::key_of(const Cell& cell) const {
+  std::string text = fmt::format("{}\n{}\n", machine_, cell.seconds_limit);
+  for (const std::string& argument : cell.arguments) {
+    if (is_one_of(cell.inputs, argument))
+      text += "input " + contents_.at(argument) + "\n";
+    else if (argument == cell.output)
+      text += "output " + cell.output.extension().string() + "\n";
+    else
+      text += "word " + argument + "\n";
+  }
+  return fmt::format("{:016x}", xxh3_64(std::as_bytes(std::span(text))));
+}
+
+fs::path CellStore::file_of(const std::string& key) const { return folder_ / (key + ".json"); }
+
+bool CellStore::is_kept(const Cell& cell) const {
+  return read_result(file_of(key_of(cell))).has_value();
+}
+
+CellResult CellStore::run(const Cell& cell) {
+  const std::string key = key_of(cell);
+  if (!cell.output.empty()) {
+    contents_[cell.output] = key;
+    writers_[cell.output] = cell;
+  }
+  if (auto result = read_result(file_of(key))) {
+    kept_.insert(key);
+    return *result;
+  }
+  make_inputs(cell);
+  measured_.insert(key);
+  CellResult result = measure(cell);
+  const Json json{{"command", command_of(cell)}, {"program", program_name()},
+                  {"machine", machine_json()},   {"cost", cost_json(result.cost)},
+                  {"failure", result.failure},   {"result", result.json}};
+  write_whole_file(file_of(key), json.dump(2) + "\n");
+  return result;
+}
+
+CellResult CellStore::measure(const Cell& cell) {
+  std::vector<std::string> command{this_program()};
+  command.insert(command.end(), cell.arguments.begin(), cell.arguments.end());
+  const ChildResult child = run_child(command, folder_, cell.seconds_limit, progress_);
+  CellResult result;
+  result.cost = child.cost;
+  result.failure = failure_of(child, cell.seconds_limit);
+  if (!result.failure.empty()) return result;
+  result.json = Json::parse(child.out, nullptr, false);
+  if (result.json.is_discarded()) {
+    result.json = nullptr;
+    result.failure = "printed no JSON";
+  }
+  return result;
+}
+
+void CellStore::make_inputs(const Cell& cell) {
+  for (const fs::path& input : cell.inputs) {
+    const auto writer = writers_.find(input);
+    if (writer == writers_.end() || fs::exists(input)) continue;
+    const Cell maker = writer->second;
+    make_inputs(maker);
+    const CellResult made = measure(maker);
+    if (!made.failure.empty()) throw Error(input, "", made.failure);
+  }
+}
+
+}  // namespace voxdag

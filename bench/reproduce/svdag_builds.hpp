@@ -1,0 +1,49 @@
+#pragma once
+/// The builds behind the tables of the SVDAG paper.
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/report/document.hpp"
+#include "bench/reproduce/build_series.hpp"
+#include "bench/reproduce/found_scenes.hpp"
+
+namespace voxdag {
+
+/// All builds of a scene of the SVDAG paper; none if the scene is absent.
+struct SvdagSceneBuilds {
+  FoundScene scene;
+  std::vector<SeriesBuild> by_paper;  ///< For Table 1.
+  std::vector<SeriesBuild> by_hash;   ///< The same resolutions, by voxdag's own method.
+  std::vector<SeriesBuild> dags;      ///< For Table 2 and Figure 5.
+  std::vector<SeriesBuild> esvos;     ///< For Table 2.
+
+  /// Returns "Lucy (variant)".
+  std::string title() const;
+  /// Returns whether the paper's figures belong into the tables: beside ours, or without ours.
+  bool shows_published() const { return scene.match.has_figures() || scene.is_absent(); }
+};
+
+/// One of the series.
+using SeriesMember = std::vector<SeriesBuild> SvdagSceneBuilds::*;
+
+/// Builds what the tables need.
+SvdagSceneBuilds build_svdag_scene(const PapersPlan& plan, const FoundScene& scene,
+                                   CellStore& cells, Progress& progress);
+
+/// Returns the levels of all builds of a series, ascending.
+std::vector<int> levels_of(const std::vector<SvdagSceneBuilds>& scenes, SeriesMember series);
+
+/// Returns the value of the build at `levels`; NaN if there is none.
+double value_at(const std::vector<SeriesBuild>& builds, int levels,
+                const std::function<double(const CellResult&)>& read);
+
+/// Appends an example of the commands of a series, and the reasons for builds that were not made.
+void add_commands(Section& section, const std::vector<SvdagSceneBuilds>& scenes,
+                  SeriesMember series);
+
+/// Returns the figures behind the tables.
+nlohmann::ordered_json svdag_builds_json(const std::vector<SvdagSceneBuilds>& scenes);
+
+}  // namespace voxdag

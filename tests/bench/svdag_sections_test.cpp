@@ -1,0 +1,69 @@
+#include "bench/reproduce/svdag_sections.hpp"
+
+#include <gtest/gtest.h>
+
+namespace voxdag {
+namespace {
+
+/// Returns a scene that was built as a DAG at 2048³ only.
+SvdagSceneBuilds scene_in_state(SceneState state) {
+  SvdagSceneBuilds builds;
+  for (const PaperScene& scene : paper_scenes())
+    if (scene.name == "Lucy") builds.scene = {&scene, {&scene, state, ""}, "lucy.ply"};
+  SeriesBuild build;
+  build.levels = 11;
+  build.result.json = {{"dag_nodes", 1'500'000},
+                       {"svo_nodes", 20'000'000},
+                       {"voxels", 80'000'000},
+                       {"bytes", {{"svdag_paper", 4 << 20}}},
+                       {"bits_per_voxel", {{"svdag_paper", 0.42}, {"svo_pointerless", 2}}},
+                       {"dag_nodes_per_level", {1, 8, 20}},
+                       {"svo_nodes_per_level", {1, 8, 60}}};
+  builds.dags = {build};
+  return builds;
+}
+
+std::string table2_of(const SvdagSceneBuilds& scene) {
+  return markdown_of({"", {table2_section({scene})}});
+}
+
+TEST(SvdagSections, AVariantStandsBesideThePaper) {
+  const std::string text = table2_of(scene_in_state(SceneState::kVariant));
+  EXPECT_NE(text.find("| Lucy (variant) | DAG | 1.5 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("|  | DAG, published | 1 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| Lucy (variant) | DAG | 4 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("|  | SVO | 20 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 2K³ | 80.0 M | 0.42 | 2.00 | 64K³ | 1.54 | 2.57 |"), std::string::npos)
+      << text;
+}
+
+TEST(SvdagSections, AStandInDoesNotStandBesideThePaper) {
+  const std::string text = table2_of(scene_in_state(SceneState::kStandIn));
+  EXPECT_NE(text.find("| Lucy (stand-in) | DAG | 1.5 |"), std::string::npos) << text;
+  EXPECT_EQ(text.find("published |"), std::string::npos) << text;
+}
+
+TEST(SvdagSections, AnEsvoThatWasNotBuiltIsADashAndAReason) {
+  SvdagSceneBuilds scene = scene_in_state(SceneState::kStandIn);
+  SeriesBuild failed;
+  failed.levels = 11;
+  failed.result.failure = "needs 9 GiB";
+  scene.esvos = {failed};
+  const std::string text = table2_of(scene);
+  EXPECT_NE(text.find("|  | ESVO | – |"), std::string::npos) << text;
+  EXPECT_NE(text.find("Lucy at 2K³: needs 9 GiB."), std::string::npos) << text;
+}
+
+TEST(SvdagSections, Figure5HasALineForEachDagAndOneForTheOctree) {
+  const std::vector<Chart> charts = figure5_charts({scene_in_state(SceneState::kSame)});
+  ASSERT_EQ(charts.size(), 1u);
+  const std::vector<ChartLine>& lines = charts[0].panels.at(0).lines;
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].label, "DAG 2K³");
+  EXPECT_EQ(lines[0].y, (std::vector<double>{1, 8, 20}));
+  EXPECT_EQ(lines[1].label, "SVO");
+  EXPECT_TRUE(figure5_charts({}).empty());
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,125 @@
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Returns a wavy surface of 374 x 374 quadrilaterals: as many triangles as the paper's Crysponza
+/// has, within its rounding.
+std::string wavy_surface() {
+  constexpr int kSide = 374;
+  std::string obj;
+  for (int y = 0; y <= kSide; ++y)
+    for (int x = 0; x <= kSide; ++x) obj += fmt::format("v {} {} {}\n", x, y, x * y % 17);
+  const auto index = [](int x, int y) { return y * (kSide + 1) + x + 1; };
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      obj += fmt::format("f {} {} {} {}\n", index(x, y), index(x + 1, y), index(x + 1, y + 1),
+                         index(x, y + 1));
+  return obj;
+}
+
+/// The scenes are Crysponza, whose name and number of triangles the surface has, and Lucy, which is
+/// absent.
+class BenchPapers : public testing::Test {
+ protected:
+  BenchPapers() { write_text(dir_ / "crysponza.obj", wavy_surface()); }
+
+  std::vector<std::string> command() const {
+    return {"bench",    "papers", "--scenes", dir_.path(), "--only", "Crysponza,Lucy",
+            "--table1", "32,512", "--table2", "32,64",     "-o",     report_};
+  }
+
+  Json json() const { return Json::parse(read_text(fs::path(report_) / "report.json")); }
+  std::string markdown() const { return read_text(fs::path(report_) / "report.md"); }
+
+  TempDir dir_;
+  std::string report_ = dir_ / "report";
+};
+
+TEST_F(BenchPapers, SetsPublishedFiguresBesideThePapersScenes) {
+  const ProcessResult result = run_voxdag(command());
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json report = json(), &scenes = report.at("svdag");
+  ASSERT_EQ(scenes.size(), 2u);
+  EXPECT_EQ(scenes[0].at("scene"), "Crysponza");
+  EXPECT_EQ(scenes[0].at("state"), "same");
+  EXPECT_EQ(scenes[0].at("dags").size(), 2u);
+  EXPECT_GT(scenes[0].at("esvos")[1].at("result").at("descriptors"), 0);
+  EXPECT_GT(scenes[0].at("paper_method")[0].at("result").at("seconds").at("reduce"), 0);
+  EXPECT_EQ(scenes[1].at("state"), "absent");
+  const std::string text = markdown();
+  EXPECT_NE(text.find("published, reduction | – | 8.4 ms |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| Lucy (absent) | published, reduction | – | 2.6 ms |"), std::string::npos)
+      << text;
+  EXPECT_NE(read_text(fs::path(report_) / "report.html").find("</html>"), std::string::npos);
+  EXPECT_FALSE(fs::exists(fs::path(report_) / "build.esvo"));
+}
+
+TEST_F(BenchPapers, KeepsFinishedMeasurements) {
+  ASSERT_EQ(run_voxdag(command()).status, 0);
+  const Json first = json();
+  const ProcessResult again = run_voxdag(command());
+  EXPECT_NE(again.out.find(": 0 measured, "), std::string::npos) << again.out;
+  EXPECT_EQ(json().at("svdag"), first.at("svdag"));
+}
+
+TEST_F(BenchPapers, MeasuresAgainWhatIsDamaged) {
+  ASSERT_EQ(run_voxdag(command()).status, 0);
+  for (const auto& cell : fs::directory_iterator(fs::path(report_) / "cells")) {
+    write_text(cell.path(), "{\"result\": ");
+    break;
+  }
+  const ProcessResult again = run_voxdag(command());
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find(": 1 measured, "), std::string::npos) << again.out;
+}
+
+TEST_F(BenchPapers, ALimitThatIsTooLowIsReported) {
+  std::vector<std::string> limited = command();
+  limited.insert(limited.end(), {"--memory", "1M"});
+  const ProcessResult result = run_voxdag(limited);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(markdown().find("Crysponza at 32³: "), std::string::npos) << markdown();
+  EXPECT_NE(markdown().find("memory limit"), std::string::npos) << markdown();
+}
+
+TEST_F(BenchPapers, AnInterruptedRunContinues) {
+  Process interrupted(voxdag_command(command()));
+  const fs::path cells = fs::path(report_) / "cells";
+  while (!fs::exists(cells) || fs::is_empty(cells))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  interrupted.send_signal(SIGTERM);
+  EXPECT_EQ(interrupted.wait().status, 128 + SIGTERM);
+  const ProcessResult again = run_voxdag(command());
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.out.find(", 0 kept"), std::string::npos) << again.out;
+}
+
+TEST_F(BenchPapers, AnUnknownSceneIsRefused) {
+  const ProcessResult result =
+      run_voxdag({"bench", "papers", "--only", "Teapot", "-o", dir_ / "report"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("must be one of"), std::string::npos) << result.err;
+}
+
+TEST_F(BenchPapers, AFolderOfScenesThatDoesNotExistIsAnError) {
+  const ProcessResult result =
+      run_voxdag({"bench", "papers", "--scenes", dir_ / "none", "-o", dir_ / "report", "-q"});
+  expect_failure(result, 1, "none");
+}
+
+}  // namespace
+}  // namespace voxdag
