@@ -107,6 +107,7 @@ RenderOptions picture_options(const VoxelSet& scene, const Grid& grid, const Vie
   options.occlusion_samples = ray_options.occlusion_samples;
   options.lod_pixels = ray_options.lod_pixels;
   options.occlusion_cone = ray_options.occlusion_cone;
+  options.sun = ray_options.sun;
   options.sun_degrees = 0;
   options.beams = false;  // rivals have no beams towards lamps
   const Camera camera = make_camera(view, options.width, options.height);

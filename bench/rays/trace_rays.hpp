@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct RayOptions {
   /// The maximum size of a set of any-hit rays. Larger sets are sampled in squares of 8×8 pixels,
   /// spread evenly over the picture.
   std::size_t most_rays = 500'000;
+  std::optional<Vec3d> sun;  ///< Towards the sun; if not set, as RenderOptions::sun chooses it.
 };
 
 /// The rays of a camera's picture, without those that miss the grid. Squares of 4×4 pixels follow a

@@ -19,16 +19,21 @@ namespace {
 /// Sums of times and counts over views.
 struct Sums {
   double seconds = 0, agreeing = 0;
+  std::vector<double> view_rates;  ///< Million rays per second.
+
   void add(double more_seconds, double more_agreeing) {
     seconds += more_seconds;
     agreeing += more_agreeing;
+  }
+  void add_view(double rays, const Sums& view) {
+    add(view.seconds, view.agreeing);
+    view_rates.push_back(rays / view.seconds * 1e-6);
   }
 };
 
 struct RowSums {
   Sums ours;
   double rays = 0, hits = 0, cells = 0, bytes = 0;
-  std::vector<double> view_rates;
   std::map<std::string, Sums> rivals;  ///< Sorted by name, for a fixed order.
 };
 
@@ -44,18 +49,17 @@ void measure_set(const TraceLayout& layout, const TraceRunner& ours,
   sums.rays += count;
   sums.cells += cost.cells * count;
   sums.bytes += cost.bytes * count;
-  sums.ours.add(measured[0].seconds, count);
-  sums.view_rates.push_back(count / measured[0].seconds * 1e-6);
+  sums.ours.add_view(count, {measured[0].seconds, count, {}});
   sums.hits += static_cast<double>(
       std::count(measured[0].hits.begin(), measured[0].hits.end(), std::uint8_t{1}));
   std::map<std::string, Sums> best;  // the fastest of runners with the same name
   for (std::size_t i = 1; i < runners.size(); ++i) {
-    const Sums s{measured[i].seconds,
-                 static_cast<double>(agreeing(measured[0].hits, measured[i].hits))};
+    const Sums s{
+        measured[i].seconds, static_cast<double>(agreeing(measured[0].hits, measured[i].hits)), {}};
     const auto [at, is_new] = best.try_emplace(runners[i].name, s);
     if (!is_new && s.seconds < at->second.seconds) at->second = s;
   }
-  for (const auto& [name, s] : best) sums.rivals[name].add(s.seconds, s.agreeing);
+  for (const auto& [name, s] : best) sums.rivals[name].add_view(count, s);
 }
 
 TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::uint64_t layout_bytes,
@@ -67,13 +71,14 @@ TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::ui
   row.rays = rays;
   row.count = static_cast<std::uint64_t>(sums.rays);
   row.layout_bytes = layout_bytes;
-  row.view_mrays_per_second = sums.view_rates;
+  row.view_mrays_per_second = sums.ours.view_rates;
   row.mrays_per_second = sums.rays / sums.ours.seconds * 1e-6;
   row.hit_part = sums.hits / sums.rays;
   row.cells_per_ray = sums.cells / sums.rays;
   row.bytes_per_ray = sums.bytes / sums.rays;
   for (const auto& [name, s] : sums.rivals)
-    row.rivals.push_back({name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays});
+    row.rivals.push_back(
+        {name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays, s.view_rates});
   return row;
 }
 
@@ -88,6 +93,38 @@ std::vector<std::unique_ptr<Rival>> rivals_for(const TraceScene& scene, const Tr
   return rivals;
 }
 
+/// Casts the rays of a view at the scene's ESVO, as a rival.
+class EsvoRival {
+ public:
+  /// Returns the casts of `set`. Primary rays with beams start where the ESVO's own beams end.
+  /// They are valid until the next call.
+  EsvoRival(const TraceScene& scene, const TracePlan& plan)
+      : scene_(scene), plan_(plan), layout_(make_trace_layout("contours", *scene.esvo)) {}
+
+  TraceRunner prepare(const View& view, RayClass rays, const std::vector<CastRay>& set) {
+    if (rays != RayClass::kPrimaryBeams) return named(layout_->runner(rays, set));
+    beams_ = std::make_unique<BeamPass>(
+        *scene_.esvo, scene_.grid, picture_options(*scene_.esvo, scene_.grid, view, plan_.rays));
+    beams_->run();
+    casts_ = primary_rays(beams_->setup(), beams_->starts());
+    TraceRunner runner = named(layout_->runner(rays, casts_));
+    runner.before = [this] { beams_->run(); };
+    return runner;
+  }
+
+ private:
+  static TraceRunner named(TraceRunner runner) {
+    runner.name = "esvo";
+    return runner;
+  }
+
+  const TraceScene& scene_;
+  const TracePlan& plan_;
+  std::unique_ptr<TraceLayout> layout_;
+  std::unique_ptr<BeamPass> beams_;
+  std::vector<CastRay> casts_;
+};
+
 }  // namespace
 
 void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progress,
@@ -95,7 +132,11 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   results.threads = tbb::this_task_arena::max_concurrency();
   results.rays = plan.rays;
   const double aspect = static_cast<double>(plan.rays.width) / plan.rays.height;
-  const std::vector<View> views = bench_views(scene.voxels, scene.grid, aspect, plan.views);
+  const std::vector<View> views = plan.path_views.empty()
+                                      ? bench_views(scene.voxels, scene.grid, aspect, plan.views)
+                                      : plan.path_views;
+  std::optional<EsvoRival> esvo;
+  if (scene.esvo) esvo.emplace(scene, plan);
   const std::vector<std::unique_ptr<Rival>> rivals = rivals_for(scene, plan);
   std::vector<std::string> names = plan.layouts;
   if (names.empty()) names = {trace_layouts(scene.voxels).front()};
@@ -131,6 +172,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       for (const auto& rival : rivals)
         for (TraceRunner& runner : rival->prepare(scene.grid, {rays, whole}))
           rival_runners.push_back(std::move(runner));
+      if (esvo) rival_runners.push_back(esvo->prepare(view, rays, casts));
       for (std::size_t i = 0; i < layouts.size(); ++i) {
         std::optional<TimedBeams> device_beams;
         std::vector<CastRay> device_casts;

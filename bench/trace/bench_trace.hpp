@@ -3,6 +3,7 @@
 /// rays.
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct TraceScene {
   VoxelSet voxels;
   const Mesh* mesh = nullptr;  ///< The voxels' mesh, for rivals that cast at triangles.
   std::filesystem::path file;  ///< The voxels' .vdag, for rivals that are programs; or empty.
+  /// An ESVO of the same mesh on the same grid, which casts the same rays as a rival; or empty.
+  std::optional<VoxelSet> esvo{};
 };
 
 struct TracePlan {
@@ -27,14 +30,16 @@ struct TracePlan {
   RayOptions rays;
   DeviceChoice device;  ///< On CUDA, voxdag's CPU casts are a rival that must agree.
   int views = 4;
-  int repeat = 3;               ///< Number of casts of a set; the fastest counts.
-  std::string openvdb_program;  ///< rival_openvdb_trace, or empty.
+  std::vector<View> path_views;  ///< The views to measure; empty: bench_views() chooses `views`.
+  int repeat = 3;                ///< Number of casts of a set; the fastest counts.
+  std::string openvdb_program;   ///< rival_openvdb_trace, or empty.
 };
 
 struct RivalRate {
   std::string name;
   double mrays_per_second = 0;
   double agreement = 0;  ///< Fraction of the rays with equal results: two hits or two misses.
+  std::vector<double> view_mrays_per_second;  ///< Empty if it casts all views together.
 };
 
 /// One class of rays in one scene, all views together.

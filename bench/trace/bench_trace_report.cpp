@@ -68,6 +68,7 @@ Json trace_json(const TraceResults& results, const Json& machine) {
       with_rival["rival_mrays_per_s"] = rival.mrays_per_second;
       with_rival["ratio"] = row.mrays_per_second / rival.mrays_per_second;
       with_rival["rival_agreement"] = rival.agreement;
+      with_rival["rival_view_mrays_per_s"] = rival.view_mrays_per_second;
       array.push_back(with_rival);
     }
     if (!row.rivals.empty()) continue;
@@ -75,6 +76,7 @@ Json trace_json(const TraceResults& results, const Json& machine) {
     object["rival_mrays_per_s"] = nullptr;
     object["ratio"] = nullptr;
     object["rival_agreement"] = nullptr;
+    object["rival_view_mrays_per_s"] = nullptr;
     array.push_back(object);
   }
   return array;

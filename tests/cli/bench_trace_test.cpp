@@ -51,6 +51,36 @@ TEST_F(BenchTrace, EmbreeMeetsTheSameWithTheSameRays) {
   }
 }
 
+TEST_F(BenchTrace, AnEsvoCastsTheSameRaysAlongAPath) {
+  write_text(path("path.json"),
+             R"({"keys": [{"time": 0, "eye": [-2, 0.4, 0.4], "target": [1, 0.5, 0.5]},)"
+             R"({"time": 2, "eye": [-1, 1.5, 0.4], "target": [1, 0.5, 0.5]}]})");
+  ASSERT_EQ(run_voxdag(
+                {"build", path("sponge.ply"), "-r", "32", "--no-contours", "-o", path("same.esvo")})
+                .status,
+            0);
+  const ProcessResult result =
+      run_voxdag({"bench", "trace", path("in.vdag"), "--esvo", path("same.esvo"), "--path",
+                  path("path.json"), "--frames", "3", "--size", "40x32", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  ASSERT_EQ(json.size(), 5u);
+  for (const Json& row : json) {
+    EXPECT_EQ(row.at("rival"), "esvo");
+    EXPECT_EQ(row.at("view_mrays_per_s").size(), 3u);
+    EXPECT_EQ(row.at("rival_view_mrays_per_s").size(), 3u);
+    EXPECT_EQ(row.at("rival_agreement"), 1) << row.at("rays");  // cubes are the DAG's voxels
+  }
+}
+
+TEST_F(BenchTrace, AnEsvoOnAnotherGridIsAnError) {
+  ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "64", "-o", path("other.esvo")}).status,
+            0);
+  expect_failure(bench({path("in.vdag"), "--esvo", path("other.esvo"), "-q"}), 1,
+                 "is not on the grid of the DAG");
+  expect_failure(bench({path("in.vdag"), "--esvo", path("in.vdag"), "-q"}), 1, "is not an ESVO");
+}
+
 TEST_F(BenchTrace, AllLayoutsMeetTheSame) {
   const ProcessResult result =
       bench({path("in.vdag"), "--layout", "paper,paper_scalar,wide", "--json"});

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "bench/bench_output.hpp"
@@ -21,6 +22,7 @@
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/scene_file.hpp"
+#include "voxdag/film/path_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -29,12 +31,34 @@ namespace fs = std::filesystem;
 
 struct BenchTraceArguments {
   TracePlan plan;
-  std::string mesh_file, scenes;
+  std::string mesh_file, esvo_file, path_file, scenes;
+  int frames = 60;
   BenchOutput output;
   MeshAccess access;
   std::vector<int> levels{12, 15};
   ImageSize size{1024, 768};
 };
+
+/// Returns the voxels of the ESVO in a file, which `file` keeps open. Throws Error unless they are
+/// on the grid of `dag`.
+VoxelSet open_esvo(const std::string& path, const SceneFile& dag, std::optional<SceneFile>& file) {
+  file.emplace(path);
+  if (file->voxels().esvo() == nullptr) throw Error(path, "", "is not an ESVO");
+  if (dag.voxels().esvo() != nullptr) throw Error("--esvo", "", "needs a DAG to compare with");
+  if (file->grid() != dag.grid()) throw Error(path, "", "is not on the grid of the DAG");
+  return file->voxels();
+}
+
+/// Sets the plan's views, at even times on the camera path, and its sun.
+void follow_path(const BenchTraceArguments& arguments, const TraceScene& scene, TracePlan& plan) {
+  const double aspect = static_cast<double>(arguments.size.width) / arguments.size.height;
+  const PathFile file = read_path_file(arguments.path_file);
+  const CameraPath path = make_camera_path(file, scene.voxels, scene.grid, aspect, {});
+  plan.rays.sun = file.sun;
+  for (int i = 0; i < arguments.frames; ++i)
+    plan.path_views.push_back(
+        path.at(path.start() + (path.end() - path.start()) * (i + 0.5) / arguments.frames));
+}
 
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
@@ -48,8 +72,12 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
   const std::string& name = file.metadata().source.name;
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
                    file.voxels(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
+  std::optional<SceneFile> esvo;
+  if (!arguments.esvo_file.empty()) scene.esvo = open_esvo(arguments.esvo_file, file, esvo);
+  TracePlan plan = arguments.plan;
+  if (!arguments.path_file.empty()) follow_path(arguments, scene, plan);
   TraceResults results;
-  bench_trace(scene, arguments.plan, session.progress, results);
+  bench_trace(scene, plan, session.progress, results);
   return results;
 }
 
@@ -116,6 +144,17 @@ void add_scene_options(const Command& command, BenchTraceArguments& arguments, S
             "Without FILE: the folder of the meshes (default: the variable VOXDAG_SCENES)")
       .not_with(file);
   command
+      .text("--esvo", arguments.esvo_file, "FILE.esvo",
+            "Also cast the rays at this ESVO of the same mesh and resolution")
+      .needs(file);
+  const Option path = command.text("--path", arguments.path_file, "PATH.json",
+                                   "Measure views along this camera path (see render --path)");
+  path.needs(file);
+  command
+      .number("--frames", arguments.frames, NumberRange::whole(1, 10'000), "N",
+              "Number of views along the path")
+      .needs(path);
+  command
       .list("-r,--resolution", arguments.levels, parse_levels, "N,N...",
             "Without FILE: voxels per side (default: 4K,32K)")
       .not_with(file);
@@ -138,7 +177,8 @@ void add_bench_trace_command(const Command& bench, Session& session) {
       "ESVO: contours (the default), contours_scalar, cubes, cubes_scalar");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
                  "Size of each view in pixels (default: 1024x768)");
-  command.number("--views", plan.views, NumberRange::whole(1, 64), "N", "Number of cameras");
+  command.number("--views", plan.views, NumberRange::whole(1, 64), "N", "Number of cameras")
+      .only_if([arguments] { return arguments->path_file.empty(); }, "with --path");
   add_ray_options(command, plan.rays);
   command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
                  "Number of casts; the fastest counts");
@@ -155,7 +195,7 @@ void add_bench_trace_command(const Command& bench, Session& session) {
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
     finish_plan(*arguments, session);
-    session.inputs = {arguments->mesh_file};
+    session.inputs = {arguments->mesh_file, arguments->esvo_file, arguments->path_file};
     arguments->output.check_distinct(session);
     arguments->access.outputs = arguments->output.files();
     session.work = [arguments, &session] { run(*arguments, session); };
