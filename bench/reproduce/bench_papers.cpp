@@ -6,6 +6,7 @@
 
 #include "bench/report/bench_machine.hpp"
 #include "bench/report/scratch_folder.hpp"
+#include "bench/reproduce/flight.hpp"
 #include "bench/reproduce/svdag_sections.hpp"
 #include "bench/reproduce/table_text.hpp"
 #include "voxdag/core/error.hpp"
@@ -71,14 +72,18 @@ PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
   std::vector<SvdagSceneBuilds> builds;
   for (const FoundScene& scene : scenes)
     builds.push_back(build_svdag_scene(plan, scene, cells, progress));
+  const std::optional<Flight> flight = measure_flight(plan, scenes, cells, progress);
 
   const Json machine = machine_json();
   const int threads =
       plan.threads > 0 ? plan.threads : static_cast<int>(std::thread::hardware_concurrency());
   PapersReport report;
   const std::vector<Chart> figure5 = figure5_charts(builds);
+  std::vector<Chart> charts = figure5;
+  if (flight)
+    for (Chart& chart : flight_charts(*flight)) charts.push_back(std::move(chart));
   progress.report("drawing charts", 1);
-  report.has_charts = draw_charts(figure5, plan.folder, progress);
+  report.has_charts = draw_charts(charts, plan.folder, progress);
 
   Document document{"The papers, measured again", {}};
   document.sections.push_back(machine_section(machine, threads));
@@ -92,9 +97,14 @@ PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
              "Figure 5: nodes per level of DAGs of several resolutions, and of the SVO of the "
              "highest one.",
              report.has_charts);
+  if (flight)
+    for (Section& section : flight_sections(*flight, report.has_charts))
+      document.sections.push_back(std::move(section));
 
-  const Json json{
-      {"program", program_name()}, {"machine", machine}, {"svdag", svdag_builds_json(builds)}};
+  const Json json{{"program", program_name()},
+                  {"machine", machine},
+                  {"svdag", svdag_builds_json(builds)},
+                  {"flight", flight ? flight_json(*flight) : Json()}};
   report.html = plan.folder / "report.html";
   report.markdown = plan.folder / "report.md";
   report.json = plan.folder / "report.json";

@@ -62,7 +62,7 @@ class SceneFinder {
       consider(mesh);
     }
     const auto found = found_.find(&scene);
-    return found == found_.end() ? FoundScene{&scene, {}, {}} : found->second;
+    return found == found_.end() ? FoundScene{&scene, {}, {}, {}} : found->second;
   }
 
  private:
@@ -71,7 +71,7 @@ class SceneFinder {
     if (match.scene == nullptr) return;
     FoundScene& best = found_[match.scene];
     if (best.is_absent() || match.state < best.match.state)
-      best = {match.scene, std::move(match), mesh.path};
+      best = {match.scene, std::move(match), mesh.identity, mesh.path};
   }
 
   /// Returns 0 if the mesh cannot be read.

@@ -12,6 +12,7 @@ namespace voxdag {
 struct FoundScene {
   const PaperScene* scene = nullptr;
   PaperMatch match;            ///< Its scene is null if no mesh stands for it.
+  MeshIdentity identity;       ///< Of the mesh.
   std::filesystem::path mesh;  ///< Empty if no mesh stands for it.
 
   bool is_absent() const { return mesh.empty(); }

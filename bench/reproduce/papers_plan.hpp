@@ -4,7 +4,17 @@
 #include <filesystem>
 #include <vector>
 
+#include "voxdag/image/image_size.hpp"
+
 namespace voxdag {
+
+/// The fly-through of Figures 6 to 8 of the SVDAG paper.
+struct FlightPlan {
+  int esvo_levels = 12;       ///< Of the DAG and the ESVO that are compared; the paper's 4096³.
+  int triangles_levels = 15;  ///< Of the DAG that is compared with triangles; the paper's 32768³.
+  int frames = 30;
+  ImageSize size{1024, 768};
+};
 
 struct PapersPlan {
   std::filesystem::path scenes;   ///< Folder of meshes; empty: procedural stand-ins only.
@@ -12,7 +22,8 @@ struct PapersPlan {
   std::vector<std::string> only;  ///< Names of paper scenes; empty: all.
   std::vector<int> table1_levels{9, 10, 11, 12, 13};
   std::vector<int> table2_levels{11, 12, 13, 14, 15, 16};
-  double cell_seconds = 600;       ///< Time limit of one run.
+  FlightPlan flight;
+  double cell_seconds = 600;       ///< Time limit of one build for the tables.
   std::uint64_t memory_bytes = 0;  ///< `--memory` of every build; 0: its default.
   int threads = 0;                 ///< 0: one per processor.
 };
@@ -22,6 +33,7 @@ inline void make_quick(PapersPlan& plan) {
   plan.scenes.clear();
   plan.table1_levels = {9, 10, 11};
   plan.table2_levels = {9, 10, 11, 12};
+  plan.flight = {10, 12, 12, {512, 384}};
 }
 
 }  // namespace voxdag

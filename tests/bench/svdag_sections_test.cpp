@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/reproduce/flight.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -9,7 +11,10 @@ namespace {
 SvdagSceneBuilds scene_in_state(SceneState state) {
   SvdagSceneBuilds builds;
   for (const PaperScene& scene : paper_scenes())
-    if (scene.name == "Lucy") builds.scene = {&scene, {&scene, state, ""}, "lucy.ply"};
+    if (scene.name == "Lucy") builds.scene.scene = &scene;
+  builds.scene.match.scene = builds.scene.scene;
+  builds.scene.match.state = state;
+  builds.scene.mesh = "lucy.ply";
   SeriesBuild build;
   build.levels = 11;
   build.result.json = {{"dag_nodes", 1'500'000},
@@ -63,6 +68,36 @@ TEST(SvdagSections, Figure5HasALineForEachDagAndOneForTheOctree) {
   EXPECT_EQ(lines[0].y, (std::vector<double>{1, 8, 20}));
   EXPECT_EQ(lines[1].label, "SVO");
   EXPECT_TRUE(figure5_charts({}).empty());
+}
+
+/// Returns rows of `bench trace` for two frames: voxdag's rates with those of a rival.
+nlohmann::ordered_json rows_of(const char* rays, const char* rival, double rival_rate) {
+  return {{"rays", rays},
+          {"mrays_per_s", 20},
+          {"view_mrays_per_s", {10, 30}},
+          {"rival", rival},
+          {"rival_mrays_per_s", rival_rate},
+          {"rival_view_mrays_per_s", {rival_rate, rival_rate}},
+          {"rival_agreement", 0.995}};
+}
+
+TEST(FlightSections, TheFasterOfARivalsCastsStandsBesideTheDag) {
+  Flight flight;
+  flight.scene = scene_in_state(SceneState::kVariant).scene;
+  flight.with_triangles.levels = 15;
+  flight.with_triangles.result.json = {rows_of("shadow", "embree_single", 10),
+                                       rows_of("shadow", "embree_packet16", 40)};
+  for (FlightRun* run : {&flight.with_esvo, &flight.with_voxels, &flight.with_cones})
+    run->result.failure = "no memory";
+  const std::string text = markdown_of({"", flight_sections(flight, false)});
+  EXPECT_NE(text.find("**Shadow rays, Lucy (variant) at 32K³**"), std::string::npos) << text;
+  EXPECT_NE(text.find("| triangles (Embree) | 40 | 0.5 | 99.5 % |"), std::string::npos) << text;
+  EXPECT_NE(text.find("Not measured: no memory."), std::string::npos) << text;
+  const std::vector<Chart> charts = flight_charts(flight);
+  ASSERT_EQ(charts.size(), 3u);
+  const std::vector<ChartLine>& shadow = charts[1].panels.at(0).lines;
+  EXPECT_EQ(shadow.at(0).y, (std::vector<double>{100, 1000.0 / 30}));  // ms for a million rays
+  EXPECT_EQ(shadow.at(2).y, (std::vector<double>{25, 25}));
 }
 
 }  // namespace

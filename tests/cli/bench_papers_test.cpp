@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -66,6 +67,41 @@ TEST_F(BenchPapers, SetsPublishedFiguresBesideThePapersScenes) {
       << text;
   EXPECT_NE(read_text(fs::path(report_) / "report.html").find("</html>"), std::string::npos);
   EXPECT_FALSE(fs::exists(fs::path(report_) / "build.esvo"));
+}
+
+TEST_F(BenchPapers, FliesThroughASceneThatHasACameraPath) {
+  const char* const scenes = std::getenv("VOXDAG_SCENES");
+  if (scenes == nullptr || !fs::exists(fs::path(scenes) / "crytek_sponza" / "sponza.obj"))
+    GTEST_SKIP() << "VOXDAG_SCENES has no crytek_sponza/sponza.obj";
+  const ProcessResult result = run_voxdag({"bench",
+                                           "papers",
+                                           "--scenes",
+                                           fs::path(scenes) / "crytek_sponza",
+                                           "--only",
+                                           "Crysponza",
+                                           "--table1",
+                                           "32",
+                                           "--table2",
+                                           "32",
+                                           "--flight-esvo",
+                                           "64",
+                                           "--flight-triangles",
+                                           "128",
+                                           "--frames",
+                                           "3",
+                                           "--size",
+                                           "40x32",
+                                           "-o",
+                                           report_});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json flight = json().at("flight");
+  EXPECT_EQ(flight.at("scene"), "Crysponza");
+  for (const char* run : {"with_esvo", "with_triangles", "with_voxels", "with_cones"})
+    for (const Json& row : flight.at(run).at("rows"))
+      EXPECT_EQ(row.at("view_mrays_per_s").size(), 3u) << run;
+  for (const char* figure : {"Figure 6: ", "Figure 7a: ", "Figure 8a: "})
+    EXPECT_NE(markdown().find(figure), std::string::npos) << figure;
+  EXPECT_FALSE(fs::exists(fs::path(report_) / "fine.vdag"));
 }
 
 TEST_F(BenchPapers, KeepsFinishedMeasurements) {

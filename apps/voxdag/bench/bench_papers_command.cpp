@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -21,6 +22,8 @@ struct PapersArguments {
   PapersPlan plan;
   std::string scenes, folder;
   std::vector<int> table1, table2;  ///< Levels; empty: those of the plan.
+  std::optional<int> flight_esvo, flight_triangles, frames;
+  std::optional<ImageSize> size;
   bool quick = false;
 };
 
@@ -45,6 +48,11 @@ void run(const PapersArguments& arguments, Session& session) {
   if (arguments.quick) make_quick(plan);
   if (!arguments.table1.empty()) plan.table1_levels = sorted(arguments.table1);
   if (!arguments.table2.empty()) plan.table2_levels = sorted(arguments.table2);
+  FlightPlan& flight = plan.flight;
+  flight.esvo_levels = arguments.flight_esvo.value_or(flight.esvo_levels);
+  flight.triangles_levels = arguments.flight_triangles.value_or(flight.triangles_levels);
+  flight.frames = arguments.frames.value_or(flight.frames);
+  flight.size = arguments.size.value_or(flight.size);
   plan.folder = std::filesystem::absolute(arguments.folder);
   plan.threads = session.threads;
   if (!session.quiet)
@@ -65,8 +73,8 @@ void add_bench_papers_command(const Command& bench, Session& session) {
   const Command command = bench.add(
       "papers", "Measure the tables and figures of both papers again, and write a report",
       "voxdag bench papers --scenes DIR -o report\n"
-      "voxdag bench papers --quick -o report       # procedural scenes, a few minutes\n"
-      "An interrupted run continues where it stopped if it is started again with the same folder.");
+      "With --quick instead of --scenes it takes a few minutes. An interrupted run continues where "
+      "it stopped if it is started again with the same folder.");
   command.text("-o,--output", arguments->folder, "DIR", "The folder for the report").required();
   const Option scenes =
       command.text("--scenes", arguments->scenes, "DIR",
@@ -80,6 +88,14 @@ void add_bench_papers_command(const Command& bench, Session& session) {
                "Resolutions of the SVDAG paper's Table 1 (default: 512,1K,2K,4K,8K)");
   command.list("--table2", arguments->table2, parse_levels, "N,N...",
                "Resolutions of the SVDAG paper's Table 2 (default: 2K,4K,8K,16K,32K,64K)");
+  command.parsed("--flight-esvo", arguments->flight_esvo, parse_levels, "N",
+                 "Resolution of the fly-through with DAG and ESVO (default: 4K)");
+  command.parsed("--flight-triangles", arguments->flight_triangles, parse_levels, "N",
+                 "Resolution of the fly-through with DAG and triangles (default: 32K)");
+  command.optional_number<int>("--frames", arguments->frames, NumberRange::whole(1, 10'000), "N",
+                               "Frames of the fly-through (default: 30)");
+  command.parsed("--size", arguments->size, parse_image_size, "WxH",
+                 "Size of the frames in pixels (default: 1024x768)");
   command.number("--cell-seconds", arguments->plan.cell_seconds, NumberRange::from(1, 1e6),
                  "SECONDS", "Time limit of one run; the report names the runs that it excludes");
   command.parsed("--memory", arguments->plan.memory_bytes, parse_memory, "LIMIT",
