@@ -7,6 +7,7 @@
 #include "bench/report/bench_machine.hpp"
 #include "bench/report/scratch_folder.hpp"
 #include "bench/reproduce/flight.hpp"
+#include "bench/reproduce/svdag_claims.hpp"
 #include "bench/reproduce/svdag_sections.hpp"
 #include "bench/reproduce/table_text.hpp"
 #include "voxdag/core/error.hpp"
@@ -90,6 +91,7 @@ PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
   document.sections.push_back(
       {"High Resolution Sparse Voxel DAGs (Kämpe, Sintorn, Assarsson 2013)", 1, {}});
   document.sections.push_back(scenes_section(scenes));
+  document.sections.push_back(svdag_claims_section(builds, flight));
   document.sections.push_back(table1_section(builds, threads));
   document.sections.push_back(table2_section(builds));
   document.sections.push_back(figure5_section());

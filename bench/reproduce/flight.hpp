@@ -35,6 +35,10 @@ struct Flight {
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                                      CellStore& cells, Progress& progress);
 
+/// Returns how many times as fast as a rival voxdag casts a kind of rays in a run; NaN if it was
+/// not measured. The rival's name starts with `rival`: the fastest of those counts.
+double speed_ratio(const FlightRun& run, const std::string& rays, const std::string& rival);
+
 /// Returns the sections of Figures 6, 7a and 8a. `is_drawn`: whether their charts are there.
 std::vector<Section> flight_sections(const Flight& flight, bool is_drawn);
 std::vector<Chart> flight_charts(const Flight& flight);

@@ -182,6 +182,10 @@ Json run_json(const FlightRun& run) {
 
 }  // namespace
 
+double speed_ratio(const FlightRun& run, const std::string& rays, const std::string& rival) {
+  return rates_of(run, rays, "").mrays_per_second / rates_of(run, rays, rival).mrays_per_second;
+}
+
 std::vector<Section> flight_sections(const Flight& flight, bool is_drawn) {
   return {figure6(flight, is_drawn), figure7a(flight, is_drawn), figure8a(flight, is_drawn)};
 }

@@ -31,16 +31,19 @@ struct Structure {
   const char* name;
   SeriesMember builds;
   Read nodes, bytes;
-  published::StructureSizes published::SceneSizes::*published;
+  published::StructureSizes published::SceneSizes::*published;  ///< Null: the paper has none.
 };
 
-/// Returns the structures that the table compares. A node of the SVO, which has no pointers, is one
-/// byte.
+/// Returns the structures that the table compares. An ESVO without contours has the nodes of the
+/// SVO. A node of the SVO, which has no pointers, is one byte.
 std::vector<Structure> structures() {
   return {
       {"DAG", &SvdagSceneBuilds::dags, number("dag_nodes"), dag_bytes, &published::SceneSizes::dag},
       {"ESVO", &SvdagSceneBuilds::esvos, number("descriptors"), esvo_bytes,
        &published::SceneSizes::esvo},
+      {"ESVO without contours", &SvdagSceneBuilds::dags, number("svo_nodes"),
+       [](const CellResult& result) { return 8 * result.json.at("svo_nodes").get<double>(); },
+       nullptr},
       {"SVO", &SvdagSceneBuilds::dags, number("svo_nodes"), number("svo_nodes"),
        &published::SceneSizes::svo}};
 }
@@ -59,7 +62,7 @@ void add_rows(ResolutionTable& nodes, ResolutionTable& memory, const SvdagSceneB
   }
   const published::SceneSizes* const sizes =
       builds.shows_published() ? published::sizes_of(builds.scene.scene->name) : nullptr;
-  if (sizes == nullptr) return;
+  if (sizes == nullptr || structure.published == nullptr) return;
   const published::StructureSizes& row = sizes->*structure.published;
   const std::string what = fmt::format("{}, published", structure.name);
   nodes.add(title, what,
@@ -109,7 +112,8 @@ Section table2_section(const std::vector<SvdagSceneBuilds>& scenes) {
       "Published: {}. As in the paper, an ESVO node counts 8 bytes (child mask, contour and "
       "pointer), and a node of the SVO, which has no pointers, one byte. The paper's ESVOs come "
       "from the program of Laine and Karras with its default settings, ours from voxdag with its "
-      "own. A node of our DAG has 4 bytes of child mask and 4 bytes per child; the two lowest "
+      "own. Without contours, an ESVO ends at voxels and has the nodes of the SVO. A node of our "
+      "DAG has 4 bytes of child mask and 4 bytes per child; the two lowest "
       "levels are 8 bytes for 4³ voxels.",
       published::kTable2Source)});
   section.parts.emplace_back(nodes.take());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/reproduce/flight.hpp"
+#include "bench/reproduce/svdag_claims.hpp"
 
 namespace voxdag {
 namespace {
@@ -68,6 +69,21 @@ TEST(SvdagSections, Figure5HasALineForEachDagAndOneForTheOctree) {
   EXPECT_EQ(lines[0].y, (std::vector<double>{1, 8, 20}));
   EXPECT_EQ(lines[1].label, "SVO");
   EXPECT_TRUE(figure5_charts({}).empty());
+}
+
+TEST(SvdagSections, ClaimsLookAtThePapersScenesOnly) {
+  const auto claims_of = [](SceneState state) {
+    return markdown_of({"", {svdag_claims_section({scene_in_state(state)}, std::nullopt)}});
+  };
+  const std::string variant = claims_of(SceneState::kVariant);
+  EXPECT_NE(variant.find("| 576 | 13 (Lucy at 2K³) | not reproduced |"), std::string::npos)
+      << variant;
+  EXPECT_NE(
+      variant.find("| 28 to 576 at the highest resolutions | 13 (Lucy at 2K³) | reproduced |"),
+      std::string::npos)
+      << variant;
+  const std::string stand_in = claims_of(SceneState::kStandIn);
+  EXPECT_NE(stand_in.find("| 576 | – | not measured |"), std::string::npos) << stand_in;
 }
 
 /// Returns rows of `bench trace` for two frames: voxdag's rates with those of a rival.

@@ -1,0 +1,17 @@
+#pragma once
+/// The claims of the SVDAG paper, each with what was measured here.
+#include <optional>
+#include <vector>
+
+#include "bench/report/document.hpp"
+#include "bench/reproduce/flight.hpp"
+#include "bench/reproduce/svdag_builds.hpp"
+
+namespace voxdag {
+
+/// Returns a table with a line for each claim: reproduced, exceeded, not reproduced, or not
+/// measured. Claims about sizes and times look at the paper's scenes and their variants only.
+Section svdag_claims_section(const std::vector<SvdagSceneBuilds>& scenes,
+                             const std::optional<Flight>& flight);
+
+}  // namespace voxdag
