@@ -7,6 +7,7 @@
 #include "bench/report/bench_machine.hpp"
 #include "bench/report/scratch_folder.hpp"
 #include "bench/reproduce/flight.hpp"
+#include "bench/reproduce/pictures.hpp"
 #include "bench/reproduce/svdag_claims.hpp"
 #include "bench/reproduce/svdag_sections.hpp"
 #include "bench/reproduce/table_text.hpp"
@@ -73,6 +74,7 @@ PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
   std::vector<SvdagSceneBuilds> builds;
   for (const FoundScene& scene : scenes)
     builds.push_back(build_svdag_scene(plan, scene, cells, progress));
+  const SvdagPictures pictures = render_pictures(plan, scenes, cells, progress);
   const std::optional<Flight> flight = measure_flight(plan, scenes, cells, progress);
 
   const Json machine = machine_json();
@@ -99,9 +101,11 @@ PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
              "Figure 5: nodes per level of DAGs of several resolutions, and of the SVO of the "
              "highest one.",
              report.has_charts);
+  document.sections.push_back(figure4_section(pictures));
   if (flight)
     for (Section& section : flight_sections(*flight, report.has_charts))
       document.sections.push_back(std::move(section));
+  document.sections.push_back(figure8b_section(pictures));
 
   const Json json{{"program", program_name()},
                   {"machine", machine},

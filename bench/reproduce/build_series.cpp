@@ -22,23 +22,6 @@ std::vector<std::string> options_of(BuildKind kind) {
   return {"--as", "esvo", "--no-attributes"};
 }
 
-Cell build_cell(const PapersPlan& plan, BuildKind kind, const std::filesystem::path& mesh,
-                int levels) {
-  Cell cell;
-  // An ESVO's file cannot be a device.
-  cell.output = kind == BuildKind::kEsvo ? plan.folder / "build.esvo" : "/dev/null";
-  cell.arguments = {"build", mesh, "-r", std::to_string(1 << levels), "-o", cell.output, "--json"};
-  const std::vector<std::string> options = options_of(kind);
-  cell.arguments.insert(cell.arguments.end(), options.begin(), options.end());
-  if (plan.memory_bytes > 0)
-    cell.arguments.insert(cell.arguments.end(), {"--memory", std::to_string(plan.memory_bytes)});
-  if (plan.threads > 0)
-    cell.arguments.insert(cell.arguments.end(), {"--threads", std::to_string(plan.threads)});
-  cell.inputs = {mesh};
-  cell.seconds_limit = plan.cell_seconds;
-  return cell;
-}
-
 /// Returns why the build after `last` is not worth a try; empty if it is.
 std::string reason_to_stop(const PapersPlan& plan, const SeriesBuild& last, int levels) {
   if (!last.result.failure.empty())
@@ -54,15 +37,33 @@ std::string reason_to_stop(const PapersPlan& plan, const SeriesBuild& last, int 
 
 }  // namespace
 
+Cell build_cell(const PapersPlan& plan, const std::filesystem::path& mesh, int levels,
+                const std::filesystem::path& output, const std::vector<std::string>& options) {
+  Cell cell;
+  cell.output = output;
+  cell.inputs = {mesh};
+  cell.arguments = {"build", mesh, "-r", std::to_string(1 << levels), "-o", output, "--json"};
+  cell.arguments.insert(cell.arguments.end(), options.begin(), options.end());
+  if (plan.memory_bytes > 0)
+    cell.arguments.insert(cell.arguments.end(), {"--memory", std::to_string(plan.memory_bytes)});
+  if (plan.threads > 0)
+    cell.arguments.insert(cell.arguments.end(), {"--threads", std::to_string(plan.threads)});
+  return cell;
+}
+
 std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
                                       const std::filesystem::path& mesh,
                                       const std::vector<int>& levels, CellStore& cells,
                                       Progress& progress) {
+  // An ESVO's file cannot be a device.
+  const std::filesystem::path output =
+      kind == BuildKind::kEsvo ? plan.folder / "build.esvo" : "/dev/null";
   std::vector<SeriesBuild> builds;
   std::string reason;
   for (const int level : levels) {
     progress.throw_if_cancelled();
-    SeriesBuild build{level, build_cell(plan, kind, mesh, level), {}};
+    SeriesBuild build{level, build_cell(plan, mesh, level, output, options_of(kind)), {}};
+    build.cell.seconds_limit = plan.cell_seconds;
     if (reason.empty() && !builds.empty()) reason = reason_to_stop(plan, builds.back(), level);
     if (reason.empty()) {
       build.result = cells.run(build.cell);

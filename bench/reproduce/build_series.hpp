@@ -22,6 +22,10 @@ struct SeriesBuild {
   CellResult result;
 };
 
+/// Returns the build of `mesh` at 2^levels with the plan's memory and threads, and more options.
+Cell build_cell(const PapersPlan& plan, const std::filesystem::path& mesh, int levels,
+                const std::filesystem::path& output, const std::vector<std::string>& options);
+
 /// Builds the mesh at each of the ascending `levels`. After a build that fails, or that predicts
 /// that the next one exceeds the time limit, records the reason for the others.
 std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,

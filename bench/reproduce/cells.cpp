@@ -50,15 +50,22 @@ bool is_one_of(const std::vector<fs::path>& files, const std::string& argument) 
   return std::find(files.begin(), files.end(), fs::path(argument)) != files.end();
 }
 
+/// Returns the argument with the name of the cell's output, which may follow "NAME=", replaced.
+std::string with_output(const Cell& cell, const std::string& argument, const std::string& name) {
+  const std::string output = cell.output;
+  if (output.empty() || output.starts_with("/dev/") || !argument.ends_with(output)) return argument;
+  return fmt::format("{}{}", argument.substr(0, argument.size() - output.size()), name);
+}
+
 }  // namespace
 
 std::string command_of(const Cell& cell) {
+  const std::string output = cell.output.filename();
   std::string line = "voxdag";
-  for (const std::string& argument : cell.arguments) {
-    const bool is_file = is_one_of(cell.inputs, argument) ||
-                         (argument == cell.output && !argument.starts_with("/dev/"));
-    line += " " + (is_file ? fs::path(argument).filename().string() : argument);
-  }
+  for (const std::string& argument : cell.arguments)
+    line +=
+        fmt::format(" {}", is_one_of(cell.inputs, argument) ? fs::path(argument).filename().string()
+                                                            : with_output(cell, argument, output));
   return line;
 }
 
@@ -78,14 +85,11 @@ void CellStore::add_input(const fs::path& file, std::uint64_t check) {
 
 std::string CellStore::key_of(const Cell& cell) const {
   std::string text = fmt::format("{}\n{}\n", machine_, cell.seconds_limit);
-  for (const std::string& argument : cell.arguments) {
-    if (is_one_of(cell.inputs, argument))
-      text += "input " + contents_.at(argument) + "\n";
-    else if (argument == cell.output)
-      text += "output " + cell.output.extension().string() + "\n";
-    else
-      text += "word " + argument + "\n";
-  }
+  const std::string extension = cell.output.extension();
+  for (const std::string& argument : cell.arguments)
+    text += is_one_of(cell.inputs, argument)
+                ? fmt::format("input {}\n", contents_.at(argument))
+                : fmt::format("word {}\n", with_output(cell, argument, extension));
   return fmt::format("{:016x}", xxh3_64(std::as_bytes(std::span(text))));
 }
 
@@ -101,7 +105,8 @@ CellResult CellStore::run(const Cell& cell) {
     contents_[cell.output] = key;
     writers_[cell.output] = cell;
   }
-  if (auto result = read_result(file_of(key))) {
+  const bool lacks_output = cell.keeps_output && !fs::exists(cell.output);
+  if (auto result = read_result(file_of(key)); result && !lacks_output) {
     kept_.insert(key);
     return *result;
   }
@@ -122,7 +127,7 @@ CellResult CellStore::measure(const Cell& cell) {
   CellResult result;
   result.cost = child.cost;
   result.failure = failure_of(child, cell.seconds_limit);
-  if (!result.failure.empty()) return result;
+  if (!result.failure.empty() || !cell.prints_json) return result;
   result.json = Json::parse(child.out, nullptr, false);
   if (result.json.is_discarded()) {
     result.json = nullptr;

@@ -14,17 +14,19 @@
 
 namespace voxdag {
 
-/// A run of voxdag that prints JSON.
+/// A run of voxdag.
 struct Cell {
   std::vector<std::string> arguments;         ///< Without the program: "build", "a.obj", "--json".
   std::vector<std::filesystem::path> inputs;  ///< The files among the arguments that it reads.
   std::filesystem::path output;               ///< The file that it writes; or empty.
   double seconds_limit = 0;                   ///< 0: none.
+  bool prints_json = true;
+  bool keeps_output = false;  ///< A kept result counts only if the output is still there.
 };
 
 struct CellResult {
   std::string failure;          ///< Why there is no JSON; or empty.
-  nlohmann::ordered_json json;  ///< What the command printed.
+  nlohmann::ordered_json json;  ///< What the command printed; null if it prints no JSON.
   ProcessCost cost;
   bool is_kept = false;  ///< From an earlier run of the report.
 };

@@ -7,6 +7,7 @@
 
 #include "bench/build/bench_mesh.hpp"
 #include "bench/papers/camera_paths.hpp"
+#include "bench/reproduce/build_series.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/checksum.hpp"
@@ -67,14 +68,7 @@ class FlightRunner {
  private:
   /// Builds the scene's mesh, if the file is not there; returns the file.
   fs::path built(int levels, const char* name, const std::vector<std::string>& options) {
-    Cell cell;
-    cell.output = plan_.folder / name;
-    cell.inputs = {scene_.mesh};
-    cell.arguments = {"build", scene_.mesh, "-r",    std::to_string(1 << levels),
-                      "-o",    cell.output, "--json"};
-    cell.arguments.insert(cell.arguments.end(), options.begin(), options.end());
-    if (plan_.memory_bytes > 0)
-      cell.arguments.insert(cell.arguments.end(), {"--memory", std::to_string(plan_.memory_bytes)});
+    const Cell cell = build_cell(plan_, scene_.mesh, levels, plan_.folder / name, options);
     const CellResult result = cells_.run(cell);
     failure_ = failure_.empty() ? result.failure : failure_;
     return cell.output;

@@ -16,6 +16,12 @@ struct FlightPlan {
   ImageSize size{1024, 768};
 };
 
+/// The pictures of Figures 4 and 8b of the SVDAG paper.
+struct PicturePlan {
+  int levels = 13;
+  ImageSize size{960, 540};
+};
+
 struct PapersPlan {
   std::filesystem::path scenes;   ///< Folder of meshes; empty: procedural stand-ins only.
   std::filesystem::path folder;   ///< Where the report and its results go.
@@ -23,6 +29,7 @@ struct PapersPlan {
   std::vector<int> table1_levels{9, 10, 11, 12, 13};
   std::vector<int> table2_levels{11, 12, 13, 14, 15, 16};
   FlightPlan flight;
+  PicturePlan pictures;
   double cell_seconds = 600;       ///< Time limit of one build for the tables.
   std::uint64_t memory_bytes = 0;  ///< `--memory` of every build; 0: its default.
   int threads = 0;                 ///< 0: one per processor.
@@ -34,6 +41,7 @@ inline void make_quick(PapersPlan& plan) {
   plan.table1_levels = {9, 10, 11};
   plan.table2_levels = {9, 10, 11, 12};
   plan.flight = {10, 12, 12, {512, 384}};
+  plan.pictures = {11, {640, 360}};
 }
 
 }  // namespace voxdag

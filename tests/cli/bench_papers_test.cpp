@@ -39,8 +39,9 @@ class BenchPapers : public testing::Test {
   BenchPapers() { write_text(dir_ / "crysponza.obj", wavy_surface()); }
 
   std::vector<std::string> command() const {
-    return {"bench",    "papers", "--scenes", dir_.path(), "--only", "Crysponza,Lucy",
-            "--table1", "32,512", "--table2", "32,64",     "-o",     report_};
+    return {"bench",          "papers",   "--scenes", dir_.path(), "--only",
+            "Crysponza,Lucy", "--table1", "32,512",   "--table2",  "32,64",
+            "--pictures",     "64",       "-o",       report_};
   }
 
   Json json() const { return Json::parse(read_text(fs::path(report_) / "report.json")); }
@@ -66,33 +67,23 @@ TEST_F(BenchPapers, SetsPublishedFiguresBesideThePapersScenes) {
   EXPECT_NE(text.find("| Lucy (absent) | published, reduction | – | 2.6 ms |"), std::string::npos)
       << text;
   EXPECT_NE(read_text(fs::path(report_) / "report.html").find("</html>"), std::string::npos);
-  EXPECT_FALSE(fs::exists(fs::path(report_) / "build.esvo"));
+  for (const char* picture : {"figure4-Crysponza.png", "figure8b-exact.png", "figure8b-cones.png",
+                              "figure8b-difference.png"})
+    EXPECT_TRUE(fs::exists(fs::path(report_) / picture)) << picture;
+  for (const char* scratch : {"build.esvo", "picture.vdag", "picture.png"})
+    EXPECT_FALSE(fs::exists(fs::path(report_) / scratch)) << scratch;
 }
 
 TEST_F(BenchPapers, FliesThroughASceneThatHasACameraPath) {
   const char* const scenes = std::getenv("VOXDAG_SCENES");
   if (scenes == nullptr || !fs::exists(fs::path(scenes) / "crytek_sponza" / "sponza.obj"))
     GTEST_SKIP() << "VOXDAG_SCENES has no crytek_sponza/sponza.obj";
-  const ProcessResult result = run_voxdag({"bench",
-                                           "papers",
-                                           "--scenes",
-                                           fs::path(scenes) / "crytek_sponza",
-                                           "--only",
-                                           "Crysponza",
-                                           "--table1",
-                                           "32",
-                                           "--table2",
-                                           "32",
-                                           "--flight-esvo",
-                                           "64",
-                                           "--flight-triangles",
-                                           "128",
-                                           "--frames",
-                                           "3",
-                                           "--size",
-                                           "40x32",
-                                           "-o",
-                                           report_});
+  std::vector<std::string> arguments = command();
+  arguments[3] = fs::path(scenes) / "crytek_sponza";
+  for (const char* option :
+       {"--flight-esvo=64", "--flight-triangles=128", "--frames=3", "--size=40x32"})
+    arguments.emplace_back(option);
+  const ProcessResult result = run_voxdag(arguments);
   ASSERT_EQ(result.status, 0) << result.err;
   const Json flight = json().at("flight");
   EXPECT_EQ(flight.at("scene"), "Crysponza");
@@ -110,6 +101,10 @@ TEST_F(BenchPapers, KeepsFinishedMeasurements) {
   const ProcessResult again = run_voxdag(command());
   EXPECT_NE(again.out.find(": 0 measured, "), std::string::npos) << again.out;
   EXPECT_EQ(json().at("svdag"), first.at("svdag"));
+  fs::remove(fs::path(report_) / "figure8b-cones.png");
+  const ProcessResult painted = run_voxdag(command());
+  EXPECT_NE(painted.out.find(": 1 measured, "), std::string::npos) << painted.out;
+  EXPECT_TRUE(fs::exists(fs::path(report_) / "figure8b-cones.png"));
 }
 
 TEST_F(BenchPapers, MeasuresAgainWhatIsDamaged) {

@@ -22,7 +22,7 @@ struct PapersArguments {
   PapersPlan plan;
   std::string scenes, folder;
   std::vector<int> table1, table2;  ///< Levels; empty: those of the plan.
-  std::optional<int> flight_esvo, flight_triangles, frames;
+  std::optional<int> flight_esvo, flight_triangles, frames, pictures;
   std::optional<ImageSize> size;
   bool quick = false;
 };
@@ -53,6 +53,7 @@ void run(const PapersArguments& arguments, Session& session) {
   flight.triangles_levels = arguments.flight_triangles.value_or(flight.triangles_levels);
   flight.frames = arguments.frames.value_or(flight.frames);
   flight.size = arguments.size.value_or(flight.size);
+  plan.pictures.levels = arguments.pictures.value_or(plan.pictures.levels);
   plan.folder = std::filesystem::absolute(arguments.folder);
   plan.threads = session.threads;
   if (!session.quiet)
@@ -94,6 +95,8 @@ void add_bench_papers_command(const Command& bench, Session& session) {
                  "Resolution of the fly-through with DAG and triangles (default: 32K)");
   command.optional_number<int>("--frames", arguments->frames, NumberRange::whole(1, 10'000), "N",
                                "Frames of the fly-through (default: 30)");
+  command.parsed("--pictures", arguments->pictures, parse_levels, "N",
+                 "Resolution of the pictures (default: 8K)");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
                  "Size of the frames in pixels (default: 1024x768)");
   command.number("--cell-seconds", arguments->plan.cell_seconds, NumberRange::from(1, 1e6),
