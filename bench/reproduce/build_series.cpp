@@ -17,6 +17,8 @@ std::vector<std::string> options_of(BuildKind kind) {
     case BuildKind::kHash:
       return {"--method", "hash"};
     case BuildKind::kEsvo:
+      return {"--as", "esvo"};
+    case BuildKind::kShape:
       break;
   }
   return {"--as", "esvo", "--no-attributes"};
@@ -55,9 +57,9 @@ std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
                                       const std::filesystem::path& mesh,
                                       const std::vector<int>& levels, CellStore& cells,
                                       Progress& progress) {
+  const bool is_esvo = kind == BuildKind::kEsvo || kind == BuildKind::kShape;
   // An ESVO's file cannot be a device.
-  const std::filesystem::path output =
-      kind == BuildKind::kEsvo ? plan.folder / "build.esvo" : "/dev/null";
+  const std::filesystem::path output = is_esvo ? plan.folder / "build.esvo" : "/dev/null";
   std::vector<SeriesBuild> builds;
   std::string reason;
   for (const int level : levels) {
@@ -67,7 +69,7 @@ std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
     if (reason.empty() && !builds.empty()) reason = reason_to_stop(plan, builds.back(), level);
     if (reason.empty()) {
       build.result = cells.run(build.cell);
-      if (kind == BuildKind::kEsvo) std::filesystem::remove(build.cell.output);
+      if (is_esvo) std::filesystem::remove(build.cell.output);
     } else {
       build.result.failure = reason;
     }
@@ -76,16 +78,20 @@ std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
   return builds;
 }
 
-double typical_seconds(BuildKind kind, const std::vector<int>& levels) {
+double typical_seconds(const PapersPlan& plan, BuildKind kind, const std::vector<int>& levels) {
   // Measured with Crytek Sponza: seconds at 2048³, and the factor from one level to the next.
   struct Cost {
     double seconds, growth;
   };
-  static constexpr Cost kCosts[] = {{0.9, 3}, {0.4, 2.4}, {4, 3.5}};
+  static constexpr Cost kCosts[] = {{0.9, 3}, {0.4, 2.4}, {20, 4}, {4, 3.5}};
   const Cost& cost = kCosts[static_cast<int>(kind)];
-  double seconds = 0;
-  for (const int level : levels) seconds += cost.seconds * std::pow(cost.growth, level - 11);
-  return seconds;
+  double sum = 0;
+  for (const int level : levels) {
+    const double seconds = cost.seconds * std::pow(cost.growth, level - 11);
+    if (plan.cell_seconds > 0 && seconds > plan.cell_seconds) break;
+    sum += seconds;
+  }
+  return sum;
 }
 
 }  // namespace voxdag

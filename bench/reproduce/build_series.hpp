@@ -12,7 +12,8 @@ namespace voxdag {
 enum class BuildKind {
   kPaper,  ///< The DAG, by the paper's method.
   kHash,   ///< The DAG, by voxdag's method.
-  kEsvo,   ///< The ESVO's shape: no colours, no normals.
+  kEsvo,   ///< The ESVO with colours and normals, which must be uniform in a leaf.
+  kShape,  ///< The ESVO's shape: no colours, no normals.
 };
 
 /// A build, or the reason why there is none.
@@ -33,8 +34,8 @@ std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
                                       const std::vector<int>& levels, CellStore& cells,
                                       Progress& progress);
 
-/// Returns about the seconds that the builds of a scene of some hundred thousand triangles take on
-/// two cores.
-double typical_seconds(BuildKind kind, const std::vector<int>& levels);
+/// Returns about the seconds that build_series() takes for a scene of some hundred thousand
+/// triangles on two cores.
+double typical_seconds(const PapersPlan& plan, BuildKind kind, const std::vector<int>& levels);
 
 }  // namespace voxdag

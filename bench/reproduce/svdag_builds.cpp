@@ -50,6 +50,7 @@ SvdagSceneBuilds build_svdag_scene(const PapersPlan& plan, const FoundScene& sce
   builds.by_hash = series(BuildKind::kHash, plan.table1_levels);
   builds.dags = series(BuildKind::kHash, plan.table2_levels);
   builds.esvos = series(BuildKind::kEsvo, plan.table2_levels);
+  builds.shapes = series(BuildKind::kShape, plan.table2_levels);
   return builds;
 }
 
@@ -93,7 +94,8 @@ Json svdag_builds_json(const std::vector<SvdagSceneBuilds>& scenes) {
                      {"paper_method", builds_json(builds.by_paper)},
                      {"voxdag_method", builds_json(builds.by_hash)},
                      {"dags", builds_json(builds.dags)},
-                     {"esvos", builds_json(builds.esvos)}});
+                     {"esvos", builds_json(builds.esvos)},
+                     {"esvo_shapes", builds_json(builds.shapes)}});
   return array;
 }
 

@@ -17,7 +17,8 @@ struct SvdagSceneBuilds {
   std::vector<SeriesBuild> by_paper;  ///< For Table 1.
   std::vector<SeriesBuild> by_hash;   ///< The same resolutions, by voxdag's own method.
   std::vector<SeriesBuild> dags;      ///< For Table 2 and Figure 5.
-  std::vector<SeriesBuild> esvos;     ///< For Table 2.
+  std::vector<SeriesBuild> esvos;     ///< For Table 2: with colours and normals.
+  std::vector<SeriesBuild> shapes;    ///< For Table 2: the shape only.
 
   /// Returns "Lucy (variant)".
   std::string title() const;

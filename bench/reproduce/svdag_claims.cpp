@@ -75,6 +75,15 @@ std::string range_text(const std::vector<Value>& values) {
   return least == most ? text_of(*least) : text_of(*least) + " to " + text_of(*most);
 }
 
+constexpr const char* kNotSoHigh = "not measured at 64K³";
+
+/// Returns whether a scene was measured at the paper's highest resolution.
+bool has_paper_levels(const std::vector<Value>& values) {
+  constexpr int kPaperLevels = 16;
+  return std::any_of(values.begin(), values.end(),
+                     [](const Value& value) { return value.levels >= kPaperLevels; });
+}
+
 const char* verdict(bool is_reproduced) { return is_reproduced ? "reproduced" : "not reproduced"; }
 
 class Claims {
@@ -96,13 +105,16 @@ class Claims {
         verdict(std::all_of(values.begin(), values.end(),
                             [&](const Value& v) { return holds(v.value); })));
   }
-  /// Adds a claim about the largest value.
+  /// Adds a claim about the largest value, which the paper found at 64K³.
   void add_most(const char* claim, double published, const std::vector<Value>& values) {
-    const std::string number = number_text(published);
+    const std::string number = number_text(published) + " at 64K³";
     if (values.empty()) return add_unmeasured(claim, number.c_str());
     const Value& most = *std::max_element(values.begin(), values.end(), is_less);
+    const bool is_there = most.value > 0.95 * published;
     add(claim, number.c_str(), text_of(most),
-        most.value > published ? "exceeded" : verdict(most.value > 0.95 * published));
+        most.value > published                 ? "exceeded"
+        : is_there || has_paper_levels(values) ? verdict(is_there)
+                                               : kNotSoHigh);
   }
   Table take(std::string caption) {
     table_.caption = std::move(caption);
@@ -129,6 +141,19 @@ std::vector<Value> reduction_growth(const std::vector<SvdagSceneBuilds>& scenes)
   return growth;
 }
 
+/// Adds the claim about the sizes at the highest resolutions. In the paper, too, the SVO of Lucy is
+/// smaller than its DAG up to 16K³.
+void add_svo_claim(Claims& claims, const std::vector<Value>& against_svo) {
+  const char* const claim = "The DAG is smaller than the SVO without pointers (SVO / DAG)";
+  const char* const published = "above 1 in every scene at 64K³";
+  const std::vector<Value> highest = at_highest(against_svo);
+  if (highest.empty()) return claims.add_unmeasured(claim, published);
+  const bool holds = std::all_of(highest.begin(), highest.end(),
+                                 [](const Value& value) { return value.value > 1; });
+  claims.add(claim, published, range_text(highest),
+             holds || has_paper_levels(highest) ? verdict(holds) : kNotSoHigh);
+}
+
 void add_speed(Claims& claims, const char* claim, const char* published, double ratio,
                double least) {
   if (std::isnan(ratio)) return claims.add_unmeasured(claim, published);
@@ -151,10 +176,8 @@ Section svdag_claims_section(const std::vector<SvdagSceneBuilds>& scenes,
                    "28 to 576 at the highest resolutions", at_highest(merging),
                    [](double factor) { return factor >= 10; });
   claims.add_most("Largest reduction of nodes (SVO / DAG)", 576, merging);
-  claims.add_range(
-      "At high resolutions the DAG is smaller than the SVO without pointers (SVO / DAG)",
-      "above 1 in every scene", at_highest(against_svo), [](double factor) { return factor > 1; });
   claims.add_most("Largest saving against the SVO without pointers (SVO / DAG)", 26, against_svo);
+  add_svo_claim(claims, against_svo);
   claims.add_range("The DAG is smaller than the ESVO at every resolution (ESVO / DAG)",
                    "above 1 everywhere", against_esvo, [](double factor) { return factor > 1; });
   claims.add_most("Largest saving against the ESVO (ESVO / DAG)", 38, against_esvo);

@@ -76,14 +76,15 @@ TEST(SvdagSections, ClaimsLookAtThePapersScenesOnly) {
     return markdown_of({"", {svdag_claims_section({scene_in_state(state)}, std::nullopt)}});
   };
   const std::string variant = claims_of(SceneState::kVariant);
-  EXPECT_NE(variant.find("| 576 | 13 (Lucy at 2K³) | not reproduced |"), std::string::npos)
+  EXPECT_NE(variant.find("| 576 at 64K³ | 13 (Lucy at 2K³) | not measured at 64K³ |"),
+            std::string::npos)
       << variant;
   EXPECT_NE(
       variant.find("| 28 to 576 at the highest resolutions | 13 (Lucy at 2K³) | reproduced |"),
       std::string::npos)
       << variant;
   const std::string stand_in = claims_of(SceneState::kStandIn);
-  EXPECT_NE(stand_in.find("| 576 | – | not measured |"), std::string::npos) << stand_in;
+  EXPECT_NE(stand_in.find("| 576 at 64K³ | – | not measured |"), std::string::npos) << stand_in;
 }
 
 /// Returns rows of `bench trace` for two frames: voxdag's rates with those of a rival.
