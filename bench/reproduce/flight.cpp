@@ -38,12 +38,8 @@ std::vector<FoundScene> flight_order(std::vector<FoundScene> scenes) {
 class FlightRunner {
  public:
   FlightRunner(const PapersPlan& plan, const FoundScene& scene, const std::string& path,
-               CellStore& cells, Progress& progress)
-      : plan_(plan),
-        scene_(scene),
-        path_(plan.folder / "flight.json"),
-        cells_(cells),
-        progress_(progress) {
+               CellStore& cells)
+      : plan_(plan), scene_(scene), path_(plan.folder / "flight.json"), cells_(cells) {
     write_whole_file(path_, path);
     cells_.add_input(path_, xxh3_64(std::as_bytes(std::span(path))));
   }
@@ -60,6 +56,8 @@ class FlightRunner {
     flight.with_triangles = traced(plan_.flight.triangles_levels, fine, {}, {});
     flight.with_voxels = traced(plan_.flight.triangles_levels, fine, {"--lod", "0"}, {});
     flight.with_cones = traced(plan_.flight.triangles_levels, fine, {"--ao-cone", "0.07"}, {});
+    flight.with_lamps = traced(plan_.flight.triangles_levels, fine,
+                               {"--light-sizes", "0.02,0.05,0.1,0.2,0.4,0.8"}, {});
     for (const char* name : {"dag.vdag", "shape.esvo", "fine.vdag"})
       fs::remove(plan_.folder / name);
     return flight;
@@ -107,7 +105,6 @@ class FlightRunner {
   const FoundScene& scene_;
   fs::path path_;
   CellStore& cells_;
-  Progress& progress_;
   std::string failure_;  ///< Of the first build that failed.
 };
 
@@ -118,7 +115,7 @@ std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<F
   for (const FoundScene& scene : flight_order(scenes)) {
     if (scene.is_absent()) continue;
     const std::string path = path_through(scene, progress);
-    if (!path.empty()) return FlightRunner(plan, scene, path, cells, progress).run();
+    if (!path.empty()) return FlightRunner(plan, scene, path, cells).run();
   }
   return std::nullopt;
 }

@@ -147,6 +147,46 @@ Section figure7a(const Flight& flight, bool is_drawn) {
   return section;
 }
 
+/// Returns the chart of rates over the size of the lamp.
+ChartPanel lamp_panel(const Flight& flight) {
+  ChartLine with_beams{"with beams", {}, {}, kDag, false, true},
+      without{"without beams", {}, {}, kTriangles, false, true};
+  if (flight.with_lamps.result.failure.empty())
+    for (const Json& row : flight.with_lamps.result.json) {
+      if (row.at("rays") != "soft_lamp") continue;
+      with_beams.x.push_back(row.at("light_size"));
+      with_beams.y.push_back(row.at("mrays_per_s"));
+      without.x.push_back(row.at("light_size"));
+      without.y.push_back(row.at("rival_mrays_per_s"));
+    }
+  return {where(flight, flight.with_lamps),
+          {"radius of the lamp / its distance", {}},
+          {"million rays per second", {}},
+          {with_beams, without}};
+}
+
+Section figure7b(const Flight& flight, bool is_drawn) {
+  Section section{"Figure 7b: soft shadows and the size of the light", 2, {}};
+  section.parts.emplace_back(Paragraph{
+      "16 rays per pixel towards a sphere, over all frames. With beams, a beam from each pixel to "
+      "the light shortens its rays or makes them unnecessary. The rate counts the rays that are "
+      "needed without beams, and the time includes the beams."});
+  const ChartPanel panel = lamp_panel(flight);
+  Table table{"Soft shadow rays, " + panel.title,
+              {"radius / distance", "with beams (Mrays/s)", "without beams (Mrays/s)",
+               "beams are faster by"},
+              {}};
+  for (std::size_t i = 0; i < panel.lines[0].x.size(); ++i)
+    table.rows.push_back({fmt::format("{:g}", panel.lines[0].x[i]),
+                          number_text(panel.lines[0].y[i]), number_text(panel.lines[1].y[i]),
+                          number_text(panel.lines[0].y[i] / panel.lines[1].y[i])});
+  section.parts.emplace_back(std::move(table));
+  add_chart(section, "figure7b.svg", "Figure 7b: soft shadow rays per second over the lamp's size.",
+            is_drawn);
+  add_run(section, flight.with_lamps);
+  return section;
+}
+
 Section figure8a(const Flight& flight, bool is_drawn) {
   Section section{"Figure 8a: ambient occlusion in a fly-through", 2, {}};
   section.parts.emplace_back(Paragraph{
@@ -187,7 +227,8 @@ double speed_ratio(const FlightRun& run, const std::string& rays, const std::str
 }
 
 std::vector<Section> flight_sections(const Flight& flight, bool is_drawn) {
-  return {figure6(flight, is_drawn), figure7a(flight, is_drawn), figure8a(flight, is_drawn)};
+  return {figure6(flight, is_drawn), figure7a(flight, is_drawn), figure7b(flight, is_drawn),
+          figure8a(flight, is_drawn)};
 }
 
 std::vector<Chart> flight_charts(const Flight& flight) {
@@ -220,7 +261,8 @@ std::vector<Chart> flight_charts(const Flight& flight) {
                    line_of(kToVoxels, frames(flight.with_voxels, "ao", ""), kVoxels),
                    line_of(kToCones, frames(flight.with_cones, "ao", ""), kCones),
                    line_of("triangles (Embree)", frames(fine, "ao", "embree"), kTriangles)})}};
-  return {figure6, figure7a, figure8a};
+  Chart figure7b{"figure7b.svg", {lamp_panel(flight)}};
+  return {figure6, figure7a, figure7b, figure8a};
 }
 
 Json flight_json(const Flight& flight) {
@@ -229,6 +271,7 @@ Json flight_json(const Flight& flight) {
           {"with_esvo", run_json(flight.with_esvo)},
           {"with_triangles", run_json(flight.with_triangles)},
           {"with_voxels", run_json(flight.with_voxels)},
+          {"with_lamps", run_json(flight.with_lamps)},
           {"with_cones", run_json(flight.with_cones)}};
 }
 

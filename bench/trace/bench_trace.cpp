@@ -195,6 +195,9 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
       }
     }
   }
+  for (const SoftShadowRow& row : measure_soft_shadows(scene.voxels, scene.grid, views, plan.rays,
+                                                       plan.light_sizes, plan.repeat, progress))
+    results.soft_shadows.push_back({scene.name, scene.grid.levels, row});
   for (const auto& rival : rivals)
     for (const RivalTime& time : rival->cast_all(plan.repeat, progress))
       for (auto& layout_sums : sums)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/rays/trace_rays.hpp"
+#include "bench/trace/soft_shadows.hpp"
 #include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -30,9 +31,10 @@ struct TracePlan {
   RayOptions rays;
   DeviceChoice device;  ///< On CUDA, voxdag's CPU casts are a rival that must agree.
   int views = 4;
-  std::vector<View> path_views;  ///< The views to measure; empty: bench_views() chooses `views`.
-  int repeat = 3;                ///< Number of casts of a set; the fastest counts.
-  std::string openvdb_program;   ///< rival_openvdb_trace, or empty.
+  std::vector<View> path_views;     ///< The views to measure; empty: bench_views() chooses `views`.
+  int repeat = 3;                   ///< Number of casts of a set; the fastest counts.
+  std::vector<double> light_sizes;  ///< Of the lamps of SoftShadowRow; empty: do not measure them.
+  std::string openvdb_program;      ///< rival_openvdb_trace, or empty.
 };
 
 struct RivalRate {
@@ -57,11 +59,19 @@ struct TraceRow {
   bool on_cuda = false;  ///< Cast on CUDA; not every layout has kernels.
 };
 
+/// Soft shadows in one scene.
+struct SoftShadows {
+  std::string scene;
+  int levels = 0;
+  SoftShadowRow row;
+};
+
 struct TraceResults {
   int threads = 0;
   RayOptions rays;             ///< Options with which the rays were recorded.
   std::string cuda_device;     ///< Device of the rows with on_cuda; empty: all rows are on the CPU.
   std::vector<TraceRow> rows;  ///< By scene, resolution, layout, class.
+  std::vector<SoftShadows> soft_shadows;
   std::vector<std::string> failures;  ///< Scenes that could not be measured, and why.
 };
 

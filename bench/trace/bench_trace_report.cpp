@@ -79,6 +79,19 @@ Json trace_json(const TraceResults& results, const Json& machine) {
     object["rival_view_mrays_per_s"] = nullptr;
     array.push_back(object);
   }
+  for (const SoftShadows& shadows : results.soft_shadows)
+    array.push_back({{"program", program_name()},
+                     {"scene", shadows.scene},
+                     {"resolution", std::int64_t{1} << shadows.levels},
+                     {"threads", results.threads},
+                     {"rays", "soft_lamp"},
+                     {"size", {results.rays.width, results.rays.height}},
+                     {"light_size", shadows.row.light_size},
+                     {"ray_count", shadows.row.rays},
+                     {"mrays_per_s", shadows.row.mrays_with_beams()},
+                     {"rival", "without_beams"},
+                     {"rival_mrays_per_s", shadows.row.mrays_without_beams()},
+                     {"ratio", shadows.row.no_beam_seconds / shadows.row.beam_seconds}});
   return array;
 }
 
@@ -108,6 +121,14 @@ std::string trace_table(const TraceResults& results) {
     }
     text += "\n";
   }
+  if (!results.soft_shadows.empty())
+    text += "\n  soft shadows of a lamp; its radius in parts of its distance\n  " +
+            fmt::format("{:<14}{:>12}{:>20}{:>20}\n", "radius", "rays", "Mrays/s with beams",
+                        "without beams");
+  for (const SoftShadows& shadows : results.soft_shadows)
+    text += fmt::format("  {:<14}{:>12}{:>20.2f}{:>20.2f}\n", shadows.row.light_size,
+                        with_commas(shadows.row.rays), shadows.row.mrays_with_beams(),
+                        shadows.row.mrays_without_beams());
   for (const std::string& failure : results.failures) text += "\n" + failure + "\n";
   return text;
 }

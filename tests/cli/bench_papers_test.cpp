@@ -39,9 +39,9 @@ class BenchPapers : public testing::Test {
   BenchPapers() { write_text(dir_ / "crysponza.obj", wavy_surface()); }
 
   std::vector<std::string> command() const {
-    return {"bench",          "papers",   "--scenes", dir_.path(), "--only",
-            "Crysponza,Lucy", "--table1", "32,512",   "--table2",  "32,64",
-            "--pictures",     "64",       "-o",       report_};
+    return {"bench",    "papers", "--scenes", dir_.path(), "--only",     "Crysponza,Lucy",
+            "--table1", "32,512", "--table2", "32,64",     "--pictures", "64",
+            "--size",   "40x32",  "-o",       report_};
   }
 
   Json json() const { return Json::parse(read_text(fs::path(report_) / "report.json")); }
@@ -80,8 +80,7 @@ TEST_F(BenchPapers, FliesThroughASceneThatHasACameraPath) {
     GTEST_SKIP() << "VOXDAG_SCENES has no crytek_sponza/sponza.obj";
   std::vector<std::string> arguments = command();
   arguments[3] = fs::path(scenes) / "crytek_sponza";
-  for (const char* option :
-       {"--flight-esvo=64", "--flight-triangles=128", "--frames=3", "--size=40x32"})
+  for (const char* option : {"--flight-esvo=64", "--flight-triangles=128", "--frames=3"})
     arguments.emplace_back(option);
   const ProcessResult result = run_voxdag(arguments);
   ASSERT_EQ(result.status, 0) << result.err;

@@ -73,6 +73,21 @@ TEST_F(BenchTrace, AnEsvoCastsTheSameRaysAlongAPath) {
   }
 }
 
+TEST_F(BenchTrace, SoftShadowsAreMeasuredForEverySizeOfTheLamp) {
+  const ProcessResult result = bench({path("in.vdag"), "--light-sizes", "0.1,0.5", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  ASSERT_EQ(json.size(), 7u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& row = json[5 + i];
+    EXPECT_EQ(row.at("rays"), "soft_lamp");
+    EXPECT_EQ(row.at("light_size"), i == 0 ? 0.1 : 0.5);
+    EXPECT_EQ(row.at("rival"), "without_beams");
+    for (const char* key : {"ray_count", "mrays_per_s", "rival_mrays_per_s", "ratio"})
+      EXPECT_GT(row.at(key), 0) << key;
+  }
+}
+
 TEST_F(BenchTrace, AnEsvoOnAnotherGridIsAnError) {
   ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "64", "-o", path("other.esvo")}).status,
             0);

@@ -54,6 +54,7 @@ void run(const PapersArguments& arguments, Session& session) {
   flight.frames = arguments.frames.value_or(flight.frames);
   flight.size = arguments.size.value_or(flight.size);
   plan.pictures.levels = arguments.pictures.value_or(plan.pictures.levels);
+  plan.pictures.size = arguments.size.value_or(plan.pictures.size);
   plan.folder = std::filesystem::absolute(arguments.folder);
   plan.threads = session.threads;
   if (!session.quiet)
@@ -98,7 +99,7 @@ void add_bench_papers_command(const Command& bench, Session& session) {
   command.parsed("--pictures", arguments->pictures, parse_levels, "N",
                  "Resolution of the pictures (default: 8K)");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
-                 "Size of the frames in pixels (default: 1024x768)");
+                 "Size of frames and pictures in pixels (default: 1024x768 and 960x540)");
   command.number("--cell-seconds", arguments->plan.cell_seconds, NumberRange::from(1, 1e6),
                  "SECONDS", "Time limit of one run; the report names the runs that it excludes");
   command.parsed("--memory", arguments->plan.memory_bytes, parse_memory, "LIMIT",

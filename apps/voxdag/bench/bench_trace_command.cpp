@@ -180,6 +180,10 @@ void add_bench_trace_command(const Command& bench, Session& session) {
   command.number("--views", plan.views, NumberRange::whole(1, 64), "N", "Number of cameras")
       .only_if([arguments] { return arguments->path_file.empty(); }, "with --path");
   add_ray_options(command, plan.rays);
+  command.list(
+      "--light-sizes", plan.light_sizes, parse_positive, "RADIUS,RADIUS...",
+      "Also measure soft shadows of lamps of these radii, in parts of their distance, with "
+      "and without beams");
   command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
                  "Number of casts; the fastest counts");
   command.text(
