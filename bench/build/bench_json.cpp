@@ -1,9 +1,9 @@
 /// Writes the JSON of `voxdag bench build --json`.
 #include <cmath>
 
-#include "bench/papers/svdag_published.hpp"
 #include "bench/build/bench_report.hpp"
 #include "bench/papers/paper_json.hpp"
+#include "bench/papers/svdag_published.hpp"
 #include "bench/report/bench_machine.hpp"
 
 namespace voxdag {

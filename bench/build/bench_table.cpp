@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "bench/papers/svdag_published.hpp"
 #include "bench/build/bench_report.hpp"
+#include "bench/papers/svdag_published.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
