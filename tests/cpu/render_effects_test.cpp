@@ -90,6 +90,9 @@ RenderOptions small_picture() {
   return options;
 }
 
+/// Shadow rays per pixel, enough for beams to lights (TileRenderer::kLeastRaysPerLightBeam).
+constexpr int kSamplesWithBeams = 64;
+
 TEST(RenderBeams, ChangeNoPixel) {
   constexpr int kLevels = 6;
   std::mt19937 rng(11);
@@ -108,6 +111,7 @@ TEST(RenderBeams, ChangeNoPixel) {
     const float lods[] = {0, 1, 3, 12};
     options.lod_pixels = lods[i % 4];
     options.sun_degrees = i % 3 == 0 ? 0 : number(0.5, 20);
+    options.shadow_samples = kSamplesWithBeams;
     options.with_steps = true;
     const RenderedImage with = render_image(dag.view(), test_grid(kLevels), options);
     options.beams = false;
@@ -137,6 +141,7 @@ TEST(RenderBeams, ChangeNoSoftShadowOfAnyLight) {
     RenderOptions options = small_picture();
     options.occlusion_samples = 0;
     options.with_sun = false;
+    options.shadow_samples = kSamplesWithBeams;
     options.lights = {light};
     const RenderedImage with = render_image(dag.view(), test_grid(kLevels), options);
     options.beams = false;
@@ -161,6 +166,7 @@ TEST(RenderBeams, VoxelsRightBehindALampAreNotInItsWay) {
   options.view.target = {0, -0.75, 0};
   options.occlusion_samples = 0;
   options.with_sun = false;
+  options.shadow_samples = kSamplesWithBeams;
   options.lights = {rectangle_light({-0.3, 0.25, -0.2}, {0.5, 0, 0}, {0, 0, 0.6})};
   const RenderedImage with = render_image(dag.view(), test_grid(6), options);
   options.beams = false;

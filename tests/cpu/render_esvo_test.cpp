@@ -58,6 +58,7 @@ TEST(RenderEsvo, BeamsChangeNoPixel) {
       RenderOptions options = small_picture();
       options.lod_pixels = lod;
       options.samples_per_pixel = 2;
+      options.shadow_samples = 128;  // enough for beams to the sun
       const RenderedImage with = render_image(esvo.view(), picture_grid(), options);
       options.beams = false;
       expect_same_picture(render_image(esvo.view(), picture_grid(), options), with);

