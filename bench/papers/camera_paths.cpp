@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "bench/papers/paper_scenes.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -64,7 +66,7 @@ constexpr std::array kSibenik{
 constexpr std::array kFlights{
     SceneFlight{.name = "crytek_sponza",
                 .file = "sponza.obj",
-                .file_check = 0xd5d755a4c62db15e,
+                .file_check = kCrytekSponzaCheck,
                 .clearance = 35,
                 .up = {0, 1, 0},
                 .fov_degrees = 60,
@@ -72,7 +74,7 @@ constexpr std::array kFlights{
                 .keys = kCrytekSponza},
     SceneFlight{.name = "sanmiguel",
                 .file = "sanmiguel_core.ply",
-                .file_check = 0x1b139a913bd76b81,
+                .file_check = kSanMiguelCoreCheck,
                 .clearance = 0.75,
                 .up = {0, 0, 1},
                 .fov_degrees = 60,
@@ -80,7 +82,7 @@ constexpr std::array kFlights{
                 .keys = kSanMiguel},
     SceneFlight{.name = "sibenik",
                 .file = "sibenik.obj",
-                .file_check = 0x660b8c8b0c33e732,
+                .file_check = kSibenikCheck,
                 .clearance = 0.75,
                 .up = {0, 1, 0},
                 .fov_degrees = 60,
@@ -110,10 +112,7 @@ PathFile path_file(const SceneFlight& flight) {
   PathFile path;
   path.name = flight.name;
   path.sun = flight.sun_direction;
-  for (const SceneKey& key : flight.keys)
-    path.keys.push_back({key.time, key.eye, key.target, {}, {}});
-  path.keys.front().up = flight.up;
-  path.keys.front().fov_degrees = flight.fov_degrees;
+  path.keys = path_keys(flight.keys, flight.up, flight.fov_degrees);
   return path;
 }
 

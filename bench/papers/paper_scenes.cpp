@@ -38,9 +38,9 @@ struct KnownMesh {
 };
 
 constexpr std::array kKnown{
-    KnownMesh{Paper::kSvdag, "Crysponza", 0xd5d755a4c62db15e, "", false, SceneState::kVariant,
+    KnownMesh{Paper::kSvdag, "Crysponza", kCrytekSponzaCheck, "", false, SceneState::kVariant,
               "262,267 triangles of the model as it is published today, 279 thousand in the paper"},
-    KnownMesh{Paper::kSvdag, "SanMiguel", 0x1b139a913bd76b81, "", false, SceneState::kVariant,
+    KnownMesh{Paper::kSvdag, "SanMiguel", kSanMiguelCoreCheck, "", false, SceneState::kVariant,
               "1,647,885 triangles without plants, 10.5 million in the paper"},
     KnownMesh{Paper::kSvdag, "SanMiguel", 0x8c48e22017e3e0e5, "", false, SceneState::kStandIn,
               "only some of the plants"},
@@ -52,9 +52,9 @@ constexpr std::array kKnown{
               "a procedural city"},
     KnownMesh{Paper::kSvdag, "SanMiguel", 0, "courtyard", false, SceneState::kStandIn,
               "a procedural courtyard"},
-    KnownMesh{Paper::kEsvo, "Sibenik", 0x660b8c8b0c33e732, "", false, SceneState::kVariant,
+    KnownMesh{Paper::kEsvo, "Sibenik", kSibenikCheck, "", false, SceneState::kVariant,
               "80,479 triangles and no textures; the paper does not say how many it has"},
-    KnownMesh{Paper::kEsvo, "Sibenik-D", 0x660b8c8b0c33e732, "", true, SceneState::kVariant,
+    KnownMesh{Paper::kEsvo, "Sibenik-D", kSibenikCheck, "", true, SceneState::kVariant,
               "80,479 triangles, displaced by another height texture"},
     KnownMesh{Paper::kEsvo, "Conference", 0x74cf0d0d230e6d4a, "", false, SceneState::kStandIn,
               "a furnished kitchen"},

@@ -134,8 +134,7 @@ Section figure7a(const Flight& flight, bool is_drawn) {
       "A shadow ray per pixel towards the sun. Milliseconds are those of a million rays, about the "
       "paper's picture. The paper compares with shadow volumes per triangle (Sintorn and others "
       "2011) on a GPU; the rival here is Embree with the same rays. By default, voxdag's rays end "
-      "at "
-      "cells of one pixel; \"to voxels\" is the paper's way."});
+      "at cells of one pixel; \"to voxels\" is the paper's way."});
   const Rates dag = rates_of(run, "shadow", "");
   Table table = rate_table("Shadow rays, " + where(flight, run));
   table.rows = {rate_row("DAG", dag, dag),
@@ -191,11 +190,9 @@ Section figure8a(const Flight& flight, bool is_drawn) {
   Section section{"Figure 8a: ambient occlusion in a fly-through", 2, {}};
   section.parts.emplace_back(Paragraph{
       "64 rays per pixel; a part of the pixels is measured. By default, voxdag's occlusion rays "
-      "end "
-      "at cells as large as the surface's cell, which is one pixel. The paper's end at voxels, or "
-      "at "
-      "the first cell that subtends 0.07 steradians (9 degrees) from the surface: both are beside "
-      "the default."});
+      "end at cells as large as the surface's cell, which is one pixel. The paper's end at voxels, "
+      "or at the first cell that subtends 0.07 steradians (9 degrees) from the surface: both are "
+      "beside the default."});
   const FlightRun& run = flight.with_triangles;
   const Rates dag = rates_of(run, "ao", "");
   Table table = rate_table("Occlusion rays, " + where(flight, run));

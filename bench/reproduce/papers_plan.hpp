@@ -1,5 +1,5 @@
 #pragma once
-/// What `voxdag bench papers` measures.
+/// The plan of `voxdag bench papers`: scenes, resolutions, and limits of time and memory.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>

@@ -68,6 +68,22 @@ double value_at(const std::vector<SeriesBuild>& builds, int levels,
   return NAN;
 }
 
+double dag_nodes(const CellResult& result) { return result.json.at("dag_nodes").get<double>(); }
+
+double dag_bytes(const CellResult& result) {
+  return result.json.at("bytes").at("svdag_paper").get<double>();
+}
+
+double svo_nodes(const CellResult& result) { return result.json.at("svo_nodes").get<double>(); }
+
+double esvo_nodes(const CellResult& result) { return result.json.at("descriptors").get<double>(); }
+
+double esvo_bytes(const CellResult& result) { return 8 * esvo_nodes(result); }
+
+double stage_seconds(const CellResult& result, const char* stage) {
+  return result.json.at("seconds").at(stage).get<double>();
+}
+
 void add_commands(Section& section, const std::vector<SvdagSceneBuilds>& scenes,
                   SeriesMember series) {
   const auto built = std::find_if(scenes.begin(), scenes.end(),

@@ -40,6 +40,17 @@ std::vector<int> levels_of(const std::vector<SvdagSceneBuilds>& scenes, SeriesMe
 double value_at(const std::vector<SeriesBuild>& builds, int levels,
                 const std::function<double(const CellResult&)>& read);
 
+/// What a build printed.
+double dag_nodes(const CellResult& result);
+double dag_bytes(const CellResult& result);
+double svo_nodes(const CellResult& result);
+double esvo_nodes(const CellResult& result);
+/// Returns the bytes of the ESVO as the paper counts them: 8 per node for its child mask, contour
+/// and pointer.
+double esvo_bytes(const CellResult& result);
+/// Returns the seconds of a stage: "reduce".
+double stage_seconds(const CellResult& result, const char* stage);
+
 /// Appends an example of the commands of a series, and the reasons for builds that were not made.
 void add_commands(Section& section, const std::vector<SvdagSceneBuilds>& scenes,
                   SeriesMember series);

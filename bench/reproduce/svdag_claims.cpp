@@ -10,18 +10,7 @@
 namespace voxdag {
 namespace {
 
-double dag_bytes(const CellResult& result) {
-  return result.json.at("bytes").at("svdag_paper").get<double>();
-}
-double dag_nodes(const CellResult& result) { return result.json.at("dag_nodes").get<double>(); }
-double svo_nodes(const CellResult& result) { return result.json.at("svo_nodes").get<double>(); }
-/// Returns the bytes of the ESVO as the paper counts them.
-double esvo_bytes(const CellResult& result) {
-  return 8 * result.json.at("descriptors").get<double>();
-}
-double reduction_seconds(const CellResult& result) {
-  return result.json.at("seconds").at("reduce").get<double>();
-}
+double reduction_seconds(const CellResult& result) { return stage_seconds(result, "reduce"); }
 
 /// A value of one scene at one resolution.
 struct Value {
@@ -194,8 +183,7 @@ Section svdag_claims_section(const std::vector<SvdagSceneBuilds>& scenes,
   section.parts.emplace_back(Paragraph{
       "Sizes and times are those of the paper's scenes and their variants. Ratios of speeds are "
       "those of the fly-through below, on this machine's processor and with Embree as the tracer "
-      "of "
-      "triangles; the paper measured GPUs."});
+      "of triangles; the paper measured GPUs."});
   section.parts.emplace_back(claims.take("Claims of the paper"));
   return section;
 }

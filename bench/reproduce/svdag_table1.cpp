@@ -11,8 +11,7 @@ double wall_seconds(const CellResult& result) { return result.cost.wall_seconds;
 
 /// Returns a function that reads a stage of `build --json`.
 auto stage(const char* name) {
-  return
-      [name](const CellResult& result) { return result.json.at("seconds").at(name).get<double>(); };
+  return [name](const CellResult& result) { return stage_seconds(result, name); };
 }
 
 /// Adds rows of measured seconds.

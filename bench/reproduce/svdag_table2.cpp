@@ -11,21 +11,7 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
-using Read = std::function<double(const CellResult&)>;
-
-Read number(const char* key) {
-  return [key](const CellResult& result) { return result.json.at(key).get<double>(); };
-}
-
-/// Returns the bytes of the ESVO as the paper counts them: 8 per node for its child mask, contour
-/// and pointer.
-double esvo_bytes(const CellResult& result) {
-  return 8 * result.json.at("descriptors").get<double>();
-}
-
-double dag_bytes(const CellResult& result) {
-  return result.json.at("bytes").at("svdag_paper").get<double>();
-}
+using Read = double (*)(const CellResult&);
 
 struct Structure {
   const char* name;
@@ -37,16 +23,12 @@ struct Structure {
 /// Returns the structures that the table compares. An ESVO without contours has the nodes of the
 /// SVO. A node of the SVO, which has no pointers, is one byte.
 std::vector<Structure> structures() {
-  return {
-      {"DAG", &SvdagSceneBuilds::dags, number("dag_nodes"), dag_bytes, &published::SceneSizes::dag},
-      {"ESVO", &SvdagSceneBuilds::esvos, number("descriptors"), esvo_bytes,
-       &published::SceneSizes::esvo},
-      {"ESVO, shape only", &SvdagSceneBuilds::shapes, number("descriptors"), esvo_bytes, nullptr},
-      {"ESVO without contours", &SvdagSceneBuilds::dags, number("svo_nodes"),
-       [](const CellResult& result) { return 8 * result.json.at("svo_nodes").get<double>(); },
-       nullptr},
-      {"SVO", &SvdagSceneBuilds::dags, number("svo_nodes"), number("svo_nodes"),
-       &published::SceneSizes::svo}};
+  return {{"DAG", &SvdagSceneBuilds::dags, dag_nodes, dag_bytes, &published::SceneSizes::dag},
+          {"ESVO", &SvdagSceneBuilds::esvos, esvo_nodes, esvo_bytes, &published::SceneSizes::esvo},
+          {"ESVO, shape only", &SvdagSceneBuilds::shapes, esvo_nodes, esvo_bytes, nullptr},
+          {"ESVO without contours", &SvdagSceneBuilds::dags, svo_nodes,
+           [](const CellResult& result) { return 8 * svo_nodes(result); }, nullptr},
+          {"SVO", &SvdagSceneBuilds::dags, svo_nodes, svo_nodes, &published::SceneSizes::svo}};
 }
 
 void add_rows(ResolutionTable& nodes, ResolutionTable& memory, const SvdagSceneBuilds& builds,

@@ -34,6 +34,10 @@ inline Svdag picture_scene() {
   return brute_svdag(6, voxels);
 }
 
+/// So many shadow rays per pixel and light that the CPU, too, casts beams to lights. Fewer give the
+/// same pixels, but the CPU counts more rays than the device.
+inline constexpr int kShadowRaysWithBeams = 64;
+
 struct Picture {
   std::string name;
   RenderOptions options;
@@ -47,12 +51,14 @@ inline std::vector<Picture> pictures(int scale) {
   options.height = 45 * scale;
   options.view.eye = {2.5, 1.7, -2.1};
   options.occlusion_samples = 8;
-  options.shadow_samples = 4;
+  options.shadow_samples = kShadowRaysWithBeams;
   std::vector<Picture> list = {{"default", options}};
   const auto add = [&](const std::string& name) -> RenderOptions& {
     return list.emplace_back(Picture{name, options}).options;
   };
-  add("no beams").beams = false;
+  RenderOptions& few = add("no beams, few shadow rays");
+  few.beams = false;
+  few.shadow_samples = 4;
   RenderOptions& hard = add("hard shadows");
   hard.sun_degrees = 0;
   hard.occlusion_samples = 0;
@@ -74,6 +80,7 @@ inline std::vector<Picture> pictures(int scale) {
   detail.lod_pixels = 3;
   detail.occlusion_cone = 0.07;
   detail.samples_per_pixel = 3;
+  detail.shadow_samples = 3 * kShadowRaysWithBeams;
   RenderOptions& steps = add("steps");
   steps.with_steps = true;
   steps.view.eye = {0.1, -0.6, -0.4};

@@ -34,8 +34,7 @@ void expect_like(const RenderedImage& image, const RenderedImage& expected) {
   EXPECT_EQ(wrong, 0u) << "of " << expected.rgb.size() << " pixels";
   EXPECT_EQ(image.depth, expected.depth);
   EXPECT_EQ(image.steps, expected.steps);
-  // The CPU casts no beams to lights for so few samples, so it may need more rays.
-  EXPECT_LE(image.rays, expected.rays);
+  EXPECT_EQ(image.rays, expected.rays);
 }
 
 TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForEveryEffect) {
@@ -75,6 +74,7 @@ TEST_F(CudaRender, TakesPointsFromASource) {
   const Svdag dag = picture_scene();
   RenderOptions options = pictures(8)[0].options;  // several launches
   options.samples_per_pixel = 2;
+  options.shadow_samples = 2 * kShadowRaysWithBeams;
   const PlaneSource source;
   expect_like(
       render_image(DeviceScene(device_, dag.view()), picture_grid(), options, nullptr, &source),
@@ -100,6 +100,7 @@ TEST_F(CudaRender, WorksAgainAfterASourceFailedWhileTheDeviceRendered) {
   const DeviceScene scene(device_, dag.view());
   RenderOptions options = pictures(2)[0].options;
   options.samples_per_pixel = 2;
+  options.shadow_samples = 2 * kShadowRaysWithBeams;
   const FailingSource failing;
   EXPECT_THROW(render_image(scene, picture_grid(), options, nullptr, &failing), Error);
   expect_like(render_image(scene, picture_grid(), options),

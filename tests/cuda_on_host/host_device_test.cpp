@@ -90,6 +90,7 @@ RenderOptions small_picture() {
   options.width = 20;
   options.height = 12;
   options.samples_per_pixel = 2;
+  options.shadow_samples = 2 * kShadowRaysWithBeams;
   options.filter = options.with_steps = true;
   return options;
 }
@@ -100,8 +101,7 @@ void expect_picture(const DeviceScene& scene, const ViewSource* source) {
   const RenderedImage like = render_image(scene.host(), picture_grid(), options, nullptr, source);
   EXPECT_EQ(image.depth, like.depth);
   EXPECT_EQ(image.steps, like.steps);
-  // The CPU casts no beams to lights for so few samples, so it may need more rays.
-  EXPECT_LE(image.rays, like.rays);
+  EXPECT_EQ(image.rays, like.rays);
 }
 void render(const DeviceScene& scene) { expect_picture(scene, nullptr); }
 void render_from_source(const DeviceScene& scene) {

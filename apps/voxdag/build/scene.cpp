@@ -41,10 +41,7 @@ std::string view_options(const ScenePreset& preset) {
 PathFile path_file(const ScenePreset& preset) {
   PathFile path;
   path.sun = preset.sun_direction;
-  for (const SceneKey& key : preset.flight)
-    path.keys.push_back({key.time, key.eye, key.target, {}, {}});
-  path.keys.front().up = preset.up;
-  path.keys.front().fov_degrees = preset.fov_degrees;
+  path.keys = path_keys(preset.flight, preset.up, preset.fov_degrees);
   return path;
 }
 

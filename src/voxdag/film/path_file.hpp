@@ -16,6 +16,18 @@ struct PathKey {
   std::optional<double> fov_degrees;  ///< Vertical.
 };
 
+/// Returns keys with one up vector and field of view. The elements of `views` have a time in
+/// seconds, an eye and a target.
+template <class Views>
+std::vector<PathKey> path_keys(const Views& views, Vec3d up, double fov_degrees) {
+  std::vector<PathKey> keys;
+  for (const auto& view : views) keys.push_back({view.time, view.eye, view.target, {}, {}});
+  if (keys.empty()) return keys;
+  keys.front().up = up;
+  keys.front().fov_degrees = fov_degrees;
+  return keys;
+}
+
 struct PathFile {
   std::string name;  ///< The file's name, for errors.
   std::vector<PathKey> keys;
