@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/esvo/picture_cost.hpp"
 #include "bench/papers/paper_scenes.hpp"
 #include "bench/report/bench_child.hpp"
 #include "voxdag/image/image_size.hpp"
@@ -81,6 +82,13 @@ struct EsvoRateRow {
   std::uint64_t rays = 0;
   std::array<double, kEsvoForms.size()> mrays_per_second{};
   std::array<double, kEsvoForms.size()> agreement{};  ///< Fraction that agrees with the triangles.
+  PictureCost seconds;                                ///< Of whole pictures of the contours.
+
+  /// Returns the seconds of the casts at contours with beams.
+  double cast_seconds() const {
+    return static_cast<double>(rays) * 1e-6 /
+           mrays_per_second[static_cast<std::size_t>(EsvoForm::kContoursBeams)];
+  }
 };
 
 /// The silhouette errors at one resolution: the fraction of the rays to the finest voxels for which

@@ -124,7 +124,10 @@ class SceneRays {
         row.mrays_per_second[form] = is_measured ? count / sums[form].seconds * 1e-6 : NAN;
         row.agreement[form] = embree_ && is_measured ? sums[form].agreeing / count : NAN;
       }
-      if (row.rays > 0) results_.rates.push_back(row);
+      if (row.rays == 0) continue;
+      step("pictures of " + scene_.name);
+      row.seconds = picture_cost(octrees.contours, views_, size, plan_.lod_pixels, plan_.repeat);
+      results_.rates.push_back(row);
     }
   }
 

@@ -127,6 +127,19 @@ std::string coarse_table(const EsvoBenchResults& results) {
   return text;
 }
 
+std::string pictures_table(const std::vector<EsvoRateRow>& rates) {
+  if (rates.empty()) return "";
+  std::string text = fmt::format(
+      "\nSeconds of the pictures of all views, without shadows and occlusion\n"
+      "  {:<16}{:>10}{:>12}{:>20}{:>20}{:>12}\n",
+      "scene", "grid", "size", "casts with beams", "casts and shading", "filter");
+  for (const EsvoRateRow& row : rates)
+    text += fmt::format("  {:<16}{:>11}{:>12}{:>20}{:>20}{:>12}\n", row.scene,
+                        resolution_of(row.levels), size_of(row), number(row.cast_seconds(), 3),
+                        number(row.seconds.picture, 3), number(row.seconds.filter, 3));
+  return text;
+}
+
 std::string silhouettes_table(const std::vector<SilhouetteRow>& rows) {
   if (rows.empty()) return "";
   std::string text = fmt::format(
@@ -253,7 +266,9 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
                 {"coarse_resolution", coarse == 0 ? Json() : Json(std::int64_t{1} << coarse)},
                 {"width", row.size.width},
                 {"height", row.size.height},
-                {"ray_count", row.rays}};
+                {"ray_count", row.rays},
+                {"picture_seconds", row.seconds.picture},
+                {"filter_seconds", row.seconds.filter}};
     for (const EsvoForm form : kEsvoForms) {
       const auto at = static_cast<std::size_t>(form);
       object[name_of(form)] = {{"mrays_per_s", json_number(row.mrays_per_second[at])},
@@ -277,7 +292,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
 
 std::string esvo_bench_table(const EsvoBenchResults& results) {
   return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results) +
-         silhouettes_table(results.silhouettes);
+         pictures_table(results.rates) + silhouettes_table(results.silhouettes);
 }
 
 std::string esvo_bench_svg(const EsvoBenchResults& results) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
-#include <vector>
 
 #include "bench/papers/paper_scenes.hpp"
 
@@ -101,18 +99,16 @@ const SceneFlight* flight_of(std::uint64_t file_check) {
   return found == kFlights.end() ? nullptr : found;
 }
 
-CameraPath camera_path(const SceneFlight& flight) {
-  std::vector<CameraKey> keys;
-  for (const SceneKey& key : flight.keys)
-    keys.push_back({key.time, {key.eye, key.target, flight.up, flight.fov_degrees}});
-  return CameraPath(std::move(keys));
+ScenePreset preset_of(const SceneFlight& flight) {
+  const SceneKey& first = flight.keys.front();
+  return {first.eye,          first.target,         flight.up,
+          flight.fov_degrees, flight.sun_direction, {flight.keys.begin(), flight.keys.end()}};
 }
 
-PathFile path_file(const SceneFlight& flight) {
+PathFile path_file(const ScenePreset& preset) {
   PathFile path;
-  path.name = flight.name;
-  path.sun = flight.sun_direction;
-  path.keys = path_keys(flight.keys, flight.up, flight.fov_degrees);
+  path.sun = preset.sun_direction;
+  path.keys = path_keys(preset.flight, preset.up, preset.fov_degrees);
   return path;
 }
 

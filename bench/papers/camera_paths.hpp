@@ -4,7 +4,6 @@
 #include <span>
 #include <string_view>
 
-#include "voxdag/film/camera_path.hpp"
 #include "voxdag/film/path_file.hpp"
 #include "voxdag/scenes/scenes.hpp"
 
@@ -28,10 +27,10 @@ std::span<const SceneFlight> scene_flights();
 /// Returns the flight through the mesh file with this XXH3-64, or null.
 const SceneFlight* flight_of(std::uint64_t file_check);
 
-/// Returns the flight's camera path.
-CameraPath camera_path(const SceneFlight& flight);
+/// Returns the flight, and its first key as the view that shows the scene.
+ScenePreset preset_of(const SceneFlight& flight);
 
-/// Returns the flight in the form that path_json() prints and `render --path` reads.
-PathFile path_file(const SceneFlight& flight);
+/// Returns the preset's flight in the form that path_json() prints and `render --path` reads.
+PathFile path_file(const ScenePreset& preset);
 
 }  // namespace voxdag

@@ -61,11 +61,16 @@ inline constexpr std::array<EsvoScene, 6> kEsvoScenes{{
      {{{69.1, 35.8, 97.9, 104.4}, {111.9, 43.8, 110.3, 124.3}, {134.0, 52.3, 120.2, 140.8}}}},
 }};
 
+/// Returns the figures of the paper's scene of that name, or null.
+inline const EsvoScene* esvo_scene_named(std::string_view name) {
+  for (const EsvoScene& scene : kEsvoScenes)
+    if (scene.name == name) return &scene;
+  return nullptr;
+}
+
 /// Returns the figures of the paper's scene, or null if none may stand beside measured ones.
 inline const EsvoScene* esvo_scene(const PaperMatch& paper) {
-  for (const EsvoScene& scene : kEsvoScenes)
-    if (paper.has_figures() && scene.name == paper.scene->name) return &scene;
-  return nullptr;
+  return paper.has_figures() ? esvo_scene_named(paper.scene->name) : nullptr;
 }
 
 /// Returns the levels of the octree whose rates Table 2 has: the largest that fitted into 4 GB.

@@ -61,6 +61,10 @@ constexpr std::array kKnown{
     KnownMesh{Paper::kEsvo, "Hairball", 0, "hairball", false, SceneState::kStandIn,
               "a procedural hairball"},
     KnownMesh{Paper::kEsvo, "City", 0, "city", false, SceneState::kStandIn, "a procedural city"},
+    KnownMesh{Paper::kEsvo, "Sibenik", 0, "courtyard", false, SceneState::kStandIn,
+              "a procedural courtyard"},
+    KnownMesh{Paper::kEsvo, "Sibenik-D", 0, "courtyard", true, SceneState::kStandIn,
+              "a procedural courtyard, its surface displaced by stones"},
 };
 
 const PaperScene* scene_of(Paper paper, std::string_view name) {

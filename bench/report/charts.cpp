@@ -66,4 +66,15 @@ bool draw_charts(const std::vector<Chart>& charts, const std::filesystem::path& 
   throw Error(folder, "", "matplotlib failed: " + error.substr(error.rfind('\n') + 1));
 }
 
+void add_charts(Section& section, const std::vector<Chart>& charts, const std::string& caption,
+                bool is_drawn) {
+  for (const Chart& chart : charts)
+    if (is_drawn)
+      section.parts.emplace_back(Picture{caption, chart.file});
+    else
+      section.parts.emplace_back(
+          Paragraph{"No chart was drawn, because matplotlib (python3-matplotlib) is not installed. "
+                    "report.json has its points."});
+}
+
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/report/document.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
@@ -41,5 +42,9 @@ struct Chart {
 /// Cancelled.
 bool draw_charts(const std::vector<Chart>& charts, const std::filesystem::path& folder,
                  const Progress& progress);
+
+/// Appends the charts to a section, or a note that they were not drawn.
+void add_charts(Section& section, const std::vector<Chart>& charts, const std::string& caption,
+                bool is_drawn);
 
 }  // namespace voxdag

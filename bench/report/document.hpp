@@ -9,7 +9,7 @@
 namespace voxdag {
 
 struct Paragraph {
-  std::string text;
+  std::string text;  ///< Words in `backquotes` are code.
 };
 
 /// The command that made what stands above it.
@@ -30,7 +30,12 @@ struct Picture {
   std::filesystem::path file;  ///< Relative to the folder of the report.
 };
 
-using DocumentPart = std::variant<Paragraph, CommandLine, Table, Picture>;
+/// Pictures of equal size side by side, for comparison.
+struct PictureRow {
+  std::vector<Picture> pictures;
+};
+
+using DocumentPart = std::variant<Paragraph, CommandLine, Table, Picture, PictureRow>;
 
 struct Section {
   std::string title;

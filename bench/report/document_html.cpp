@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "bench/report/document.hpp"
 #include "voxdag/core/error.hpp"
@@ -24,6 +25,8 @@ th { border-bottom: 2px solid #888; vertical-align: bottom; }
 .text { text-align: left; white-space: normal; }
 figure { margin: 1.5rem 0; }
 figure img { max-width: 100%; height: auto; }
+.row { display: flex; gap: 0.75rem; }
+.row figure { margin: 0.5rem 0; }
 figcaption { color: #444; font-size: 0.9rem; }
 pre { background: #f4f4f4; padding: 0.6rem 0.8rem; overflow-x: auto; font-size: 0.8125rem; }
 )";
@@ -47,6 +50,18 @@ std::string escaped(const std::string& text) {
         safe += c;
     }
   return safe;
+}
+
+/// Returns the text with `words` in backquotes set as code.
+std::string with_code(const std::string& text) {
+  std::string html;
+  bool is_code = false;
+  for (const char c : text)
+    if (c != '`')
+      html += c;
+    else
+      html += std::exchange(is_code, !is_code) ? "</code>" : "<code>";
+  return html;
 }
 
 std::string base64(std::span<const std::byte> bytes) {
@@ -89,7 +104,7 @@ class HtmlWriter {
   std::string text;
 
   void operator()(const Paragraph& paragraph) {
-    text += fmt::format("<p>{}</p>\n", escaped(paragraph.text));
+    text += fmt::format("<p>{}</p>\n", with_code(escaped(paragraph.text)));
   }
   void operator()(const CommandLine& command) {
     text += fmt::format("<pre>{}</pre>\n", escaped(command.text));
@@ -100,6 +115,11 @@ class HtmlWriter {
     for (const std::vector<std::string>& row : table.rows)
       text += row_of(row, "td", table.text_columns);
     text += "</table></div>\n";
+  }
+  void operator()(const PictureRow& row) {
+    text += "<div class=\"row\">\n";
+    for (const Picture& picture : row.pictures) (*this)(picture);
+    text += "</div>\n";
   }
   void operator()(const Picture& picture) {
     const MappedFile file(folder_ / picture.file);

@@ -19,6 +19,10 @@ std::string row_of(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
+std::string image_of(const Picture& picture) {
+  return fmt::format("![{}]({})", picture.caption, picture.file.generic_string());
+}
+
 class MarkdownWriter {
  public:
   std::string text;
@@ -35,9 +39,19 @@ class MarkdownWriter {
     for (const std::vector<std::string>& row : table.rows) text += row_of(row);
     text += "\n";
   }
+  void operator()(const PictureRow& row) {
+    std::vector<std::string> images, captions;
+    for (const Picture& picture : row.pictures) {
+      images.push_back(image_of(picture));
+      captions.push_back(picture.caption);
+    }
+    text += row_of(images);
+    text += row_of(std::vector<std::string>(images.size(), "---"));
+    text += row_of(captions);
+    text += "\n";
+  }
   void operator()(const Picture& picture) {
-    text += fmt::format("![{}]({})\n\n*{}*\n\n", picture.caption, picture.file.generic_string(),
-                        picture.caption);
+    text += fmt::format("{}\n\n*{}*\n\n", image_of(picture), picture.caption);
   }
 };
 

@@ -1,10 +1,12 @@
 #pragma once
-/// Builds of one mesh at ascending resolutions.
-#include <map>
+/// Runs for one scene at ascending resolutions: builds, and others.
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "bench/report/document.hpp"
 #include "bench/reproduce/cells.hpp"
+#include "bench/reproduce/found_scenes.hpp"
 #include "bench/reproduce/papers_plan.hpp"
 
 namespace voxdag {
@@ -16,23 +18,51 @@ enum class BuildKind {
   kShape,  ///< The ESVO's shape: no colours, no normals.
 };
 
-/// A build, or the reason why there is none.
-struct SeriesBuild {
+/// A run at one resolution, or the reason why there is none.
+struct SeriesRun {
   int levels = 0;
   Cell cell;
   CellResult result;
 };
 
-/// Returns the build of `mesh` at 2^levels with the plan's memory and threads, and more options.
-Cell build_cell(const PapersPlan& plan, const std::filesystem::path& mesh, int levels,
+/// Returns the build of the scene at 2^levels with the plan's memory and threads, and more options.
+Cell build_cell(const PapersPlan& plan, const FoundScene& scene, int levels,
                 const std::filesystem::path& output, const std::vector<std::string>& options);
 
-/// Builds the mesh at each of the ascending `levels`. After a build that fails, or that predicts
-/// that the next one exceeds the time limit, records the reason for the others.
-std::vector<SeriesBuild> build_series(const PapersPlan& plan, BuildKind kind,
-                                      const std::filesystem::path& mesh,
-                                      const std::vector<int>& levels, CellStore& cells,
-                                      Progress& progress);
+/// Runs make_cell(levels) for each of the ascending `levels`, with the plan's time limit. After a
+/// run that fails, or that predicts that the next one exceeds the limit, records the reason for the
+/// others.
+std::vector<SeriesRun> run_series(const PapersPlan& plan, const std::vector<int>& levels,
+                                  const std::function<Cell(int levels)>& make_cell,
+                                  CellStore& cells, const Progress& progress);
+
+/// Builds the scene at each of the ascending `levels`; run_series() says when it stops.
+std::vector<SeriesRun> build_series(const PapersPlan& plan, BuildKind kind, const FoundScene& scene,
+                                    const std::vector<int>& levels, CellStore& cells,
+                                    const Progress& progress);
+
+/// Returns the levels of all runs, ascending.
+std::vector<int> levels_of(const std::vector<const std::vector<SeriesRun>*>& all);
+
+/// Returns the value of the run at `levels`; NaN if there is none.
+double value_at(const std::vector<SeriesRun>& runs, int levels,
+                const std::function<double(const CellResult&)>& read);
+
+/// Returns the finest run that did not fail, or null.
+const SeriesRun* finest_of(const std::vector<SeriesRun>& runs);
+
+/// The runs for one scene.
+struct SceneSeries {
+  const FoundScene& scene;
+  const std::vector<SeriesRun>& runs;
+};
+
+/// Appends an example of the commands, and for each scene the reason why its finest runs were not
+/// made.
+void add_commands(Section& section, const std::vector<SceneSeries>& all);
+
+/// Returns the runs as JSON: their commands, costs and results.
+nlohmann::ordered_json series_json(const std::vector<SeriesRun>& runs);
 
 /// Returns about the seconds that build_series() takes for a scene of some hundred thousand
 /// triangles on two cores.

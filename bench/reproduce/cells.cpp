@@ -46,8 +46,17 @@ std::optional<CellResult> read_result(const fs::path& file) {
   }
 }
 
-bool is_one_of(const std::vector<fs::path>& files, const std::string& argument) {
-  return std::find(files.begin(), files.end(), fs::path(argument)) != files.end();
+/// Returns the argument with the input in it, if there is one, replaced by text(input). The input
+/// may follow "NAME=", and options may follow the input.
+template <class Text>
+std::string with_input(const Cell& cell, const std::string& argument, const Text& text) {
+  for (const fs::path& input : cell.inputs) {
+    const std::string path = input;
+    const std::size_t at = argument.find(path);
+    if (at != std::string::npos)
+      return argument.substr(0, at) + text(input) + argument.substr(at + path.size());
+  }
+  return argument;
 }
 
 /// Returns the argument with the name of the cell's output, which may follow "NAME=", replaced.
@@ -62,10 +71,14 @@ std::string with_output(const Cell& cell, const std::string& argument, const std
 std::string command_of(const Cell& cell) {
   const std::string output = cell.output.filename();
   std::string line = "voxdag";
-  for (const std::string& argument : cell.arguments)
+  for (const std::string& argument : cell.arguments) {
+    const std::string word = with_output(
+        cell,
+        with_input(cell, argument, [](const fs::path& input) { return input.filename().string(); }),
+        output);
     line +=
-        fmt::format(" {}", is_one_of(cell.inputs, argument) ? fs::path(argument).filename().string()
-                                                            : with_output(cell, argument, output));
+        word.find(' ') == std::string::npos ? fmt::format(" {}", word) : fmt::format(" '{}'", word);
+  }
   return line;
 }
 
@@ -86,10 +99,10 @@ void CellStore::add_input(const fs::path& file, std::uint64_t check) {
 std::string CellStore::key_of(const Cell& cell) const {
   std::string text = fmt::format("{}\n{}\n", machine_, cell.seconds_limit);
   const std::string extension = cell.output.extension();
-  for (const std::string& argument : cell.arguments)
-    text += is_one_of(cell.inputs, argument)
-                ? fmt::format("input {}\n", contents_.at(argument))
-                : fmt::format("word {}\n", with_output(cell, argument, extension));
+  for (const std::string& argument : cell.arguments) {
+    const auto content = [this](const fs::path& input) { return "content " + contents_.at(input); };
+    text += with_output(cell, with_input(cell, argument, content), extension) + "\n";
+  }
   return fmt::format("{:016x}", xxh3_64(std::as_bytes(std::span(text))));
 }
 

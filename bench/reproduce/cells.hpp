@@ -16,10 +16,11 @@ namespace voxdag {
 
 /// A run of voxdag.
 struct Cell {
-  std::vector<std::string> arguments;         ///< Without the program: "build", "a.obj", "--json".
-  std::vector<std::filesystem::path> inputs;  ///< The files among the arguments that it reads.
-  std::filesystem::path output;               ///< The file that it writes; or empty.
-  double seconds_limit = 0;                   ///< 0: none.
+  std::vector<std::string> arguments;  ///< Without the program: "build", "a.obj", "--json".
+  /// The files that it reads. Each is an argument, or a part of one: "NAME=FILE --option".
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;  ///< The file that it writes; or empty.
+  double seconds_limit = 0;      ///< 0: none.
   bool prints_json = true;
   bool keeps_output = false;  ///< A kept result counts only if the output is still there.
 };

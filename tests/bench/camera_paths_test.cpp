@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/papers/paper_scenes.hpp"
 #include "support/clearance.hpp"
 #include "support/temp_dir.hpp"
+#include "voxdag/film/camera_path.hpp"
 #include "voxdag/io/checksum.hpp"
 #include "voxdag/io/mapped_file.hpp"
 #include "voxdag/readers/read_mesh.hpp"
@@ -33,6 +35,13 @@ std::optional<fs::path> mesh_of(const SceneFlight& flight) {
         xxh3_64(MappedFile(entry.path()).bytes()) == flight.file_check)
       return entry.path();
   return {};
+}
+
+CameraPath camera_path(const SceneFlight& flight) {
+  std::vector<CameraKey> keys;
+  for (const SceneKey& key : flight.keys)
+    keys.push_back({key.time, {key.eye, key.target, flight.up, flight.fov_degrees}});
+  return CameraPath(std::move(keys));
 }
 
 class CameraPaths : public testing::TestWithParam<SceneFlight> {};
@@ -61,7 +70,7 @@ TEST_P(CameraPaths, AreFoundByTheChecksumOfTheMesh) {
 
 TEST_P(CameraPaths, ArePrintedAsPathFiles) {
   const TempDir dir;
-  write_text(dir / "path.json", path_json(path_file(GetParam())));
+  write_text(dir / "path.json", path_json(path_file(preset_of(GetParam()))));
   const PathFile read = read_path_file(dir / "path.json");
   ASSERT_EQ(read.keys.size(), GetParam().keys.size());
   for (std::size_t i = 0; i < read.keys.size(); ++i) {

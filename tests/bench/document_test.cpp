@@ -27,6 +27,13 @@ TEST(Document, HtmlEscapesText) {
   EXPECT_NE(html.find("<p>a &lt; b &amp; &quot;c&quot;</p>"), std::string::npos);
 }
 
+TEST(Document, WordsInBackquotesAreCode) {
+  const Document document = document_with(Paragraph{"Run `build` and `a < b`."});
+  EXPECT_NE(html_of(document, ".").find("Run <code>build</code> and <code>a &lt; b</code>."),
+            std::string::npos);
+  EXPECT_NE(markdown_of(document).find("Run `build` and `a < b`."), std::string::npos);
+}
+
 TEST(Document, HtmlContainsItsPictures) {
   const TempDir dir;
   for (const auto& [bytes, base64] : {std::pair("M", "TQ=="), {"Ma", "TWE="}, {"Man", "TWFu"}}) {
@@ -37,6 +44,20 @@ TEST(Document, HtmlContainsItsPictures) {
         << html;
     EXPECT_NE(html.find("<figcaption>A chart.</figcaption>"), std::string::npos);
   }
+}
+
+TEST(Document, PicturesSideBySideAreARow) {
+  const TempDir dir;
+  write_text(dir / "a.svg", "a");
+  write_text(dir / "b.svg", "b");
+  const Document document =
+      document_with(PictureRow{{{"Cubes.", "a.svg"}, {"Contours.", "b.svg"}}});
+  EXPECT_NE(markdown_of(document).find("| ![Cubes.](a.svg) | ![Contours.](b.svg) |\n| --- | --- |\n"
+                                       "| Cubes. | Contours. |\n\n"),
+            std::string::npos);
+  const std::string html = html_of(document, dir.path());
+  EXPECT_LT(html.find("<div class=\"row\">"), html.find("<figcaption>Cubes.</figcaption>"));
+  EXPECT_NE(html.find("<figcaption>Contours.</figcaption>"), std::string::npos);
 }
 
 TEST(Document, AMissingPictureIsAnError) {

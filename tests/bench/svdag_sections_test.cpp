@@ -1,9 +1,9 @@
-#include "bench/reproduce/svdag_sections.hpp"
+#include "bench/reproduce/svdag/svdag_sections.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bench/reproduce/flight.hpp"
-#include "bench/reproduce/svdag_claims.hpp"
+#include "bench/reproduce/svdag/flight.hpp"
+#include "bench/reproduce/svdag/svdag_claims.hpp"
 
 namespace voxdag {
 namespace {
@@ -16,7 +16,7 @@ SvdagSceneBuilds scene_in_state(SceneState state) {
   builds.scene.match.scene = builds.scene.scene;
   builds.scene.match.state = state;
   builds.scene.mesh = "lucy.ply";
-  SeriesBuild build;
+  SeriesRun build;
   build.levels = 11;
   build.result.json = {{"dag_nodes", 1'500'000},
                        {"svo_nodes", 20'000'000},
@@ -51,7 +51,7 @@ TEST(SvdagSections, AStandInDoesNotStandBesideThePaper) {
 
 TEST(SvdagSections, AnEsvoThatWasNotBuiltIsADashAndAReason) {
   SvdagSceneBuilds scene = scene_in_state(SceneState::kStandIn);
-  SeriesBuild failed;
+  SeriesRun failed;
   failed.levels = 11;
   failed.result.failure = "needs 9 GiB";
   scene.esvos = {failed};

@@ -54,7 +54,7 @@ class BenchPapers : public testing::Test {
 TEST_F(BenchPapers, SetsPublishedFiguresBesideThePapersScenes) {
   const ProcessResult result = run_voxdag(command());
   ASSERT_EQ(result.status, 0) << result.err;
-  const Json report = json(), &scenes = report.at("svdag");
+  const Json report = json(), &scenes = report.at("svdag").at("scenes");
   ASSERT_EQ(scenes.size(), 2u);
   EXPECT_EQ(scenes[0].at("scene"), "Crysponza");
   EXPECT_EQ(scenes[0].at("state"), "same");
@@ -67,11 +67,39 @@ TEST_F(BenchPapers, SetsPublishedFiguresBesideThePapersScenes) {
   EXPECT_NE(text.find("| Lucy (absent) | published, reduction | – | 2.6 ms |"), std::string::npos)
       << text;
   EXPECT_NE(read_text(fs::path(report_) / "report.html").find("</html>"), std::string::npos);
-  for (const char* picture : {"figure4-Crysponza.png", "figure8b-exact.png", "figure8b-cones.png",
-                              "figure8b-difference.png"})
+  for (const char* picture : {"svdag-figure4-Crysponza.png", "svdag-figure8b-exact.png",
+                              "svdag-figure8b-cones.png", "svdag-figure8b-difference.png"})
     EXPECT_TRUE(fs::exists(fs::path(report_) / picture)) << picture;
   for (const char* scratch : {"build.esvo", "picture.vdag", "picture.png"})
     EXPECT_FALSE(fs::exists(fs::path(report_) / scratch)) << scratch;
+}
+
+TEST_F(BenchPapers, MeasuresTheEsvoPapersScenes) {
+  const char* const scenes_folder = std::getenv("VOXDAG_SCENES");
+  if (scenes_folder == nullptr || !fs::exists(fs::path(scenes_folder) / "sibenik"))
+    GTEST_SKIP() << "VOXDAG_SCENES has no sibenik";
+  const ProcessResult result =
+      run_voxdag({"bench", "papers", "--scenes", fs::path(scenes_folder) / "sibenik", "--only",
+                  "Sibenik,Sibenik-D", "--esvo-tables", "16,32", "--esvo-pictures", "32", "--size",
+                  "40x32", "-o", report_});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json report = json(), &scenes = report.at("esvo").at("scenes");
+  ASSERT_EQ(scenes.size(), 2u);
+  EXPECT_EQ(scenes[1].at("scene"), "Sibenik-D");
+  EXPECT_EQ(scenes[1].at("state"), "variant");
+  for (const Json& scene : scenes) {
+    EXPECT_GT(scene.at("builds")[1].at("result").at("voxels"), 0);
+    EXPECT_GT(scene.at("rays")[1].at("result").at("rays")[0].at("filter_seconds"), 0);
+  }
+  const std::string text = markdown();
+  for (const char* line : {"Figure 1: ", "Figures 4 and 5: ", "Figure 9: ", "Figure 10: ",
+                           "Figure 12: ", "Sibenik-D (variant)", "stone:0.15:4"})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  for (const char* picture :
+       {"esvo-figure1.png", "esvo-figure4-64-cubes.png", "esvo-figure4-64-contours.png",
+        "esvo-figure9-beams.png", "esvo-figure10-filter.png", "esvo-figure12-Sibenik.png"})
+    EXPECT_TRUE(fs::exists(fs::path(report_) / picture)) << picture;
+  EXPECT_FALSE(fs::exists(fs::path(report_) / "picture.esvo"));
 }
 
 TEST_F(BenchPapers, FliesThroughASceneThatHasACameraPath) {
@@ -84,7 +112,7 @@ TEST_F(BenchPapers, FliesThroughASceneThatHasACameraPath) {
     arguments.emplace_back(option);
   const ProcessResult result = run_voxdag(arguments);
   ASSERT_EQ(result.status, 0) << result.err;
-  const Json flight = json().at("flight");
+  const Json flight = json().at("svdag").at("flight");
   EXPECT_EQ(flight.at("scene"), "Crysponza");
   for (const char* run : {"with_esvo", "with_triangles", "with_voxels", "with_cones"})
     for (const Json& row : flight.at(run).at("rows"))
@@ -99,11 +127,11 @@ TEST_F(BenchPapers, KeepsFinishedMeasurements) {
   const Json first = json();
   const ProcessResult again = run_voxdag(command());
   EXPECT_NE(again.out.find(": 0 measured, "), std::string::npos) << again.out;
-  EXPECT_EQ(json().at("svdag"), first.at("svdag"));
-  fs::remove(fs::path(report_) / "figure8b-cones.png");
+  for (const char* paper : {"svdag", "esvo"}) EXPECT_EQ(json().at(paper), first.at(paper));
+  fs::remove(fs::path(report_) / "svdag-figure8b-cones.png");
   const ProcessResult painted = run_voxdag(command());
   EXPECT_NE(painted.out.find(": 1 measured, "), std::string::npos) << painted.out;
-  EXPECT_TRUE(fs::exists(fs::path(report_) / "figure8b-cones.png"));
+  EXPECT_TRUE(fs::exists(fs::path(report_) / "svdag-figure8b-cones.png"));
 }
 
 TEST_F(BenchPapers, MeasuresAgainWhatIsDamaged) {

@@ -25,7 +25,7 @@ TEST_F(RenderCommand, WritesEveryPassInBothFormats) {
   std::vector<std::string> words = {"render", path("in.vdag"), "-o",   path("p.exr"),
                                     "--size", "40x30",         "--ao", "4"};
   const std::vector<std::string> names = {"picture",   "radiance", "depth", "normal",
-                                          "occlusion", "shadow",   "steps"};
+                                          "occlusion", "shadow",   "steps", "steps64"};
   for (const std::string& name : names)
     for (const char* extension : {".png", ".exr"}) {
       words.push_back("--pass");

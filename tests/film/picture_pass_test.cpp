@@ -29,6 +29,15 @@ TEST(PicturePass, EveryKindHasAChannelForEachOfItsValues) {
   }
 }
 
+TEST(PicturePass, Steps64ShowsSixtyFourStepsAsWhite) {
+  RenderedImage image;
+  image.width = 3;
+  image.height = 1;
+  image.steps = {0, 32, 200};
+  const ImageRgb8 shown = find_picture_kind("steps64")->shown(image);
+  EXPECT_EQ(shown.pixels, (std::vector<std::uint8_t>{0, 0, 0, 128, 128, 128, 255, 255, 255}));
+}
+
 TEST(PicturePass, OnlyPngAndExrArePictures) {
   EXPECT_TRUE(is_picture_path("a.png"));
   EXPECT_TRUE(is_picture_path("b.c.exr"));

@@ -21,8 +21,8 @@ namespace {
 struct PapersArguments {
   PapersPlan plan;
   std::string scenes, folder;
-  std::vector<int> table1, table2;  ///< Levels; empty: those of the plan.
-  std::optional<int> flight_esvo, flight_triangles, frames, pictures;
+  std::vector<int> table1, table2, esvo;  ///< Levels; empty: those of the plan.
+  std::optional<int> flight_esvo, flight_triangles, frames, pictures, esvo_pictures;
   std::optional<ImageSize> size;
   bool quick = false;
 };
@@ -48,6 +48,8 @@ void run(const PapersArguments& arguments, Session& session) {
   if (arguments.quick) make_quick(plan);
   if (!arguments.table1.empty()) plan.table1_levels = sorted(arguments.table1);
   if (!arguments.table2.empty()) plan.table2_levels = sorted(arguments.table2);
+  if (!arguments.esvo.empty()) plan.esvo.levels = sorted(arguments.esvo);
+  plan.esvo.picture_levels = arguments.esvo_pictures.value_or(plan.esvo.picture_levels);
   FlightPlan& flight = plan.flight;
   flight.esvo_levels = arguments.flight_esvo.value_or(flight.esvo_levels);
   flight.triangles_levels = arguments.flight_triangles.value_or(flight.triangles_levels);
@@ -55,6 +57,7 @@ void run(const PapersArguments& arguments, Session& session) {
   flight.size = arguments.size.value_or(flight.size);
   plan.pictures.levels = arguments.pictures.value_or(plan.pictures.levels);
   plan.pictures.size = arguments.size.value_or(plan.pictures.size);
+  if (arguments.size) plan.esvo.sizes = {*arguments.size};
   plan.folder = std::filesystem::absolute(arguments.folder);
   plan.threads = session.threads;
   if (!session.quiet)
@@ -90,6 +93,8 @@ void add_bench_papers_command(const Command& bench, Session& session) {
                "Resolutions of the SVDAG paper's Table 1 (default: 512,1K,2K,4K,8K)");
   command.list("--table2", arguments->table2, parse_levels, "N,N...",
                "Resolutions of the SVDAG paper's Table 2 (default: 2K,4K,8K,16K,32K,64K)");
+  command.list("--esvo-tables", arguments->esvo, parse_levels, "N,N...",
+               "Resolutions of the ESVO paper's tables (default: 1K,2K,4K,8K,16K,32K,64K)");
   command.parsed("--flight-esvo", arguments->flight_esvo, parse_levels, "N",
                  "Resolution of the fly-through with DAG and ESVO (default: 4K)");
   command.parsed("--flight-triangles", arguments->flight_triangles, parse_levels, "N",
@@ -97,9 +102,12 @@ void add_bench_papers_command(const Command& bench, Session& session) {
   command.optional_number<int>("--frames", arguments->frames, NumberRange::whole(1, 10'000), "N",
                                "Frames of the fly-through (default: 30)");
   command.parsed("--pictures", arguments->pictures, parse_levels, "N",
-                 "Resolution of the pictures (default: 8K)");
+                 "Resolution of the SVDAG paper's pictures (default: 8K)");
+  command.parsed("--esvo-pictures", arguments->esvo_pictures, parse_levels, "N",
+                 "Resolution of the ESVO paper's pictures (default: 2K)");
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
-                 "Size of frames and pictures in pixels (default: 1024x768 and 960x540)");
+                 "Size of frames and pictures in pixels (default: the papers' sizes for frames, "
+                 "960x540 for pictures)");
   command.number("--cell-seconds", arguments->plan.cell_seconds, NumberRange::from(1, 1e6),
                  "SECONDS", "Time limit of one run; the report names the runs that it excludes");
   command.parsed("--memory", arguments->plan.memory_bytes, parse_memory, "LIMIT",

@@ -177,9 +177,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   command.text("--depth", arguments.depth, "OUT", "Same as --pass depth=OUT");
   command.text("--normal", arguments.normal, "OUT", "Same as --pass normal=OUT");
   command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",
-                   "Also write a pass: picture, radiance, depth, normal, occlusion, shadow or "
-                   "steps to a .exr or .png "
-                   "file; repeatable");
+                   "Also write a pass: picture, radiance, depth, normal, occlusion, shadow, steps "
+                   "or steps64 to a .exr or .png file; repeatable");
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);

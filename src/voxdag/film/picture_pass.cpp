@@ -93,6 +93,11 @@ ImageRgb8 heat(const RenderedImage& image) {
   return colored(image, image.steps, [most](float steps) { return heat_color(steps / most); });
 }
 
+/// Returns a picture of grey steps: white is 64, as in Figure 9 of Laine and Karras 2010.
+ImageRgb8 grey_steps(const RenderedImage& image) {
+  return colored(image, image.steps, [](float steps) { return grey(steps / 64); });
+}
+
 bool has_extension(const std::string& path, const char* extension) {
   return std::filesystem::path(path).extension() == extension;
 }
@@ -108,7 +113,8 @@ std::span<const PictureKind> picture_kinds() {
       PictureKind{"normal", {"N.X", "N.Y", "N.Z"}, vectors<&Image::normal>, normals},
       PictureKind{"occlusion", {"occlusion"}, scalars<&Image::occlusion>, greys<&Image::occlusion>},
       PictureKind{"shadow", {"shadow"}, scalars<&Image::shadow>, greys<&Image::shadow>},
-      PictureKind{"steps", {"steps"}, scalars<&Image::steps>, heat, true}};
+      PictureKind{"steps", {"steps"}, scalars<&Image::steps>, heat, true},
+      PictureKind{"steps64", {"steps"}, scalars<&Image::steps>, grey_steps, true}};
   return kKinds;
 }
 

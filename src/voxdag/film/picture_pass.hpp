@@ -22,7 +22,8 @@ struct PictureKind {
 /// Returns the table of all kinds. EXR holds the values: "picture", tone mapped in linear light;
 /// "radiance"; "depth", world units (Z); "normal" (N.X N.Y N.Z); "occlusion", "shadow" and "steps".
 /// PNG shows them: picture and radiance in sRGB; depth from white (nearest) to dark grey, and black
-/// for the background; normals as (n + 1) / 2; steps as a heat map up to their maximum.
+/// for the background; normals as (n + 1) / 2; steps as a heat map up to their maximum. "steps64"
+/// has the values of "steps", and shows them in grey up to 64.
 std::span<const PictureKind> picture_kinds();
 
 /// Returns the kind with this name, or null.

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "bench/reproduce/svdag_sections.hpp"
+#include "bench/reproduce/svdag/svdag_sections.hpp"
 #include "bench/reproduce/table_text.hpp"
 
 namespace voxdag {
@@ -26,12 +26,12 @@ ChartLine line_of(const nlohmann::ordered_json& nodes_per_level) {
 /// Returns the DAGs of all resolutions, and the SVO of the highest one; no lines if there are none.
 ChartPanel panel_of(const SvdagSceneBuilds& builds) {
   constexpr int kSvoColor = 6;  // black
-  ChartPanel panel{builds.title(),
+  ChartPanel panel{builds.scene.title(),
                    {"level (0: the root)", AxisScale::kLinear},
                    {"nodes", AxisScale::kLog10},
                    {}};
   const nlohmann::ordered_json* highest = nullptr;
-  for (const SeriesBuild& build : builds.dags) {
+  for (const SeriesRun& build : builds.dags) {
     if (!build.result.failure.empty()) continue;
     highest = &build.result.json;
     ChartLine dag = line_of(highest->at("dag_nodes_per_level"));
@@ -61,7 +61,7 @@ Section figure5_section() {
 
 std::vector<Chart> figure5_charts(const std::vector<SvdagSceneBuilds>& scenes) {
   constexpr std::size_t kMostPanels = 2;
-  Chart chart{"figure5.svg", {}};
+  Chart chart{"svdag-figure5.svg", {}};
   for (const SvdagSceneBuilds& builds : figure5_order(scenes)) {
     ChartPanel panel = panel_of(builds);
     if (!panel.lines.empty() && chart.panels.size() < kMostPanels)

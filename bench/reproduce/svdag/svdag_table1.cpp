@@ -2,7 +2,7 @@
 
 #include "bench/papers/svdag_published.hpp"
 #include "bench/reproduce/resolution_table.hpp"
-#include "bench/reproduce/svdag_sections.hpp"
+#include "bench/reproduce/svdag/svdag_sections.hpp"
 
 namespace voxdag {
 namespace {
@@ -19,15 +19,15 @@ template <class Read>
 void add_seconds(ResolutionTable& table, const SvdagSceneBuilds& builds, const char* what,
                  SeriesMember series, const Read& read) {
   if (builds.scene.is_absent()) return;
-  table.add(builds.title(), what,
+  table.add(builds.scene.title(), what,
             [&](int level) { return seconds_text(value_at(builds.*series, level, read)); });
 }
 
 void add_published(ResolutionTable& table, const SvdagSceneBuilds& builds) {
-  if (!builds.shows_published()) return;
+  if (!builds.scene.shows_published()) return;
   for (const bool is_sorting : {false, true})
-    table.add(builds.title(), is_sorting ? "published, of it sorting" : "published, reduction",
-              [&](int level) {
+    table.add(builds.scene.title(),
+              is_sorting ? "published, of it sorting" : "published, reduction", [&](int level) {
                 const auto paper = published::reduction_at(builds.scene.scene->name, level);
                 if (!paper) return seconds_text(NAN);
                 return seconds_text(is_sorting ? paper->sorting : paper->total);

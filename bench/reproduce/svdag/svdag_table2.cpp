@@ -4,7 +4,7 @@
 
 #include "bench/papers/svdag_published.hpp"
 #include "bench/reproduce/resolution_table.hpp"
-#include "bench/reproduce/svdag_sections.hpp"
+#include "bench/reproduce/svdag/svdag_sections.hpp"
 
 namespace voxdag {
 namespace {
@@ -33,8 +33,8 @@ std::vector<Structure> structures() {
 
 void add_rows(ResolutionTable& nodes, ResolutionTable& memory, const SvdagSceneBuilds& builds,
               const Structure& structure) {
-  const std::string title = builds.title();
-  const std::vector<SeriesBuild>& series = builds.*structure.builds;
+  const std::string title = builds.scene.title();
+  const std::vector<SeriesRun>& series = builds.*structure.builds;
   if (!builds.scene.is_absent()) {
     nodes.add(title, structure.name, [&](int level) {
       return number_text(value_at(series, level, structure.nodes) * 1e-6);
@@ -44,7 +44,7 @@ void add_rows(ResolutionTable& nodes, ResolutionTable& memory, const SvdagSceneB
     });
   }
   const published::SceneSizes* const sizes =
-      builds.shows_published() ? published::sizes_of(builds.scene.scene->name) : nullptr;
+      builds.scene.shows_published() ? published::sizes_of(builds.scene.scene->name) : nullptr;
   if (sizes == nullptr || structure.published == nullptr) return;
   const published::StructureSizes& row = sizes->*structure.published;
   const std::string what = fmt::format("{}, published", structure.name);
@@ -59,8 +59,8 @@ void add_density(Table& table, const SvdagSceneBuilds& builds) {
   const auto highest = std::find_if(builds.dags.rbegin(), builds.dags.rend(),
                                     [](const auto& build) { return build.result.failure.empty(); });
   const published::BitsPerVoxel* const paper =
-      builds.shows_published() ? published::bits_of(builds.scene.scene->name) : nullptr;
-  std::vector<std::string> row{builds.title(), "–", "–", "–", "–", "–", "–", "–"};
+      builds.scene.shows_published() ? published::bits_of(builds.scene.scene->name) : nullptr;
+  std::vector<std::string> row{builds.scene.title(), "–", "–", "–", "–", "–", "–", "–"};
   if (highest != builds.dags.rend()) {
     const nlohmann::ordered_json& json = highest->result.json;
     row[1] = resolution_text(highest->levels);

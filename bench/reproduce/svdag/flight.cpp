@@ -1,11 +1,11 @@
-#include "bench/reproduce/flight.hpp"
+#include "bench/reproduce/svdag/flight.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <span>
 
-#include "bench/build/bench_mesh.hpp"
 #include "bench/papers/camera_paths.hpp"
 #include "bench/reproduce/build_series.hpp"
 #include "voxdag/core/error.hpp"
@@ -18,13 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the camera path through a scene as JSON; empty if it has none.
-std::string path_through(const FoundScene& scene, const Progress& progress) {
-  if (const SceneFlight* flight = flight_of(scene.identity.file_check))
-    return path_json(path_file(*flight));
-  if (!scene.identity.is_procedural) return "";
-  const ChildResult path =
-      run_child({this_program(), "scene", scene.identity.name, "--path"}, "/", 0, progress);
-  return path.status == 0 ? path.out : "";
+std::string path_through(const FoundScene& scene) {
+  const std::optional<ScenePreset> preset = preset_of(scene);
+  return preset && !preset->flight.empty() ? path_json(path_file(*preset)) : "";
 }
 
 /// Returns the scenes in the order of preference for the fly-through.
@@ -56,8 +52,9 @@ class FlightRunner {
     flight.with_triangles = traced(plan_.flight.triangles_levels, fine, {}, {});
     flight.with_voxels = traced(plan_.flight.triangles_levels, fine, {"--lod", "0"}, {});
     flight.with_cones = traced(plan_.flight.triangles_levels, fine, {"--ao-cone", "0.07"}, {});
-    flight.with_lamps = traced(plan_.flight.triangles_levels, fine,
-                               {"--light-sizes", "0.02,0.05,0.1,0.2,0.4,0.8"}, {});
+    flight.with_lamps =
+        traced(plan_.flight.triangles_levels, fine,
+               {"--light-sizes", fmt::format("{}", fmt::join(plan_.flight.lamps, ","))}, {});
     for (const char* name : {"dag.vdag", "shape.esvo", "fine.vdag"})
       fs::remove(plan_.folder / name);
     return flight;
@@ -66,7 +63,7 @@ class FlightRunner {
  private:
   /// Builds the scene's mesh, if the file is not there; returns the file.
   fs::path built(int levels, const char* name, const std::vector<std::string>& options) {
-    const Cell cell = build_cell(plan_, scene_.mesh, levels, plan_.folder / name, options);
+    const Cell cell = build_cell(plan_, scene_, levels, plan_.folder / name, options);
     const CellResult result = cells_.run(cell);
     failure_ = failure_.empty() ? result.failure : failure_;
     return cell.output;
@@ -111,10 +108,10 @@ class FlightRunner {
 }  // namespace
 
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
-                                     CellStore& cells, Progress& progress) {
+                                     CellStore& cells) {
   for (const FoundScene& scene : flight_order(scenes)) {
     if (scene.is_absent()) continue;
-    const std::string path = path_through(scene, progress);
+    const std::string path = path_through(scene);
     if (!path.empty()) return FlightRunner(plan, scene, path, cells).run();
   }
   return std::nullopt;

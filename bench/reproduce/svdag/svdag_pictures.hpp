@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "bench/report/document.hpp"
-#include "bench/reproduce/found_scenes.hpp"
-#include "bench/reproduce/papers_plan.hpp"
+#include "bench/reproduce/painter.hpp"
 
 namespace voxdag {
-
-/// A rendered picture, or the reason why there is none.
-struct ScenePicture {
-  FoundScene scene;
-  Cell cell;
-  CellResult result;
-};
 
 /// Ambient occlusion of one view with rays to voxels and with rays that end at cells of 0.07 sr.
 struct OcclusionPictures {

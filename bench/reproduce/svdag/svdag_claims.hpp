@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bench/report/document.hpp"
-#include "bench/reproduce/flight.hpp"
-#include "bench/reproduce/svdag_builds.hpp"
+#include "bench/reproduce/svdag/flight.hpp"
+#include "bench/reproduce/svdag/svdag_builds.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 
 #include "bench/report/charts.hpp"
 #include "bench/report/document.hpp"
-#include "bench/reproduce/svdag_builds.hpp"
+#include "bench/reproduce/svdag/svdag_builds.hpp"
 
 namespace voxdag {
 

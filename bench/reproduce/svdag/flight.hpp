@@ -34,7 +34,7 @@ struct Flight {
 /// Measures the fly-through of San Miguel or, if it is absent, of another scene that has a camera
 /// path. Returns nothing if no scene has one. Throws Error and Cancelled.
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
-                                     CellStore& cells, Progress& progress);
+                                     CellStore& cells);
 
 /// Returns how many times as fast as a rival voxdag casts a kind of rays in a run; NaN if it was
 /// not measured. The rival's name starts with `rival`: the fastest of those counts.

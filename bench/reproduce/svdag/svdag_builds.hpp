@@ -14,20 +14,15 @@ namespace voxdag {
 /// All builds of a scene of the SVDAG paper; none if the scene is absent.
 struct SvdagSceneBuilds {
   FoundScene scene;
-  std::vector<SeriesBuild> by_paper;  ///< For Table 1.
-  std::vector<SeriesBuild> by_hash;   ///< The same resolutions, by voxdag's own method.
-  std::vector<SeriesBuild> dags;      ///< For Table 2 and Figure 5.
-  std::vector<SeriesBuild> esvos;     ///< For Table 2: with colours and normals.
-  std::vector<SeriesBuild> shapes;    ///< For Table 2: the shape only.
-
-  /// Returns "Lucy (variant)".
-  std::string title() const;
-  /// Returns whether the paper's figures belong into the tables: beside ours, or without ours.
-  bool shows_published() const { return scene.match.has_figures() || scene.is_absent(); }
+  std::vector<SeriesRun> by_paper;  ///< For Table 1.
+  std::vector<SeriesRun> by_hash;   ///< The same resolutions, by voxdag's own method.
+  std::vector<SeriesRun> dags;      ///< For Table 2 and Figure 5.
+  std::vector<SeriesRun> esvos;     ///< For Table 2: with colours and normals.
+  std::vector<SeriesRun> shapes;    ///< For Table 2: the shape only.
 };
 
 /// One of the series.
-using SeriesMember = std::vector<SeriesBuild> SvdagSceneBuilds::*;
+using SeriesMember = std::vector<SeriesRun> SvdagSceneBuilds::*;
 
 /// Builds what the tables need.
 SvdagSceneBuilds build_svdag_scene(const PapersPlan& plan, const FoundScene& scene,
@@ -35,10 +30,6 @@ SvdagSceneBuilds build_svdag_scene(const PapersPlan& plan, const FoundScene& sce
 
 /// Returns the levels of all builds of a series, ascending.
 std::vector<int> levels_of(const std::vector<SvdagSceneBuilds>& scenes, SeriesMember series);
-
-/// Returns the value of the build at `levels`; NaN if there is none.
-double value_at(const std::vector<SeriesBuild>& builds, int levels,
-                const std::function<double(const CellResult&)>& read);
 
 /// What a build printed.
 double dag_nodes(const CellResult& result);

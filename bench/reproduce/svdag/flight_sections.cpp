@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/reproduce/flight.hpp"
+#include "bench/reproduce/svdag/flight.hpp"
 #include "bench/reproduce/table_text.hpp"
 
 namespace voxdag {
@@ -118,7 +118,7 @@ Section figure6(const Flight& flight, bool is_drawn) {
       rate_row("DAG", fine_dag, fine_dag),
       rate_row("triangles (Embree)", rates_of(fine, "primary_beams", "embree"), fine_dag)};
   section.parts.emplace_back(std::move(fine_table));
-  add_chart(section, "figure6.svg",
+  add_chart(section, "svdag-figure6.svg",
             "Figure 6: primary rays per second in each frame, with beams; left DAG and ESVO, right "
             "DAG and triangles.",
             is_drawn);
@@ -141,8 +141,8 @@ Section figure7a(const Flight& flight, bool is_drawn) {
                 other_row(kToVoxels, rates_of(flight.with_voxels, "shadow", ""), dag),
                 rate_row("triangles (Embree)", rates_of(run, "shadow", "embree"), dag)};
   section.parts.emplace_back(std::move(table));
-  add_chart(section, "figure7a.svg", "Figure 7a: time for a million shadow rays in each frame.",
-            is_drawn);
+  add_chart(section, "svdag-figure7a.svg",
+            "Figure 7a: time for a million shadow rays in each frame.", is_drawn);
   return section;
 }
 
@@ -180,8 +180,8 @@ Section figure7b(const Flight& flight, bool is_drawn) {
                           number_text(panel.lines[0].y[i]), number_text(panel.lines[1].y[i]),
                           number_text(panel.lines[0].y[i] / panel.lines[1].y[i])});
   section.parts.emplace_back(std::move(table));
-  add_chart(section, "figure7b.svg", "Figure 7b: soft shadow rays per second over the lamp's size.",
-            is_drawn);
+  add_chart(section, "svdag-figure7b.svg",
+            "Figure 7b: soft shadow rays per second over the lamp's size.", is_drawn);
   add_run(section, flight.with_lamps);
   return section;
 }
@@ -201,7 +201,7 @@ Section figure8a(const Flight& flight, bool is_drawn) {
                 other_row(kToCones, rates_of(flight.with_cones, "ao", ""), dag),
                 rate_row("triangles (Embree)", rates_of(run, "ao", "embree"), dag)};
   section.parts.emplace_back(std::move(table));
-  add_chart(section, "figure8a.svg", "Figure 8a: occlusion rays per second in each frame.",
+  add_chart(section, "svdag-figure8a.svg", "Figure 8a: occlusion rays per second in each frame.",
             is_drawn);
   add_run(section, flight.with_voxels);
   add_run(section, flight.with_cones);
@@ -236,14 +236,14 @@ std::vector<Chart> flight_charts(const Flight& flight) {
   };
   const char* const beams = "primary_beams";
   Chart figure6{
-      "figure6.svg",
+      "svdag-figure6.svg",
       {rate_panel(where(flight, coarse), {line_of("DAG", frames(coarse, beams, ""), kDag),
                                           line_of("ESVO", frames(coarse, beams, "esvo"), kEsvo)}),
        rate_panel(where(flight, fine),
                   {line_of("DAG", frames(fine, beams, ""), kDag),
                    line_of("triangles (Embree)", frames(fine, beams, "embree"), kTriangles)})}};
   Chart figure7a{
-      "figure7a.svg",
+      "svdag-figure7a.svg",
       {{where(flight, fine),
         {"frame", {}},
         {"ms for a million shadow rays", {}},
@@ -252,13 +252,13 @@ std::vector<Chart> flight_charts(const Flight& flight) {
          line_of("triangles (Embree)", milliseconds(frames(fine, "shadow", "embree")),
                  kTriangles)}}}};
   Chart figure8a{
-      "figure8a.svg",
+      "svdag-figure8a.svg",
       {rate_panel(where(flight, fine),
                   {line_of("DAG", frames(fine, "ao", ""), kDag),
                    line_of(kToVoxels, frames(flight.with_voxels, "ao", ""), kVoxels),
                    line_of(kToCones, frames(flight.with_cones, "ao", ""), kCones),
                    line_of("triangles (Embree)", frames(fine, "ao", "embree"), kTriangles)})}};
-  Chart figure7b{"figure7b.svg", {lamp_panel(flight)}};
+  Chart figure7b{"svdag-figure7b.svg", {lamp_panel(flight)}};
   return {figure6, figure7a, figure7b, figure8a};
 }
 

@@ -1,0 +1,31 @@
+#pragma once
+/// The report's chapter about the ESVO paper.
+#include <vector>
+
+#include "bench/report/charts.hpp"
+#include "bench/reproduce/esvo/esvo_pictures.hpp"
+#include "bench/reproduce/esvo/esvo_runs.hpp"
+
+namespace voxdag {
+
+struct EsvoResults {
+  std::vector<FoundScene> scenes;
+  std::vector<EsvoSceneRuns> runs;
+  EsvoPictures pictures;
+};
+
+/// Measures the tables and figures of the ESVO paper. `scan`: a smooth model for close-ups; if it
+/// is absent, the first scene serves. `made`: a folder for procedural meshes, which must exist as
+/// long as `cells`. Throws Error and Cancelled.
+EsvoResults measure_esvo(const PapersPlan& plan, const FoundScene& scan,
+                         const std::filesystem::path& made, CellStore& cells, Progress& progress);
+
+std::vector<Chart> esvo_charts(const EsvoResults& results);
+
+/// Returns the sections of the chapter. `threads`: of our builds. `is_drawn`: whether the charts
+/// are there.
+std::vector<Section> esvo_chapter(const EsvoResults& results, int threads, bool is_drawn);
+
+nlohmann::ordered_json esvo_json(const EsvoResults& results);
+
+}  // namespace voxdag

@@ -1,0 +1,151 @@
+#include "bench/reproduce/esvo/esvo_pictures.hpp"
+
+#include <fmt/core.h>
+
+#include "bench/reproduce/table_text.hpp"
+
+namespace voxdag {
+namespace {
+
+/// The pictures of the paper have no shadows, and no ambient occlusion but what was baked.
+const std::vector<std::string> kAsInThePaper{"--no-shadows", "--ao", "0"};
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+class EsvoPainter {
+ public:
+  EsvoPainter(const PapersPlan& plan, CellStore& cells, const Progress& progress)
+      : plan_(plan), painter_(plan, cells, progress) {
+    const ImageSize size = plan.pictures.size;
+    half_ = {size.width / 2, size.height};
+  }
+
+  /// Paints Figures 1 and 9.
+  void paint_cathedral(const FoundScene& scene) {
+    painter_.show(scene, {plan_.esvo.picture_levels, true, {"--bake-ao"}});
+    const std::vector<std::string> camera = camera_of(scene);
+    pictures.cathedral = {
+        painter_.paint("esvo-figure1.png", "", plan_.pictures.size, joined(camera, kAsInThePaper))};
+    const std::vector<std::string> options = joined(camera, kAsInThePaper);
+    pictures.steps = {
+        painter_.paint("esvo-figure9-plain.png", "steps64", half_, joined(options, {"--no-beams"})),
+        painter_.paint("esvo-figure9-beams.png", "steps64", half_, options)};
+  }
+
+  void paint_contours(const FoundScene& scene) {
+    for (const int levels : plan_.esvo.coarse_levels) {
+      const auto paint = [&](const char* form, const std::vector<std::string>& options) {
+        painter_.show(scene, {levels, true, options});
+        return painter_.paint(fmt::format("esvo-figure4-{}-{}.png", 1 << levels, form), "", half_,
+                              joined(view_of(scene), {"--no-filter"}));
+      };
+      pictures.contours.push_back(
+          {levels, paint("cubes", {"--no-contours"}), paint("contours", {})});
+    }
+  }
+
+  void paint_filters(const FoundScene& scene) {
+    painter_.show(scene, {plan_.esvo.filter_levels,
+                          true,
+                          {"--max-error", "1", "--normal-error", "12", "--color-error", "0.1"}});
+    const std::vector<std::string> options = joined(view_of(scene), kAsInThePaper);
+    pictures.filters = {
+        painter_.paint("esvo-figure10-none.png", "", half_, joined(options, {"--no-filter"})),
+        painter_.paint("esvo-figure10-filter.png", "", half_, joined(options, {"--filter"}))};
+  }
+
+  void paint_scene(const FoundScene& scene) {
+    painter_.show(scene, {plan_.esvo.picture_levels, true, {}});
+    pictures.scenes.push_back(painter_.paint(fmt::format("esvo-figure12-{}.png", scene.scene->name),
+                                             "", plan_.pictures.size, view_of(scene)));
+  }
+
+  EsvoPictures pictures;
+
+ private:
+  const PapersPlan& plan_;
+  Painter painter_;
+  ImageSize half_;
+};
+
+Section figure1_section(const EsvoPictures& pictures) {
+  Section section{"Figure 1: a displaced cathedral", 2, {}};
+  section.parts.emplace_back(Paragraph{
+      "As in the paper, the surface is displaced, and ambient occlusion is baked into the colours: "
+      "all geometry and shading data is that of the voxels. The picture has no other shadows."});
+  for (const ScenePicture& picture : pictures.cathedral)
+    add_picture(section, picture, picture.scene.title() + ".");
+  return section;
+}
+
+Section figure4_section(const EsvoPictures& pictures) {
+  Section section{"Figures 4 and 5: contours", 2, {}};
+  section.parts.emplace_back(Paragraph{
+      "The same grids as cubes and with contours. They are coarse on purpose, and the filter is "
+      "off."});
+  for (const CubesAndContours& both : pictures.contours)
+    add_row(section, {both.cubes, both.contours},
+            {fmt::format("Cubes at {}.", resolution_text(both.levels)),
+             fmt::format("Contours at {} (the command's).", resolution_text(both.levels))});
+  return section;
+}
+
+Section figure9_section(const EsvoPictures& pictures) {
+  Section section{"Figure 9: steps of the primary rays", 2, {}};
+  section.parts.emplace_back(Paragraph{
+      "As in the paper, white is 64 steps. The steps of the beams count, spread over their "
+      "pixels."});
+  add_row(section, pictures.steps, {"Without beams.", "With beams (the command's)."});
+  return section;
+}
+
+Section figure10_section(const EsvoPictures& pictures) {
+  Section section{"Figure 10: the filter", 2, {}};
+  section.parts.emplace_back(Paragraph{
+      "An octree with few levels and wide error bounds, so that neighbouring voxels differ in "
+      "size."});
+  add_row(section, pictures.filters, {"No filter.", "The filter (the command's)."});
+  return section;
+}
+
+Section figure12_section(const EsvoPictures& pictures) {
+  Section section{"Figure 12: the scenes", 2, {}};
+  section.parts.emplace_back(
+      Paragraph{"Octrees with contours, colours and normals, lit as `render` does by default."});
+  for (const ScenePicture& picture : pictures.scenes)
+    add_picture(section, picture, picture.scene.title() + ".");
+  return section;
+}
+
+}  // namespace
+
+EsvoPictures render_esvo_pictures(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                  const FoundScene& close_up, CellStore& cells,
+                                  const Progress& progress) {
+  EsvoPainter painter(plan, cells, progress);
+  for (const FoundScene& scene : scenes) {
+    if (scene.is_absent()) continue;
+    if (scene.identity.is_displaced) painter.paint_cathedral(scene);
+    painter.paint_scene(scene);
+  }
+  if (!close_up.is_absent()) {
+    painter.paint_contours(close_up);
+    painter.paint_filters(close_up);
+  }
+  return std::move(painter.pictures);
+}
+
+std::vector<Section> esvo_picture_sections(const EsvoPictures& pictures) {
+  std::vector<Section> sections;
+  if (!pictures.cathedral.empty()) sections.push_back(figure1_section(pictures));
+  if (!pictures.contours.empty()) sections.push_back(figure4_section(pictures));
+  if (!pictures.steps.empty()) sections.push_back(figure9_section(pictures));
+  if (!pictures.filters.empty()) sections.push_back(figure10_section(pictures));
+  if (!pictures.scenes.empty()) sections.push_back(figure12_section(pictures));
+  return sections;
+}
+
+}  // namespace voxdag

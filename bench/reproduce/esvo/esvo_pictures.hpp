@@ -1,0 +1,32 @@
+#pragma once
+/// Pictures of the ESVO paper: Figures 1, 4, 5, 9, 10 and 12.
+#include <vector>
+
+#include "bench/reproduce/painter.hpp"
+
+namespace voxdag {
+
+/// The same voxels as cubes and with contours.
+struct CubesAndContours {
+  int levels = 0;
+  ScenePicture cubes, contours;
+};
+
+struct EsvoPictures {
+  std::vector<ScenePicture> cathedral;     ///< Figure 1: one picture, or none.
+  std::vector<CubesAndContours> contours;  ///< Figures 4 and 5: coarse grids, ascending.
+  std::vector<ScenePicture> steps;         ///< Figure 9: without and with beams; or none.
+  std::vector<ScenePicture> filters;       ///< Figure 10: no filter, then one; or none.
+  std::vector<ScenePicture> scenes;        ///< Figure 12.
+};
+
+/// Renders the pictures into the plan's folder. `close_up`: the scene of Figures 4, 5 and 10.
+/// Throws Error and Cancelled.
+EsvoPictures render_esvo_pictures(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                  const FoundScene& close_up, CellStore& cells,
+                                  const Progress& progress);
+
+/// Returns a section for each figure.
+std::vector<Section> esvo_picture_sections(const EsvoPictures& pictures);
+
+}  // namespace voxdag

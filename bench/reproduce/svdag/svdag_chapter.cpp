@@ -1,0 +1,51 @@
+#include "bench/reproduce/svdag/svdag_chapter.hpp"
+
+#include "bench/reproduce/svdag/svdag_claims.hpp"
+#include "bench/reproduce/svdag/svdag_sections.hpp"
+
+namespace voxdag {
+
+SvdagResults measure_svdag(const PapersPlan& plan, const std::filesystem::path& made,
+                           CellStore& cells, Progress& progress) {
+  SvdagResults results;
+  results.scenes = find_scenes(Paper::kSvdag, plan, made, cells, progress);
+  for (const FoundScene& scene : results.scenes)
+    results.builds.push_back(build_svdag_scene(plan, scene, cells, progress));
+  results.pictures = render_pictures(plan, results.scenes, cells, progress);
+  results.flight = measure_flight(plan, results.scenes, cells);
+  return results;
+}
+
+std::vector<Chart> svdag_charts(const SvdagResults& results) {
+  std::vector<Chart> charts = figure5_charts(results.builds);
+  if (results.flight)
+    for (Chart& chart : flight_charts(*results.flight)) charts.push_back(std::move(chart));
+  return charts;
+}
+
+std::vector<Section> svdag_chapter(const SvdagResults& results, int threads, bool is_drawn) {
+  std::vector<Section> sections{
+      {"High Resolution Sparse Voxel DAGs (Kämpe, Sintorn, Assarsson 2013)", 1, {}},
+      scenes_section(results.scenes),
+      svdag_claims_section(results.builds, results.flight),
+      table1_section(results.builds, threads),
+      table2_section(results.builds),
+      figure5_section()};
+  add_charts(sections.back(), figure5_charts(results.builds),
+             "Figure 5: nodes per level of DAGs of several resolutions, and of the SVO of the "
+             "highest one.",
+             is_drawn);
+  sections.push_back(figure4_section(results.pictures));
+  if (results.flight)
+    for (Section& section : flight_sections(*results.flight, is_drawn))
+      sections.push_back(std::move(section));
+  sections.push_back(figure8b_section(results.pictures));
+  return sections;
+}
+
+nlohmann::ordered_json svdag_json(const SvdagResults& results) {
+  return {{"scenes", svdag_builds_json(results.builds)},
+          {"flight", results.flight ? flight_json(*results.flight) : nlohmann::ordered_json()}};
+}
+
+}  // namespace voxdag

@@ -1,0 +1,32 @@
+#pragma once
+/// The report's chapter about the SVDAG paper.
+#include <optional>
+#include <vector>
+
+#include "bench/reproduce/svdag/flight.hpp"
+#include "bench/reproduce/svdag/svdag_builds.hpp"
+#include "bench/reproduce/svdag/svdag_pictures.hpp"
+
+namespace voxdag {
+
+struct SvdagResults {
+  std::vector<FoundScene> scenes;
+  std::vector<SvdagSceneBuilds> builds;
+  SvdagPictures pictures;
+  std::optional<Flight> flight;
+};
+
+/// Measures the tables and figures of the SVDAG paper. `made`: a folder for procedural meshes,
+/// which must exist as long as `cells`. Throws Error and Cancelled.
+SvdagResults measure_svdag(const PapersPlan& plan, const std::filesystem::path& made,
+                           CellStore& cells, Progress& progress);
+
+std::vector<Chart> svdag_charts(const SvdagResults& results);
+
+/// Returns the sections of the chapter. `threads`: of our builds. `is_drawn`: whether the charts
+/// are there.
+std::vector<Section> svdag_chapter(const SvdagResults& results, int threads, bool is_drawn);
+
+nlohmann::ordered_json svdag_json(const SvdagResults& results);
+
+}  // namespace voxdag
