@@ -116,6 +116,16 @@ inline const BitsPerVoxel* bits_of(std::string_view scene) {
   return nullptr;
 }
 
+/// The scene and the rates of Figure 1.
+struct Figure1 {
+  std::string_view scene, device;
+  int levels;
+  double voxels, dag_megabytes, svo_megabytes;
+  double shadow_rays_per_second, occlusion_rays_per_second;
+};
+
+inline constexpr Figure1 kFigure1{"EpicCitadel", "GTX680", 17, 19e9, 945, 5.1 * 1024, 240e6, 170e6};
+
 /// Returns the value at 2^levels of a row of Table 2; NaN: not in the paper.
 inline double at_levels(const std::array<double, 6>& values, int levels) {
   const int column = levels - kTable2FirstLevels;

@@ -44,6 +44,11 @@ class Painter {
   /// The next pictures show these voxels of the scene.
   void show(const FoundScene& scene, const PictureVoxels& voxels);
 
+  /// Returns the result of their build.
+  const CellResult& built() const { return built_; }
+  /// Returns their file, which exists until the next voxels are shown.
+  const std::filesystem::path& voxels() const { return voxels_; }
+
   /// Renders a picture to `file` in the plan's folder; if `pass` is not empty, that pass of it.
   /// `options`: more options of `render`. Throws Error and Cancelled.
   ScenePicture paint(const std::string& file, const std::string& pass, ImageSize size,

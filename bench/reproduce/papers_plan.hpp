@@ -40,6 +40,7 @@ struct PapersPlan {
   std::vector<std::string> only;  ///< Names of paper scenes; empty: all.
   std::vector<int> table1_levels{9, 10, 11, 12, 13};
   std::vector<int> table2_levels{11, 12, 13, 14, 15, 16};
+  int figure1_levels = 17;  ///< Of Figure 1 of the SVDAG paper; the paper's 131072³.
   FlightPlan flight;
   PicturePlan pictures;
   EsvoPlan esvo;
@@ -54,6 +55,7 @@ inline void make_quick(PapersPlan& plan) {
   plan.small_stand_ins = true;
   plan.table1_levels = {9, 10, 11};
   plan.table2_levels = {9, 10, 11};
+  plan.figure1_levels = 13;
   plan.cell_seconds = std::min(plan.cell_seconds, 20.0);
   plan.flight = {10, 12, 6, {512, 384}, {0.05, 0.4}};
   plan.pictures = {11, {640, 360}};

@@ -39,9 +39,9 @@ class BenchPapers : public testing::Test {
   BenchPapers() { write_text(dir_ / "crysponza.obj", wavy_surface()); }
 
   std::vector<std::string> command() const {
-    return {"bench",    "papers", "--scenes", dir_.path(), "--only",     "Crysponza,Lucy",
-            "--table1", "32,512", "--table2", "32,64",     "--pictures", "64",
-            "--size",   "40x32",  "-o",       report_};
+    return {"bench",    "papers", "--scenes",  dir_.path(), "--only",     "Crysponza,Lucy",
+            "--table1", "32,512", "--table2",  "32,64",     "--pictures", "64",
+            "--size",   "40x32",  "--figure1", "256",       "-o",         report_};
   }
 
   Json json() const { return Json::parse(read_text(fs::path(report_) / "report.json")); }
@@ -114,10 +114,15 @@ TEST_F(BenchPapers, FliesThroughASceneThatHasACameraPath) {
   ASSERT_EQ(result.status, 0) << result.err;
   const Json flight = json().at("svdag").at("flight");
   EXPECT_EQ(flight.at("scene"), "Crysponza");
+  const Json figure1 = json().at("svdag").at("figure1");
+  EXPECT_EQ(figure1.at("scene"), "Crysponza");
+  EXPECT_EQ(figure1.at("build").at("resolution"), 256);
+  EXPECT_GT(figure1.at("rays").at("rows").at(0).at("mrays_per_s"), 0);
+  EXPECT_TRUE(fs::exists(fs::path(report_) / "svdag-figure1.png"));
   for (const char* run : {"with_esvo", "with_triangles", "with_voxels", "with_cones"})
     for (const Json& row : flight.at(run).at("rows"))
       EXPECT_EQ(row.at("view_mrays_per_s").size(), 3u) << run;
-  for (const char* figure : {"Figure 6: ", "Figure 7a: ", "Figure 8a: "})
+  for (const char* figure : {"Figure 1: ", "Figure 6: ", "Figure 7a: ", "Figure 8a: "})
     EXPECT_NE(markdown().find(figure), std::string::npos) << figure;
   EXPECT_FALSE(fs::exists(fs::path(report_) / "fine.vdag"));
 }

@@ -22,7 +22,7 @@ struct PapersArguments {
   PapersPlan plan;
   std::string scenes, folder;
   std::vector<int> table1, table2, esvo;  ///< Levels; empty: those of the plan.
-  std::optional<int> flight_esvo, flight_triangles, frames, pictures, esvo_pictures;
+  std::optional<int> flight_esvo, flight_triangles, frames, figure1, pictures, esvo_pictures;
   std::optional<ImageSize> size;
   bool quick = false;
 };
@@ -55,6 +55,7 @@ void run(const PapersArguments& arguments, Session& session) {
   flight.triangles_levels = arguments.flight_triangles.value_or(flight.triangles_levels);
   flight.frames = arguments.frames.value_or(flight.frames);
   flight.size = arguments.size.value_or(flight.size);
+  plan.figure1_levels = arguments.figure1.value_or(plan.figure1_levels);
   plan.pictures.levels = arguments.pictures.value_or(plan.pictures.levels);
   plan.pictures.size = arguments.size.value_or(plan.pictures.size);
   if (arguments.size) plan.esvo.sizes = {*arguments.size};
@@ -101,6 +102,8 @@ void add_bench_papers_command(const Command& bench, Session& session) {
                  "Resolution of the fly-through with DAG and triangles (default: 32K)");
   command.optional_number<int>("--frames", arguments->frames, NumberRange::whole(1, 10'000), "N",
                                "Frames of the fly-through (default: 30)");
+  command.parsed("--figure1", arguments->figure1, parse_levels, "N",
+                 "Resolution of the SVDAG paper's Figure 1 (default: 128K)");
   command.parsed("--pictures", arguments->pictures, parse_levels, "N",
                  "Resolution of the SVDAG paper's pictures (default: 8K)");
   command.parsed("--esvo-pictures", arguments->esvo_pictures, parse_levels, "N",

@@ -35,26 +35,26 @@ class FlightRunner {
  public:
   FlightRunner(const PapersPlan& plan, const FoundScene& scene, const std::string& path,
                CellStore& cells)
-      : plan_(plan), scene_(scene), path_(plan.folder / "flight.json"), cells_(cells) {
-    write_whole_file(path_, path);
-    cells_.add_input(path_, xxh3_64(std::as_bytes(std::span(path))));
-  }
+      : plan_(plan),
+        scene_(scene),
+        path_(plan.folder / "flight.json", path, cells),
+        cells_(cells) {}
 
   Flight run() {
     Flight flight;
     flight.scene = scene_;
     flight.plan = plan_.flight;
-    const fs::path dag = built(plan_.flight.esvo_levels, "dag.vdag", {});
+    const FlightPlan& frames = plan_.flight;
+    const DagFile dag = built(frames.esvo_levels, "dag.vdag", {});
     const fs::path esvo =
-        built(plan_.flight.esvo_levels, "shape.esvo", {"--as", "esvo", "--no-attributes"});
-    flight.with_esvo = traced(plan_.flight.esvo_levels, dag, {"--esvo", esvo}, {esvo});
-    const fs::path fine = built(plan_.flight.triangles_levels, "fine.vdag", {});
-    flight.with_triangles = traced(plan_.flight.triangles_levels, fine, {}, {});
-    flight.with_voxels = traced(plan_.flight.triangles_levels, fine, {"--lod", "0"}, {});
-    flight.with_cones = traced(plan_.flight.triangles_levels, fine, {"--ao-cone", "0.07"}, {});
+        built(frames.esvo_levels, "shape.esvo", {"--as", "esvo", "--no-attributes"}).path;
+    flight.with_esvo = traced(dag, {"--esvo", esvo}, {esvo});
+    const DagFile fine = built(frames.triangles_levels, "fine.vdag", {});
+    flight.with_triangles = traced(fine, {});
+    flight.with_voxels = traced(fine, {"--lod", "0"});
+    flight.with_cones = traced(fine, {"--ao-cone", "0.07"});
     flight.with_lamps =
-        traced(plan_.flight.triangles_levels, fine,
-               {"--light-sizes", fmt::format("{}", fmt::join(plan_.flight.lamps, ","))}, {});
+        traced(fine, {"--light-sizes", fmt::format("{}", fmt::join(frames.lamps, ","))});
     for (const char* name : {"dag.vdag", "shape.esvo", "fine.vdag"})
       fs::remove(plan_.folder / name);
     return flight;
@@ -62,35 +62,17 @@ class FlightRunner {
 
  private:
   /// Builds the scene's mesh, if the file is not there; returns the file.
-  fs::path built(int levels, const char* name, const std::vector<std::string>& options) {
+  DagFile built(int levels, const char* name, const std::vector<std::string>& options) {
     const Cell cell = build_cell(plan_, scene_, levels, plan_.folder / name, options);
     const CellResult result = cells_.run(cell);
     failure_ = failure_.empty() ? result.failure : failure_;
-    return cell.output;
+    return {cell.output, levels};
   }
 
-  FlightRun traced(int levels, const fs::path& dag, const std::vector<std::string>& options,
-                   const std::vector<fs::path>& more_inputs) {
-    FlightRun run;
-    run.levels = levels;
-    const FlightPlan& plan = plan_.flight;
-    run.cell.inputs = {dag, scene_.mesh, path_};
+  FlightRun traced(const DagFile& dag, const std::vector<std::string>& options,
+                   const std::vector<fs::path>& more_inputs = {}) {
+    FlightRun run = trace_path(plan_, scene_, dag, path_, plan_.flight.frames, options);
     run.cell.inputs.insert(run.cell.inputs.end(), more_inputs.begin(), more_inputs.end());
-    run.cell.arguments = {"bench",
-                          "trace",
-                          dag,
-                          "--mesh",
-                          scene_.mesh,
-                          "--path",
-                          path_,
-                          "--frames",
-                          std::to_string(plan.frames),
-                          "--size",
-                          fmt::format("{}x{}", plan.size.width, plan.size.height),
-                          "--repeat",
-                          "2",
-                          "--json"};
-    run.cell.arguments.insert(run.cell.arguments.end(), options.begin(), options.end());
     if (failure_.empty())
       run.result = cells_.run(run.cell);
     else
@@ -100,12 +82,43 @@ class FlightRunner {
 
   const PapersPlan& plan_;
   const FoundScene& scene_;
-  fs::path path_;
+  CameraPathFile path_;
   CellStore& cells_;
   std::string failure_;  ///< Of the first build that failed.
 };
 
 }  // namespace
+
+CameraPathFile::CameraPathFile(fs::path path, const std::string& json, CellStore& cells)
+    : path_(std::move(path)) {
+  write_whole_file(path_, json);
+  cells.add_input(path_, xxh3_64(std::as_bytes(std::span(json))));
+}
+
+FlightRun trace_path(const PapersPlan& plan, const FoundScene& scene, const DagFile& dag,
+                     const CameraPathFile& path, int frames,
+                     const std::vector<std::string>& options) {
+  FlightRun run;
+  run.levels = dag.levels;
+  const ImageSize size = plan.flight.size;
+  run.cell.inputs = {dag.path, scene.mesh, path.path()};
+  run.cell.arguments = {"bench",
+                        "trace",
+                        dag.path,
+                        "--mesh",
+                        scene.mesh,
+                        "--path",
+                        path.path(),
+                        "--frames",
+                        std::to_string(frames),
+                        "--size",
+                        fmt::format("{}x{}", size.width, size.height),
+                        "--repeat",
+                        "2",
+                        "--json"};
+  run.cell.arguments.insert(run.cell.arguments.end(), options.begin(), options.end());
+  return run;
+}
 
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                                      CellStore& cells) {

@@ -20,6 +20,33 @@ struct FlightRun {
   CellResult result;
 };
 
+/// A file with a camera path, as an input of cells.
+class CameraPathFile {
+ public:
+  /// Writes `json` to `path` and states its content to `cells`. Throws Error.
+  CameraPathFile(std::filesystem::path path, const std::string& json, CellStore& cells);
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A DAG in a file.
+struct DagFile {
+  std::filesystem::path path;
+  int levels = 0;
+};
+
+/// Returns a run of `voxdag bench trace` along a path that has no result yet. `options`: more of
+/// its options.
+FlightRun trace_path(const PapersPlan& plan, const FoundScene& scene, const DagFile& dag,
+                     const CameraPathFile& path, int frames,
+                     const std::vector<std::string>& options);
+
+/// Returns the rate of voxdag's rays of a kind in a run, in millions per second; NaN if it was not
+/// measured.
+double mrays_per_second(const FlightRun& run, const std::string& rays);
+
 /// The measurements of one scene's fly-through.
 struct Flight {
   FoundScene scene;
@@ -44,5 +71,6 @@ double speed_ratio(const FlightRun& run, const std::string& rays, const std::str
 std::vector<Section> flight_sections(const Flight& flight, bool is_drawn);
 std::vector<Chart> flight_charts(const Flight& flight);
 nlohmann::ordered_json flight_json(const Flight& flight);
+nlohmann::ordered_json run_json(const FlightRun& run);
 
 }  // namespace voxdag

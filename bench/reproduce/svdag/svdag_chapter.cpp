@@ -11,6 +11,7 @@ SvdagResults measure_svdag(const PapersPlan& plan, const std::filesystem::path& 
   results.scenes = find_scenes(Paper::kSvdag, plan, made, cells, progress);
   for (const FoundScene& scene : results.scenes)
     results.builds.push_back(build_svdag_scene(plan, scene, cells, progress));
+  results.figure1 = measure_figure1(plan, results.scenes, cells, progress);
   results.pictures = render_pictures(plan, results.scenes, cells, progress);
   results.flight = measure_flight(plan, results.scenes, cells);
   return results;
@@ -35,6 +36,7 @@ std::vector<Section> svdag_chapter(const SvdagResults& results, int threads, boo
              "Figure 5: nodes per level of DAGs of several resolutions, and of the SVO of the "
              "highest one.",
              is_drawn);
+  if (results.figure1) sections.push_back(figure1_section(*results.figure1));
   sections.push_back(figure4_section(results.pictures));
   if (results.flight)
     for (Section& section : flight_sections(*results.flight, is_drawn))
@@ -45,6 +47,7 @@ std::vector<Section> svdag_chapter(const SvdagResults& results, int threads, boo
 
 nlohmann::ordered_json svdag_json(const SvdagResults& results) {
   return {{"scenes", svdag_builds_json(results.builds)},
+          {"figure1", results.figure1 ? figure1_json(*results.figure1) : nlohmann::ordered_json()},
           {"flight", results.flight ? flight_json(*results.flight) : nlohmann::ordered_json()}};
 }
 

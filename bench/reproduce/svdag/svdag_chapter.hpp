@@ -5,6 +5,7 @@
 
 #include "bench/reproduce/svdag/flight.hpp"
 #include "bench/reproduce/svdag/svdag_builds.hpp"
+#include "bench/reproduce/svdag/svdag_figure1.hpp"
 #include "bench/reproduce/svdag/svdag_pictures.hpp"
 
 namespace voxdag {
@@ -12,6 +13,7 @@ namespace voxdag {
 struct SvdagResults {
   std::vector<FoundScene> scenes;
   std::vector<SvdagSceneBuilds> builds;
+  std::optional<SvdagFigure1> figure1;
   SvdagPictures pictures;
   std::optional<Flight> flight;
 };

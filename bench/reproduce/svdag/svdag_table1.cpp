@@ -57,7 +57,8 @@ Section table1_section(const std::vector<SvdagSceneBuilds>& scenes, int threads)
       "The paper reduces sub-volumes of 1024³ one after the other, sorts each level with "
       "tbb::parallel_sort on six cores, and does the rest on one core. --method paper does the "
       "same in the same order. Its reduction includes joining the sub-volumes under the top tree "
-      "and the final reduction of the whole."});
+      "and the final reduction of the whole. The paper's algorithm also reduces trees whose leaves "
+      "have different depths. voxdag's never do: a mesh has voxels at the finest level only."});
   section.parts.emplace_back(reduction.take());
   add_commands(section, scenes, &SvdagSceneBuilds::by_paper);
   section.parts.emplace_back(Paragraph{
