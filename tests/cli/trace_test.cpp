@@ -44,6 +44,8 @@ std::string colored_waves() {
 struct Attributes {
   Vec3f normal;
   Vec3<std::uint8_t> color;
+
+  bool operator==(const Attributes&) const = default;
 };
 
 /// The attributes of every leaf, by its lowest voxel.
@@ -52,6 +54,15 @@ class Leaves {
   explicit Leaves(const EsvoView& esvo) : esvo_(esvo) { walk(esvo.root, {}, esvo.levels); }
 
   const Attributes& at(Vec3i voxel) const { return attributes_.at({voxel.x, voxel.y, voxel.z}); }
+  /// Returns the attributes of the leaf around a voxel, or null.
+  const Attributes* around(Vec3i voxel) const {
+    for (int size = 1; size < 1 << esvo_.levels; size *= 2) {
+      const auto found =
+          attributes_.find({voxel.x / size * size, voxel.y / size * size, voxel.z / size * size});
+      if (found != attributes_.end() && sizes_.at(found->first) == size) return &found->second;
+    }
+    return nullptr;
+  }
   std::size_t coarse = 0;
 
  private:
@@ -66,6 +77,7 @@ class Leaves {
       }
       coarse += log2_size > 1 ? 1 : 0;
       attributes_[{at.x, at.y, at.z}] = attributes_of({slot, child});
+      sizes_[{at.x, at.y, at.z}] = 1 << (log2_size - 1);
     }
   }
 
@@ -85,14 +97,17 @@ class Leaves {
 
   EsvoView esvo_;
   std::map<std::array<std::int32_t, 3>, Attributes> attributes_;
+  std::map<std::array<std::int32_t, 3>, int> sizes_;
 };
 
 class TraceCommand : public testing::Test {
  protected:
   TraceCommand() { write_text(dir_ / "waves.obj", colored_waves()); }
 
-  std::string build(const std::string& name, std::vector<std::string> options = {}) const {
-    options.insert(options.begin(), {"build", dir_ / "waves.obj", "-r", "64", "-o", dir_ / name});
+  std::string build(const std::string& name, std::vector<std::string> options = {},
+                    const std::string& resolution = "64") const {
+    options.insert(options.begin(),
+                   {"build", dir_ / "waves.obj", "-r", resolution, "-o", dir_ / name});
     const ProcessResult result = run_voxdag(options);
     EXPECT_EQ(result.status, 0) << result.err;
     return dir_ / name;
@@ -107,10 +122,11 @@ class TraceCommand : public testing::Test {
     }
     write_text(dir_ / "rays.npy", rays_npy(rays));
   }
-  std::string trace(const std::string& scene) const {
+  std::string trace(const std::string& scene, const std::string& look = "") const {
     const std::string hits = dir_ / "hits.npy";
-    const ProcessResult result =
-        run_voxdag({"trace", scene, "--rays", dir_ / "rays.npy", "-o", hits});
+    std::vector<std::string> words = {"trace", scene, "--rays", dir_ / "rays.npy", "-o", hits};
+    if (!look.empty()) words.insert(words.end(), {"--look", look});
+    const ProcessResult result = run_voxdag(words);
     EXPECT_EQ(result.status, 0) << result.err;
     return hits;
   }
@@ -121,6 +137,19 @@ class TraceCommand : public testing::Test {
     std::vector<std::string> rows(reader.rows(), std::string(row_bytes, '\0'));
     for (std::string& row : rows) reader.read_rows(row.data(), 1);
     return rows;
+  }
+
+  static Vec3i voxel_of(const std::string& row) {
+    Vec3i voxel;
+    std::memcpy(&voxel, row.data() + 4, sizeof voxel);
+    return voxel;
+  }
+  static Attributes attributes_of(const std::string& row) {
+    Attributes attributes;
+    std::memcpy(&attributes.normal, row.data() + kPlaceBytes, sizeof attributes.normal);
+    std::memcpy(&attributes.color, row.data() + kPlaceBytes + sizeof attributes.normal,
+                sizeof attributes.color);
+    return attributes;
   }
 
   TempDir dir_;
@@ -136,17 +165,9 @@ TEST_F(TraceCommand, WritesTheStoredAttributesOfTheHitVoxels) {
       rows_of(trace(scene), kPlace + kAttributes + "]", kPlaceBytes + kAttributeBytes);
   std::size_t hits = 0;
   for (const std::string& row : rows) {
-    Vec3i voxel;
-    Attributes attributes;
-    std::memcpy(&voxel, row.data() + 4, sizeof voxel);
-    std::memcpy(&attributes.normal, row.data() + kPlaceBytes, sizeof attributes.normal);
-    std::memcpy(&attributes.color, row.data() + kPlaceBytes + sizeof attributes.normal,
-                sizeof attributes.color);
     const bool is_hit = row[17] != 0;
     hits += is_hit ? 1 : 0;
-    const Attributes expected = is_hit ? leaves.at(voxel) : Attributes{};
-    EXPECT_EQ(attributes.normal, expected.normal);
-    EXPECT_EQ(attributes.color, expected.color);
+    EXPECT_EQ(attributes_of(row), is_hit ? leaves.at(voxel_of(row)) : Attributes{});
   }
   EXPECT_GT(hits, rows.size() / 10);
   EXPECT_LT(hits, rows.size());
@@ -161,6 +182,71 @@ TEST_F(TraceCommand, WithoutAttributesTheHitsAreTheSame) {
   for (std::string& row : expected) row.resize(kPlaceBytes);
   EXPECT_EQ(rows_of(trace(without), kPlace + "]", kPlaceBytes), expected);
   EXPECT_EQ(rows_of(trace(dag), kPlace + "]", kPlaceBytes), expected) << "cubes are a DAG's voxels";
+}
+
+TEST_F(TraceCommand, LooksUpTheAttributesOfADagsHitsInAnEsvo) {
+  const std::string dag = build("dag.vdag");
+  const std::vector<std::string> coarse_leaves = {"--color-error", "0.2", "--max-error", "2"};
+  for (const int resolution : {64, 32, 128}) {
+    SCOPED_TRACE(resolution);
+    const std::string look = build("look.esvo", coarse_leaves, std::to_string(resolution));
+    const EsvoFile file(look);
+    const Leaves leaves(file.view());
+    write_rays(EsvoFile(look).grid());
+    const auto rows =
+        rows_of(trace(dag, look), kPlace + kAttributes + "]", kPlaceBytes + kAttributeBytes);
+    int hits = 0, found = 0;
+    for (const std::string& row : rows) {
+      if (row[17] == 0) {
+        EXPECT_EQ(attributes_of(row), Attributes{});
+        continue;
+      }
+      ++hits;
+      EXPECT_NE(attributes_of(row), Attributes{});
+      const Vec3i voxel = voxel_of(row);
+      const int coarser = resolution == 32 ? 2 : 1;
+      const Attributes* leaf =
+          leaves.around({voxel.x / coarser, voxel.y / coarser, voxel.z / coarser});
+      if (resolution == 128 || leaf == nullptr) continue;  // no leaf, but a voxel above leaves
+      ++found;
+      EXPECT_EQ(attributes_of(row), *leaf);
+    }
+    EXPECT_GT(hits, 400);
+    if (resolution == 64) {
+      EXPECT_EQ(found, hits);
+    }
+    if (resolution == 32) {
+      EXPECT_GT(found, hits * 9 / 10) << "the grids differ by less than 1/64 voxel";
+    }
+  }
+}
+
+TEST_F(TraceCommand, RefusesTheLookOfSomethingElse) {
+  const std::string dag = build("dag.vdag"), esvo = build("look.esvo");
+  write_rays(EsvoFile(esvo).grid());
+  ASSERT_EQ(run_voxdag({"scene", "hairball", "--size", "1", "-o", dir_ / "hair.ply"}).status, 0);
+  ASSERT_EQ(
+      run_voxdag({"build", dir_ / "hair.ply", "-r", "16", "--as", "esvo", "-o", dir_ / "hair.esvo"})
+          .status,
+      0);
+  const auto refused = [&](const std::string& scene, const std::string& look,
+                           const std::string& reason) {
+    for (const bool is_trace : {true, false}) {
+      std::vector<std::string> words = {is_trace ? "trace" : "render",
+                                        scene,
+                                        "--look",
+                                        look,
+                                        "-o",
+                                        dir_ / (is_trace ? "out.npy" : "out.png")};
+      if (is_trace) words.insert(words.end(), {"--rays", dir_ / "rays.npy"});
+      expect_failure(run_voxdag(words), 1, reason);
+    }
+  };
+  refused(dag, dag, "dag.vdag: is not an ESVO");
+  refused(dag, dir_ / "hair.esvo", "hair.esvo: is of another mesh");
+  refused(dag, dir_ / "absent.esvo", "absent.esvo");
+  refused(esvo, esvo, "--look: needs a DAG");
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "out.npy"));
 }
 
 TEST_F(TraceCommand, NoRaysMakeAnArrayWithTheSameFields) {

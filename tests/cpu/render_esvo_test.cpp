@@ -91,6 +91,30 @@ TEST(RenderEsvo, CubesAreWhereThoseOfTheDagAre) {
   }
 }
 
+TEST(RenderEsvo, ADagWithItsLookLooksLikeItsCubes) {
+  const Esvo esvo = ball(false);
+  std::vector<Vec3i> voxels;
+  const std::int32_t side = 1 << kPictureLevels;
+  VoxelSet(esvo.view()).for_each_voxel({{0, 0, 0}, {side, side, side}}, [&](Vec3i voxel) {
+    voxels.push_back(voxel);
+  });
+  const Svdag dag = brute_svdag(kPictureLevels, voxels);
+  for (const float lod : {0.0f, 1.0f, 4.0f}) {
+    RenderOptions options = small_picture();
+    options.lod_pixels = lod;
+    options.occlusion_samples = 0;
+    options.with_sun = false;
+    const RenderedImage cubes = render_image(esvo.view(), picture_grid(), options);
+    const RenderedImage grey = render_image(dag.view(), picture_grid(), options);
+    options.look = esvo.view();
+    const RenderedImage looked_up = render_image(dag.view(), picture_grid(), options);
+    EXPECT_EQ(looked_up.normal, cubes.normal);
+    EXPECT_EQ(looked_up.depth, grey.depth);
+    EXPECT_EQ(looked_up.radiance, cubes.radiance);
+    EXPECT_NE(looked_up.radiance, grey.radiance);
+  }
+}
+
 TEST(RenderEsvo, ContoursHugTheBallAndItsNormalsAndColoursAreSeen) {
   const Grid grid = picture_grid();
   RenderOptions options = small_picture();

@@ -7,6 +7,7 @@
 
 #include "cuda/cuda_device.hpp"
 #include "cuda/pictures.hpp"
+#include "support/ball_octree.hpp"
 #include "support/test_esvo.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/render_image.hpp"
@@ -57,6 +58,24 @@ TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForAnEsvo) {
     expect_like(render_image(scene, picture_grid(), picture.options),
                 render_image(esvo.view(), picture_grid(), picture.options));
   }
+}
+
+TEST_F(CudaRender, LooksUpColoursAndNormalsAsTheCpuDoes) {
+  const Svdag dag = picture_scene();
+  const Esvo look = pack_with_values(*ball_octree(Ball{}, 5, false), 5, [](Vec3d middle) {
+    VoxelValue value;
+    value.color[0] = static_cast<std::uint8_t>(255 * middle.x);
+    value.normal = static_cast<Vec3f>(Ball{}.normal(middle));
+    return value;
+  });
+  const DeviceScene scene(device_, dag.view()), device_look(device_, look.view());
+  RenderOptions options = pictures(4)[0].options;
+  options.look = look.view();
+  const RenderedImage expected = render_image(dag.view(), picture_grid(), options);
+  options.look = device_look.view().esvo;
+  const RenderedImage image = render_image(scene, picture_grid(), options);
+  expect_like(image, expected);
+  EXPECT_EQ(image.normal, expected.normal);
 }
 
 TEST_F(CudaRender, FiltersAsTheCpuDoes) {

@@ -64,7 +64,7 @@ void check_view(const ViewRequest& view) {
 }  // namespace
 
 void check_render_arguments(RenderArguments& arguments, Session& session) {
-  session.inputs = {arguments.mesh.file, arguments.path.file};
+  session.inputs = {arguments.mesh.file, arguments.path.file, arguments.look};
   if (arguments.mesh.primary == "mesh" && arguments.mesh.file.empty())
     throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);

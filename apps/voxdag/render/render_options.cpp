@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cli/look_input.hpp"
 #include "cli/parse.hpp"
 #include "render/render_arguments.hpp"
 #include "render/render_light.hpp"
@@ -179,6 +180,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",
                    "Also write a pass: picture, radiance, depth, normal, occlusion, shadow, steps "
                    "or steps64 to a .exr or .png file; repeatable");
+  const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
+  add_look_option(command, arguments.look).only_if(shows_voxels, "with --mesh");
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);
@@ -189,10 +192,10 @@ void add_render_options(const Command& command, Session& session, RenderArgument
               "each frame is written once")
       .only_if(
           [&arguments] {
-            return arguments.mesh.file.empty() &&
+            return arguments.mesh.file.empty() && arguments.look.empty() &&
                    arguments.device.kind != DeviceChoice::Kind::kCuda;
           },
-          "with --mesh or --device cuda");
+          "with --mesh, --look or --device cuda");
   add_threads_option(command, session);
   add_quiet_option(command, session);
 }

@@ -18,13 +18,11 @@ void put(std::byte*& row, const T& value) {
 
 }  // namespace
 
-HitRows::HitRows(const VoxelSet& scene) : scene_(scene) {
+HitRows::HitRows(int levels, const EsvoView& look) : levels_(levels), look_(look) {
   dtype_ = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
   row_bytes_ = 18;
-  if (const EsvoView* esvo = scene.esvo()) {
-    normals_ = has_stored(*esvo, EsvoAttachmentKind::kNormals);
-    colors_ = has_stored(*esvo, EsvoAttachmentKind::kColors);
-  }
+  normals_ = has_stored(look, EsvoAttachmentKind::kNormals);
+  colors_ = has_stored(look, EsvoAttachmentKind::kColors);
   if (normals_) {
     dtype_ += ", ('normal', '<f4', (3,))";
     row_bytes_ += sizeof(Vec3f);
@@ -50,11 +48,12 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   if (!normals_ && !colors_) return;
   Vec3f normal{};
   Vec3<std::uint8_t> color{};
-  if (hit.hit) {
-    const EsvoView& esvo = *scene_.esvo();
-    const EsvoVoxel voxel = esvo_voxel_at(esvo, hit.voxel, hit.level);
-    if (normals_) stored_normal(esvo, voxel, normal);
-    if (colors_) stored_srgb8(esvo, voxel, color);
+  const int shift = levels_ - hit.level;
+  const Vec3i cell{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
+  EsvoVoxel voxel;
+  if (hit.hit && find_esvo_voxel(look_, cell, hit.level, voxel)) {
+    if (normals_) stored_normal(look_, voxel, normal);
+    if (colors_) stored_srgb8(look_, voxel, color);
   }
   if (normals_) put(row, normal);
   if (colors_) put(row, color);

@@ -4,18 +4,18 @@
 #include <span>
 #include <string>
 
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/layout/esvo.hpp"
 #include "voxdag/trace/hit.hpp"
 
 namespace voxdag {
 
-/// Rows of a structured array without padding: t, voxel, face, hit; for an ESVO also the normal and
-/// colour that it stores for the voxel. The normal and colour are looked up by voxel, so they do
-/// not depend on the device that cast the ray.
+/// Rows of a structured array without padding: t, voxel, face, hit; with an ESVO also the normal
+/// and colour that it stores for the voxel. The normal and colour are looked up by voxel, so they
+/// do not depend on the device that cast the ray.
 class HitRows {
  public:
-  /// The data that `scene` points to must outlive the rows.
-  explicit HitRows(const VoxelSet& scene);
+  /// The hits are at voxels of 2^levels. `look` is the ESVO, or empty.
+  HitRows(int levels, const EsvoView& look);
 
   /// Returns the dtype for NpyHeader.
   const std::string& dtype() const { return dtype_; }
@@ -27,7 +27,8 @@ class HitRows {
  private:
   void pack_one(const Hit& hit, std::byte* row) const;
 
-  VoxelSet scene_;
+  int levels_;
+  EsvoView look_;
   bool normals_ = false, colors_ = false;
   std::string dtype_;
   std::size_t row_bytes_ = 0;

@@ -7,6 +7,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/device.hpp"
+#include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
 #include "trace/hit_rows.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
@@ -22,20 +23,26 @@ namespace {
 constexpr std::size_t kBatch = std::size_t{1} << 20;
 
 struct TraceArguments {
-  std::string rays, output;
+  std::string rays, output, look;
   DeviceChoice device;
 };
+
+/// Returns an empty view for a DAG.
+EsvoView esvo_of(const VoxelSet& scene) {
+  return scene.esvo() != nullptr ? *scene.esvo() : EsvoView{};
+}
 
 void trace(const TraceArguments& arguments, Session& session) {
   const SceneFile file(session.subject);
   const VoxelSet scene = file.voxels();
+  const std::optional<SceneFile> look = open_look(arguments.look, file);
   const std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   std::optional<CudaTracer> cuda;
   if (device_scene) cuda.emplace(*device_scene, file.grid());
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
   std::optional<CpuScene> cpu_scene;
   if (!cuda) cpu_scene.emplace(scene, reader.rows());
-  const HitRows hit_rows(scene);
+  const HitRows hit_rows(scene.levels(), esvo_of(look ? look->voxels() : scene));
   NpyWriter writer(arguments.output, hit_rows.dtype(), {}, hit_rows.row_bytes(), reader.rows());
 
   const std::size_t batch =
@@ -81,16 +88,18 @@ void add_trace_command(const Command& program, Session& session) {
             "float32 array of shape (N, 8): origin, t_min, direction, t_max, in world units")
       .required();
   command
-      .text("-o,--output", arguments->output, "HITS.npy",
-            "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
-            "the ray starts inside), hit; for an ESVO also its normal (world space) and color "
-            "(sRGB, 0 to 255)")
+      .text(
+          "-o,--output", arguments->output, "HITS.npy",
+          "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
+          "the ray starts inside), hit; for an ESVO and with --look also normal (world space) and "
+          "color (sRGB, 0 to 255)")
       .required();
+  add_look_option(command, arguments->look);
   add_device_option(command, arguments->device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
-    session.inputs = {arguments->rays};
+    session.inputs = {arguments->rays, arguments->look};
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [arguments, &session] { trace(*arguments, session); };
   });

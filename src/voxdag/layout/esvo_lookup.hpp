@@ -5,15 +5,21 @@
 
 namespace voxdag {
 
-/// Returns the voxel of `level` in [1, L] that holds the voxel of the finest level at `voxel`. It
-/// must exist, as it does at a ray's hit, and none of its ancestors may be a leaf.
-VOXDAG_HD inline EsvoVoxel esvo_voxel_at(const EsvoView& esvo, Vec3i voxel, int level) {
+/// Sets `found` to the finest voxel of level 1 to `level` that holds the cell `cell` of `level`.
+/// The octree's grid may have more or fewer levels. Returns false if there is no such voxel.
+VOXDAG_HD inline bool find_esvo_voxel(const EsvoView& esvo, Vec3i cell, int level,
+                                      EsvoVoxel& found) {
+  if (esvo.is_empty()) return false;
   std::uint64_t slot = esvo.root;
-  for (int l = 1;; ++l) {
-    const int child = child_index(voxel, esvo.levels - l);
-    if (l == level) return {slot, child};
-    slot = esvo.child(slot, esvo.descriptor(slot), child);
+  for (int depth = 1; depth <= level; ++depth) {
+    const ChildDescriptor descriptor = esvo.descriptor(slot);
+    const int child = child_index(cell, level - depth);
+    if ((descriptor.valid_mask() >> child & 1u) == 0) return depth > 1;
+    found = {slot, child};
+    if ((descriptor.leaf_mask() >> child & 1u) != 0) return true;
+    slot = esvo.child(slot, descriptor, child);
   }
+  return level > 0;
 }
 
 }  // namespace voxdag

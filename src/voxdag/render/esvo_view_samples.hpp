@@ -1,6 +1,5 @@
 #pragma once
 /// The primary rays of a tile at an ESVO: shapes cut by contours, with colours and normals.
-#include "voxdag/layout/stored_values.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
@@ -34,7 +33,7 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   // The height to which the shapes of neighbours may rise above the visible plane: in units of the
   // slab's thickness, and in units of the cells that represent a surface at this depth.
   constexpr float kSlabs = 1.0f, kCells = 0.5f;
-  constexpr float kLeaning = 0.2f, kOpposite = 0.8f, kTrusted = 0.5f;  // cosines
+  constexpr float kTrusted = 0.5f;  // a cosine
   const EsvoView& esvo = nodes.view();
   const double depth = ray.to_world_t(static_cast<double>(hit.t));
   const auto side = static_cast<float>(setup.side());
@@ -52,14 +51,8 @@ VOXDAG_HD inline ViewSample esvo_view_sample(const Nodes& nodes, const RenderSet
   stored_color(esvo, hit.voxel, sample.albedo);
   sample.normal = plane;
   if (stored_normal(esvo, hit.voxel, sample.normal)) {
-    // Surfaces are visible from both sides. The entered side of a cube does not tell reliably which
-    // side of the surface is seen. At outlines, where most cube sides are visible, the normal may
-    // point away from the viewer a little. It may not point straight into the cube from the entered
-    // side.
-    const float facing = dot(sample.normal, view), through = dot(sample.normal, plane);
-    const bool is_back = hit.is_through_contour()
-                             ? through < 0
-                             : facing < -kLeaning || (facing < 0 && through < -kOpposite);
+    const bool is_back = hit.is_through_contour() ? dot(sample.normal, plane) < 0
+                                                  : is_of_back(sample.normal, view, plane);
     if (is_back) sample.normal = -sample.normal;
     // The mean normal of the two sides of a cloth fits neither side. So its weight falls with its
     // angle to the visible plane.

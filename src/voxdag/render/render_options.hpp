@@ -33,6 +33,10 @@ struct RenderOptions {
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
+  /// An ESVO of the same mesh, in a grid with the same corner and side. Hits at a DAG get the
+  /// colour and the normal that it stores for their place. Must be in the memory of the device that
+  /// renders. Empty: none.
+  EsvoView look;
   bool filter = false;  ///< Smooth voxels larger than pixels (post_filter.hpp), but not a
                         ///< source's points.
   float exposure = 0;   ///< Factor before tone mapping; 0: chosen to suit the picture.

@@ -96,6 +96,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   setup_.camera = make_camera(image_.view, options.width, options.height);
   setup_.sky = make_sky(setup_.camera, image_.view, options);
   setup_.tables = samples_.view();
+  setup_.look = options.look;
   setup_.image = buffers_of(image_);
 
   RenderSettings& settings = setup_.settings;

@@ -1,6 +1,7 @@
 #pragma once
 /// The primary rays of a tile at the voxels of a DAG.
 #include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/stored_look.hpp"
 #include "voxdag/render/surface_normal.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
@@ -46,13 +47,14 @@ VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSe
   const float cube = smooth_step(settings.cube_pixels / 2, settings.cube_pixels, cell_pixels);
   ViewSample sample;
   sample.normal = face;
+  const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
   if (cube < 1 && hit.level >= 2) {
-    const Vec3i at{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
     const Vec3f smooth = surface_normal(nodes, hit.level, at, view, face);
     sample.normal = normalized(mix(smooth, face, cube));
   }
   sample.face = sample.normal;
   sample.albedo = settings.albedo;
+  set_stored_look(setup.look, at, hit.level, view, face, sample);
   sample.depth = static_cast<float>(depth);
   sample.cell_size = static_cast<float>(cell_size);
   // The surface's plane meets the cell, so the entered face lies at most this far below the plane.

@@ -1,0 +1,41 @@
+#include "cli/look_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/command.hpp"
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Returns whether the grids have the same cube, up to the difference of fit_grid()'s cubes at
+/// different resolutions.
+bool have_same_cube(const Grid& a, const Grid& b) {
+  constexpr double kVoxels = 1.0 / 64;
+  const double most = std::max(a.voxel_size, b.voxel_size) * kVoxels;
+  const Vec3d apart = a.origin - b.origin;
+  return std::abs(apart.x) <= most && std::abs(apart.y) <= most && std::abs(apart.z) <= most &&
+         std::abs(a.side() - b.side()) <= most;
+}
+
+}  // namespace
+
+Option add_look_option(const Command& command, std::string& file) {
+  return command.text("--look", file, "ESVO",
+                      "An .esvo file of the same mesh: the voxels of a DAG get its colours and "
+                      "normals");
+}
+
+std::optional<SceneFile> open_look(const std::string& file, const SceneFile& scene) {
+  if (file.empty()) return std::nullopt;
+  if (scene.voxels().esvo() != nullptr)
+    throw Error("--look", "", "needs a DAG, but the scene is an ESVO, which has a look of its own");
+  SceneFile look(file);
+  if (look.voxels().esvo() == nullptr) throw Error(file, "", "is not an ESVO");
+  if (!have_same_cube(look.grid(), scene.grid()))
+    throw Error(file, "", "is of another mesh: its grid has another place or size than the DAG's");
+  return look;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,32 @@
+#pragma once
+/// The stored colours and normals of cubes.
+#include "voxdag/layout/esvo_lookup.hpp"
+#include "voxdag/layout/stored_values.hpp"
+#include "voxdag/render/view_sample.hpp"
+
+namespace voxdag {
+
+/// Returns whether the stored normal of a cube belongs to the side of the surface that the viewer
+/// does not see. `view` points to the viewer, `entered` is the normal of the cube's entered face;
+/// all have unit length.
+VOXDAG_HD inline bool is_of_back(Vec3f normal, Vec3f view, Vec3f entered) {
+  constexpr float kLeaning = 0.2f, kOpposite = 0.8f;  // cosines
+  // Surfaces are visible from both sides. The entered face does not tell reliably which side is
+  // seen. At outlines, where most cube faces are visible, the normal may point away from the viewer
+  // a little. It may not point straight into the cube from the entered face.
+  const float facing = dot(normal, view);
+  return facing < -kLeaning || (facing < 0 && dot(normal, entered) < -kOpposite);
+}
+
+/// Sets the colour and the normal for shading of a sample at cell `cell` of `level` to those that
+/// `look` stores there, as far as it stores any. The other parameters are those of is_of_back().
+VOXDAG_HD inline void set_stored_look(const EsvoView& look, Vec3i cell, int level, Vec3f view,
+                                      Vec3f entered, ViewSample& sample) {
+  EsvoVoxel voxel;
+  if (!find_esvo_voxel(look, cell, level, voxel)) return;
+  stored_color(look, voxel, sample.albedo);
+  if (stored_normal(look, voxel, sample.normal) && is_of_back(sample.normal, view, entered))
+    sample.normal = -sample.normal;
+}
+
+}  // namespace voxdag
