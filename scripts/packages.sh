@@ -12,7 +12,7 @@ voxdag_packages=(
   libcli11-dev libfmt-dev
 )
 voxdag_test_packages=(
-  libgtest-dev zstd
+  libgtest-dev zstd python3-matplotlib
   clang clang-format clang-tidy
 )
 

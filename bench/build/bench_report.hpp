@@ -1,9 +1,10 @@
 #pragma once
-/// Reports the results of `voxdag bench build` as tables, JSON and a plot.
+/// Reports the results of `voxdag bench build` as tables, JSON and a chart.
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "bench/build/bench_build.hpp"
+#include "bench/report/charts.hpp"
 
 namespace voxdag {
 
@@ -22,7 +23,7 @@ nlohmann::ordered_json bench_json(const BenchResults& results,
 /// Returns tables: builds of each scene, their stages, sorting with the paper's figures, rivals.
 std::string bench_table(const BenchResults& results);
 
-/// Returns an SVG of seconds and bytes over the resolution; the growth of each DAG is dashed.
-std::string bench_svg(const BenchResults& results);
+/// Returns a chart of seconds and bytes over the resolution. Throws Error without any build.
+Chart bench_chart(const BenchResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag

@@ -10,6 +10,7 @@
 #include "bench/esvo/picture_cost.hpp"
 #include "bench/papers/paper_scenes.hpp"
 #include "bench/report/bench_child.hpp"
+#include "bench/report/charts.hpp"
 #include "voxdag/image/image_size.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -136,9 +137,10 @@ LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const Silhouett
 nlohmann::ordered_json esvo_bench_json(const EsvoBenchResults& results,
                                        const nlohmann::ordered_json& machine);
 std::string esvo_bench_table(const EsvoBenchResults& results);
-/// Draws megabytes, seconds and silhouettes over the levels; the paper's figures are dashed.
-std::string esvo_bench_svg(const EsvoBenchResults& results);
-/// Draws bars of rays per second, one diagram per scene.
-std::string esvo_rays_svg(const EsvoBenchResults& results);
+/// Returns a chart of megabytes, seconds and silhouettes over the resolution, beside the paper's
+/// figures. Throws Error without any build.
+Chart esvo_bench_chart(const EsvoBenchResults& results, const std::filesystem::path& file);
+/// Returns a chart of rays per second as bars, a panel per scene. Throws Error without any rays.
+Chart esvo_rays_chart(const EsvoBenchResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag

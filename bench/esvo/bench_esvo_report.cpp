@@ -1,4 +1,4 @@
-/// Prints and draws the results of `voxdag bench esvo`.
+/// Prints the results of `voxdag bench esvo`.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "bench/papers/paper_json.hpp"
 #include "bench/report/bench_machine.hpp"
 #include "voxdag/report/human.hpp"
-#include "voxdag/report/svg_plot.hpp"
 
 namespace voxdag {
 namespace {
@@ -154,38 +153,6 @@ std::string silhouettes_table(const std::vector<SilhouetteRow>& rows) {
   return text;
 }
 
-/// Returns lines over the levels, one per scene and form.
-template <class Value>
-void add_lines(const Builds& builds, const Value& value, LineDiagram& diagram) {
-  std::size_t series = 0;
-  for (std::size_t begin = 0, end; begin < builds.size(); begin = end, ++series) {
-    PlotLine contours{builds[begin].scene, plot_style(series), {}};
-    PlotLine cubes{"", plot_style(series, "stroke-dasharray='1 3'"), {}};
-    for (end = begin; end < builds.size() && builds[end].scene == builds[begin].scene; ++end)
-      if (builds[end].failure.empty())
-        (builds[end].with_contours ? contours : cubes)
-            .points.push_back({static_cast<double>(builds[end].levels), value(builds[end])});
-    diagram.lines.insert(diagram.lines.end(), {contours, cubes});
-    std::erase_if(diagram.lines, [](const PlotLine& line) { return line.points.empty(); });
-  }
-}
-
-/// Adds the paper's lines for the scenes in `builds`.
-void add_paper_lines(const Builds& builds, std::array<double, 7> published::EsvoScene::*values,
-                     LineDiagram& diagram) {
-  std::size_t series = 0;
-  for (std::size_t i = 0; i < builds.size(); ++i) {
-    if (i > 0 && builds[i].scene == builds[i - 1].scene) continue;
-    const published::EsvoScene* paper = published::esvo_scene(builds[i].paper);
-    PlotLine line{"", plot_style(series++, "stroke-dasharray='6 3'"), {}};
-    for (std::size_t k = 0; paper != nullptr && k < (paper->*values).size(); ++k)
-      if (!std::isnan((paper->*values)[k]))
-        line.points.push_back(
-            {static_cast<double>(k) + published::kEsvoFirstLevels, (paper->*values)[k]});
-    if (!line.points.empty()) diagram.lines.push_back(line);
-  }
-}
-
 }  // namespace
 
 std::string name_of(EsvoForm form) {
@@ -293,66 +260,6 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
 std::string esvo_bench_table(const EsvoBenchResults& results) {
   return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results) +
          pictures_table(results.rates) + silhouettes_table(results.silhouettes);
-}
-
-std::string esvo_bench_svg(const EsvoBenchResults& results) {
-  const PlotAxis resolution = resolution_axis();
-  LineDiagram memory{"Megabytes; dotted: cubes, dashed: the paper",
-                     resolution,
-                     {true, 10, [](double v) { return fmt::format("{:.4g} MB", v); }},
-                     {}};
-  LineDiagram time{
-      "Seconds to build; dotted: cubes, dashed: the paper", resolution, log_seconds_axis(), {}};
-  add_lines(
-      results.builds, [](const EsvoBuildRun& run) { return run.megabytes(); }, memory);
-  add_lines(
-      results.builds, [](const EsvoBuildRun& run) { return run.build_seconds; }, time);
-  add_paper_lines(results.builds, &published::EsvoScene::megabytes, memory);
-  add_paper_lines(results.builds, &published::EsvoScene::seconds, time);
-  std::vector<LineDiagram> diagrams{memory, time};
-  LineDiagram silhouettes{"Rays on the wrong side of a silhouette, per million; dotted: cubes",
-                          resolution,
-                          {true, 10, [](double v) { return fmt::format("{:.4g}", v); }},
-                          {}};
-  std::size_t series = 0;
-  const std::vector<SilhouetteRow>& rows = results.silhouettes;
-  for (std::size_t begin = 0, end; begin < rows.size(); begin = end, ++series) {
-    PlotLine contours{rows[begin].scene, plot_style(series), {}};
-    PlotLine cubes{"", plot_style(series, "stroke-dasharray='1 3'"), {}};
-    for (end = begin; end < rows.size() && rows[end].scene == rows[begin].scene; ++end) {
-      const double x = rows[end].levels;
-      if (rows[end].contours > 0) contours.points.push_back({x, rows[end].contours * 1e6});
-      if (rows[end].cubes > 0) cubes.points.push_back({x, rows[end].cubes * 1e6});
-    }
-    for (const PlotLine& line : {contours, cubes})
-      if (!line.points.empty()) silhouettes.lines.push_back(line);
-  }
-  if (!silhouettes.lines.empty()) diagrams.push_back(silhouettes);
-  if (memory.lines.empty()) throw Error("there is nothing to plot");
-  return line_svg(diagrams);
-}
-
-std::string esvo_rays_svg(const EsvoBenchResults& results) {
-  std::vector<BarDiagram> diagrams;
-  for (std::size_t i = 0; i < results.rates.size(); ++i) {
-    const EsvoRateRow& row = results.rates[i];
-    if (i == 0 || row.scene != results.rates[i - 1].scene) {
-      const int coarse = coarse_levels(results.silhouettes, row.scene);
-      BarDiagram diagram;
-      diagram.title = fmt::format(
-          "{} {}{}: million primary rays per second", row.scene, resolution_of(row.levels),
-          coarse == 0 ? "" : fmt::format(", coarse: {}", resolution_of(coarse)));
-      diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
-      for (const EsvoForm form : kEsvoForms) diagram.series.push_back({name_of(form), {}});
-      diagrams.push_back(diagram);
-    }
-    BarDiagram& diagram = diagrams.back();
-    diagram.groups.push_back(fmt::format("{} x {}", row.size.width, row.size.height));
-    for (std::size_t form = 0; form < kEsvoForms.size(); ++form)
-      diagram.series[form].values.push_back(row.mrays_per_second[form]);
-  }
-  if (diagrams.empty()) throw Error("there are no rays to plot");
-  return bar_svg(diagrams);
 }
 
 }  // namespace voxdag

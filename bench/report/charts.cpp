@@ -1,7 +1,8 @@
 #include "bench/report/charts.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "bench/report/bench_child.hpp"
@@ -9,6 +10,7 @@
 #include "charts_py.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/open_input.hpp"
 
 namespace voxdag {
 namespace {
@@ -21,11 +23,16 @@ Json axis_json(const ChartAxis& axis) {
 }
 
 Json line_json(const ChartLine& line) {
-  return {{"label", line.label}, {"x", line.x},           {"y", line.y},  // NaN becomes null
-          {"color", line.color}, {"dashed", line.dashed}, {"markers", line.markers}};
+  static constexpr const char* kStyles[] = {"solid", "dashed", "dotted"};
+  return {{"label", line.label},
+          {"x", line.x},
+          {"y", line.y},  // NaN becomes null
+          {"color", line.color},
+          {"style", kStyles[static_cast<int>(line.style)]},
+          {"markers", line.markers}};
 }
 
-Json chart_json(const Chart& chart, const std::filesystem::path& folder) {
+Json chart_json(const Chart& chart) {
   Json panels = Json::array();
   for (const ChartPanel& panel : chart.panels) {
     Json lines = Json::array();
@@ -33,10 +40,13 @@ Json chart_json(const Chart& chart, const std::filesystem::path& folder) {
     panels.push_back({{"title", panel.title},
                       {"x", axis_json(panel.x)},
                       {"y", axis_json(panel.y)},
-                      {"lines", std::move(lines)}});
+                      {"lines", std::move(lines)},
+                      {"groups", panel.groups}});
   }
-  return {{"file", std::filesystem::absolute(folder / chart.file).string()}, {"panels", panels}};
+  return {{"panels", panels}};
 }
+
+constexpr SizeLimit kChartLimit{std::uint64_t{1} << 28, "charts"};
 
 /// Returns a Python interpreter that has matplotlib; empty if there is none.
 std::string python_with_matplotlib(const Progress& progress) {
@@ -49,21 +59,28 @@ std::string python_with_matplotlib(const Progress& progress) {
 
 }  // namespace
 
+bool can_draw_charts(const Progress& progress) { return !python_with_matplotlib(progress).empty(); }
+
 bool draw_charts(const std::vector<Chart>& charts, const std::filesystem::path& folder,
                  const Progress& progress) {
   const std::string python = python_with_matplotlib(progress);
   if (python.empty()) return false;
   Json all = Json::array();
-  for (const Chart& chart : charts) all.push_back(chart_json(chart, folder));
+  for (const Chart& chart : charts) all.push_back(chart_json(chart));
   const ScratchFolder scratch;
   write_whole_file(scratch.path() / "charts.py", kChartsPy);
   write_whole_file(scratch.path() / "charts.json", all.dump());
   const ChildResult drawn =
       run_child({python, "charts.py", "charts.json"}, scratch.path(), 0, progress);
-  if (drawn.status == 0) return true;
-  // Python prints the reason last.
-  const std::string error = drawn.err.substr(0, drawn.err.find_last_not_of('\n') + 1);
-  throw Error(folder, "", "matplotlib failed: " + error.substr(error.rfind('\n') + 1));
+  if (drawn.status != 0) {
+    // Python prints the reason last.
+    const std::string error = drawn.err.substr(0, drawn.err.find_last_not_of('\n') + 1);
+    throw Error(folder, "", "matplotlib failed: " + error.substr(error.rfind('\n') + 1));
+  }
+  for (std::size_t i = 0; i < charts.size(); ++i)
+    write_whole_file(folder / charts[i].file,
+                     read_input(scratch.path() / fmt::format("{}.svg", i), kChartLimit));
+  return true;
 }
 
 void add_charts(Section& section, const std::vector<Chart>& charts, const std::string& caption,

@@ -16,26 +16,37 @@ struct ChartAxis {
   AxisScale scale = AxisScale::kLinear;
 };
 
+enum class LineStyle {
+  kSolid,
+  kDashed,  ///< For published figures and for bounds.
+  kDotted,
+};
+
 /// A line through points. NaN leaves a gap.
 struct ChartLine {
   std::string label;  ///< Empty: not in the legend.
   std::vector<double> x, y;
-  int color = 0;         ///< Lines of one colour belong together; the palette has 8.
-  bool dashed = false;   ///< For published figures and for bounds.
+  int color = 0;  ///< Lines of one colour belong together; the palette has 8.
+  LineStyle style = LineStyle::kSolid;
   bool markers = false;  ///< Draw the points.
 };
 
 struct ChartPanel {
   std::string title;
   ChartAxis x, y;
-  std::vector<ChartLine> lines;
+  std::vector<ChartLine> lines = {};
+  /// Not empty: a group of bars for each name. Each line then has a y for each group, and no x.
+  std::vector<std::string> groups = {};
 };
 
 /// Panels side by side.
 struct Chart {
-  std::filesystem::path file;  ///< An .svg, relative to the folder given to draw_charts().
+  std::filesystem::path file;  ///< Relative paths start in the folder given to draw_charts().
   std::vector<ChartPanel> panels;
 };
+
+/// Returns whether matplotlib is installed. Throws Cancelled.
+bool can_draw_charts(const Progress& progress);
 
 /// Draws the charts as SVG files in `folder`. The same charts give the same bytes with the same
 /// version of matplotlib. Returns whether matplotlib is installed. Throws Error if it fails, and

@@ -1,7 +1,7 @@
 """Draws charts with matplotlib.
 
-Reads a list of charts as JSON from the file argv[1] and writes SVG files. bench/report/charts.hpp
-says what the fields mean.
+Reads a list of charts as JSON from the file argv[1] and writes them as 0.svg, 1.svg and so on.
+bench/report/charts.hpp says what the fields mean.
 """
 
 import json
@@ -50,25 +50,49 @@ def set_scale(axis, set_axis_scale, scale):
         axis.set_major_formatter(ticker.StrMethodFormatter("{x:g}"))
 
 
-def draw_panel(axes, panel):
+def numbers(values):
+    return [float("nan") if value is None else value for value in values]
+
+
+def draw_lines(axes, panel):
     for line in panel["lines"]:
         color = line["color"] % len(PALETTE)
-        y = [float("nan") if value is None else value for value in line["y"]]
-        axes.plot(line["x"], y, color=PALETTE[color], label=line["label"] or None,
-                  linestyle="--" if line["dashed"] else "-",
-                  marker=MARKERS[color] if line["markers"] else None)
+        axes.plot(line["x"], numbers(line["y"]), color=PALETTE[color], label=line["label"] or None,
+                  linestyle=line["style"], marker=MARKERS[color] if line["markers"] else None)
+
+
+def draw_bars(axes, panel):
+    width = 0.8 / len(panel["lines"])
+    for i, line in enumerate(panel["lines"]):
+        left = (i - (len(panel["lines"]) - 1) / 2) * width
+        axes.bar([group + left for group in range(len(panel["groups"]))], numbers(line["y"]),
+                 0.92 * width, color=PALETTE[line["color"] % len(PALETTE)], label=line["label"])
+    axes.set_xticks(range(len(panel["groups"])), panel["groups"])
+    axes.tick_params(axis="x", length=0)
+    axes.grid(axis="x", visible=False)
+
+
+def draw_panel(axes, panel):
+    if panel["groups"]:
+        draw_bars(axes, panel)
+    else:
+        draw_lines(axes, panel)
     axes.set_title(panel["title"], fontsize=9, fontweight="bold")
     axes.set_xlabel(panel["x"]["label"])
     axes.set_ylabel(panel["y"]["label"])
-    set_scale(axes.xaxis, axes.set_xscale, panel["x"]["scale"])
+    if not panel["groups"]:
+        set_scale(axes.xaxis, axes.set_xscale, panel["x"]["scale"])
     set_scale(axes.yaxis, axes.set_yscale, panel["y"]["scale"])
     if panel["y"]["scale"] == "linear":
         axes.set_ylim(bottom=0)
-    if any(line["label"] for line in panel["lines"]):
+    if panel["groups"]:
+        # Below the bars, where it hides none of them.
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=4)
+    elif any(line["label"] for line in panel["lines"]):
         axes.legend()
 
 
-def draw(chart):
+def draw(chart, file):
     panels = chart["panels"]
     # Two panels beside each other have the width of a page.
     columns = min(len(panels), 2)
@@ -79,14 +103,14 @@ def draw(chart):
         axes.set_axis_off()
     for axes, panel in zip(all_axes.flat, panels):
         draw_panel(axes, panel)
-    figure.savefig(chart["file"], format="svg", metadata={"Date": None})
+    figure.savefig(file, format="svg", metadata={"Date": None})
     pyplot.close(figure)
 
 
 def main():
     with open(sys.argv[1], encoding="utf-8") as file:
-        for chart in json.load(file):
-            draw(chart)
+        for i, chart in enumerate(json.load(file)):
+            draw(chart, f"{i}.svg")
 
 
 main()

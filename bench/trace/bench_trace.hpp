@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/rays/trace_rays.hpp"
+#include "bench/report/charts.hpp"
 #include "bench/trace/soft_shadows.hpp"
 #include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/mesh/mesh.hpp"
@@ -84,7 +85,8 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
 nlohmann::ordered_json trace_json(const TraceResults& results,
                                   const nlohmann::ordered_json& machine);
 std::string trace_table(const TraceResults& results);
-/// Draws bars of rays per second by class, one diagram per scene and resolution.
-std::string trace_svg(const TraceResults& results);
+/// Returns a chart of rays per second by class as bars, a panel per scene, resolution and layout.
+/// Throws Error without any rays.
+Chart trace_chart(const TraceResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag

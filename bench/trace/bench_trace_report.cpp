@@ -7,7 +7,6 @@
 #include "bench/report/bench_machine.hpp"
 #include "bench/trace/bench_trace.hpp"
 #include "voxdag/report/human.hpp"
-#include "voxdag/report/svg_plot.hpp"
 
 namespace voxdag {
 namespace {
@@ -133,27 +132,28 @@ std::string trace_table(const TraceResults& results) {
   return text;
 }
 
-std::string trace_svg(const TraceResults& results) {
-  std::vector<BarDiagram> diagrams;
+Chart trace_chart(const TraceResults& results, const std::filesystem::path& file) {
+  Chart chart{file, {}};
   const std::vector<std::string> rivals = rivals_of(results);
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
     const TraceRow& row = results.rows[i];
     if (i == 0 || !is_same_dag(row, results.rows[i - 1])) {
-      BarDiagram diagram;
-      diagram.title = fmt::format("{} {}, layout {}: million rays per second", row.scene,
-                                  resolution_of(row), row.layout);
-      diagram.tick = [](double value) { return fmt::format("{:.4g}", value); };
-      diagram.series.push_back({"voxdag", {}});
-      for (const std::string& rival : rivals) diagram.series.push_back({rival, {}});
-      diagrams.push_back(diagram);
+      ChartPanel panel;
+      panel.title = fmt::format("{} {}, layout {}", row.scene, resolution_of(row), row.layout);
+      panel.y.label = "million rays per second";
+      panel.lines.push_back({"voxdag", {}, {}, 0});
+      for (const std::string& rival : rivals)
+        panel.lines.push_back({rival, {}, {}, static_cast<int>(panel.lines.size())});
+      chart.panels.push_back(panel);
     }
-    BarDiagram& diagram = diagrams.back();
-    diagram.groups.emplace_back(name_of(row.rays));
-    diagram.series[0].values.push_back(row.mrays_per_second);
+    ChartPanel& panel = chart.panels.back();
+    panel.groups.emplace_back(name_of(row.rays));
+    panel.lines[0].y.push_back(row.mrays_per_second);
     for (std::size_t r = 0; r < rivals.size(); ++r)
-      diagram.series[r + 1].values.push_back(rate_of(row, rivals[r]));
+      panel.lines[r + 1].y.push_back(rate_of(row, rivals[r]));
   }
-  return bar_svg(diagrams);
+  if (chart.panels.empty()) throw Error("there are no rays to plot");
+  return chart;
 }
 
 }  // namespace voxdag

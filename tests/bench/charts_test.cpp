@@ -13,8 +13,8 @@ Chart example(const std::string& file) {
   ChartPanel panel{"Sponza",
                    {"resolution", AxisScale::kLog2},
                    {"time (s)", AxisScale::kLog10},
-                   {{"ours", {512, 1024, 2048}, {0.1, NAN, 1.2}, 0, false, true},
-                    {"published", {512, 2048}, {0.2, 2.4}, 1, true, false}}};
+                   {{"ours", {512, 1024, 2048}, {0.1, NAN, 1.2}, 0, LineStyle::kSolid, true},
+                    {"published", {512, 2048}, {0.2, 2.4}, 1, LineStyle::kDashed, false}}};
   return {file, {panel, panel}};
 }
 

@@ -99,7 +99,7 @@ TEST(EsvoSections, ChartsHaveALineForEachFormAndResolution) {
   EXPECT_EQ(rates[0].panels[0].lines[0].x, (std::vector<double>{8192, 16384}));
   const std::vector<Chart> memory = esvo_table1_charts(scenes);
   ASSERT_EQ(memory.size(), 1u);
-  EXPECT_TRUE(memory[0].panels.at(0).lines.at(1).dashed);
+  EXPECT_EQ(memory[0].panels.at(0).lines.at(1).style, LineStyle::kDashed);
   const std::vector<Chart> errors = silhouettes_charts(scenes);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].panels.at(0).lines.at(1).y, (std::vector<double>{800, 400}));

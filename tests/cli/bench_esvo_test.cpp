@@ -101,11 +101,12 @@ TEST_F(BenchEsvo, SilhouettesAreComparedWithTheMesh) {
 TEST_F(BenchEsvo, TablesAndDiagramsAreWritten) {
   const ProcessResult result = bench({"sponge=sponge:2", "-r", "16,32", "-o", path("esvo.json"),
                                       "--plot", path("esvo.svg"), "--rays-plot", path("rays.svg")});
+  if (lacks_matplotlib(result)) GTEST_SKIP() << "matplotlib is not installed";
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("contours_beams"), std::string::npos);
   EXPECT_EQ(Json::parse(read_text(path("esvo.json"))).at("builds").size(), 4u);
   for (const char* file : {"esvo.svg", "rays.svg"})
-    EXPECT_EQ(read_text(path(file)).rfind("<svg", 0), 0u) << file;
+    EXPECT_NE(read_text(path(file)).find("<svg"), std::string::npos) << file;
 }
 
 TEST_F(BenchEsvo, FailuresSayWhatIsWrong) {

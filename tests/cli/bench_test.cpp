@@ -92,11 +92,12 @@ TEST_F(BenchBuild, OnlyThePapersMethodStandsBesideThePapersSeconds) {
 TEST_F(BenchBuild, TableJsonFileAndPlotComeFromOneRun) {
   const std::string json = dir_ / "out.json", plot = dir_ / "out.svg";
   const ProcessResult result = bench({mesh_, "-r", "32,64", "-o", json, "--plot", plot});
+  if (lacks_matplotlib(result)) GTEST_SKIP() << "matplotlib is not installed";
   ASSERT_EQ(result.status, 0) << result.err;
   for (const char* text : {"lucy.obj", "wall s", "CPU s", "voxels/s", "peak mem", "growth"})
     EXPECT_NE(result.out.find(text), std::string::npos) << text;
   EXPECT_EQ(Json::parse(read_text(json)).at("builds").size(), 2u);
-  EXPECT_TRUE(read_text(plot).starts_with("<svg"));
+  EXPECT_NE(read_text(plot).find("<svg"), std::string::npos);
 }
 
 TEST_F(BenchBuild, ARivalIsMeasuredInTheSameRun) {

@@ -129,11 +129,12 @@ TEST_F(BenchTrace, OcclusionMayEndAtCellsOfASolidAngle) {
 TEST_F(BenchTrace, WritesTableJsonAndPlot) {
   const ProcessResult result =
       bench({path("in.vdag"), "-o", path("rays.json"), "--plot", path("rays.svg")});
+  if (lacks_matplotlib(result)) GTEST_SKIP() << "matplotlib is not installed";
   ASSERT_EQ(result.status, 0) << result.err;
   for (const char* text : {"sponge.ply 32³", "Mrays/s", "cells", "primary_beams", "ao"})
     EXPECT_NE(result.out.find(text), std::string::npos) << text;
   EXPECT_EQ(Json::parse(read_text(path("rays.json"))).size(), 5u);
-  EXPECT_TRUE(read_text(path("rays.svg")).starts_with("<svg"));
+  EXPECT_NE(read_text(path("rays.svg")).find("<svg"), std::string::npos);
 }
 
 TEST_F(BenchTrace, RefusesWhatItCannotMeasure) {

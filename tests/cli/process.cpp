@@ -151,4 +151,10 @@ void expect_failure(const ProcessResult& result, int status, const std::string& 
   EXPECT_TRUE(result.err.ends_with('\n'));
 }
 
+bool lacks_matplotlib(const ProcessResult& result) {
+  return result.status == 1 &&
+         result.err.find("matplotlib draws the plots, and it is not installed") !=
+             std::string::npos;
+}
+
 }  // namespace voxdag

@@ -49,4 +49,7 @@ std::vector<std::string> voxdag_command(std::vector<std::string> arguments);
 /// with "voxdag: " and contains `text`, and the exit status.
 void expect_failure(const ProcessResult& result, int status, const std::string& text);
 
+/// Returns whether a command with --plot failed because matplotlib is not installed.
+bool lacks_matplotlib(const ProcessResult& result);
+
 }  // namespace voxdag

@@ -41,11 +41,12 @@ std::shared_ptr<Rival> parse_rival(const std::string& text) {
 }
 
 void bench(const BenchArguments& arguments, Session& session) {
-  arguments.output.check_writable();
+  arguments.output.check_writable(session.progress);
   const nlohmann::ordered_json machine = machine_json();
   const BenchResults results = bench_build(arguments.plan, session.progress);
   arguments.output.write(
-      bench_json(results, machine), {[&] { return bench_svg(results); }},
+      bench_json(results, machine),
+      {[&](const std::string& file) { return bench_chart(results, file); }},
       fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
                   machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
                   machine.at("load_average").get<double>(), bench_table(results)),

@@ -23,12 +23,13 @@ struct BenchEsvoArguments {
 };
 
 void run(const BenchEsvoArguments& arguments, Session& session) {
-  arguments.output.check_writable();
+  arguments.output.check_writable(session.progress);
   const nlohmann::ordered_json machine = machine_json();
   const EsvoBenchResults results = bench_esvo(arguments.plan, session.progress);
   arguments.output.write(
       esvo_bench_json(results, machine),
-      {[&] { return esvo_bench_svg(results); }, [&] { return esvo_rays_svg(results); }},
+      {[&](const std::string& file) { return esvo_bench_chart(results, file); },
+       [&](const std::string& file) { return esvo_rays_chart(results, file); }},
       fmt::format("{}, {} threads, load average {:.2f} before\n\n{}",
                   machine.at("processor").get<std::string>(), results.threads,
                   machine.at("load_average").get<double>(), esvo_bench_table(results)),

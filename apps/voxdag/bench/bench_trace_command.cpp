@@ -82,14 +82,15 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
 }
 
 void run(BenchTraceArguments& arguments, Session& session) {
-  arguments.output.check_writable();
+  arguments.output.check_writable(session.progress);
   const nlohmann::ordered_json machine = machine_json();
   const TraceResults results = session.subject.empty()
                                    ? bench_listed_scenes(arguments.scenes, arguments.levels,
                                                          arguments.plan, session.progress)
                                    : bench_file(arguments, session);
   arguments.output.write(
-      trace_json(results, machine), {[&] { return trace_svg(results); }},
+      trace_json(results, machine),
+      {[&](const std::string& file) { return trace_chart(results, file); }},
       fmt::format("{}{}, {} threads, load average {:.2f} before\n\n{}",
                   results.cuda_device.empty() ? "" : results.cuda_device + "; ",
                   machine.at("processor").get<std::string>(), results.threads,

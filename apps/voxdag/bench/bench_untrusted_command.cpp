@@ -35,7 +35,7 @@ void add_bench_untrusted_command(const Command& bench_command, Session& session)
   add_json_option(command, session);
   command.when_parsed([arguments, &session] {
     session.work = [arguments, &session] {
-      arguments->output.check_writable();
+      arguments->output.check_writable(session.progress);
       UntrustedPlan plan = arguments->plan;
       if (plan.program.empty()) plan.program = "/proc/self/exe";
       plan.program = std::filesystem::canonical(plan.program).string();

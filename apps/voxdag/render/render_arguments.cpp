@@ -40,10 +40,7 @@ std::vector<OutputFile> check_outputs(const RenderArguments& arguments, const Se
                        fmt::format("\"{}\" does not end in .png or .exr", output.path));
     check_frame_pattern(output, !arguments.path.file.empty());
   }
-  if (!arguments.path.timings.empty()) {
-    outputs.push_back({"--timings", arguments.path.timings});
-    outputs.push_back({"the plot of --timings", timings_plot(arguments.path.timings)});
-  }
+  if (!arguments.path.timings.empty()) outputs.push_back({"--timings", arguments.path.timings});
   check_distinct(outputs, session);
   return outputs;
 }
@@ -90,10 +87,6 @@ RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo) {
   options.filter = arguments.filter || (is_esvo && !arguments.no_filter);
   for (const PicturePass& pass : arguments.passes) options.with_steps |= pass.kind->needs_steps;
   return options;
-}
-
-std::string timings_plot(const std::string& csv) {
-  return std::filesystem::path(csv).replace_extension(".svg").string();
 }
 
 }  // namespace voxdag

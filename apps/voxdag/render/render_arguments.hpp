@@ -57,7 +57,4 @@ std::vector<PicturePass> all_passes(const RenderArguments& arguments);
 /// or a DAG.
 RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo);
 
-/// Returns the name of the plot beside the CSV of --timings.
-std::string timings_plot(const std::string& csv);
-
 }  // namespace voxdag

@@ -41,10 +41,7 @@ void check_file_names(const RenderArguments& arguments, const std::vector<Pictur
     if (are_same_file(path, session.subject))
       throw Error(path, "", "is both the scene and an output of the film");
   };
-  if (!arguments.path.timings.empty()) {
-    add(arguments.path.timings);
-    add(timings_plot(arguments.path.timings));
-  }
+  if (!arguments.path.timings.empty()) add(arguments.path.timings);
   for (const PicturePass& pass : passes)
     for (std::size_t frame = 0; frame < frames; ++frame)
       add(frame_name(pass.path, static_cast<int>(frame)));
@@ -96,8 +93,7 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
     throw Error(file.name, "", error.reason());
   }
   check_file_names(arguments, film.passes, frames, session);
-  if (!csv.empty())
-    for (const std::string& output : {csv, timings_plot(csv)}) check_writable(output);
+  if (!csv.empty()) check_writable(csv);
   if (!film.options.sun) film.options.sun = file.sun;
   if (!film.options.sun) film.options.sun = sun_of_first_frame(film, scene);
 
@@ -105,10 +101,7 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
                 estimate_seconds(film, scene.render), session);
   const Stopwatch watch;
   const std::vector<FrameTiming> timings = render_film(film, scene.render, session.progress);
-  if (!csv.empty()) {
-    write_whole_file(csv, timings_csv(timings));
-    write_whole_file(timings_plot(csv), timings_svg(timings));
-  }
+  if (!csv.empty()) write_whole_file(csv, timings_csv(timings));
   session.bar.clear();
   if (!session.quiet) print_summary(film, timings, watch.since_start());
 }

@@ -153,9 +153,7 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
       .number("--fps", path.frames_per_second, NumberRange::up_to(kMostFramesPerSecond), "N",
               "With --path: frames per second")
       .needs(file);
-  command
-      .text("--timings", path.timings, "OUT.csv",
-            "With --path: write the time of each frame, and a plot of it as OUT.svg")
+  command.text("--timings", path.timings, "OUT.csv", "With --path: write the time of each frame")
       .needs(file);
 }
 

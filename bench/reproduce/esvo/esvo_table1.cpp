@@ -49,14 +49,15 @@ ChartPanel panel_of(const std::vector<EsvoSceneRuns>& scenes, const char* title,
   ChartPanel panel{title, {"resolution", AxisScale::kLog2}, {unit, AxisScale::kLog10}, {}};
   int color = 0;
   for (const EsvoSceneRuns& runs : scenes) {
-    ChartLine ours{runs.scene.title(), {}, {}, color, false, true};
+    ChartLine ours{runs.scene.title(), {}, {}, color, LineStyle::kSolid, true};
     for (const SeriesRun& run : runs.builds) {
       ours.x.push_back(std::exp2(run.levels));
       ours.y.push_back(run.result.failure.empty() ? read(run.result) : NAN);
     }
     if (!runs.scene.is_absent()) panel.lines.push_back(std::move(ours));
     if (const published::EsvoScene* paper = published_of(runs.scene)) {
-      ChartLine line{fmt::format("{}, published", runs.scene.scene->name), {}, {}, color, true};
+      ChartLine line{
+          fmt::format("{}, published", runs.scene.scene->name), {}, {}, color, LineStyle::kDashed};
       for (std::size_t i = 0; i < (paper->*published).size(); ++i) {
         line.x.push_back(std::exp2(published::kEsvoFirstLevels + static_cast<int>(i)));
         line.y.push_back((paper->*published)[i]);

@@ -102,7 +102,7 @@ std::vector<Chart> esvo_table2_charts(const std::vector<EsvoSceneRuns>& scenes) 
       static constexpr const char* kLabels[] = {"triangles (Embree)", "cubes", "contours",
                                                 "contours with beams"};
       static constexpr int kColors[] = {1, 3, 2, 0};
-      ChartLine line{kLabels[form], {}, {}, kColors[form], false, true};
+      ChartLine line{kLabels[form], {}, {}, kColors[form], LineStyle::kSolid, true};
       for (const SeriesRun& run : runs.rays) {
         if (!run.result.failure.empty()) continue;
         line.x.push_back(std::exp2(run.levels));

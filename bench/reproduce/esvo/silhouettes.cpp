@@ -37,8 +37,8 @@ std::vector<Chart> silhouettes_charts(const std::vector<EsvoSceneRuns>& scenes) 
   int color = 0;
   for (const EsvoSceneRuns& runs : scenes) {
     const std::string name(runs.scene.scene->name);
-    ChartLine contours{name + ", contours", {}, {}, color, false, true},
-        cubes{name + ", cubes", {}, {}, color, true, true};
+    ChartLine contours{name + ", contours", {}, {}, color, LineStyle::kSolid, true},
+        cubes{name + ", cubes", {}, {}, color, LineStyle::kDashed, true};
     for (const SilhouetteRow& row : silhouettes_of(runs)) {
       contours.x.push_back(std::exp2(row.levels));
       cubes.x.push_back(std::exp2(row.levels));

@@ -35,11 +35,11 @@ Rates rates_of(const FlightRun& run, const std::string& rays, const std::string&
 }
 
 ChartLine line_of(const std::string& label, const std::vector<double>& values, int color,
-                  bool dashed = false) {
+                  LineStyle style = LineStyle::kSolid) {
   ChartLine line;
   line.label = label;
   line.color = color;
-  line.dashed = dashed;
+  line.style = style;
   line.y = values;
   for (std::size_t i = 0; i < values.size(); ++i) line.x.push_back(static_cast<double>(i));
   return line;
@@ -150,8 +150,8 @@ Section figure7a(const Flight& flight, bool is_drawn) {
 
 /// Returns the chart of rates over the size of the lamp.
 ChartPanel lamp_panel(const Flight& flight) {
-  ChartLine with_beams{"with beams", {}, {}, kDag, false, true},
-      without{"without beams", {}, {}, kTriangles, false, true};
+  ChartLine with_beams{"with beams", {}, {}, kDag, LineStyle::kSolid, true},
+      without{"without beams", {}, {}, kTriangles, LineStyle::kSolid, true};
   if (flight.with_lamps.result.failure.empty())
     for (const Json& row : flight.with_lamps.result.json) {
       if (row.at("rays") != "soft_lamp") continue;

@@ -44,7 +44,7 @@ ChartPanel panel_of(const SvdagSceneBuilds& builds) {
   ChartLine svo = line_of(highest->at("svo_nodes_per_level"));
   svo.label = "SVO";
   svo.color = kSvoColor;
-  svo.dashed = true;
+  svo.style = LineStyle::kDashed;
   panel.lines.push_back(std::move(svo));
   return panel;
 }

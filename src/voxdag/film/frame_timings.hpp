@@ -1,5 +1,5 @@
 #pragma once
-/// The time that each frame of a film took, as CSV and as a plot.
+/// The time that each frame of a film took, as CSV.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,8 +20,5 @@ struct FrameTiming {
 
 /// Returns a header line and a line per frame.
 std::string timings_csv(const std::vector<FrameTiming>& frames);
-
-/// Returns an SVG: milliseconds and rays per second over the film's time.
-std::string timings_svg(const std::vector<FrameTiming>& frames);
 
 }  // namespace voxdag
