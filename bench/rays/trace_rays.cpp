@@ -75,22 +75,24 @@ std::string_view name_of(RayClass rays) {
 }
 
 struct BeamPass::State {
-  State(const VoxelSet& scene_in, const Grid& grid, const RenderOptions& options)
-      : scene(scene_in), plan(scene_in, grid, options) {}
+  State(const VoxelSet& scene_in, const Grid& grid, const RenderOptions& options, int pixels)
+      : scene(scene_in), plan(scene_in, grid, options), beam_pixels(pixels) {}
 
   VoxelSet scene;
   RenderPlan plan;
+  int beam_pixels;
   std::vector<float> starts;
 };
 
-BeamPass::BeamPass(const VoxelSet& scene, const Grid& grid, const RenderOptions& options)
-    : state_(std::make_unique<State>(scene, grid, options)) {}
+BeamPass::BeamPass(const VoxelSet& scene, const Grid& grid, const RenderOptions& options,
+                   int beam_pixels)
+    : state_(std::make_unique<State>(scene, grid, options, beam_pixels)) {}
 
 BeamPass::~BeamPass() = default;
 
 void BeamPass::run() {
   visit_nodes(state_->scene, [&](const auto& nodes) {
-    find_beam_starts(nodes, state_->plan.setup(), state_->starts);
+    find_beam_starts(nodes, state_->plan.setup(), state_->starts, state_->beam_pixels);
   });
 }
 

@@ -10,6 +10,7 @@
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/render_setup.hpp"
+#include "voxdag/render/tile.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 #include "voxdag/trace/visit_nodes.hpp"
 
@@ -38,7 +39,8 @@ struct RayOptions {
   int width = 1024, height = 768;
   int shadow_samples = 16, occlusion_samples = 64;
   float lod_pixels = 1;
-  double occlusion_cone = 0;  ///< As RenderOptions::occlusion_cone.
+  int beam_pixels = kCoarseBeamPixels;  ///< The side of the beams on the CPU, in pixels: 4 or 8.
+  double occlusion_cone = 0;            ///< As RenderOptions::occlusion_cone.
   /// The maximum size of a set of any-hit rays. Larger sets are sampled in squares of 8×8 pixels,
   /// spread evenly over the picture.
   std::size_t most_rays = 500'000;
@@ -59,7 +61,9 @@ struct RecordedRays {
 /// Casts the beams of a whole picture on all threads.
 class BeamPass {
  public:
-  BeamPass(const VoxelSet& scene, const Grid& grid, const RenderOptions& options);
+  /// `beam_pixels` is the side of a beam in pixels: 4 or 8.
+  BeamPass(const VoxelSet& scene, const Grid& grid, const RenderOptions& options,
+           int beam_pixels = kCoarseBeamPixels);
   ~BeamPass();
   BeamPass(const BeamPass&) = delete;
   BeamPass& operator=(const BeamPass&) = delete;

@@ -104,7 +104,8 @@ class EsvoRival {
   TraceRunner prepare(const View& view, RayClass rays, const std::vector<CastRay>& set) {
     if (rays != RayClass::kPrimaryBeams) return named(layout_->runner(rays, set));
     beams_ = std::make_unique<BeamPass>(
-        *scene_.esvo, scene_.grid, picture_options(*scene_.esvo, scene_.grid, view, plan_.rays));
+        *scene_.esvo, scene_.grid, picture_options(*scene_.esvo, scene_.grid, view, plan_.rays),
+        plan_.rays.beam_pixels);
     beams_->run();
     casts_ = primary_rays(beams_->setup(), beams_->starts());
     TraceRunner runner = named(layout_->runner(rays, casts_));
@@ -156,7 +157,8 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   std::size_t done = 0;
   for (const View& view : views) {
     BeamPass beams(scene.voxels, scene.grid,
-                   picture_options(scene.voxels, scene.grid, view, plan.rays));
+                   picture_options(scene.voxels, scene.grid, view, plan.rays),
+                   plan.rays.beam_pixels);
     beams.run();
     const RecordedRays recorded = record_rays(scene.voxels, beams, plan.rays);
     for (const RayClass rays : kRayClasses) {

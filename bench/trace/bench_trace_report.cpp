@@ -54,6 +54,7 @@ Json trace_json(const TraceResults& results, const Json& machine) {
                 {"rays", std::string(name_of(row.rays))},
                 {"size", {results.rays.width, results.rays.height}},
                 {"lod_pixels", results.rays.lod_pixels},
+                {"beam_pixels", results.rays.beam_pixels},
                 {"ao_cone", results.rays.occlusion_cone},
                 {"ray_count", row.count},
                 {"hit_part", row.hit_part},

@@ -109,6 +109,19 @@ TEST_F(BenchTrace, AllLayoutsMeetTheSame) {
   }
 }
 
+TEST_F(BenchTrace, FinerBeamsShortenRays) {
+  const auto row = [](const char* pixels) {
+    const ProcessResult result = bench({path("in.vdag"), "--beam-pixels", pixels, "--json"});
+    return result.status == 0 ? Json::parse(result.out).at(1) : Json();
+  };
+  const Json coarse = row("8"), fine = row("4");
+  EXPECT_EQ(fine.at("rays"), "primary_beams");
+  EXPECT_EQ(fine.at("beam_pixels"), 4);
+  EXPECT_EQ(fine.at("hit_part"), coarse.at("hit_part"));
+  EXPECT_LT(fine.at("cells_per_ray"), coarse.at("cells_per_ray"));
+  expect_failure(bench({path("in.vdag"), "--beam-pixels", "5"}), 2, "is neither 4 nor 8");
+}
+
 TEST_F(BenchTrace, OcclusionMayEndAtCellsOfASolidAngle) {
   const auto rows = [](const char* cone) {
     const ProcessResult result = bench({path("in.vdag"), "--ao-cone", cone, "--json"});

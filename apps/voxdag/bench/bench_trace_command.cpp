@@ -117,6 +117,12 @@ void finish_plan(BenchTraceArguments& arguments, const Session& session) {
                      "is required without FILE, unless the variable VOXDAG_SCENES is set");
 }
 
+int parse_beam_pixels(const std::string& text) {
+  if (text == std::to_string(kBeamPixels)) return kBeamPixels;
+  if (text == std::to_string(kCoarseBeamPixels)) return kCoarseBeamPixels;
+  throw std::invalid_argument("is neither 4 nor 8");
+}
+
 void add_ray_options(const Command& command, RayOptions& rays) {
   command.number("--shadow-samples", rays.shadow_samples, NumberRange::whole(1, 4096), "N",
                  "Soft shadow rays per pixel, to points on a lamp");
@@ -128,6 +134,8 @@ void add_ray_options(const Command& command, RayOptions& rays) {
                  "Maximum number of shadow rays and of occlusion rays per view");
   command.number("--lod", rays.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
                  "End rays at cells of this size in the picture; 0: always at voxels");
+  command.parsed("--beam-pixels", rays.beam_pixels, parse_beam_pixels, "4 | 8",
+                 "Side of the beams of the CPU, in pixels");
 }
 
 /// Adds the options that choose between a file and the list of scenes.
