@@ -17,6 +17,7 @@ struct CommandLine {
   std::string text;
 };
 
+/// A table without rows says that nothing was measured.
 struct Table {
   std::string caption;
   std::vector<std::string> header;

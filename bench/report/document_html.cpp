@@ -110,6 +110,10 @@ class HtmlWriter {
     text += fmt::format("<pre>{}</pre>\n", escaped(command.text));
   }
   void operator()(const Table& table) {
+    if (table.rows.empty()) {
+      (*this)(Paragraph{table.caption + ": nothing was measured."});
+      return;
+    }
     text += fmt::format("<div class=\"scroll\"><table>\n<caption>{}</caption>\n<thead>{}</thead>\n",
                         escaped(table.caption), row_of(table.header, "th", table.text_columns));
     for (const std::vector<std::string>& row : table.rows)

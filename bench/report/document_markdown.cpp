@@ -32,6 +32,10 @@ class MarkdownWriter {
     text += fmt::format("```\n{}\n```\n\n", command.text);
   }
   void operator()(const Table& table) {
+    if (table.rows.empty()) {
+      (*this)(Paragraph{table.caption + ": nothing was measured."});
+      return;
+    }
     text += fmt::format("**{}**\n\n", table.caption) + row_of(table.header) + "|";
     for (std::size_t i = 0; i < table.header.size(); ++i)
       text += i < table.text_columns ? "---|" : "---:|";

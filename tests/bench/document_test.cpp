@@ -22,6 +22,12 @@ TEST(Document, MarkdownTablesAlignNumbersToTheRight) {
       "# Title\n\n## Section\n\n**Sizes**\n\n| scene | MB |\n|---|---:|\n| a\\|b | 1.5 |\n\n");
 }
 
+TEST(Document, ATableWithoutRowsSaysSo) {
+  const Document document = document_with(Table{"Sizes", {"scene", "MB"}, {}});
+  EXPECT_EQ(markdown_of(document), "# Title\n\n## Section\n\nSizes: nothing was measured.\n\n");
+  EXPECT_NE(html_of(document, ".").find("<p>Sizes: nothing was measured.</p>"), std::string::npos);
+}
+
 TEST(Document, HtmlEscapesText) {
   const std::string html = html_of(document_with(Paragraph{"a < b & \"c\""}), ".");
   EXPECT_NE(html.find("<p>a &lt; b &amp; &quot;c&quot;</p>"), std::string::npos);
