@@ -143,6 +143,20 @@ TEST(BuildEsvo, ContoursMakePlanesAndSpheresOfFewVoxels) {
   EXPECT_LT(contours * 4, voxels);
 }
 
+TEST(BuildEsvo, AFinelyTriangulatedWallEndsAsEarlyAsACoarseOne) {
+  const auto leaves = [](int n) {
+    const Mesh wall = test::grid_mesh(n, [=](int i, int j) {
+      const float x = 64.0f * static_cast<float>(i) / static_cast<float>(n),
+                  y = 64.0f * static_cast<float>(j) / static_cast<float>(n);
+      return Vec3f{x, y, 10 + x * (10.0f / 64) + y * (30.0f / 64)};
+    });
+    return leaves_of(build_esvo(wall, unit_grid(6)).view()).size();
+  };
+  const std::size_t coarse = leaves(1);
+  EXPECT_LT(coarse, 40u);
+  for (const int n : {4, 16, 64, 128}) EXPECT_LE(leaves(n), coarse) << n;
+}
+
 TEST(BuildEsvo, SameBytesForAnyNumberOfThreads) {
   Mesh mesh = random_mesh(7, 8, 200);
   EsvoOptions options;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "voxdag/esvo/build/piece_stack.hpp"
-#include "voxdag/esvo/shape/near_surface.hpp"
 
 namespace voxdag {
 namespace {
@@ -32,21 +31,28 @@ struct ColoredCell {
   }
 };
 
-TEST(CellAppearance, FewPiecesOfOneColorAreUniform) {
-  const ColoredCell cell(static_cast<int>(kMostNearPolygons));
-  const SurfaceShading shading(cell.mesh, cell.appearance);
-  const EsvoSettings settings;
-  const CellAppearance appearance(settings, &shading);
-  EXPECT_TRUE(appearance.sum_if_uniform(cell.pieces.view(cell.pieces.root())).has_value());
+TEST(CellAppearance, PiecesOfOneColorAreUniform) {
+  for (const int count : {1, 24, 25, 200}) {
+    const ColoredCell cell(count);
+    const SurfaceShading shading(cell.mesh, cell.appearance);
+    const EsvoSettings settings;
+    const CellAppearance appearance(settings, &shading);
+    EXPECT_TRUE(appearance.sum_if_uniform(cell.pieces.view(cell.pieces.root())).has_value())
+        << count;
+  }
 }
 
-TEST(CellAppearance, MorePiecesThanTheTestHoldsAreNotUniform) {
-  // An empty shape is near the surface for any number of polygons, so this function may be called.
-  const ColoredCell cell(200);
-  const SurfaceShading shading(cell.mesh, cell.appearance);
-  const EsvoSettings settings;
-  const CellAppearance appearance(settings, &shading);
-  EXPECT_FALSE(appearance.sum_if_uniform(cell.pieces.view(cell.pieces.root())).has_value());
+TEST(CellAppearance, OnePieceOfAnotherColorIsFoundAmongMany) {
+  for (const std::size_t count : {2, 24, 25, 200}) {
+    ColoredCell cell(static_cast<int>(count));
+    for (std::size_t k = 0; k < 3; ++k)
+      cell.appearance.colors[3 * (count - 1) + k] = {60000, 50000, 60000, 65535};
+    const SurfaceShading shading(cell.mesh, cell.appearance);
+    const EsvoSettings settings;
+    const CellAppearance appearance(settings, &shading);
+    EXPECT_FALSE(appearance.sum_if_uniform(cell.pieces.view(cell.pieces.root())).has_value())
+        << count;
+  }
 }
 
 }  // namespace

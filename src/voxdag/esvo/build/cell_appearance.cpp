@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "voxdag/esvo/build/baked_light.hpp"
-#include "voxdag/esvo/shape/near_surface.hpp"
 
 namespace voxdag {
 namespace {
@@ -66,8 +66,10 @@ std::optional<SurfaceSum> CellAppearance::unlit_sum_if_uniform(const Cell& cell)
     return sampler_.has_own_normal(triangle) ? kAnyNormal : settings_.normal_error;
   };
   const SurfaceShading* const shading = sampler_.shading();
-  PieceCorners corners[kMostNearPolygons];
-  if (cell.pieces.size() > std::size(corners)) return std::nullopt;
+  PieceCorners few[24];  // most cells have fewer pieces
+  std::vector<PieceCorners> many;
+  if (cell.pieces.size() > std::size(few)) many.resize(cell.pieces.size());
+  PieceCorners* const corners = many.empty() ? few : many.data();
   // Most cells that are not uniform have a piece that is not uniform. For these the mean is not
   // needed.
   for (std::size_t i = 0; i < cell.pieces.size(); ++i) {

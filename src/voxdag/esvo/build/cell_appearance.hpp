@@ -18,8 +18,7 @@ class CellAppearance {
   SurfaceSum sum(const Cell& cell) const;
 
   /// Returns sum() if colours, normals and baked light differ in the cell by no more than the
-  /// settings allow; nothing otherwise. A cell with more than
-  /// kMostNearPolygons pieces counts as uniform only if all points have the same sample.
+  /// settings allow; nothing otherwise.
   std::optional<SurfaceSum> sum_if_uniform(const Cell& cell) const;
 
   const PieceSampler& sampler() const { return sampler_; }

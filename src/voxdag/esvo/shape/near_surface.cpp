@@ -1,9 +1,18 @@
 #include "voxdag/esvo/shape/near_surface.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <numeric>
+#include <vector>
+
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {
+
+/// A shape near this many polygons is tested as a whole.
+constexpr std::size_t kFewPolygons = 24;
 
 constexpr int kMaxGroups = ConvexPolyhedron::kMaxVertices / kLanes + 1;
 
@@ -28,6 +37,15 @@ struct PointGroups {
     x[count - 1] = past ? cx : x[count - 1];
     y[count - 1] = past ? cy : y[count - 1];
     z[count - 1] = past ? cz : z[count - 1];
+  }
+
+  /// Scales all points by `scale` and moves them by `by`.
+  void transform(float scale, Vec3f by) {
+    for (int i = 0; i < count; ++i) {
+      x[i] = x[i] * scale + by.x;
+      y[i] = y[i] * scale + by.y;
+      z[i] = z[i] * scale + by.z;
+    }
   }
 };
 
@@ -110,21 +128,23 @@ class PolygonDistance {
   };
 };
 
-}  // namespace
-
-bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
+/// Returns whether each point is within `distance` of the plane of a polygon. Most shapes that are
+/// not near have a point that is too far from all planes.
+bool are_near_planes(const PointGroups& points, std::span<const PlanarPolygon> surface,
                      float distance) {
-  if (shape.is_empty()) return true;
-  if (surface.empty() || surface.size() > kMostNearPolygons || !(distance > 0)) return false;
-  const PointGroups points(shape);
-  // Most shapes that are not near have a point that is too far from all planes.
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
-    for (const PlanarPolygon& polygon : surface)
-      far &= size_of(Plane(polygon).height(points, i)) > distance;
+    for (std::size_t k = 0; k < surface.size() && any_lane(far); ++k)
+      far &= size_of(Plane(surface[k]).height(points, i)) > distance;
     if (any_lane(far)) return false;
   }
-  PolygonDistance polygons[kMostNearPolygons];
+  return true;
+}
+
+/// Tests a few polygons.
+bool are_near_few(const PointGroups& points, std::span<const PlanarPolygon> surface,
+                  float distance) {
+  PolygonDistance polygons[kFewPolygons];
   std::size_t known = 0;
   for (int i = 0; i < points.count; ++i) {
     IntLanes far = all_lanes(-1);
@@ -142,6 +162,114 @@ bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygo
     if (any_lane(far)) return false;
   }
   return true;
+}
+
+/// Tests many polygons. Boxes around the polygons exclude most of them at once.
+class ManyPolygons {
+ public:
+  ManyPolygons(std::span<const PlanarPolygon> surface, float distance)
+      : surface_(surface), distance_(distance) {
+    boxes_.reserve(surface.size());
+    for (const PlanarPolygon& p : surface) boxes_.emplace_back(*p.polygon);
+  }
+
+  /// Returns whether a shape in [-1,1]³ is near, as is_near_surface() says.
+  bool has_near(const ConvexPolyhedron& shape) const {
+    std::vector<std::uint32_t> all(surface_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return has_near(shape, {}, 1, all);
+  }
+
+ private:
+  struct Box {
+    Vec3f lo, hi;
+
+    explicit Box(const SurfacePolygon& polygon) {
+      Vec3d least = polygon.corners[0], most = least;
+      for (int i = 1; i < polygon.count; ++i) {
+        least = min(least, polygon.corners[i]);
+        most = max(most, polygon.corners[i]);
+      }
+      lo = static_cast<Vec3f>(least), hi = static_cast<Vec3f>(most);
+    }
+    float longest() const {
+      const Vec3f size = hi - lo;
+      return std::max({size.x, size.y, size.z});
+    }
+    /// Returns which of the points are within `distance` of the box.
+    IntLanes has_near(const PointGroups& points, int group, float distance) const {
+      const auto away = [](FloatLanes at, float least, float most) {
+        return max(max(least - at, at - most), all_lanes(0.0f));
+      };
+      const FloatLanes x = away(points.x[group], lo.x, hi.x), y = away(points.y[group], lo.y, hi.y),
+                       z = away(points.z[group], lo.z, hi.z);
+      return x * x + y * y + z * z <= distance * distance;
+    }
+    /// Returns whether the box is within `distance` of the cube around `centre`, along each axis.
+    bool meets(Vec3f centre, float distance) const {
+      return lo.x <= centre.x + distance && hi.x >= centre.x - distance &&
+             lo.y <= centre.y + distance && hi.y >= centre.y - distance &&
+             lo.z <= centre.z + distance && hi.z >= centre.z - distance;
+    }
+  };
+
+  /// Tests a part: a cube around `centre` of 2 * `half` a side. `shape` is the shape in the cube,
+  /// enlarged to [-1,1]³. `polygons` are those within the distance of the cube.
+  bool has_near(const ConvexPolyhedron& shape, Vec3f centre, float half,
+                std::span<const std::uint32_t> polygons) const {
+    if (shape.is_empty()) return true;
+    PointGroups points(shape);
+    points.transform(half, centre);
+    if (!are_near(points, polygons)) return false;
+    const auto small = std::count_if(polygons.begin(), polygons.end(), [&](std::uint32_t i) {
+      return boxes_[i].longest() < 2 * half;
+    });
+    if (static_cast<std::size_t>(small) <= kFewPolygons || 2 * half <= distance_) return true;
+    const float quarter = half / 2;
+    std::vector<std::uint32_t> in_octant;
+    for (int child = 0; child < 8; ++child) {
+      const ConvexPolyhedron octant = shape.octant(child);
+      if (octant.is_empty()) continue;
+      const Vec3f middle =
+          centre + static_cast<Vec3f>(child_offset(child) * 2 - Vec3i{1, 1, 1}) * quarter;
+      in_octant.clear();
+      std::copy_if(polygons.begin(), polygons.end(), std::back_inserter(in_octant),
+                   [&](std::uint32_t i) { return boxes_[i].meets(middle, quarter + distance_); });
+      if (!has_near(octant, middle, quarter, in_octant)) return false;
+    }
+    return true;
+  }
+
+  bool are_near(const PointGroups& points, std::span<const std::uint32_t> polygons) const {
+    for (int i = 0; i < points.count; ++i) {
+      IntLanes far = all_lanes(-1);
+      for (std::size_t k = 0; k < polygons.size() && any_lane(far); ++k) {
+        const std::uint32_t index = polygons[k];
+        if (!any_lane(far & boxes_[index].has_near(points, i, distance_))) continue;
+        PolygonDistance polygon;
+        polygon.set(surface_[index]);
+        far = polygon.still_far(points, i, distance_, far);
+      }
+      if (any_lane(far)) return false;
+    }
+    return true;
+  }
+
+  std::span<const PlanarPolygon> surface_;
+  float distance_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace
+
+bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
+                     float distance) {
+  if (shape.is_empty()) return true;
+  if (surface.empty() || !(distance > 0)) return false;
+  const PointGroups points(shape);
+  if (!are_near_planes(points, surface, distance)) return false;
+  return surface.size() <= kFewPolygons ? are_near_few(points, surface, distance)
+                                        : ManyPolygons(surface, distance).has_near(shape);
 }
 
 }  // namespace voxdag

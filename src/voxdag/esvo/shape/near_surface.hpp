@@ -14,12 +14,12 @@ struct PlanarPolygon {
   Vec3f normal;
 };
 
-/// Largest number of polygons that is_near_surface() tests.
-inline constexpr std::size_t kMostNearPolygons = 24;
-
 /// Returns whether each vertex of the shape, and the mean of the vertices, is within `distance` of
-/// one of the polygons. Returns true for an empty shape. Otherwise returns false if there are more
-/// than kMostNearPolygons polygons or the distance is 0.
+/// one of the polygons. If more than 24 polygons are smaller than the shape's cell, each octant of
+/// the shape must be near them too, and so on: a gap between many small polygons is not overlooked.
+/// Ends at cells of which 24 or fewer polygons near them are smaller, or that are smaller than
+/// `distance`. Returns true for an empty shape. Otherwise returns false if there are no polygons or
+/// the distance is 0.
 bool is_near_surface(const ConvexPolyhedron& shape, std::span<const PlanarPolygon> surface,
                      float distance);
 
