@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "support/displaced_crate.hpp"
 #include "support/grid_mesh.hpp"
 #include "support/random_triangles.hpp"
 #include "voxdag/core/morton.hpp"
@@ -126,6 +127,30 @@ TEST(BuildEsvo, ContoursEncloseTheSurface) {
     EXPECT_FALSE(check.outside.has_value())
         << "seed " << seed << " triangle " << check.outside->triangle << " level "
         << check.outside->level << " of " << levels;
+  }
+}
+
+TEST(BuildEsvo, ContoursOfCellsWithVeryManyTrianglesEncloseTheSurface) {
+  const Mesh sheet = test::grid_mesh(300, [](int i, int j) {
+    const float x = static_cast<float>(i) / 300, y = static_cast<float>(j) / 300;
+    return Vec3f{250 * x, 250 * y, 120 + 60 * std::sin(5 * x) * std::cos(4 * y)};
+  });
+  const Grid grid = unit_grid(8);
+  Appearance appearance;
+  appearance.materials.resize(1);
+  const DisplacedTriangles displaced(sheet, appearance,
+                                     displace_all(sheet, appearance, stones(), 5, 40));
+  for (const DisplacedTriangles* const by :
+       {static_cast<const DisplacedTriangles*>(nullptr), &displaced}) {
+    EsvoMemory memory;
+    const EsvoResult result = build_esvo(sheet, grid, {}, nullptr, by, memory);
+    const std::vector<std::uint64_t> slots = memory.take();
+    const EsvoView view{slots.data(), slots.size(), result.root, 8};
+    const ChildDescriptor root = view.descriptor(view.root);
+    EXPECT_NE(root.contour_mask(), 0u);
+    const EnclosureCheck check = check_enclosure(view, {sheet, grid}, grid, nullptr, by, 20000);
+    EXPECT_GT(check.points, 15000u);
+    EXPECT_FALSE(check.outside.has_value());
   }
 }
 

@@ -93,7 +93,7 @@ class BruteForce {
       if (!is_near(centre + vertex * half)) return false;
     }
     if (!is_near(centre + sum * (half / shape.vertex_count()))) return false;
-    if (small_polygons(centre, half) <= 24 || 2 * half <= distance_) return true;
+    if (small_polygons(centre, half) <= 24 || half <= 2 * distance_) return true;
     for (int child = 0; child < 8; ++child) {
       const auto direction = static_cast<Vec3d>(child_offset(child) * 2 - Vec3i{1, 1, 1});
       if (!has_near(shape.octant(child), centre + direction * (half / 2), half / 2)) return false;

@@ -3,14 +3,9 @@
 #include "voxdag/esvo/shape/fit_contour.hpp"
 
 namespace voxdag {
-namespace {
 
-/// Collects the candidate directions for the cell's contour: the normals of its triangles, and the
-/// perpendiculars of open edges in the triangles' planes.
 ContourCandidates contour_candidates(const Cell& cell) {
-  // If there are very many pieces, a sample of them has all directions that matter.
-  constexpr std::size_t kMostLookedAt = 48;
-  const std::size_t step = (cell.pieces.size() + kMostLookedAt - 1) / kMostLookedAt;
+  const std::size_t step = candidate_step(cell.pieces.size());
   ContourCandidates result;
   for (std::size_t i = 0; i < cell.pieces.size(); i += step) {
     const TrianglePiece& piece = cell.pieces[i];
@@ -36,8 +31,6 @@ ContourCandidates contour_candidates(const Cell& cell) {
   }
   return result;
 }
-
-}  // namespace
 
 bool CellDecider::is_too_thin(const Cell& cell, const ConvexPolyhedron& shape) {
   constexpr std::size_t kMost = 6;       // with more pieces, such a shape is unlikely

@@ -11,6 +11,7 @@
 
 #include "voxdag/esvo/build/cell_appearance.hpp"
 #include "voxdag/esvo/shape/convex_polyhedron.hpp"
+#include "voxdag/esvo/shape/fit_contour.hpp"
 #include "voxdag/esvo/shape/near_surface.hpp"
 #include "voxdag/layout/contour.hpp"
 
@@ -22,6 +23,14 @@ struct CellDecision {
   bool is_near = false;  ///< Near enough to the surface: no contours below.
   std::optional<Contour> contour;
 };
+
+/// If a cell has very many pieces, each n-th of them is looked at for directions; returns n. These
+/// about 48 pieces have all directions that matter.
+constexpr std::size_t candidate_step(std::size_t pieces) { return (pieces + 47) / 48; }
+
+/// Collects the candidate directions for the cell's contour: the normals of its triangles, and the
+/// perpendiculars of open edges in the triangles' planes.
+ContourCandidates contour_candidates(const Cell& cell);
 
 /// Decides one cell after the other. Each thread needs its own, because it keeps scratch memory.
 class CellDecider {

@@ -1,24 +1,30 @@
 #pragma once
-/// Decides the contours of cells that are too large to tessellate their displaced surface.
+/// Decides the contours of cells whose surface is not loaded: cells with too many triangles, and
+/// cells too large to tessellate their displaced triangles.
+///
+/// The triangles pass by one after the other, first to choose the directions and again to measure
+/// the surface along them. So the memory does not depend on their number.
+#include <cstdint>
 #include <span>
 
 #include "voxdag/esvo/build/decide_cell.hpp"
 #include "voxdag/esvo/build/triangle_source.hpp"
+#include "voxdag/esvo/shape/fit_contour.hpp"
 
 namespace voxdag {
 
-/// A cell with more pieces of displaced triangles gets no contour: to fit one takes all of them in
-/// memory at once.
-inline constexpr std::size_t kMostEnclosed = std::size_t{1} << 16;
-/// The bytes that a piece takes in decide_enclosed().
-inline constexpr std::uint64_t kEnclosedBytes = sizeof(DisplacedPiece);
+/// Returns the normals of the triangles before displacement. If there are very many triangles,
+/// looks at about 16,000 of them.
+ContourCandidates enclosed_candidates(const TriangleSource& source, int level, Vec3i cell,
+                                      std::span<const std::uint32_t> triangles);
 
-/// Decides the contour of a cell from what encloses its `triangles`: pieces of displaced triangles,
-/// some of which are an eighth of the cell wide. `shape` is what the ancestors' contours leave of
-/// the cell; it is cut by the new contour. Counts the pieces in `memory`; null: no limit. Throws
-/// OverMemory.
+/// Decides the contour of a cell from what encloses its displaced triangles (pieces of them, at
+/// most an eighth of the cell wide) and from its other triangles. Without displaced triangles, the
+/// contour equals the one that CellDecider fits to the loaded cell. The decision is never a leaf.
+/// `shape` is what the ancestors' contours leave of the cell; it is cut by the new contour. Runs in
+/// parallel.
 CellDecision decide_enclosed(const TriangleSource& source, int level, Vec3i cell,
-                             std::span<const std::uint32_t> triangles, ConvexPolyhedron& shape,
-                             MemoryBudget* memory);
+                             std::span<const std::uint32_t> triangles,
+                             const ContourCandidates& candidates, ConvexPolyhedron& shape);
 
 }  // namespace voxdag

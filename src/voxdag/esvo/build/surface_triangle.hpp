@@ -30,14 +30,17 @@ struct SurfaceTriangle {
   Vec2d base;
   Vec3d u{}, v{};
 
+  /// Returns a corner relative to `origin`, in voxels.
+  static Vec3d corner(Vec3i quantized, Vec3i origin) {
+    return static_cast<Vec3d>(quantized) * (1.0 / kSubvoxels) - static_cast<Vec3d>(origin);
+  }
+
   /// Makes a triangle that is not displaced. `origin` is in voxels.
   static SurfaceTriangle make(const QuantizedTriangle& triangle, Vec3i origin, std::uint32_t source,
                               std::uint8_t open_edges) {
     SurfaceTriangle t;
     t.setup = make_triangle_setup(triangle, origin);
-    for (int i = 0; i < 3; ++i)
-      t.corners[i] =
-          static_cast<Vec3d>(triangle[i]) * (1.0 / kSubvoxels) - static_cast<Vec3d>(origin);
+    for (int i = 0; i < 3; ++i) t.corners[i] = corner(triangle[i], origin);
     const Vec3d e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
     const Vec3d n = cross(e1, e2);
     const double area2 = dot(n, n);
@@ -78,6 +81,9 @@ struct SurfaceTriangle {
   /// Returns the triangle in the coordinates of the cell at `cell`, of 2^log2_size voxels a side.
   /// Does not clip it to the cell.
   SurfacePolygon polygon(Vec3i cell, int log2_size) const {
+    return polygon(corners, cell, log2_size);
+  }
+  static SurfacePolygon polygon(const Vec3d (&corners)[3], Vec3i cell, int log2_size) {
     const double half = 0.5 * static_cast<double>(std::int64_t{1} << log2_size);
     const Vec3d centre = static_cast<Vec3d>(cell) + Vec3d{half, half, half};
     const auto local = [&](int i) { return (corners[i] - centre) * (1 / half); };

@@ -23,10 +23,6 @@ constexpr double kTaskWeight = 1 << 16;
 /// The log2 side, in voxels, of the smallest cells that are still divided into tasks.
 constexpr int kLeastLog2 = 2;
 
-/// Cells with more triangles get no contours: fitting one needs all triangles in memory at once,
-/// and gains little.
-constexpr std::size_t kMostLoaded = 1 << 14;
-
 /// The log2 side, in voxels, of the cells in which displaced triangles are tessellated.
 constexpr int kDisplacedTaskLog2 = 4;
 
@@ -60,11 +56,12 @@ TriangleList root_triangles(const TriangleSource& source, MemoryBudget* memory) 
 class TopCellFinder {
  public:
   TopCellFinder(const TriangleSource& source, const EsvoSettings& settings,
-                const SurfaceShading* shading, MemoryBudget* memory)
+                const SurfaceShading* shading, MemoryBudget* memory, std::size_t most_loaded)
       : source_(source),
         settings_(settings),
         appearance_(settings, shading),
         memory_(memory),
+        most_loaded_(most_loaded),
         gate_(memory),
         scratch_([this] { return CellScratch(settings_, appearance_, memory_); }),
         cells_(memory) {
@@ -101,26 +98,33 @@ class TopCellFinder {
     cell.is_displaced =
         std::any_of(cell.triangles.begin(), cell.triangles.end(),
                     [this](std::uint32_t triangle) { return source_.is_displaced(triangle); });
-    const bool is_heavy = cell.triangles.size() > kMostLoaded && log2_size(cell) > kLeastLog2;
+    const bool is_heavy = cell.triangles.size() > most_loaded_ && log2_size(cell) > kLeastLog2;
     if (cell.is_displaced || is_heavy)
-      decide_unloaded(cell, is_heavy, children);
+      decide_unloaded(cell, children);
     else
       decide_loaded(cell, children);
     if (!cell.is_task) cell.triangles = TriangleList(memory_);
   }
 
-  void decide_unloaded(TopCell& cell, bool is_heavy, ChildTriangles& children) {
+  void decide_unloaded(TopCell& cell, ChildTriangles& children) {
     cell.weight = std::ldexp(1.0, 2 * log2_size(cell));
     cell.is_task = cell.is_displaced && log2_size(cell) <= kDisplacedTaskLog2;
     if (cell.is_task) return;
-    if (settings_.contours && !is_heavy && cell.parent != TopCell::kNoParent) {
-      // A triangle across the cell has some hundred pieces.
-      const std::size_t pieces = std::min(cell.triangles.size() * 256, kMostEnclosed);
-      const MemoryGate::Pass pass(gate_, pieces * kEnclosedBytes);
-      cell.decision =
-          decide_enclosed(source_, cell.level, cell.cell, cell.triangles, cell.shape, memory_);
-    }
+    if (settings_.contours && cell.parent != TopCell::kNoParent)
+      cell.decision = decide_enclosed(source_, cell.level, cell.cell, cell.triangles,
+                                      candidates(cell), cell.shape);
     children = split_triangles(source_, cell.level, cell.cell, cell.triangles, memory_);
+  }
+
+  ContourCandidates candidates(const TopCell& cell) {
+    if (cell.is_displaced)
+      return enclosed_candidates(source_, cell.level, cell.cell, cell.triangles);
+    std::vector<std::uint32_t> sample;
+    for (std::size_t i = 0; i < cell.triangles.size(); i += candidate_step(cell.triangles.size()))
+      sample.push_back(cell.triangles[i]);
+    PieceStack pieces;
+    load_pieces(pieces, appearance_.sampler(), source_, cell.level, cell.cell, sample);
+    return contour_candidates(pieces.view(pieces.root()));
   }
 
   void decide_loaded(TopCell& cell, ChildTriangles& children) {
@@ -162,6 +166,7 @@ class TopCellFinder {
   const EsvoSettings& settings_;
   const CellAppearance appearance_;
   MemoryBudget* const memory_;
+  const std::size_t most_loaded_;
   MemoryGate gate_;
   tbb::enumerable_thread_specific<CellScratch> scratch_;
   TopCells cells_;
@@ -170,8 +175,9 @@ class TopCellFinder {
 }  // namespace
 
 TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
-                        const SurfaceShading* shading, Progress* progress, MemoryBudget* memory) {
-  return TopCellFinder(source, settings, shading, memory).find(progress);
+                        const SurfaceShading* shading, Progress* progress, MemoryBudget* memory,
+                        std::size_t most_loaded) {
+  return TopCellFinder(source, settings, shading, memory, most_loaded).find(progress);
 }
 
 std::vector<std::size_t> task_order(const TopCells& cells) {

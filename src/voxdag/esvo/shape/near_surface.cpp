@@ -181,36 +181,31 @@ class ManyPolygons {
   }
 
  private:
+  /// A box around a polygon. Lanes x, y and z are used; lane 3 is zero.
   struct Box {
-    Vec3f lo, hi;
+    FloatLanes lo, hi;
 
     explicit Box(const SurfacePolygon& polygon) {
-      Vec3d least = polygon.corners[0], most = least;
+      lo = hi = lanes_of(static_cast<Vec3f>(polygon.corners[0]));
       for (int i = 1; i < polygon.count; ++i) {
-        least = min(least, polygon.corners[i]);
-        most = max(most, polygon.corners[i]);
+        const FloatLanes corner = lanes_of(static_cast<Vec3f>(polygon.corners[i]));
+        lo = min(lo, corner);
+        hi = max(hi, corner);
       }
-      lo = static_cast<Vec3f>(least), hi = static_cast<Vec3f>(most);
     }
-    float longest() const {
-      const Vec3f size = hi - lo;
-      return std::max({size.x, size.y, size.z});
-    }
+    bool is_smaller_than(float size) const { return !any_lane(hi - lo >= size); }
     /// Returns which of the points are within `distance` of the box.
     IntLanes has_near(const PointGroups& points, int group, float distance) const {
       const auto away = [](FloatLanes at, float least, float most) {
         return max(max(least - at, at - most), all_lanes(0.0f));
       };
-      const FloatLanes x = away(points.x[group], lo.x, hi.x), y = away(points.y[group], lo.y, hi.y),
-                       z = away(points.z[group], lo.z, hi.z);
+      const FloatLanes x = away(points.x[group], lo[0], hi[0]),
+                       y = away(points.y[group], lo[1], hi[1]),
+                       z = away(points.z[group], lo[2], hi[2]);
       return x * x + y * y + z * z <= distance * distance;
     }
-    /// Returns whether the box is within `distance` of the cube around `centre`, along each axis.
-    bool meets(Vec3f centre, float distance) const {
-      return lo.x <= centre.x + distance && hi.x >= centre.x - distance &&
-             lo.y <= centre.y + distance && hi.y >= centre.y - distance &&
-             lo.z <= centre.z + distance && hi.z >= centre.z - distance;
-    }
+    /// Returns whether the box meets the box from `from` to `to`.
+    bool meets(FloatLanes from, FloatLanes to) const { return !any_lane((lo > to) | (hi < from)); }
   };
 
   /// Tests a part: a cube around `centre` of 2 * `half` a side. `shape` is the shape in the cube,
@@ -222,9 +217,9 @@ class ManyPolygons {
     points.transform(half, centre);
     if (!are_near(points, polygons)) return false;
     const auto small = std::count_if(polygons.begin(), polygons.end(), [&](std::uint32_t i) {
-      return boxes_[i].longest() < 2 * half;
+      return boxes_[i].is_smaller_than(2 * half);
     });
-    if (static_cast<std::size_t>(small) <= kFewPolygons || 2 * half <= distance_) return true;
+    if (static_cast<std::size_t>(small) <= kFewPolygons || half <= 2 * distance_) return true;
     const float quarter = half / 2;
     std::vector<std::uint32_t> in_octant;
     for (int child = 0; child < 8; ++child) {
@@ -232,9 +227,10 @@ class ManyPolygons {
       if (octant.is_empty()) continue;
       const Vec3f middle =
           centre + static_cast<Vec3f>(child_offset(child) * 2 - Vec3i{1, 1, 1}) * quarter;
+      const FloatLanes reach = all_lanes(quarter + distance_), at = lanes_of(middle);
       in_octant.clear();
       std::copy_if(polygons.begin(), polygons.end(), std::back_inserter(in_octant),
-                   [&](std::uint32_t i) { return boxes_[i].meets(middle, quarter + distance_); });
+                   [&](std::uint32_t i) { return boxes_[i].meets(at - reach, at + reach); });
       if (!has_near(octant, middle, quarter, in_octant)) return false;
     }
     return true;
