@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "support/triangle_distance.hpp"
 #include "voxdag/core/morton.hpp"
 
 namespace voxdag {
@@ -57,25 +58,6 @@ ConvexPolyhedron slab(float lo, float hi, float slope) {
   return part;
 }
 
-double distance_to_segment(Vec3d p, Vec3d a, Vec3d b) {
-  const Vec3d along = b - a;
-  const double length2 = dot(along, along);
-  const double share = length2 > 0 ? std::clamp(dot(p - a, along) / length2, 0.0, 1.0) : 0;
-  const Vec3d to = p - a - along * share;
-  return std::sqrt(dot(to, to));
-}
-
-double distance_to_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
-  double least = std::min(
-      {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
-  const Vec3d n = cross(b - a, c - a);
-  const double length = std::sqrt(dot(n, n));
-  if (length > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
-      dot(cross(a - c, p - c), n) >= 0)
-    least = std::min(least, std::fabs(dot(p - a, n)) / length);
-  return least;
-}
-
 /// Tests every point against every polygon, in double precision.
 class BruteForce {
  public:
@@ -106,8 +88,9 @@ class BruteForce {
     double least = HUGE_VAL;
     for (const SurfacePolygon& polygon : surface_.polygons)
       for (int i = 2; i < polygon.count; ++i)
-        least = std::min(least, distance_to_triangle(p, polygon.corners[0], polygon.corners[i - 1],
-                                                     polygon.corners[i]));
+        least =
+            std::min(least, test::distance_to_triangle(p, polygon.corners[0],
+                                                       polygon.corners[i - 1], polygon.corners[i]));
     is_certain &= std::fabs(least - distance_) > 1e-5;
     return least <= distance_;
   }
