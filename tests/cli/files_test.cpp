@@ -50,8 +50,8 @@ TEST_F(Files, InputsAreNotOverwritten) {
   const std::string mesh = copy("sponge.ply", "a.ply"), dag = copy("in.vdag", "a.png");
   write_text(path("rays.npy"), rays_npy({{0, 9, 0, 0, 0, -1, 0, 1}}));
   const std::string rays = read_text(path("rays.npy"));
-  write_text(path("k1.svg"), R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0]}]})");
-  const std::string keys = read_text(path("k1.svg"));
+  write_text(path("keys.json"), R"({"keys": [{"time": 0, "eye": [2,1,2], "target": [0,0,0]}]})");
+  const std::string keys = read_text(path("keys.json"));
   copy("in.vdag", "b.npy.json");
   std::filesystem::create_hard_link(path("a.ply"), path("hard.ply"));
   std::filesystem::create_symlink("a.ply", path("soft.ply"));
@@ -62,20 +62,20 @@ TEST_F(Files, InputsAreNotOverwritten) {
   expect_failure(
       run_voxdag({"trace", path("in.vdag"), "--rays", path("rays.npy"), "-o", path("rays.npy")}), 2,
       "an input file");
-  expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("k1.svg"), "-o",
-                             path("f%d.png"), "--timings", path("k1.csv")}),
+  expect_failure(run_voxdag({"render", path("in.vdag"), "--path", path("keys.json"), "-o",
+                             path("f%d.png"), "--timings", path("keys.json")}),
                  2, "an input file");
   expect_failure(run_voxdag({"export", path("b.npy.json"), "-o", path("b.npy")}), 2,
                  "an input file");
   copy("in.vdag", "f0.png");
-  expect_failure(run_voxdag({"render", path("f0.png"), "--path", path("k1.svg"), "-o",
+  expect_failure(run_voxdag({"render", path("f0.png"), "--path", path("keys.json"), "-o",
                              path("f%d.png"), "--size", "16x9"}),
                  1, "f0.png");
   EXPECT_EQ(read_text(path("a.ply")), mesh);
   EXPECT_EQ(read_text(path("a.png")), dag);
   EXPECT_EQ(read_text(path("f0.png")), dag);
   EXPECT_EQ(read_text(path("rays.npy")), rays);
-  EXPECT_EQ(read_text(path("k1.svg")), keys);
+  EXPECT_EQ(read_text(path("keys.json")), keys);
   EXPECT_EQ(read_text(path("b.npy.json")), dag);
 }
 
