@@ -37,12 +37,13 @@ PictureCost picture_cost(const EsvoFile& esvo, std::span<const View> views, Imag
     options.lod_pixels = lod_pixels;
     options.shadows = false;
     options.occlusion_samples = 0;
-    options.filter = true;
+    options.filter = FilterKind::kGuided;
     RenderedImage image = render_image(esvo.view(), esvo.grid(), options);
     const Camera camera = make_camera(image.view, image.width, image.height);
-    sum.filter +=
-        fastest_seconds(repeat, [&] { filter_picture(filter_input(buffers_of(image), camera)); });
-    options.filter = false;
+    sum.filter += fastest_seconds(repeat, [&] {
+      filter_picture(filter_input(buffers_of(image), camera, FilterKind::kGuided));
+    });
+    options.filter = FilterKind::kNone;
     sum.picture +=
         fastest_seconds(repeat, [&] { image = render_image(esvo.view(), esvo.grid(), options); });
   }

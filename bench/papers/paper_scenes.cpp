@@ -44,7 +44,7 @@ constexpr std::array kKnown{
               "1,647,885 triangles without plants, 10.5 million in the paper"},
     KnownMesh{Paper::kSvdag, "SanMiguel", 0x8c48e22017e3e0e5, "", false, SceneState::kStandIn,
               "only some of the plants"},
-    KnownMesh{Paper::kSvdag, "Lucy", 0xfa0538188817d99b, "", false, SceneState::kVariant,
+    KnownMesh{Paper::kSvdag, "Lucy", kLucyCheck, "", false, SceneState::kVariant,
               "99,970 triangles, 28 million in the paper"},
     KnownMesh{Paper::kSvdag, "Hairball", 0, "hairball", false, SceneState::kStandIn,
               "a procedural hairball"},

@@ -11,7 +11,7 @@ namespace voxdag {
 /// XXH3-64 of the mesh files of real scenes.
 inline constexpr std::uint64_t kCrytekSponzaCheck = 0xd5d755a4c62db15e,
                                kSanMiguelCoreCheck = 0x1b139a913bd76b81,
-                               kSibenikCheck = 0x660b8c8b0c33e732;
+                               kLucyCheck = 0xfa0538188817d99b, kSibenikCheck = 0x660b8c8b0c33e732;
 
 enum class Paper {
   kSvdag,  ///< Kämpe, Sintorn, Assarsson 2013.

@@ -30,7 +30,7 @@ struct EsvoPlan {
   std::vector<ImageSize> sizes{{512, 384}, {1024, 768}, {2048, 1536}};  ///< Of Table 2.
   int picture_levels = 11;
   std::vector<int> coarse_levels{6, 7, 8};  ///< Of Figures 4 and 5.
-  int filter_levels = 9;                    ///< Of Figure 10.
+  int filter_levels = 9;                    ///< Of Figures 10 and 11.
 };
 
 struct PapersPlan {

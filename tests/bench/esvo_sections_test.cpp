@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/reproduce/esvo/esvo_pictures.hpp"
+
 namespace voxdag {
 namespace {
 
@@ -89,6 +91,31 @@ TEST(EsvoSections, ClaimsAreJudgedByTheFinestOctrees) {
   EXPECT_NE(text.find("| 10 to 100 | 9.1 (Sibenik at 16K³, 1024 × 768) | not reproduced |"),
             std::string::npos)
       << text;
+}
+
+ScenePicture picture_of(const std::string& kind) {
+  ScenePicture picture;
+  picture.cell.output = kind + ".png";
+  picture.cell.arguments = {"render", "picture.esvo", "--filter-kind", kind, "-o", kind + ".png"};
+  return picture;
+}
+
+TEST(EsvoSections, FiltersStandSideBySide) {
+  EsvoPictures pictures;
+  pictures.filters = {picture_of("naive"), picture_of("plain")};
+  pictures.guides = {picture_of("plain"), picture_of("guided")};
+  const std::vector<Section> sections = esvo_picture_sections(pictures);
+  ASSERT_EQ(sections.size(), 2u);
+  const std::string figure10 = text_of(sections[0]), figure11 = text_of(sections[1]);
+  for (const char* part : {"Figure 10: ", "naive.png", "plain.png",
+                           "voxdag render picture.esvo --filter-kind plain -o plain.png"})
+    EXPECT_NE(figure10.find(part), std::string::npos) << part << " in " << figure10;
+  for (const char* part : {"Figure 11: ", "plain.png", "guided.png",
+                           "voxdag render picture.esvo --filter-kind guided -o guided.png"})
+    EXPECT_NE(figure11.find(part), std::string::npos) << part << " in " << figure11;
+  pictures.guides[0].result.failure = "took too long";
+  const std::string failed = text_of(esvo_picture_sections(pictures)[1]);
+  EXPECT_NE(failed.find("No picture: took too long."), std::string::npos) << failed;
 }
 
 TEST(EsvoSections, ChartsHaveALineForEachFormAndResolution) {

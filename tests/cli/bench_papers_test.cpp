@@ -93,11 +93,13 @@ TEST_F(BenchPapers, MeasuresTheEsvoPapersScenes) {
   }
   const std::string text = markdown();
   for (const char* line : {"Figure 1: ", "Figures 4 and 5: ", "Figure 9: ", "Figure 10: ",
-                           "Figure 12: ", "Sibenik-D (variant)", "stone:0.15:4"})
+                           "Figure 11: ", "Figure 12: ", "--filter-kind plain",
+                           "--filter-kind guided", "Sibenik-D (variant)", "stone:0.15:4"})
     EXPECT_NE(text.find(line), std::string::npos) << line;
   for (const char* picture :
        {"esvo-figure1.png", "esvo-figure4-64-cubes.png", "esvo-figure4-64-contours.png",
-        "esvo-figure9-beams.png", "esvo-figure10-filter.png", "esvo-figure12-Sibenik.png"})
+        "esvo-figure9-beams.png", "esvo-figure10-naive.png", "esvo-figure10-adaptive.png",
+        "esvo-figure11-plain.png", "esvo-figure11-guided.png", "esvo-figure12-Sibenik.png"})
     EXPECT_TRUE(fs::exists(fs::path(report_) / picture)) << picture;
   EXPECT_FALSE(fs::exists(fs::path(report_) / "picture.esvo"));
 }

@@ -102,6 +102,9 @@ TEST_F(Options, FramesOfAFilmHaveDistinctNames) {
 
 TEST_F(Options, WithoutEffectAreRefused) {
   expect_refused({{"--filter", "--no-filter"},
+                  {"--filter-kind", "plain", "--no-filter"},
+                  {"--mesh", path("sponge.ply"), "--filter"},
+                  {"--mesh", path("sponge.ply"), "--filter-kind", "naive"},
                   {"--fps", "5"},
                   {"--timings", path("bad.csv")},
                   {"--grey"},

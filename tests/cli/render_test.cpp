@@ -82,6 +82,13 @@ TEST_F(RenderCommand, TheFilterIsForOctreesUnlessAskedFor) {
     const std::string with = render(file, {"--filter"}), without = render(file, {"--no-filter"});
     EXPECT_NE(with, without) << file;
     EXPECT_EQ(usual, is_esvo ? with : without) << file;
+    const std::string plain = render(file, {"--filter-kind", "plain"});
+    const std::string naive = render(file, {"--filter-kind", "naive", "--filter"});
+    EXPECT_EQ(render(file, {"--filter-kind", "guided"}), with) << file;
+    EXPECT_NE(plain, with) << file;
+    EXPECT_NE(naive, with) << file;
+    EXPECT_NE(naive, plain) << file;
+    EXPECT_NE(naive, without) << file;
   }
 }
 
@@ -114,6 +121,8 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "tube:1,2,3"}), 2, "sphere:");
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3"}), 2, "4 numbers");
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3,0"}), 2, "radius");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--filter-kind", "soft"}), 2,
+                 "--filter-kind: \"soft\" is neither guided nor plain nor naive");
   EXPECT_FALSE(exists("bad.png"));
 }
 

@@ -75,7 +75,7 @@ TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
   options.view.vertical_fov_degrees = 2;
   const RenderedImage plain = render_image(dag.view(), picture_grid(), options);
   EXPECT_TRUE(plain.cell_pixels.empty());
-  options.filter = true;
+  options.filter = FilterKind::kGuided;
   const RenderedImage filtered = render_image(dag.view(), picture_grid(), options);
   // The side of a voxel divided by the side of a pixel at its distance.
   const double size = 2.0 / 64 / (2 * std::tan(3.14159265 / 180) / 61 * 2.75);
@@ -83,18 +83,41 @@ TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
     EXPECT_NEAR(unpack_cell_pixels(code), size, 0.02 * size);
   RenderedImage expected = plain;
   expected.cell_pixels = filtered.cell_pixels;
-  filter_picture(expected);
+  filter_picture(expected, FilterKind::kGuided);
   EXPECT_EQ(filtered.radiance, expected.radiance);
   EXPECT_NE(filtered.radiance, plain.radiance);
+}
+
+TEST(RenderImage, EachKindOfFilterIsThatOfTheUnfilteredPicture) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.view.eye = {0.5, 1, 2};
+  options.view.target = {0, -0.5, 0};
+  options.view.vertical_fov_degrees = 20;
+  const RenderedImage unfiltered = render_image(dag.view(), picture_grid(), options);
+  std::vector<std::vector<Vec3f>> pictures{unfiltered.radiance};
+  for (const FilterKind kind : {FilterKind::kNaive, FilterKind::kPlain, FilterKind::kGuided}) {
+    options.filter = kind;
+    const RenderedImage image = render_image(dag.view(), picture_grid(), options);
+    FilterInput input{unfiltered.radiance.data(), image.cell_pixels.data(), image.width,
+                      image.height};
+    if (kind == FilterKind::kGuided)
+      input.guides = {image.depth.data(), image.normal.data(), image.occlusion.data(),
+                      image.shadow.data(), make_camera(image.view, image.width, image.height)};
+    input.shrinks = kind != FilterKind::kNaive;
+    EXPECT_EQ(image.radiance, filter_picture(input));
+    for (const std::vector<Vec3f>& other : pictures) EXPECT_NE(image.radiance, other);
+    pictures.push_back(image.radiance);
+  }
 }
 
 TEST(RenderImage, TheFilterLeavesTheSkyAlone) {
   const Svdag dag = block_on_a_floor();
   RenderOptions options = small_picture();
-  options.filter = true;
+  options.filter = FilterKind::kGuided;
   options.view.eye = {0, 1, 6};
   const RenderedImage filtered = render_image(dag.view(), picture_grid(), options);
-  options.filter = false;
+  options.filter = FilterKind::kNone;
   const RenderedImage plain = render_image(dag.view(), picture_grid(), options);
   int sky = 0;
   for (std::size_t i = 0; i < plain.depth.size(); ++i) {

@@ -81,12 +81,14 @@ TEST_F(CudaRender, LooksUpColoursAndNormalsAsTheCpuDoes) {
 TEST_F(CudaRender, FiltersAsTheCpuDoes) {
   const Svdag dag = picture_scene();
   RenderOptions options = pictures(4)[0].options;
-  options.filter = true;
-  const RenderedImage expected = render_image(dag.view(), picture_grid(), options);
-  const RenderedImage image =
-      render_image(DeviceScene(device_, dag.view()), picture_grid(), options);
-  expect_like(image, expected);
-  EXPECT_EQ(image.cell_pixels, expected.cell_pixels);
+  const DeviceScene scene(device_, dag.view());
+  for (const FilterKind kind : {FilterKind::kNaive, FilterKind::kPlain, FilterKind::kGuided}) {
+    options.filter = kind;
+    const RenderedImage expected = render_image(dag.view(), picture_grid(), options);
+    const RenderedImage image = render_image(scene, picture_grid(), options);
+    expect_like(image, expected);
+    EXPECT_EQ(image.cell_pixels, expected.cell_pixels);
+  }
 }
 
 TEST_F(CudaRender, TakesPointsFromASource) {

@@ -48,6 +48,8 @@ TEST_F(DeviceCommands, RenderMakesThePictureOfTheCpu) {
     for (const std::vector<std::string>& options :
          {std::vector<std::string>{"--no-filter"},
           {"--filter", "--spp", "2"},
+          {"--filter-kind", "plain", "--ao", "8"},
+          {"--filter-kind", "naive", "--ao", "8"},
           {"--light", "sphere:1,3,1,0.2", "--ao", "8", "--lod", "2"},
           {"--sun-angle", "0", "--no-beams", "--pass", "steps=" + path("steps.png")}}) {
       std::vector<std::string> words = {"render",      path(scene), "-o",

@@ -91,7 +91,8 @@ RenderOptions small_picture() {
   options.height = 12;
   options.samples_per_pixel = 2;
   options.shadow_samples = 2 * kShadowRaysWithBeams;
-  options.filter = options.with_steps = true;
+  options.filter = FilterKind::kGuided;
+  options.with_steps = true;
   return options;
 }
 

@@ -86,6 +86,14 @@ TEST_F(StreamImage, IsTheSameInLessMemoryThanItsBlocksNeed) {
   test::expect_same_picture(image, whole());
 }
 
+TEST_F(StreamImage, FiltersAsThePictureOfTheWholeOctree) {
+  StreamBlocks blocks(path(), bytes);
+  for (const FilterKind kind : {FilterKind::kNaive, FilterKind::kPlain, FilterKind::kGuided}) {
+    options.filter = kind;
+    test::expect_same_picture(render_streamed(blocks, blocks.stream().grid(), options), whole());
+  }
+}
+
 /// Renders these pictures one after the other, with memory for `bytes` of blocks. Returns the bytes
 /// of the blocks that are loaded at the end.
 std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,

@@ -84,7 +84,9 @@ RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo) {
   RenderOptions options = arguments.options;
   options.width = arguments.size.width;
   options.height = arguments.size.height;
-  options.filter = arguments.filter || (is_esvo && !arguments.no_filter);
+  options.filter = arguments.filter_kind;
+  const bool is_usual = arguments.filter || (is_esvo && !arguments.no_filter);
+  if (options.filter == FilterKind::kNone && is_usual) options.filter = FilterKind::kGuided;
   for (const PicturePass& pass : arguments.passes) options.with_steps |= pass.kind->needs_steps;
   return options;
 }

@@ -36,7 +36,8 @@ struct RenderArguments {
   std::vector<PicturePass> passes;  ///< Values of --pass.
   ImageSize size{1920, 1080};
   RenderOptions options;
-  bool filter = false, no_filter = false;  ///< Neither: filter an ESVO.
+  bool filter = false, no_filter = false;      ///< Neither: filter an ESVO.
+  FilterKind filter_kind = FilterKind::kNone;  ///< Value of --filter-kind; kNone: not given.
   MeshArguments mesh;
   PathArguments path;
   DeviceChoice device;

@@ -34,6 +34,13 @@ std::string parse_primary(const std::string& text) {
   return text;
 }
 
+FilterKind parse_filter_kind(const std::string& text) {
+  if (text == "guided") return FilterKind::kGuided;
+  if (text == "plain") return FilterKind::kPlain;
+  if (text == "naive") return FilterKind::kNaive;
+  throw std::invalid_argument(fmt::format("\"{}\" is neither guided nor plain nor naive", text));
+}
+
 /// Returns whether any light casts shadows with soft edges.
 bool has_soft_light(const RenderOptions& options) {
   return (options.with_sun && options.sun_degrees > 0) ||
@@ -136,10 +143,21 @@ Option add_mesh_options(const Command& command, MeshArguments& mesh) {
 }
 
 void add_filter_options(const Command& command, RenderArguments& arguments) {
-  const Option filter =
-      command.flag("--filter", arguments.filter,
-                   "Smooth voxels that are larger than pixels (default for an ESVO)");
-  command.flag("--no-filter", arguments.no_filter, "Show every voxel as it is").not_with(filter);
+  const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
+  const Option filter = command
+                            .flag("--filter", arguments.filter,
+                                  "Smooth voxels that are larger than pixels (default for an ESVO)")
+                            .only_if(shows_voxels, "with --mesh");
+  const Option kind =
+      command
+          .parsed("--filter-kind", arguments.filter_kind, parse_filter_kind, "guided|plain|naive",
+                  "Smooth voxels that are larger than pixels, but not across surfaces and shadows "
+                  "(guided, the default), across them too (plain, as in the ESVO paper), or so "
+                  "that seams show where the voxels' size changes (naive)")
+          .only_if(shows_voxels, "with --mesh");
+  command.flag("--no-filter", arguments.no_filter, "Show every voxel as it is")
+      .not_with(filter)
+      .not_with(kind);
 }
 
 void add_path_options(const Command& command, PathArguments& path, const ViewOptions& view) {

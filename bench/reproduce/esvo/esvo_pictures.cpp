@@ -15,6 +15,14 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
   return a;
 }
 
+/// Returns options of `render` that show a hand of the scan as closely as Figure 10 of the paper
+/// shows that of its fairy; of another scene, those that show it well.
+std::vector<std::string> hand_of(const FoundScene& scene) {
+  if (scene.identity.file_check != kLucyCheck) return view_of(scene);
+  return {"--eye", "2230,-2234,1380", "--target", "912,-30,288", "--up",
+          "0,0,1", "--fov",           "3.2",      "--sun",       "1,-0.2,0.6"};
+}
+
 class EsvoPainter {
  public:
   EsvoPainter(const PapersPlan& plan, CellStore& cells, const Progress& progress)
@@ -47,14 +55,20 @@ class EsvoPainter {
     }
   }
 
-  void paint_filters(const FoundScene& scene) {
-    painter_.show(scene, {plan_.esvo.filter_levels,
-                          true,
-                          {"--max-error", "1", "--normal-error", "12", "--color-error", "0.1"}});
-    const std::vector<std::string> options = joined(view_of(scene), kAsInThePaper);
-    pictures.filters = {
-        painter_.paint("esvo-figure10-none.png", "", half_, joined(options, {"--no-filter"})),
-        painter_.paint("esvo-figure10-filter.png", "", half_, joined(options, {"--filter"}))};
+  /// Paints Figure 10.
+  void paint_hand(const FoundScene& scene) {
+    show_pruned(scene);
+    const std::vector<std::string> options = joined(hand_of(scene), kAsInThePaper);
+    pictures.filters = {paint_filtered("esvo-figure10-naive.png", options, "naive"),
+                        paint_filtered("esvo-figure10-adaptive.png", options, "plain")};
+  }
+
+  /// Paints Figure 11, with the shadows that the paper's pictures do not have.
+  void paint_guides(const FoundScene& scene) {
+    show_pruned(scene);
+    const std::vector<std::string> options = view_of(scene);
+    pictures.guides = {paint_filtered("esvo-figure11-plain.png", options, "plain"),
+                       paint_filtered("esvo-figure11-guided.png", options, "guided")};
   }
 
   void paint_scene(const FoundScene& scene) {
@@ -66,6 +80,19 @@ class EsvoPainter {
   EsvoPictures pictures;
 
  private:
+  /// Shows few levels of a scene, with wide error bounds, so that neighbouring voxels differ in
+  /// size.
+  void show_pruned(const FoundScene& scene) {
+    painter_.show(scene, {plan_.esvo.filter_levels,
+                          true,
+                          {"--max-error", "1", "--normal-error", "12", "--color-error", "0.1"}});
+  }
+
+  ScenePicture paint_filtered(const std::string& file, const std::vector<std::string>& options,
+                              const std::string& kind) {
+    return painter_.paint(file, "", half_, joined(options, {"--filter-kind", kind}));
+  }
+
   const PapersPlan& plan_;
   Painter painter_;
   ImageSize half_;
@@ -106,8 +133,21 @@ Section figure10_section(const EsvoPictures& pictures) {
   Section section{"Figure 10: the filter", 2, {}};
   section.parts.emplace_back(Paragraph{
       "An octree with few levels and wide error bounds, so that neighbouring voxels differ in "
-      "size."});
-  add_row(section, pictures.filters, {"No filter.", "The filter (the command's)."});
+      "size. The naive filter averages a disc of the pixel's own voxel: seams show where the size "
+      "changes, and the background bleeds into outlines. The paper's filter shrinks the disc to "
+      "the voxels that it covers."});
+  add_row(section, pictures.filters, {"The naive filter.", "The paper's filter (the command's)."});
+  return section;
+}
+
+Section figure11_section(const EsvoPictures& pictures) {
+  Section section{"Figure 11: the paper's filter and guides", 2, {}};
+  section.parts.emplace_back(Paragraph{
+      "Figure 11 of the paper is the algorithm of its filter. It also averages across the edges of "
+      "large voxels and across shadows, which the paper's pictures do not have. By default "
+      "`render` "
+      "leaves out pixels of other surfaces and in other light."});
+  add_row(section, pictures.guides, {"The paper's filter.", "With guides (the command's)."});
   return section;
 }
 
@@ -130,10 +170,11 @@ EsvoPictures render_esvo_pictures(const PapersPlan& plan, const std::vector<Foun
     if (scene.is_absent()) continue;
     if (scene.identity.is_displaced) painter.paint_cathedral(scene);
     painter.paint_scene(scene);
+    if (scene.scene->name == "Sibenik") painter.paint_guides(scene);
   }
   if (!close_up.is_absent()) {
     painter.paint_contours(close_up);
-    painter.paint_filters(close_up);
+    painter.paint_hand(close_up);
   }
   return std::move(painter.pictures);
 }
@@ -144,6 +185,7 @@ std::vector<Section> esvo_picture_sections(const EsvoPictures& pictures) {
   if (!pictures.contours.empty()) sections.push_back(figure4_section(pictures));
   if (!pictures.steps.empty()) sections.push_back(figure9_section(pictures));
   if (!pictures.filters.empty()) sections.push_back(figure10_section(pictures));
+  if (!pictures.guides.empty()) sections.push_back(figure11_section(pictures));
   if (!pictures.scenes.empty()) sections.push_back(figure12_section(pictures));
   return sections;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of the ESVO paper: Figures 1, 4, 5, 9, 10 and 12.
+/// Pictures of the ESVO paper: Figures 1, 4, 5, 9, 10, 11 and 12.
 #include <vector>
 
 #include "bench/reproduce/painter.hpp"
@@ -16,7 +16,8 @@ struct EsvoPictures {
   std::vector<ScenePicture> cathedral;     ///< Figure 1: one picture, or none.
   std::vector<CubesAndContours> contours;  ///< Figures 4 and 5: coarse grids, ascending.
   std::vector<ScenePicture> steps;         ///< Figure 9: without and with beams; or none.
-  std::vector<ScenePicture> filters;       ///< Figure 10: no filter, then one; or none.
+  std::vector<ScenePicture> filters;       ///< Figure 10: naive, then adaptive; or none.
+  std::vector<ScenePicture> guides;        ///< Figure 11: without, then with guides; or none.
   std::vector<ScenePicture> scenes;        ///< Figure 12.
 };
 

@@ -17,9 +17,10 @@ std::vector<Vec3f> filter_picture(const FilterInput& input) {
   return filtered;
 }
 
-void filter_picture(RenderedImage& image) {
+void filter_picture(RenderedImage& image, FilterKind kind) {
+  if (kind == FilterKind::kNone) return;
   const Camera camera = make_camera(image.view, image.width, image.height);
-  image.radiance = filter_picture(filter_input(buffers_of(image), camera));
+  image.radiance = filter_picture(filter_input(buffers_of(image), camera, kind));
 }
 
 }  // namespace voxdag

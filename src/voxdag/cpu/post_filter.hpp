@@ -11,7 +11,7 @@ namespace voxdag {
 /// depend on their number.
 std::vector<Vec3f> filter_picture(const FilterInput& input);
 
-/// Filters the radiance of a picture, which must have cell_pixels.
-void filter_picture(RenderedImage& image);
+/// Filters the radiance of a picture, which must have cell_pixels unless `kind` is kNone.
+void filter_picture(RenderedImage& image, FilterKind kind);
 
 }  // namespace voxdag

@@ -13,7 +13,7 @@ namespace {
 /// Filters the picture if the options ask for it, exposes it and tone maps it.
 RenderedImage finish(const RenderPlan& plan, RenderedImage image, const RenderOptions& options,
                      const ViewSource* source) {
-  if (options.filter && source == nullptr) filter_picture(image);
+  if (source == nullptr) filter_picture(image, options.filter);
   return plan.finish(std::move(image));
 }
 

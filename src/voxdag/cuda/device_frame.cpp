@@ -17,7 +17,8 @@ void fetch(std::vector<T>& values, const DeviceBuffer<T>& buffer) {
 
 }  // namespace
 
-DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps)
+DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps,
+                         FilterKind filter)
     : setup_(plan.setup()) {
   const Camera& camera = setup_.camera;
   const std::size_t pixels =
@@ -26,7 +27,7 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
                             static_cast<std::size_t>(beams_across(camera.height));
   const char* what = "the picture";
   constexpr std::size_t kBytesPerPixel = 2 * sizeof(Vec3f) + 3 * sizeof(float);
-  const bool with_filter = setup_.image.cell_pixels != nullptr;
+  const bool with_filter = filter != FilterKind::kNone;
   require_device_memory(pixels * (kBytesPerPixel + (with_steps ? sizeof(float) : 0) +
                                   (with_filter ? sizeof(Vec3f) + 1 : 0)) +
                             (with_beams ? beams * sizeof(float) : 0),
@@ -57,7 +58,7 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
   setup_.image = {radiance_.data(), depth_.data(), normal_.data(),     occlusion_.data(),
                   shadow_.data(),   steps_.data(), cell_pixels_.data()};
   setup_.beam_starts = beam_starts_.data();
-  if (with_filter) filter_input_ = voxdag::filter_input(setup_.image, camera);
+  if (with_filter) filter_input_ = voxdag::filter_input(setup_.image, camera, filter);
 }
 
 void DeviceFrame::copy_to(RenderedImage& image, bool is_filtered) const {

@@ -8,16 +8,16 @@ namespace voxdag {
 
 class DeviceFrame {
  public:
-  /// Allocates on the current device. Throws Error if memory is short, before it allocates
-  /// anything.
-  DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps);
+  /// Allocates on the current device. `filter` must be that of the plan's options. Throws Error if
+  /// memory is short, before it allocates anything.
+  DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps, FilterKind filter);
 
   /// Returns the setup with pointers into device memory; beam_starts is null without beams.
   const RenderSetup& setup() const { return setup_; }
   float* beam_starts() const { return beam_starts_.data(); }
   unsigned long long* rays() const { return rays_.data(); }  ///< Initially zero.
 
-  /// Returns the filter's input; its pixels are null unless the plan's options ask for the filter.
+  /// Returns the filter's input; its pixels are null without a filter.
   const FilterInput& filter_input() const { return filter_input_; }
   const FilterSample* filter_samples() const { return filter_samples_.data(); }
   Vec3f* filtered() const { return filtered_.data(); }

@@ -113,7 +113,7 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
   scene.make_current();
   RenderPlan plan(scene.host(), grid, options);
   const bool with_beams = options.beams && source == nullptr;
-  const DeviceFrame frame(plan, with_beams, options.with_steps);
+  const DeviceFrame frame(plan, with_beams, options.with_steps, options.filter);
   const RenderSetup& setup = frame.setup();
   const CudaStream stream;
   if (with_beams)
@@ -125,11 +125,12 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
     for_beams(setup.camera, stream, progress, [&](std::uint32_t first, std::uint32_t last) {
       launch_steps(scene.view(), setup, first, last, stream.get());
     });
-  if (options.filter && source == nullptr) {
+  const bool is_filtered = options.filter != FilterKind::kNone && source == nullptr;
+  if (is_filtered) {
     launch_filter(frame.filter_input(), frame.filter_samples(), frame.filtered(), stream.get());
     stream.wait("filtering");
   }
-  frame.copy_to(plan.image(), options.filter && source == nullptr);
+  frame.copy_to(plan.image(), is_filtered);
   return plan.finish();
 }
 

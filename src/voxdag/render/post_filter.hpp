@@ -5,17 +5,18 @@
 /// Each pixel becomes the average of a disc of its voxel's size. The disc shrinks to the sizes of
 /// the voxels that it covers, from the centre outwards. So regions of different sizes agree at
 /// their borders. Pixels without a voxel have a size of one pixel: they stay sharp, and their
-/// colour does not spread.
+/// colour does not spread. The naive filter, the left half of Figure 10, does not shrink the disc.
 ///
-/// This filter does more than the paper's. The paper's pictures had no shadows, and its voxels are
-/// small at outlines. Here one voxel may cover a flat wall up to its edge. So the average leaves
-/// out pixels of other surfaces and pixels in other light.
+/// The guided filter does more than the paper's. The paper's pictures had no shadows, and its
+/// voxels are small at outlines. Here one voxel may cover a flat wall up to its edge. So the
+/// average leaves out pixels of other surfaces and pixels in other light.
 #include <array>
 #include <cstddef>
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/cell_pixels.hpp"
+#include "voxdag/render/filter_kind.hpp"
 #include "voxdag/render/render_setup.hpp"
 
 namespace voxdag {
@@ -52,15 +53,18 @@ struct FilterInput {
   const std::uint8_t* cell_pixels = nullptr;  ///< See pack_cell_pixels().
   int width = 0, height = 0;
   FilterGuides guides{};
+  bool shrinks = true;  ///< The disc shrinks to the sizes of the voxels that it covers.
 };
 
-/// Returns a picture's buffers with guides. `image` must have all buffers but the steps.
-VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camera& camera) {
-  return {image.radiance,
-          image.cell_pixels,
-          camera.width,
-          camera.height,
-          {image.depth, image.normal, image.occlusion, image.shadow, camera}};
+/// Returns a picture's buffers, for a filter of this kind. `image` must have all buffers but the
+/// steps; `kind` must not be kNone.
+VOXDAG_HD inline FilterInput filter_input(const ImageBuffers& image, const Camera& camera,
+                                          FilterKind kind) {
+  FilterInput input{image.radiance, image.cell_pixels, camera.width, camera.height};
+  if (kind == FilterKind::kGuided)
+    input.guides = {image.depth, image.normal, image.occlusion, image.shadow, camera};
+  input.shrinks = kind != FilterKind::kNaive;
+  return input;
 }
 
 /// Decides whether a pixel shows the surface that a given pixel shows, in equal light.
@@ -128,9 +132,11 @@ VOXDAG_HD inline Vec3f filtered_color(const FilterInput& input, const FilterSamp
     const int x = pixel_x + sample.x, y = pixel_y + sample.y;
     if (x < 0 || y < 0 || x >= input.width || y >= input.height) continue;
     const std::size_t at = index(x, y);
-    const float other = unpack_cell_pixels(input.cell_pixels[at]);
-    radius = other < radius ? other : radius;
-    if (sample.distance > radius) break;
+    if (input.shrinks) {
+      const float other = unpack_cell_pixels(input.cell_pixels[at]);
+      radius = other < radius ? other : radius;
+      if (sample.distance > radius) break;
+    }
     const float taper = radius - sample.distance;
     const float weight = sample.weight * (taper < 1.0f ? taper : 1.0f);
     if (alike >= kFewest && !same.has(x, y, at)) continue;

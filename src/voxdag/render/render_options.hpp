@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "voxdag/render/filter_kind.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/view.hpp"
@@ -37,9 +38,9 @@ struct RenderOptions {
   /// colour and the normal that it stores for their place. Must be in the memory of the device that
   /// renders. Empty: none.
   EsvoView look;
-  bool filter = false;  ///< Smooth voxels larger than pixels (post_filter.hpp), but not a
-                        ///< source's points.
-  float exposure = 0;   ///< Factor before tone mapping; 0: chosen to suit the picture.
+  /// Smooths voxels larger than pixels (post_filter.hpp), but not a source's points.
+  FilterKind filter = FilterKind::kNone;
+  float exposure = 0;  ///< Factor before tone mapping; 0: chosen to suit the picture.
 
   bool with_steps = false;  ///< Fill RenderedImage::steps.
   int tile_size = 32;       ///< Pixels, 1 to 32. Pictures do not depend on it.

@@ -90,7 +90,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   image_.occlusion.resize(pixels);
   image_.shadow.resize(pixels);
   if (options.with_steps) image_.steps.resize(pixels);
-  if (options.filter) image_.cell_pixels.resize(pixels);
+  if (options.filter != FilterKind::kNone) image_.cell_pixels.resize(pixels);
 
   setup_.grid = grid;
   setup_.camera = make_camera(image_.view, options.width, options.height);

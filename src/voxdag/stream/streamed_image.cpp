@@ -115,7 +115,7 @@ class StreamedPicture {
   }
 
   RenderedImage finished(RenderedImage image) const {
-    if (options_.filter) filter_picture(image);
+    filter_picture(image, options_.filter);
     return plan_.finish(std::move(image));
   }
 
