@@ -59,6 +59,8 @@ TEST_F(RenderCommand, BeamsChangeNothingAndLightsDo) {
            {"--light", "disc:3,3,-3,-1,-1,1,1", "--light", "rect:2,3,-2,1,0,0,0,0,1"},
            {"--no-sun"},
            {"--sky", "0.5"},
+           {"--specular", "0.3"},
+           {"--specular", "0.3:200", "--light", "point:3,3,-3"},
            {"--ao-distance", "0.2"},
            {"--exposure", "0.1"}}) {
     std::vector<std::string> words = {"--spp", "2"};
@@ -123,6 +125,10 @@ TEST_F(RenderCommand, RefusesWhatMakesNoPicture) {
   expect_failure(run_voxdag({"render", in, "-o", out, "--light", "sphere:1,2,3,0"}), 2, "radius");
   expect_failure(run_voxdag({"render", in, "-o", out, "--filter-kind", "soft"}), 2,
                  "--filter-kind: \"soft\" is neither guided nor plain nor naive");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--specular", "0.3:0"}), 2,
+                 "--specular: \"0\" is not a whole number from 1 to 10000");
+  expect_failure(run_voxdag({"render", in, "-o", out, "--specular", "1.1"}), 2,
+                 "--specular: \"1.1\" is not a number from 0 to 1");
   EXPECT_FALSE(exists("bad.png"));
 }
 

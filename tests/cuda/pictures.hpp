@@ -63,6 +63,10 @@ inline std::vector<Picture> pictures(int scale) {
   hard.sun_degrees = 0;
   hard.occlusion_samples = 0;
   add("no shadows").shadows = false;
+  RenderOptions& shiny = add("highlights");
+  shiny.specular = {0.5f, 50};
+  shiny.samples_per_pixel = 2;
+  shiny.shadow_samples = 2 * kShadowRaysWithBeams;
   RenderOptions& lamps = add("lamps");
   lamps.with_sun = false;
   LightSpec light;
@@ -76,6 +80,7 @@ inline std::vector<Picture> pictures(int scale) {
     light.position.x -= 0.3;
     lamps.lights.push_back(light);
   }
+  lamps.specular = {0.3f, 15};
   RenderOptions& detail = add("level of detail");
   detail.lod_pixels = 3;
   detail.occlusion_cone = 0.07;

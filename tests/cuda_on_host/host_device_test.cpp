@@ -92,6 +92,7 @@ RenderOptions small_picture() {
   options.samples_per_pixel = 2;
   options.shadow_samples = 2 * kShadowRaysWithBeams;
   options.filter = FilterKind::kGuided;
+  options.specular = {0.4f, 10};
   options.with_steps = true;
   return options;
 }
@@ -100,6 +101,7 @@ void expect_picture(const DeviceScene& scene, const ViewSource* source) {
   const RenderOptions options = small_picture();
   const RenderedImage image = render_image(scene, picture_grid(), options, nullptr, source);
   const RenderedImage like = render_image(scene.host(), picture_grid(), options, nullptr, source);
+  EXPECT_EQ(image.radiance, like.radiance);
   EXPECT_EQ(image.depth, like.depth);
   EXPECT_EQ(image.steps, like.steps);
   EXPECT_EQ(image.rays, like.rays);

@@ -57,6 +57,23 @@ TEST_P(MeshPrimary, AConvexBodyDoesNotShadowItself) {
   }
 }
 
+TEST_P(MeshPrimary, AHighlightIsWhereTheNormalHalvesTheAngle) {
+  const Vec3d sun{0.5, 0.8, 0.4};
+  RenderOptions options = from({2.2, 1.9, 2.8}, {}, sun);
+  const Mesh sphere = disordered_sphere_mesh(48);
+  const RenderedImage dull = render(sphere, options);
+  options.specular = {0.5f, 200};
+  const RenderedImage shiny = render(sphere, options);
+  std::size_t brightest = 0;
+  const auto highlight = [&](std::size_t i) { return shiny.radiance[i].y - dull.radiance[i].y; };
+  for (std::size_t i = 0; i < shiny.depth.size(); ++i)
+    if (highlight(i) > highlight(brightest)) brightest = i;
+  EXPECT_GT(highlight(brightest), 1);
+  // The viewer is far away in comparison with the sphere; a pixel is about 3 degrees of it.
+  const Vec3d half = normalized(normalized(sun) + normalized(Vec3d{2.2, 1.9, 2.8}));
+  EXPECT_GT(dot(static_cast<Vec3d>(shiny.normal[brightest]), half), 0.99);
+}
+
 TEST_P(MeshPrimary, NoSunShinesIntoAClosedRoom) {
   for (const Mesh& mesh : {cube_mesh(), disordered_sphere_mesh(48)})
     for (const Vec3d target : {Vec3d{1, 1, 1}, Vec3d{-1, -1, 0.9}, Vec3d{0.2, -1, -1}}) {

@@ -94,6 +94,15 @@ TEST_F(StreamImage, FiltersAsThePictureOfTheWholeOctree) {
   }
 }
 
+TEST_F(StreamImage, HasTheHighlightsOfTheWholeOctree) {
+  StreamBlocks blocks(path(), bytes);
+  const RenderedImage dull = whole();
+  options.specular = {0.4f, 10};
+  const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
+  test::expect_same_picture(image, whole());
+  EXPECT_NE(image.radiance, dull.radiance);
+}
+
 /// Renders these pictures one after the other, with memory for `bytes` of blocks. Returns the bytes
 /// of the blocks that are loaded at the end.
 std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,

@@ -41,6 +41,16 @@ FilterKind parse_filter_kind(const std::string& text) {
   throw std::invalid_argument(fmt::format("\"{}\" is neither guided nor plain nor naive", text));
 }
 
+/// Parses "STRENGTH" or "STRENGTH:EXPONENT"; throws std::invalid_argument.
+Specular parse_specular(const std::string& text) {
+  Specular specular;
+  const std::size_t colon = text.find(':');
+  specular.strength = NumberRange::from(0, 1).parse<float>(text.substr(0, colon));
+  if (colon != std::string::npos)
+    specular.exponent = NumberRange::whole(1, 10'000).parse<int>(text.substr(colon + 1));
+  return specular;
+}
+
 /// Returns whether any light casts shadows with soft edges.
 bool has_soft_light(const RenderOptions& options) {
   return (options.with_sun && options.sun_degrees > 0) ||
@@ -88,10 +98,15 @@ void add_light_options(const Command& command, RenderOptions& options) {
       "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
   command.number("--sky", options.sky, NumberRange::from(0, 1e6), "FACTOR",
                  "Factor that scales the light of the sky; 0: black");
+  const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
   command
       .off_switch("--no-shadows", options.shadows, "Turn the shadows of the sun and the lights off")
-      .only_if([&options] { return options.with_sun || !options.lights.empty(); },
-               "without sun and lights");
+      .only_if(has_lights, "without sun and lights");
+  command
+      .parsed("--specular", options.specular, parse_specular, "STRENGTH[:EXPONENT]",
+              "Add Phong highlights of the sun and the lights: the mirrored part of the light, 0 "
+              "to 1, and how small they are, 1 to 10000 (default: 0:20)")
+      .only_if(has_lights, "without sun and lights");
   command
       .number("--shadow-samples", options.shadow_samples, NumberRange::whole(1, 4096), "N",
               "Shadow rays per pixel and per light with soft edges")

@@ -7,8 +7,10 @@
 /// meets nothing, no ray is cast.
 #include "voxdag/render/light_beam.hpp"
 #include "voxdag/render/light_sample.hpp"
+#include "voxdag/render/specular.hpp"
 #include "voxdag/render/tile.hpp"
 #include "voxdag/render/tile_scratch.hpp"
+#include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
 
 namespace voxdag {
@@ -73,8 +75,33 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
       });
 }
 
-/// Adds the light of light `index` to scratch.irradiance, scratch.lit_sum and
-/// scratch.unhindered_sum. Returns the number of rays.
+/// Adds the highlights of a batch's unoccluded samples to scratch.highlights. A light has `samples`
+/// samples per pixel.
+template <class Scratch>
+VOXDAG_HD inline void add_highlights(const RenderSetup& setup, const LightBatch& batch, int samples,
+                                     const ViewTile& tile, Scratch& scratch) {
+  const Light& light = setup.lights[batch.index];
+  for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
+    const SurfacePoint& point = scratch.points[pixel];
+    if (!point.is_hit()) continue;
+    const Vec3d view = normalized(pixel_direction(setup, tile, pixel));
+    const Vec3f mirrored = mirrored_view(-static_cast<Vec3f>(view), point.normal);
+    float shine = 0;
+    for (int i = 0; i < batch.count; ++i) {
+      if ((scratch.visible[pixel] >> i & 1u) == 0) continue;
+      const LightSample sample =
+          sample_light(setup.tables, light, point, scratch.pixels[pixel], batch.begin + i);
+      if (!(sample.weight > 0)) continue;
+      const Vec3f to_light = normalized(direction_from_surface(light, point, sample));
+      shine += sample.weight * phong_lobe(setup.settings.specular, mirrored, to_light);
+    }
+    scratch.highlights[pixel] =
+        scratch.highlights[pixel] + light.color * (shine / static_cast<float>(samples));
+  }
+}
+
+/// Adds the light of light `index` to scratch.irradiance, scratch.highlights (if they are on),
+/// scratch.lit_sum and scratch.unhindered_sum. Returns the number of rays.
 template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const RenderSetup& setup,
                                  int index, const ViewTile& tile, Scratch& scratch) {
@@ -87,6 +114,7 @@ VOXDAG_HD inline int trace_light(const Nodes& nodes, const Caster& caster, const
   for (int done = 0; done < samples; done += kBatch) {
     const LightBatch batch{index, begin + done, samples - done < kBatch ? samples - done : kBatch};
     if (active > 0) trace_shadow_rays(caster, setup, batch, active, scratch);
+    if (setup.settings.specular.is_on()) add_highlights(setup, batch, samples, tile, scratch);
     for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
       const SurfacePoint& point = scratch.points[pixel];
       if (!point.is_hit()) continue;

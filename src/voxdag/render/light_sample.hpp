@@ -92,4 +92,11 @@ VOXDAG_HD inline LightSample sample_light(const SampleTables& tables, const Ligh
   return sample;
 }
 
+/// Returns the direction from the point's surface to the place on the light that `sample` chose.
+VOXDAG_HD inline Vec3f direction_from_surface(const Light& light, const SurfacePoint& point,
+                                              const LightSample& sample) {
+  if (light.kind == LightKind::kSun) return sample.direction;
+  return sample.direction + (point.start.position - point.surface.position);
+}
+
 }  // namespace voxdag

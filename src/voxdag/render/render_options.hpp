@@ -34,6 +34,7 @@ struct RenderOptions {
   float cube_pixels = 24;
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
+  Specular specular;  ///< Highlights of the sun and the lights.
   /// An ESVO of the same mesh, in a grid with the same corner and side. Hits at a DAG get the
   /// colour and the normal that it stores for their place. Must be in the memory of the device that
   /// renders. Empty: none.

@@ -25,6 +25,10 @@ void check(const RenderOptions& options) {
     throw Error("soft shadows must have 1 to 65536 rays per pixel");
   if (options.occlusion_samples < 0 || options.occlusion_samples > kMaxSamples)
     throw Error("ambient occlusion must have 0 to 65536 rays per pixel");
+  if (!(options.specular.strength >= 0 && options.specular.strength <= 1))
+    throw Error("the strength of highlights must be 0 to 1");
+  if (options.specular.exponent < 1 || options.specular.exponent > 10'000)
+    throw Error("the exponent of highlights must be 1 to 10000");
   if (!(options.occlusion_distance >= 0 && options.occlusion_distance < HUGE_VAL))
     throw Error("the distance of ambient occlusion must be finite and not negative");
   if (!(options.occlusion_cone >= 0 && options.occlusion_cone < 2 * std::numbers::pi))
@@ -113,6 +117,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   settings.cube_pixels = options.cube_pixels;
   settings.beams = options.beams;
   settings.albedo = options.albedo;
+  settings.specular = options.specular;
 
   if (options.with_sun) {
     LightSpec sun;

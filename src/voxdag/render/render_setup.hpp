@@ -8,6 +8,7 @@
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/sample_tables.hpp"
 #include "voxdag/render/sky.hpp"
+#include "voxdag/render/specular.hpp"
 
 namespace voxdag {
 
@@ -29,6 +30,7 @@ struct RenderSettings {
   float cube_pixels = 24;
   bool beams = true;  ///< Shorten rays by beams. The picture does not depend on it.
   Vec3f albedo{0.62f, 0.60f, 0.57f};
+  Specular specular;
 };
 
 /// The buffers of a picture: width * height values each, rows from top to bottom. A null buffer is

@@ -53,6 +53,7 @@ VOXDAG_HD inline void shade_tile(const RenderSetup& setup, const ViewTile& tile,
       radiance =
           (sky_light(setup, sample, -direction, open) + scratch.irradiance[pixel] * kInversePi) *
           sample.albedo;
+      if (settings.specular.is_on()) radiance = radiance + scratch.highlights[pixel];
     } else {
       radiance = sky_radiance(setup.sky, direction);
     }
@@ -88,6 +89,7 @@ VOXDAG_HD inline int render_sample(const Nodes& nodes, const Caster& caster,
       scratch.points[pixel] =
           make_surface_point(nodes, setup, sample, pixel_direction(setup, tile, pixel));
     scratch.irradiance[pixel] = {};
+    if (setup.settings.specular.is_on()) scratch.highlights[pixel] = {};
     scratch.lit_sum[pixel] = scratch.unhindered_sum[pixel] = 0;
   }
   for (int light = 0; light < setup.light_count; ++light)

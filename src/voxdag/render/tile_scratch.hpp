@@ -23,6 +23,7 @@ struct TileScratch {
   float unhindered[kPixels];         ///< Weights of all its samples, summed.
 
   Vec3f irradiance[kPixels];  ///< Irradiance from all lights.
+  Vec3f highlights[kPixels];  ///< Radiance of the highlights of all lights, if there are any.
   float lit_sum[kPixels],
       unhindered_sum[kPixels];  ///< Luminance from all lights, and without occluders.
 };
