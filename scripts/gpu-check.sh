@@ -148,7 +148,7 @@ if [ $measure = yes ]; then
       bench sponza-$resolution $work/sponza-$resolution.vdag "$sponza" paper,wide
     done
     attempt voxdag build "$sponza" -r 1024 -o $work/sponza.esvo
-    bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours
+    bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours,cubes
   fi
   bench courtyard-2048 $scene.vdag $scene.ply paper,wide
   echo "== results: $folder"

@@ -146,9 +146,7 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   for (const std::string& name : names) layouts.push_back(make_trace_layout(name, scene.voxels));
   std::vector<std::optional<DeviceScene>> device_scenes;
   for (const auto& layout : layouts) {
-    device_scenes.push_back(layout->device_layout() ? load_on_device(plan.device, scene.voxels,
-                                                                     *layout->device_layout())
-                                                    : std::nullopt);
+    device_scenes.push_back(load_on_device(plan.device, scene.voxels, layout->device_layout()));
     if (device_scenes.back()) results.cuda_device = device_scenes.back()->device().name;
   }
 

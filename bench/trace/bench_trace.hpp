@@ -57,7 +57,7 @@ struct TraceRow {
   std::uint64_t layout_bytes = 0;
   std::vector<double> view_mrays_per_second;
   std::vector<RivalRate> rivals;
-  bool on_cuda = false;  ///< Cast on CUDA; not every layout has kernels.
+  bool on_cuda = false;  ///< Cast on CUDA; with `auto` not every layout may fit into its memory.
 };
 
 /// Soft shadows in one scene.

@@ -48,7 +48,7 @@ class PaperScalarLayout : public TraceLayout {
   explicit PaperScalarLayout(const SvdagView& dag) : dag_(dag) {}
 
   std::uint64_t bytes() const override { return dag_.bytes(); }
-  std::optional<DeviceLayout> device_layout() const override { return DeviceLayout::kPaper; }
+  DeviceLayout device_layout() const override { return DeviceLayout::kPaper; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
     return runner_of(ScalarCaster<SvdagNodes>(SvdagNodes(dag_)), rays, casts);
   }
@@ -103,7 +103,7 @@ class Wide : public TraceLayout {
   explicit Wide(const SvdagView& dag) : dag_(make_wide_svdag(dag)) {}
 
   std::uint64_t bytes() const override { return dag_.view().bytes(); }
-  std::optional<DeviceLayout> device_layout() const override { return DeviceLayout::kWide; }
+  DeviceLayout device_layout() const override { return DeviceLayout::kWide; }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
     return runner_of(ScalarCaster<WideNodes>(WideNodes(dag_.view())), rays, casts);
   }
@@ -138,9 +138,8 @@ class EsvoTraceLayout : public TraceLayout {
   explicit EsvoTraceLayout(const EsvoView& esvo) : esvo_(esvo) {}
 
   std::uint64_t bytes() const override { return esvo_.slot_count * 8; }
-  std::optional<DeviceLayout> device_layout() const override {
-    if (Nodes::kWithContours) return DeviceLayout::kEsvo;
-    return std::nullopt;
+  DeviceLayout device_layout() const override {
+    return Nodes::kWithContours ? DeviceLayout::kContours : DeviceLayout::kCubes;
   }
   TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const override {
     return runner_of(PacketCaster(Nodes(esvo_)), rays, casts);

@@ -1,7 +1,6 @@
 #pragma once
 /// Casts rays with voxdag's casters, one class per layout.
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,8 +24,7 @@ class TraceLayout {
   virtual ~TraceLayout() = default;
 
   virtual std::uint64_t bytes() const = 0;
-  /// Returns the layout for CUDA devices, or nothing if no kernels exist for it.
-  virtual std::optional<DeviceLayout> device_layout() const = 0;
+  virtual DeviceLayout device_layout() const = 0;  ///< The layout on a CUDA device.
   virtual std::uint64_t device_bytes() const { return bytes(); }
   /// Returns a runner with the fastest caster of the layout. `casts` must outlive it.
   virtual TraceRunner runner(RayClass rays, std::span<const CastRay> casts) const = 0;

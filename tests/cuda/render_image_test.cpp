@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "cuda/cubes.hpp"
 #include "cuda/cuda_device.hpp"
 #include "cuda/pictures.hpp"
 #include "support/ball_octree.hpp"
@@ -76,6 +77,18 @@ TEST_F(CudaRender, LooksUpColoursAndNormalsAsTheCpuDoes) {
   const RenderedImage image = render_image(scene, picture_grid(), options);
   expect_like(image, expected);
   EXPECT_EQ(image.normal, expected.normal);
+}
+
+TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForTheCubesOfAnEsvo) {
+  std::mt19937 rng(4);
+  const Esvo esvo = TestEsvoAssembler(3, 4).assemble(*random_octree(rng, 0, 6), 6);
+  const DeviceScene scene(device_, esvo.view(), DeviceLayout::kCubes);
+  for (const Picture& picture : pictures(4)) {
+    SCOPED_TRACE(picture.name);
+    const RenderedImage expected = render_cubes(esvo.view(), picture_grid(), picture.options);
+    expect_like(render_image(scene, picture_grid(), picture.options), expected);
+    EXPECT_NE(expected.depth, render_image(esvo.view(), picture_grid(), picture.options).depth);
+  }
 }
 
 TEST_F(CudaRender, FiltersAsTheCpuDoes) {

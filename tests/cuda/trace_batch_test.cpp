@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cuda/cubes.hpp"
 #include "cuda/cuda_device.hpp"
 #include "support/brute_svdag.hpp"
 #include "support/test_esvo.hpp"
@@ -58,6 +59,10 @@ TEST_F(CudaTrace, EqualsTheCpuForEveryRayAtAnEsvo) {
     trace_batch(esvo.view(), grid, rays, expected);
     CudaTracer(DeviceScene(device_, esvo.view()), grid).trace(rays, hits);
     EXPECT_EQ(hits, expected);
+    CudaTracer(DeviceScene(device_, esvo.view(), DeviceLayout::kCubes), grid).trace(rays, hits);
+    const std::vector<Hit> of_cubes = trace_cubes(esvo.view(), grid, rays);
+    EXPECT_EQ(hits, of_cubes);
+    EXPECT_NE(of_cubes, expected);
   }
 }
 

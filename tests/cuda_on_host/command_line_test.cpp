@@ -1,4 +1,6 @@
 /// Runs the command line with the host device: `--device cuda` gives the results of `--device cpu`.
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -59,14 +61,21 @@ TEST_F(DeviceCommands, RenderMakesThePictureOfTheCpu) {
     }
 }
 
-TEST_F(DeviceCommands, BenchTraceMeasuresIt) {
-  for (const char* scene : {"in.vdag", "in.esvo"}) {
-    const ProcessResult result = run_on("cuda", {"bench", "trace", path(scene), "--size", "40x32",
-                                                 "--repeat", "1", "--views", "1", "--json"});
+TEST_F(DeviceCommands, BenchTraceMeasuresItAtEveryLayout) {
+  for (const auto& [scene, layouts] :
+       {std::pair{"in.vdag", std::vector<std::string>{"paper", "paper_scalar", "wide"}},
+        {"in.esvo", {"contours", "contours_scalar", "cubes", "cubes_scalar"}}}) {
+    const ProcessResult result = run_on(
+        "cuda", {"bench", "trace", path(scene), "--size", "40x32", "--repeat", "1", "--views", "1",
+                 "--layout", fmt::format("{}", fmt::join(layouts, ",")), "--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const nlohmann::json rows = nlohmann::json::parse(result.out);
-    ASSERT_EQ(rows.size(), 5u);
-    for (const nlohmann::json& row : rows) {
+    ASSERT_EQ(rows.size(), 5 * layouts.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const nlohmann::json& row = rows[i];
+      EXPECT_EQ(row.at("layout"), layouts[i / 5]);
+      EXPECT_EQ(row.at("rival"), "voxdag_cpu");
+      EXPECT_EQ(row.at("rival_agreement"), 1);
       EXPECT_EQ(row.at("device"), "cuda");
       EXPECT_EQ(row.at("device_name"), "the host");
       EXPECT_GT(row.at("mrays_per_s"), 0);

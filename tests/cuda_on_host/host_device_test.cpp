@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cuda/cubes.hpp"
 #include "cuda/pictures.hpp"
 #include "support/test_esvo.hpp"
 #include "support/test_rays.hpp"
@@ -81,7 +82,10 @@ void trace(const DeviceScene& scene) {
   for (int i = 0; i < 100; ++i) rays.push_back(make.make(RayKind::kGeneric));
   std::vector<Hit> hits(rays.size()), expected(rays.size());
   CudaTracer(scene, picture_grid()).trace(rays, hits);
-  trace_batch(scene.host(), picture_grid(), rays, expected);
+  if (scene.view().layout == DeviceLayout::kCubes)
+    expected = trace_cubes(*scene.host().esvo(), picture_grid(), rays);
+  else
+    trace_batch(scene.host(), picture_grid(), rays, expected);
   EXPECT_EQ(hits, expected);
 }
 
@@ -100,7 +104,10 @@ RenderOptions small_picture() {
 void expect_picture(const DeviceScene& scene, const ViewSource* source) {
   const RenderOptions options = small_picture();
   const RenderedImage image = render_image(scene, picture_grid(), options, nullptr, source);
-  const RenderedImage like = render_image(scene.host(), picture_grid(), options, nullptr, source);
+  const RenderedImage like =
+      scene.view().layout == DeviceLayout::kCubes
+          ? render_cubes(*scene.host().esvo(), picture_grid(), options, source)
+          : render_image(scene.host(), picture_grid(), options, nullptr, source);
   EXPECT_EQ(image.radiance, like.radiance);
   EXPECT_EQ(image.depth, like.depth);
   EXPECT_EQ(image.steps, like.steps);
@@ -132,6 +139,7 @@ void for_all_work(const Body& body) {
     body([&] { work(DeviceScene(choose_cuda_device(), dag.view())); });
     body([&] { work(DeviceScene(choose_cuda_device(), dag.view(), DeviceLayout::kWide)); });
     body([&] { work(DeviceScene(choose_cuda_device(), esvo.view())); });
+    body([&] { work(DeviceScene(choose_cuda_device(), esvo.view(), DeviceLayout::kCubes)); });
   }
 }
 

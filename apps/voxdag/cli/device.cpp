@@ -33,7 +33,7 @@ void add_device_option(const Command& command, DeviceChoice& choice) {
 std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice,
                                                  const VoxelSet& scene) {
   try {
-    return load_on_device(choice, scene);
+    return load_on_device(choice, scene, DeviceScene::default_layout(scene));
   } catch (const Error& error) {
     throw Error("--device cuda", "", error.what());
   }

@@ -15,8 +15,8 @@ struct DeviceChoice {
 
 /// Copies the voxels to the memory of the CUDA device. Returns nothing if the CPU is used: by
 /// choice, or with kAuto if there is no device or not enough memory on it. `scene` must outlive the
-/// result. Throws Error if kCuda was asked for and cannot be used.
+/// result, and `layout` must be one for it. Throws Error if kCuda was asked for and cannot be used.
 std::optional<DeviceScene> load_on_device(const DeviceChoice& choice, const VoxelSet& scene,
-                                          DeviceLayout layout = DeviceLayout::kPaper);
+                                          DeviceLayout layout);
 
 }  // namespace voxdag

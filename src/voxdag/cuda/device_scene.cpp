@@ -1,5 +1,7 @@
 #include "voxdag/cuda/device_scene.hpp"
 
+#include <cassert>
+
 #include "voxdag/cuda/check.hpp"
 #include "voxdag/cuda/memory.hpp"
 
@@ -22,14 +24,15 @@ DeviceScene::DeviceScene(const CudaDevice& device, const VoxelSet& scene, Device
   DeviceVoxels& view = memory->view;
   view.layout = layout;
   if (const EsvoView* esvo = scene.esvo()) {
+    assert(layout == DeviceLayout::kContours || layout == DeviceLayout::kCubes);
     require_device_memory(array_bytes<std::uint64_t>(esvo->slot_count), "the octree");
     memory->slots = upload(std::span(esvo->slots, esvo->slot_count), "the octree");
-    view.layout = DeviceLayout::kEsvo;
     view.esvo = *esvo;
     view.esvo.slots = memory->slots.data();
     memory_ = memory;
     return;
   }
+  assert(layout == DeviceLayout::kPaper || layout == DeviceLayout::kWide);
   const SvdagView& dag = *scene.dag();
   WideSvdag wide;
   if (layout == DeviceLayout::kWide) wide = make_wide_svdag(dag);

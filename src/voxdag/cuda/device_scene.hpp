@@ -11,10 +11,17 @@ namespace voxdag {
 /// Copies share the device's memory; the last one frees it.
 class DeviceScene {
  public:
-  /// Copies the voxels to the device; `layout` is the layout of a DAG for rays. The host's voxels
-  /// must outlive this object. Throws Error if the device does not have enough free memory.
-  DeviceScene(const CudaDevice& device, const VoxelSet& scene,
-              DeviceLayout layout = DeviceLayout::kPaper);
+  /// Copies the voxels to the device; `layout` is the layout for rays, and must be one for these
+  /// voxels. The host's voxels must outlive this object. Throws Error if the device does not have
+  /// enough free memory.
+  DeviceScene(const CudaDevice& device, const VoxelSet& scene, DeviceLayout layout);
+  /// Copies the voxels in their default layout: kPaper or kContours.
+  DeviceScene(const CudaDevice& device, const VoxelSet& scene)
+      : DeviceScene(device, scene, default_layout(scene)) {}
+
+  static DeviceLayout default_layout(const VoxelSet& scene) {
+    return scene.esvo() != nullptr ? DeviceLayout::kContours : DeviceLayout::kPaper;
+  }
 
   const CudaDevice& device() const;
   const VoxelSet& host() const;      ///< The voxels in the host's memory.

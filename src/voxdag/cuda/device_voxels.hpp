@@ -6,8 +6,9 @@
 
 namespace voxdag {
 
-/// The node layout for rays.
-enum class DeviceLayout { kPaper, kWide, kEsvo };
+/// The node layout for rays: kPaper or kWide for a DAG, kContours or kCubes (the voxels without
+/// their contours) for an ESVO.
+enum class DeviceLayout { kPaper, kWide, kContours, kCubes };
 
 /// Pointers into the memory of a device. A DAG always has the paper's layout, which beams and
 /// normals read. It has the wide layout only if rays use it. An ESVO has only its own layout.

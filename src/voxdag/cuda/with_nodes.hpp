@@ -10,8 +10,10 @@ namespace voxdag {
 /// Calls body(nodes) with the node layout for rays.
 template <class Body>
 void with_nodes(const DeviceVoxels& voxels, const Body& body) {
-  if (voxels.layout == DeviceLayout::kEsvo)
+  if (voxels.layout == DeviceLayout::kContours)
     body(ContourNodes(voxels.esvo));
+  else if (voxels.layout == DeviceLayout::kCubes)
+    body(EsvoNodes(voxels.esvo));
   else if (voxels.layout == DeviceLayout::kWide)
     body(WideNodes(voxels.wide));
   else
@@ -21,8 +23,10 @@ void with_nodes(const DeviceVoxels& voxels, const Body& body) {
 /// Calls body(nodes) with the node layout for beams and for counting steps.
 template <class Body>
 void with_beam_nodes(const DeviceVoxels& voxels, const Body& body) {
-  if (voxels.layout == DeviceLayout::kEsvo)
+  if (voxels.layout == DeviceLayout::kContours)
     body(ContourNodes(voxels.esvo));
+  else if (voxels.layout == DeviceLayout::kCubes)
+    body(EsvoNodes(voxels.esvo));
   else
     body(SvdagNodes(voxels.paper));
 }
