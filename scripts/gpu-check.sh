@@ -137,6 +137,11 @@ bench() {
     --rays 8000000 -o "$folder/$1.json"
   [ ! -f "$folder/$1.json" ] || attempt hits_agree "$folder/$1.json"
 }
+# bench_esvo NAME MESH: measures rays per second at ESVOs of 1024³; fails if a hit differs from the CPU's.
+bench_esvo() {
+  echo "== $1"
+  attempt voxdag bench esvo "$1=$2" -r 1024 --views 2 --device cuda -o "$folder/$1.json"
+}
 if [ $measure = yes ]; then
   nvidia-smi --query-gpu=name,driver_version,clocks.sm,clocks.max.sm --format=csv || true
   if [ -n "$packed" ]; then sponza=$(find $work -name sponza.obj); else sponza=$(find_sponza); fi
@@ -149,8 +154,10 @@ if [ $measure = yes ]; then
     done
     attempt voxdag build "$sponza" -r 1024 -o $work/sponza.esvo
     bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours,cubes
+    bench_esvo sponza-rates "$sponza"
   fi
   bench courtyard-2048 $scene.vdag $scene.ply paper,wide
+  bench_esvo courtyard-rates $scene.ply
   echo "== results: $folder"
 fi
 echo "== done in $SECONDS s, $failures failures"

@@ -10,6 +10,7 @@
 #include "bench/build/bench_mesh.hpp"
 #include "bench/report/bench_machine.hpp"
 #include "bench/report/scratch_folder.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,12 +35,25 @@ class Bench {
       build_all(scene, mesh);
       meshes.push_back(mesh.path);
     }
+    // Not before the builds, because the device's driver would count as memory of this program.
+    if (!can_cast()) return std::move(results_);
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i)
       bench_esvo_rays(plan_, plan_.scenes[i], meshes[i], progress_, results_);
     return std::move(results_);
   }
 
  private:
+  /// Returns whether the device that was asked for is there.
+  bool can_cast() {
+    if (plan_.device.kind != DeviceChoice::Kind::kCuda) return true;
+    try {
+      choose_cuda_device(plan_.device.index);
+    } catch (const Error& error) {
+      results_.device_failure = error.what();
+    }
+    return results_.device_failure.empty();
+  }
+
   void build_all(const EsvoBenchScene& scene, const PreparedMesh& mesh) {
     for (const int levels : plan_.levels)
       for (const bool with_contours : {true, false}) {

@@ -11,6 +11,7 @@
 #include "bench/papers/paper_scenes.hpp"
 #include "bench/report/bench_child.hpp"
 #include "bench/report/charts.hpp"
+#include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/image/image_size.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -35,6 +36,7 @@ struct EsvoBenchPlan {
   int threads = 0;
   float lod_pixels = 1;
   bool silhouettes = true;
+  DeviceChoice device;  ///< Casts the rays of EsvoRateRow at octrees.
 };
 
 /// The compared forms: first those of the paper's Table 2, in its order; then contours on the
@@ -90,6 +92,15 @@ struct EsvoRateRow {
     return static_cast<double>(rays) * 1e-6 /
            mrays_per_second[static_cast<std::size_t>(EsvoForm::kContoursBeams)];
   }
+
+  /// Whether a CUDA device cast at the octrees. If so, the CPU cast the same rays: its rates, and
+  /// the fraction of the rays for which both hit something or both miss, which must be 1. Else NaN.
+  bool on_cuda = false;
+  std::array<double, kEsvoForms.size()> cpu_mrays_per_second{};
+  std::array<double, kEsvoForms.size()> agreement_with_cpu{};
+
+  /// Returns the least agreement of all forms; 1 on the CPU.
+  double least_agreement_with_cpu() const;
 };
 
 /// The silhouette errors at one resolution: the fraction of the rays to the finest voxels for which
@@ -102,6 +113,8 @@ struct SilhouetteRow {
 
 struct EsvoBenchResults {
   int threads = 0;
+  std::string cuda_device;     ///< Device of the rates with on_cuda; empty: all are on the CPU.
+  std::string device_failure;  ///< Why the plan's device could not cast rays, or empty.
   std::vector<EsvoBuildRun> builds;  ///< By scene, then levels; contours before cubes.
   std::vector<EsvoRateRow> rates;    ///< By scene, then size; at the finest grid that was built.
   std::vector<SilhouetteRow> silhouettes;
@@ -112,7 +125,8 @@ struct EsvoBenchResults {
 EsvoBenchScene parse_esvo_scene(const std::string& text);
 
 /// Builds both forms of every scene in child processes, then casts rays in this process. Records a
-/// build that fails, and skips higher resolutions of its scene. Throws Error, Cancelled.
+/// build that fails, and skips higher resolutions of its scene. Casts no rays if the device that
+/// was asked for is missing. Throws Error, Cancelled.
 EsvoBenchResults bench_esvo(const EsvoBenchPlan& plan, Progress& progress);
 
 /// Casts rays at the octrees of a scene, and appends the rows. `mesh` is its file.

@@ -8,6 +8,7 @@
 
 #include "bench/esvo/bench_esvo.hpp"
 #include "bench/rays/caster_runner.hpp"
+#include "bench/rays/cuda_runner.hpp"
 #include "bench/rays/trace_measure.hpp"
 #include "bench/rays/trace_rays.hpp"
 #include "bench/rivals/embree_rival.hpp"
@@ -75,14 +76,97 @@ TraceRunner esvo_runner(const EsvoView& esvo, const std::vector<CastRay>& casts)
   return runner_of(PacketCaster(Nodes(esvo)), RayClass::kPrimary, casts);
 }
 
-struct FormSums {
-  double seconds = 0, agreeing = 0;
+/// An octree, also in the memory of the plan's CUDA device if it casts there.
+struct Octree {
+  Octree(const EsvoBuildRun& run, const DeviceChoice& device, DeviceLayout layout)
+      : file(run.file), on_device(load_on_device(device, file.view(), layout)) {}
+
+  EsvoFile file;
+  std::optional<DeviceScene> on_device;
 };
 
 /// The targets of the rays, all in the same cube.
 struct Octrees {
-  EsvoFile contours, cubes;
-  std::optional<EsvoFile> coarse;  ///< Contours whose silhouettes are as good as the cubes'.
+  Octree contours, cubes;
+  std::optional<Octree> coarse;  ///< Contours whose silhouettes are as good as the cubes'.
+
+  /// Casts on the CPU unless all octrees fit into the memory of the device.
+  void use_one_device() {
+    if (contours.on_device && cubes.on_device && (!coarse || coarse->on_device)) return;
+    contours.on_device.reset();
+    cubes.on_device.reset();
+    if (coarse) coarse->on_device.reset();
+  }
+};
+
+/// The sums over views of a form's casts.
+struct FormSums {
+  double seconds = 0, agreeing = 0;          ///< `agreeing`: with the triangles.
+  double cpu_seconds = 0, cpu_agreeing = 0;  ///< Only if `seconds` are a CUDA device's.
+
+  void operator+=(const FormSums& more) {
+    seconds += more.seconds;
+    agreeing += more.agreeing;
+    cpu_seconds += more.cpu_seconds;
+    cpu_agreeing += more.cpu_agreeing;
+  }
+};
+using AllSums = std::array<FormSums, kEsvoForms.size()>;
+
+/// The casts of all forms at the rays of a view.
+class ViewCasts {
+ public:
+  void add(TraceRunner runner, std::size_t form) { add(std::move(runner), form, false); }
+
+  /// Adds casts of `rays`, which must outlive this object, at an octree: on its CUDA device and on
+  /// the CPU, or only on the CPU.
+  template <class Nodes>
+  void add(const Octree& octree, PrimaryRays& rays, std::size_t form, bool with_beams) {
+    std::optional<TimedBeams> beams;
+    if (octree.on_device && with_beams) {
+      beams.emplace(*octree.on_device, rays.beams.setup());
+      // The beams of the CPU and of the device differ.
+      rays.with_beams = primary_rays(rays.beams.setup(), beams->starts().data());
+    }
+    const std::vector<CastRay>& set = with_beams ? rays.with_beams : rays.plain;
+    TraceRunner on_cpu = esvo_runner<Nodes>(octree.file.view(), set);
+    if (with_beams) on_cpu.before = [&rays] { rays.beams.run(); };
+    if (octree.on_device)
+      add(cuda_runner(*octree.on_device, RayClass::kPrimary, set, beams), form, false);
+    add(std::move(on_cpu), form, octree.on_device.has_value());
+  }
+
+  /// Measures all casts of `count` rays each. Agreement is with the first cast that was added.
+  AllSums measure(std::size_t count, int repeat) const {
+    const std::vector<Measured> measured = voxdag::measure(runners_, count, repeat);
+    AllSums best;
+    best.fill({HUGE_VAL, 0, 0, 0});
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      FormSums& sums = best[casts_[i].form];
+      if (casts_[i].is_check) {  // of the cast before it
+        sums.cpu_seconds = measured[i].seconds;
+        sums.cpu_agreeing = static_cast<double>(agreeing(measured[i - 1].hits, measured[i].hits));
+      } else if (measured[i].seconds < sums.seconds) {
+        sums.seconds = measured[i].seconds;
+        sums.agreeing = static_cast<double>(agreeing(measured[0].hits, measured[i].hits));
+      }
+    }
+    return best;
+  }
+
+ private:
+  struct Cast {
+    std::size_t form;
+    bool is_check;  ///< On the CPU, only to check the cast before it, which is on CUDA.
+  };
+
+  void add(TraceRunner runner, std::size_t form, bool is_check) {
+    runners_.push_back(std::move(runner));
+    casts_.push_back({form, is_check});
+  }
+
+  std::vector<TraceRunner> runners_;
+  std::vector<Cast> casts_;
 };
 
 class SceneRays {
@@ -102,17 +186,24 @@ class SceneRays {
   void rates() {
     if (pairs_.empty()) return;
     const BuiltPair& pair = pairs_.back();
-    Octrees octrees{EsvoFile(pair.contours->file), EsvoFile(pair.cubes->file), {}};
+    Octrees octrees{Octree(*pair.contours, plan_.device, DeviceLayout::kContours),
+                    Octree(*pair.cubes, plan_.device, DeviceLayout::kCubes),
+                    {}};
     const int coarse_at = coarse_levels(results_.silhouettes, scene_.name);
     for (const BuiltPair& other : pairs_)
-      if (other.levels == coarse_at) octrees.coarse.emplace(other.contours->file);
+      if (other.levels == coarse_at)
+        octrees.coarse.emplace(*other.contours, plan_.device, DeviceLayout::kContours);
+    octrees.use_one_device();
+    const std::optional<DeviceScene>& on_device = octrees.contours.on_device;
+    if (on_device) results_.cuda_device = on_device->device().name;
     for (const ImageSize size : plan_.sizes) {
       EsvoRateRow row;
       row.scene = scene_.name;
       row.paper = pair.contours->paper;
       row.levels = pair.levels;
       row.size = size;
-      std::array<FormSums, kEsvoForms.size()> sums;
+      row.on_cuda = on_device.has_value();
+      AllSums sums;
       for (const View& view : views_) {
         step("casting at " + scene_.name);
         row.rays += add_view(octrees, view, size, sums);
@@ -123,6 +214,9 @@ class SceneRays {
             form == kTriangles ? embree_.has_value() : form < kCoarseContours || octrees.coarse;
         row.mrays_per_second[form] = is_measured ? count / sums[form].seconds * 1e-6 : NAN;
         row.agreement[form] = embree_ && is_measured ? sums[form].agreeing / count : NAN;
+        const bool is_checked = row.on_cuda && is_measured && form != kTriangles;
+        row.cpu_mrays_per_second[form] = is_checked ? count / sums[form].cpu_seconds * 1e-6 : NAN;
+        row.agreement_with_cpu[form] = is_checked ? sums[form].cpu_agreeing / count : NAN;
       }
       if (row.rays == 0) continue;
       step("pictures of " + scene_.name);
@@ -159,46 +253,26 @@ class SceneRays {
  private:
   /// Adds the rays of a view and returns their number. All octrees get equal rays, except for the
   /// starts from beams.
-  std::size_t add_view(const Octrees& octrees, const View& view, ImageSize size,
-                       std::array<FormSums, kEsvoForms.size()>& sums) {
+  std::size_t add_view(const Octrees& octrees, const View& view, ImageSize size, AllSums& sums) {
     const auto& [contours, cubes, coarse] = octrees;
-    PrimaryRays rays(contours.view(), contours.grid(), view, size, plan_.lod_pixels);
+    PrimaryRays rays(contours.file.view(), contours.file.grid(), view, size, plan_.lod_pixels);
     std::optional<PrimaryRays> coarse_rays;
-    if (coarse) coarse_rays.emplace(coarse->view(), coarse->grid(), view, size, plan_.lod_pixels);
-    std::vector<TraceRunner> runners;
-    std::vector<std::size_t> forms;
-    const auto add = [&](TraceRunner runner, std::size_t form) {
-      runners.push_back(std::move(runner));
-      forms.push_back(form);
-    };
+    if (coarse)
+      coarse_rays.emplace(coarse->file.view(), coarse->file.grid(), view, size, plan_.lod_pixels);
+    ViewCasts casts;
     if (embree_)
       for (TraceRunner& runner :
-           embree_->prepare(contours.grid(), {RayClass::kPrimary, rays.plain}))
-        add(std::move(runner), kTriangles);
-    add(esvo_runner<EsvoNodes>(cubes.view(), rays.plain), kCubes);
-    add(esvo_runner<ContourNodes>(contours.view(), rays.plain), kContours);
-    const auto add_with_beams = [&](const EsvoFile& file, PrimaryRays& own, std::size_t form) {
-      TraceRunner runner = esvo_runner<ContourNodes>(file.view(), own.with_beams);
-      runner.before = [&own] { own.beams.run(); };
-      add(std::move(runner), form);
-    };
-    add_with_beams(contours, rays, kContoursBeams);
+           embree_->prepare(contours.file.grid(), {RayClass::kPrimary, rays.plain}))
+        casts.add(std::move(runner), kTriangles);
+    casts.add<EsvoNodes>(cubes, rays, kCubes, false);
+    casts.add<ContourNodes>(contours, rays, kContours, false);
+    casts.add<ContourNodes>(contours, rays, kContoursBeams, true);
     if (coarse) {
-      add(esvo_runner<ContourNodes>(coarse->view(), coarse_rays->plain), kCoarseContours);
-      add_with_beams(*coarse, *coarse_rays, kCoarseContoursBeams);
+      casts.add<ContourNodes>(*coarse, *coarse_rays, kCoarseContours, false);
+      casts.add<ContourNodes>(*coarse, *coarse_rays, kCoarseContoursBeams, true);
     }
-
-    const std::vector<Measured> measured = measure(runners, rays.plain.size(), plan_.repeat);
-    std::array<FormSums, kEsvoForms.size()> best;
-    best.fill({HUGE_VAL, 0});
-    for (std::size_t i = 0; i < measured.size(); ++i)
-      if (measured[i].seconds < best[forms[i]].seconds)
-        best[forms[i]] = {measured[i].seconds,
-                          static_cast<double>(agreeing(measured[0].hits, measured[i].hits))};
-    for (std::size_t form = 0; form < best.size(); ++form) {
-      sums[form].seconds += best[form].seconds;
-      sums[form].agreeing += best[form].agreeing;
-    }
+    const AllSums of_view = casts.measure(rays.plain.size(), plan_.repeat);
+    for (std::size_t form = 0; form < sums.size(); ++form) sums[form] += of_view[form];
     return rays.plain.size();
   }
 

@@ -65,6 +65,9 @@ std::string builds_table(const Builds& builds) {
   return text;
 }
 
+/// The first form that is an octree; triangles are always cast on the CPU.
+constexpr auto kFirstOctreeForm = static_cast<std::size_t>(EsvoForm::kCubes);
+
 std::string size_of(const EsvoRateRow& row) {
   return fmt::format("{}x{}", row.size.width, row.size.height);
 }
@@ -76,12 +79,15 @@ double paper_mrays(const EsvoRateRow& row, std::size_t form) {
                                row.size.height)[form];
 }
 
-std::string rates_table(const std::vector<EsvoRateRow>& rates) {
+std::string rates_table(const EsvoBenchResults& results) {
+  const std::vector<EsvoRateRow>& rates = results.rates;
   if (rates.empty()) return "";
+  const std::string device =
+      results.cuda_device.empty() ? "" : fmt::format(", octrees on {}", results.cuda_device);
   std::string text = fmt::format(
-      "\nMillion primary rays per second (in brackets: the paper, for octrees of its depth)\n  "
+      "\nMillion primary rays per second{} (in brackets: the paper, for octrees of its depth)\n  "
       "{:<16}{:>10}{:>12}",
-      "scene", "grid", "size");
+      device, "scene", "grid", "size");
   for (std::size_t form = 0; form < published::kEsvoRates; ++form)
     text += fmt::format("{:>20}", name_of(kEsvoForms[form]));
   text += "\n";
@@ -93,6 +99,24 @@ std::string rates_table(const std::vector<EsvoRateRow>& rates) {
                                         (std::isnan(paper) ? "" : " (" + number(paper, 1) + ")"));
     }
     text += "\n";
+  }
+  return text;
+}
+
+/// Returns the table of the CPU's rates, for rays that a CUDA device cast too.
+std::string cpu_table(const EsvoBenchResults& results) {
+  if (results.cuda_device.empty()) return "";
+  std::string text = "\nMillion primary rays per second of the CPU, with the same rays\n";
+  text += fmt::format("  {:<16}{:>10}{:>12}", "scene", "grid", "size");
+  for (std::size_t form = kFirstOctreeForm; form < published::kEsvoRates; ++form)
+    text += fmt::format("{:>20}", name_of(kEsvoForms[form]));
+  text += fmt::format("{:>16}\n", "equal hits");
+  for (const EsvoRateRow& row : results.rates) {
+    if (!row.on_cuda) continue;
+    text += fmt::format("  {:<16}{:>11}{:>12}", row.scene, resolution_of(row.levels), size_of(row));
+    for (std::size_t form = kFirstOctreeForm; form < published::kEsvoRates; ++form)
+      text += fmt::format("{:>20}", number(row.cpu_mrays_per_second[form], 2));
+    text += fmt::format("{:>16}\n", number(row.least_agreement_with_cpu(), 6));
   }
   return text;
 }
@@ -160,6 +184,13 @@ std::string name_of(EsvoForm form) {
                                      "contours_beams", "coarse_contours", "coarse_contours_beams"};
   static_assert(kNames.size() == kEsvoForms.size());
   return kNames[static_cast<std::size_t>(form)];
+}
+
+double EsvoRateRow::least_agreement_with_cpu() const {
+  double least = 1;
+  for (const double part : agreement_with_cpu)
+    if (part < least) least = part;  // false for NaN
+  return least;
 }
 
 int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& scene) {
@@ -233,6 +264,8 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
                 {"coarse_resolution", coarse == 0 ? Json() : Json(std::int64_t{1} << coarse)},
                 {"width", row.size.width},
                 {"height", row.size.height},
+                {"device", row.on_cuda ? "cuda" : "cpu"},
+                {"device_name", row.on_cuda ? Json(results.cuda_device) : machine.at("processor")},
                 {"ray_count", row.rays},
                 {"picture_seconds", row.seconds.picture},
                 {"filter_seconds", row.seconds.filter}};
@@ -240,7 +273,9 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
       const auto at = static_cast<std::size_t>(form);
       object[name_of(form)] = {{"mrays_per_s", json_number(row.mrays_per_second[at])},
                                {"agreement_with_triangles", json_number(row.agreement[at])},
-                               {"paper_mrays_per_s", json_number(paper_mrays(row, at))}};
+                               {"paper_mrays_per_s", json_number(paper_mrays(row, at))},
+                               {"cpu_mrays_per_s", json_number(row.cpu_mrays_per_second[at])},
+                               {"agreement_with_cpu", json_number(row.agreement_with_cpu[at])}};
     }
     json["rays"].push_back(object);
   }
@@ -258,8 +293,9 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
 }
 
 std::string esvo_bench_table(const EsvoBenchResults& results) {
-  return builds_table(results.builds) + rates_table(results.rates) + coarse_table(results) +
-         pictures_table(results.rates) + silhouettes_table(results.silhouettes);
+  return builds_table(results.builds) + rates_table(results) + cpu_table(results) +
+         coarse_table(results) + pictures_table(results.rates) +
+         silhouettes_table(results.silhouettes);
 }
 
 }  // namespace voxdag

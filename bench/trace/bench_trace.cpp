@@ -7,11 +7,11 @@
 #include <map>
 #include <optional>
 
+#include "bench/rays/cuda_runner.hpp"
 #include "bench/rays/trace_measure.hpp"
 #include "bench/rivals/embree_rival.hpp"
 #include "bench/rivals/openvdb_rival.hpp"
 #include "bench/trace/trace_casters.hpp"
-#include "bench/trace/trace_cuda.hpp"
 
 namespace voxdag {
 namespace {

@@ -56,6 +56,11 @@ TEST_F(DeviceOption, PicturesAndBenchmarksTakeIt) {
   expect_failure(run_voxdag({"render", in, "-o", path("cuda.png"), "--device", "cuda"}), 1, reason);
   expect_failure(run_voxdag({"bench", "trace", in, "-o", json, "--device", "cuda"}), 1, reason);
   EXPECT_FALSE(exists("cuda.png") || exists("rays.json"));
+  const ProcessResult esvo =
+      run_voxdag({"bench", "esvo", "Sponge=" + path("sponge.ply"), "-r", "16", "--size", "40x32",
+                  "--no-silhouettes", "--device", "cuda"});
+  EXPECT_EQ(esvo.status, 1);
+  EXPECT_EQ(esvo.err, "voxdag: --device cuda: " + reason + "\n");
 }
 
 TEST_F(DeviceOption, OtherDevicesAreBadUsage) {

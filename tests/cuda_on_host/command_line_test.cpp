@@ -63,8 +63,8 @@ TEST_F(DeviceCommands, RenderMakesThePictureOfTheCpu) {
 
 TEST_F(DeviceCommands, BenchTraceMeasuresItAtEveryLayout) {
   for (const auto& [scene, layouts] :
-       {std::pair{"in.vdag", std::vector<std::string>{"paper", "paper_scalar", "wide"}},
-        {"in.esvo", {"contours", "contours_scalar", "cubes", "cubes_scalar"}}}) {
+       {std::pair{"in.vdag", std::vector<std::string>{"paper", "wide"}},
+        {"in.esvo", {"contours", "cubes"}}}) {
     const ProcessResult result = run_on(
         "cuda", {"bench", "trace", path(scene), "--size", "40x32", "--repeat", "1", "--views", "1",
                  "--layout", fmt::format("{}", fmt::join(layouts, ",")), "--json"});
@@ -81,6 +81,65 @@ TEST_F(DeviceCommands, BenchTraceMeasuresItAtEveryLayout) {
       EXPECT_GT(row.at("mrays_per_s"), 0);
     }
   }
+}
+
+TEST_F(DeviceCommands, BenchEsvoMeasuresItAndFindsTheHitsOfTheCpu) {
+  const std::vector<std::string> words = {"bench",
+                                          "esvo",
+                                          "Sponge=" + path("sponge.ply"),
+                                          "-r",
+                                          "16,32",
+                                          "--size",
+                                          "40x32",
+                                          "--repeat",
+                                          "1",
+                                          "--views",
+                                          "1",
+                                          "-o",
+                                          path("esvo.json")};
+  const ProcessResult result = run_on("cuda", words);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("per second, octrees on the host"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("per second of the CPU, with the same rays"), std::string::npos);
+  const nlohmann::json rows = nlohmann::json::parse(read_text(path("esvo.json"))).at("rays");
+  ASSERT_EQ(rows.size(), 1u);
+  for (const nlohmann::json& row : rows) {
+    EXPECT_EQ(row.at("device"), "cuda");
+    EXPECT_EQ(row.at("device_name"), "the host");
+    EXPECT_TRUE(row.at("triangles").at("agreement_with_cpu").is_null());
+    std::vector<std::string> forms = {"cubes", "contours", "contours_beams"};
+    if (!row.at("coarse_resolution").is_null())
+      forms.insert(forms.end(), {"coarse_contours", "coarse_contours_beams"});
+    for (const std::string& form : forms) {
+      EXPECT_GT(row.at(form).at("mrays_per_s"), 0) << form;
+      EXPECT_GT(row.at(form).at("cpu_mrays_per_s"), 0) << form;
+      EXPECT_EQ(row.at(form).at("agreement_with_cpu"), 1) << form;
+    }
+  }
+  const ProcessResult cpu = run_on("cpu", words);
+  ASSERT_EQ(cpu.status, 0) << cpu.err;
+  const nlohmann::json on_cpu = nlohmann::json::parse(read_text(path("esvo.json"))).at("rays");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(on_cpu[i].at("device"), "cpu");
+    EXPECT_TRUE(on_cpu[i].at("cubes").at("cpu_mrays_per_s").is_null());
+    EXPECT_EQ(on_cpu[i].at("ray_count"), rows[i].at("ray_count"));
+    for (const char* form : {"cubes", "contours", "contours_beams"})
+      EXPECT_EQ(on_cpu[i].at(form).at("agreement_with_triangles"),
+                rows[i].at(form).at("agreement_with_triangles"))
+          << form;
+  }
+}
+
+TEST_F(DeviceCommands, BenchEsvoKeepsTheBuildsIfTheDeviceIsMissing) {
+  const ProcessResult result =
+      run_on("cuda:1", {"bench", "esvo", "Sponge=" + path("sponge.ply"), "-r", "16", "--size",
+                        "40x32", "-o", path("builds.json")});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.err,
+            "voxdag: --device cuda: no CUDA device 1: the driver lists 1, numbered from 0\n");
+  const nlohmann::json json = nlohmann::json::parse(read_text(path("builds.json")));
+  EXPECT_EQ(json.at("builds").size(), 2u);
+  EXPECT_TRUE(json.at("rays").empty());
 }
 
 TEST_F(DeviceCommands, AMissingDeviceIsRefused) {

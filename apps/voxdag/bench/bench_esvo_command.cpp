@@ -10,6 +10,7 @@
 #include "bench/esvo/bench_esvo.hpp"
 #include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
+#include "cli/device.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -30,13 +31,19 @@ void run(const BenchEsvoArguments& arguments, Session& session) {
       esvo_bench_json(results, machine),
       {[&](const std::string& file) { return esvo_bench_chart(results, file); },
        [&](const std::string& file) { return esvo_rays_chart(results, file); }},
-      fmt::format("{}, {} threads, load average {:.2f} before\n\n{}",
+      fmt::format("{}{}, {} threads, load average {:.2f} before\n\n{}",
+                  results.cuda_device.empty() ? "" : results.cuda_device + "; ",
                   machine.at("processor").get<std::string>(), results.threads,
                   machine.at("load_average").get<double>(), esvo_bench_table(results)),
       session);
   for (const EsvoBuildRun& build : results.builds)
     if (!build.failure.empty())
       throw Error(build.scene, std::to_string(1 << build.levels), build.failure);
+  if (!results.device_failure.empty()) throw Error("--device cuda", "", results.device_failure);
+  for (const EsvoRateRow& row : results.rates)
+    if (row.least_agreement_with_cpu() < 1)
+      throw Error(row.scene, fmt::format("{} x {} pixels", row.size.width, row.size.height),
+                  fmt::format("hits of {} differ from the CPU's", results.cuda_device));
 }
 
 }  // namespace
@@ -77,6 +84,7 @@ void add_bench_esvo_command(const Command& bench_command, Session& session) {
                "Plot megabytes, seconds and silhouettes over the resolution");
   command.text("--rays-plot", arguments->output.plot_files[1], "FILE.svg",
                "Plot bars of rays per second");
+  add_device_option(command, plan.device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);

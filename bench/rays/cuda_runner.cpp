@@ -1,4 +1,4 @@
-#include "bench/trace/trace_cuda.hpp"
+#include "bench/rays/cuda_runner.hpp"
 
 #include <chrono>
 
@@ -18,11 +18,11 @@ double warm_seconds(const Cast& cast) {
 
 }  // namespace
 
-TraceRunner cuda_runner(const DeviceScene& dag, RayClass rays, std::span<const CastRay> casts,
+TraceRunner cuda_runner(const DeviceScene& scene, RayClass rays, std::span<const CastRay> casts,
                         const std::optional<TimedBeams>& beams) {
   TraceRunner runner;
   runner.name = "voxdag_cuda";
-  runner.cast_set = [set = TimedCasts(dag, casts), beams, closest = is_closest(rays),
+  runner.cast_set = [set = TimedCasts(scene, casts), beams, closest = is_closest(rays),
                      count = casts.size()](std::uint8_t* hits) {
     const double seconds = warm_seconds(
         [&] { return (beams ? beams->run() : 0.0) + (closest ? set.closest() : set.any()); });

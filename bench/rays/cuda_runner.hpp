@@ -1,5 +1,5 @@
 #pragma once
-/// Casts on a CUDA device for `voxdag bench trace`.
+/// Wraps casts on a CUDA device as a runner of `voxdag bench`.
 #include <optional>
 
 #include "bench/rays/trace_rays.hpp"
@@ -11,7 +11,7 @@ namespace voxdag {
 /// Copies the set to the device and returns its runner. The runner measures device time, so copies
 /// do not count. The time of `beams`, which computed the starts of the rays, counts. Throws Error
 /// if there is not enough memory.
-TraceRunner cuda_runner(const DeviceScene& dag, RayClass rays, std::span<const CastRay> casts,
+TraceRunner cuda_runner(const DeviceScene& scene, RayClass rays, std::span<const CastRay> casts,
                         const std::optional<TimedBeams>& beams);
 
 }  // namespace voxdag
