@@ -71,6 +71,48 @@ TEST_F(EsvoStreamTest, WithLessMemoryBlocksAreLoadedAndEvicted) {
   EXPECT_GT(stream.counts().blocks_evicted, 100u);
 }
 
+TEST_F(EsvoStreamTest, ACopyThatTakesTheChangesIsTheLoadedOctree) {
+  std::mt19937 random(3);
+  EsvoStream stream(path(), bytes() / 3);
+  std::vector<std::uint64_t> slots(stream.view().slot_count, ~std::uint64_t{0});
+  std::vector<std::uint32_t> cut(slots.size() / 32, ~std::uint32_t{0});
+  std::uint64_t version = 0;
+  for (int step = 0; step < 2000; ++step) {
+    const std::size_t block = random() % stream.directory().size();
+    const std::uint64_t before = stream.version();
+    if (stream.can_evict(block) && random() % 2 == 0)
+      stream.evict(block);
+    else if (!stream.is_loaded(block) && stream.can_load(block) && stream.has_room(block))
+      stream.load(block);
+    else
+      continue;
+    EXPECT_GT(stream.version(), before);
+    if (random() % 8 != 0) continue;
+    const PartialEsvoView loaded = stream.loaded();
+    for (const SlotRange& range : stream.changes_since(version)) {
+      std::copy_n(loaded.octree.slots + range.begin, range.count,
+                  slots.begin() + static_cast<std::ptrdiff_t>(range.begin));
+      std::copy_n(loaded.cut + range.begin / 32, range.count / 32,
+                  cut.begin() + static_cast<std::ptrdiff_t>(range.begin / 32));
+    }
+    version = stream.version();
+    EXPECT_TRUE(stream.changes_since(version).empty());
+    PartialEsvoView copy = loaded;
+    copy.octree.slots = slots.data();
+    copy.cut = cut.data();
+    ASSERT_TRUE(same(unpack(copy.octree), unpack(loaded.octree))) << "step " << step;
+    std::vector<std::uint64_t> open{copy.octree.root};
+    while (!open.empty()) {
+      const std::uint64_t slot = open.back();
+      open.pop_back();
+      ASSERT_EQ(copy.missing_block(slot), loaded.missing_block(slot)) << "step " << step;
+      const ChildDescriptor d = copy.octree.descriptor(slot);
+      for (int i = 0; i < 8; ++i)
+        if ((d.inner_mask() >> i & 1) != 0) open.push_back(copy.octree.child(slot, d, i));
+    }
+  }
+}
+
 TEST_F(EsvoStreamTest, WhereABlockIsMissingTheVoxelsAboveItAreLeaves) {
   EsvoStream stream(path(), bytes());
   std::size_t missing = 0;
@@ -80,7 +122,7 @@ TEST_F(EsvoStreamTest, WhereABlockIsMissingTheVoxelsAboveItAreLeaves) {
     const std::uint64_t slot = open.back();
     open.pop_back();
     const ChildDescriptor d = view.descriptor(slot);
-    const std::int64_t block = stream.missing_block(slot);
+    const std::int64_t block = stream.loaded().missing_block(slot);
     if (block >= 0) {
       EXPECT_EQ(d.leaf_mask(), d.valid_mask());
       EXPECT_FALSE(stream.is_loaded(static_cast<std::size_t>(block)));

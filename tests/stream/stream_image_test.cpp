@@ -1,64 +1,15 @@
 // Tests pictures of an ESVO whose blocks are loaded during rendering.
 #include <gtest/gtest.h>
 
-#include "support/grid_mesh.hpp"
 #include "support/picture_checks.hpp"
-#include "support/temp_dir.hpp"
-#include "voxdag/esvo/build/build_esvo.hpp"
-#include "voxdag/file/esvo_file.hpp"
-#include "voxdag/file/esvo_writer.hpp"
+#include "support/wavy_file.hpp"
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/stream/paged_cells.hpp"
-#include "voxdag/stream/stream_blocks.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Returns waves of some thousand triangles.
-Mesh waves(int n) {
-  return test::grid_mesh(n, [n](int i, int j) {
-    const float x = static_cast<float>(i) / static_cast<float>(n);
-    const float z = static_cast<float>(j) / static_cast<float>(n);
-    return Vec3f{x, 0.2f + 0.1f * std::sin(20 * x) * std::cos(17 * z), z};
-  });
-}
-
-class StreamImage : public testing::Test {
- protected:
-  StreamImage() {
-    const Mesh mesh = waves(60);
-    EsvoOptions build;
-    build.settings.max_error = 0.1f;
-    build.settings.normal_error = 0.001f;
-    build.pack.max_slots = 200;
-    EsvoMemory memory;
-    EsvoMetadata metadata;
-    metadata.grid = fit_grid(mesh, 9);
-    EsvoResult result = build_esvo(mesh, metadata.grid, build, nullptr, nullptr, memory);
-    metadata.root = result.root;
-    metadata.counts = result.counts;
-    EsvoFileWriter writer(path());
-    const std::vector<std::uint64_t> slots = memory.take();
-    bytes = slots.size() * 8;
-    writer.append(slots);
-    writer.finish(std::move(result.directory), metadata);
-    options.width = 96;
-    options.height = 64;
-    options.occlusion_samples = 4;
-    options.shadow_samples = 2;
-    options.view.eye = Vec3d{0.5, 0.5, -0.2};
-    options.view.target = Vec3d{0.5, 0.15, 0.4};
-  }
-  std::filesystem::path path() const { return dir / "waves.esvo"; }
-  RenderedImage whole() const {
-    const EsvoFile file(path());
-    return render_image(file.view(), file.grid(), options);
-  }
-  TempDir dir;
-  std::uint64_t bytes = 0;
-  RenderOptions options;
-};
+class StreamImage : public testing::Test, protected WavyFile {};
 
 TEST_F(StreamImage, IsThePictureOfTheWholeOctree) {
   StreamBlocks blocks(path(), bytes);
@@ -155,19 +106,6 @@ TEST_F(StreamImage, APictureReplacesTheBlocksOfEarlierOnes) {
   EXPECT_GT(counts.blocks_evicted, 0u);
   EXPECT_LE(counts.bytes_loaded, memory);
   EXPECT_LE(counts.bytes_read, 6 * one) << "no picture reads a block twice";
-}
-
-/// Returns the maximum bytes of a block and its ancestors.
-std::uint64_t least_memory(const EsvoStream& stream) {
-  std::uint64_t least = 0;
-  for (std::size_t i = 0; i < stream.directory().size(); ++i) {
-    std::uint64_t bytes = 0;
-    for (auto at = static_cast<std::int64_t>(i); at >= 0;
-         at = stream.parent(static_cast<std::size_t>(at)))
-      bytes += stream.directory()[static_cast<std::size_t>(at)].slots * 8ull;
-    least = std::max(least, bytes);
-  }
-  return least;
 }
 
 TEST_F(StreamImage, IsTheSameWhereOneBlockFitsAtATime) {

@@ -48,7 +48,7 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
   find_children();
   const std::uint64_t wanted = std::min(memory / 8, end);
   pool_.resize(wanted / kEsvoPageSlots * kEsvoPageSlots);
-  is_cut_.resize(pool_.size());
+  cut_.resize(pool_.size() / 32);
   if (!pool_.empty()) free_[0] = pool_.size();
 
   const auto root = static_cast<std::size_t>(
@@ -151,20 +151,28 @@ void EsvoStream::release(std::uint64_t position, std::uint32_t slots) {
   free_.erase(range);
 }
 
+void EsvoStream::mark(std::uint64_t slot, bool is_cut) {
+  const std::uint32_t bit = 1u << slot % 32;
+  cut_[slot / 32] = is_cut ? cut_[slot / 32] | bit : cut_[slot / 32] & ~bit;
+}
+
 void EsvoStream::cut(std::size_t block) {
   Block& b = blocks_[block];
-  const std::uint64_t slot = blocks_[static_cast<std::size_t>(b.parent)].position + b.parent_slot;
+  Block& parent = blocks_[static_cast<std::size_t>(b.parent)];
+  const std::uint64_t slot = parent.position + b.parent_slot;
   ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
   b.descriptor = descriptor.children;
   descriptor.children = (descriptor.children & ~0xFFu) | descriptor.valid_mask();
   pool_[slot] = descriptor.to_slot();
-  is_cut_[slot] = true;
-  cut_[slot] = static_cast<std::int64_t>(block);
+  pool_[slot + descriptor.child_pointer()] = block;
+  mark(slot, true);
+  parent.version = version_;
 }
 
 void EsvoStream::attach(std::size_t block, std::uint32_t first_descriptor) {
   const Block& b = blocks_[block];
-  const std::uint64_t slot = blocks_[static_cast<std::size_t>(b.parent)].position + b.parent_slot;
+  Block& parent = blocks_[static_cast<std::size_t>(b.parent)];
+  const std::uint64_t slot = parent.position + b.parent_slot;
   ChildDescriptor descriptor = ChildDescriptor::from_slot(pool_[slot]);
   descriptor.children = b.descriptor;
   const std::int64_t distance =
@@ -172,8 +180,8 @@ void EsvoStream::attach(std::size_t block, std::uint32_t first_descriptor) {
   pool_[slot + descriptor.child_pointer()] =
       static_cast<std::uint32_t>(static_cast<std::int32_t>(distance));
   pool_[slot] = descriptor.to_slot();
-  is_cut_[slot] = false;
-  cut_.erase(slot);
+  mark(slot, false);
+  parent.version = version_;
 }
 
 void EsvoStream::load(std::size_t block) {
@@ -206,6 +214,7 @@ void EsvoStream::load(std::size_t block) {
     throw error.within(place).in_file(path_.string());
   }
   b.position = position;
+  b.version = ++version_;
   for (const std::uint32_t child : b.children) cut(child);
   if (b.parent >= 0) {
     attach(block, view().info(position).first_descriptor);
@@ -219,6 +228,14 @@ void EsvoStream::load(std::size_t block) {
   counts_.bytes_read += slots.size_bytes();
 }
 
+std::vector<SlotRange> EsvoStream::changes_since(std::uint64_t version) const {
+  std::vector<SlotRange> ranges;
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    if (is_loaded(i) && blocks_[i].version > version)
+      ranges.push_back({blocks_[i].position, directory_[i].slots});
+  return ranges;
+}
+
 bool EsvoStream::can_evict(std::size_t block) const {
   return is_loaded(block) && blocks_[block].parent >= 0 && blocks_[block].loaded_children == 0;
 }
@@ -226,11 +243,8 @@ bool EsvoStream::can_evict(std::size_t block) const {
 void EsvoStream::evict(std::size_t block) {
   assert(can_evict(block));
   Block& b = blocks_[block];
-  for (const std::uint32_t child : b.children) {
-    const std::uint64_t slot = b.position + blocks_[child].parent_slot;
-    is_cut_[slot] = false;
-    cut_.erase(slot);
-  }
+  ++version_;
+  for (const std::uint32_t child : b.children) mark(b.position + blocks_[child].parent_slot, false);
   // cut() keeps the position of the far pointer in the descriptor, and attach() needs nothing else.
   cut(block);
   --blocks_[static_cast<std::size_t>(b.parent)].loaded_children;

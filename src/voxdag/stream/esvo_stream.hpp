@@ -5,20 +5,20 @@
 /// in a block are relative, so blocks can be moved: this makes the "dynamic memory management
 /// necessary for out-of-core rendering" easy.
 ///
-/// While a block is not loaded, the descriptor that leads to it marks its children as leaves. So
-/// the octree is complete at any time, but coarser where blocks are missing: its leaves there
+/// While a block is not loaded, the descriptor that leads to it is cut (layout/partial_esvo.hpp).
+/// So the octree is complete at any time, but coarser where blocks are missing: its leaves there
 /// contain all voxels of the missing blocks.
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "voxdag/core/error_place.hpp"
 #include "voxdag/file/esvo_metadata.hpp"
 #include "voxdag/layout/esvo.hpp"
 #include "voxdag/layout/esvo_directory.hpp"
+#include "voxdag/layout/partial_esvo.hpp"
 
 namespace voxdag {
 
@@ -50,13 +50,14 @@ class EsvoStream {
 
   /// Returns the loaded octree, which load() and evict() change.
   EsvoView view() const { return {pool_.data(), pool_.size(), root_, metadata_.grid.levels}; }
+  /// Returns it with the marks of its cut descriptors.
+  PartialEsvoView loaded() const { return {view(), cut_.data()}; }
 
-  /// Returns the missing block to which the descriptor in `slot` of view() leads, or -1.
-  /// Thread-safe.
-  std::int64_t missing_block(std::uint64_t slot) const {
-    if (!is_cut_[slot]) return -1;
-    return cut_.find(slot)->second;
-  }
+  /// Returns a number that grows with every load() and evict().
+  std::uint64_t version() const { return version_; }
+  /// Returns the slots of the loaded blocks that have changed, or whose marks have, since version()
+  /// was `version`; 0: of all loaded blocks. Copies of the pool need no other slots.
+  std::vector<SlotRange> changes_since(std::uint64_t version) const;
 
   bool is_loaded(std::size_t block) const { return blocks_[block].position != kNowhere; }
   /// Returns the parent block, or -1.
@@ -83,6 +84,7 @@ class EsvoStream {
         0;  ///< The parent descriptor, counted from the parent block's begin.
     std::uint32_t loaded_children = 0;
     bool was_loaded = false;
+    std::uint64_t version = 0;  ///< The version in which its slots or their marks changed last.
     std::vector<std::uint32_t> children;
     std::vector<Vec3i> siblings;   ///< Cells of the first group, known once the parent is loaded.
     std::uint32_t descriptor = 0;  ///< The children word of the parent descriptor, as in the file.
@@ -96,6 +98,7 @@ class EsvoStream {
   void release(std::uint64_t position, std::uint32_t slots);
   void cut(std::size_t block);
   void attach(std::size_t block, std::uint32_t first_descriptor);
+  void mark(std::uint64_t slot, bool is_cut);
 
   std::filesystem::path path_;
   int file_ = -1;
@@ -106,9 +109,8 @@ class EsvoStream {
   std::vector<std::uint64_t> pool_;
   std::map<std::uint64_t, std::uint64_t> free_;  ///< Begin and length of the free ranges, in slots.
   std::uint64_t root_ = 0;
-  std::vector<bool>
-      is_cut_;  ///< Per slot of the pool: whether a block is missing below this descriptor.
-  std::unordered_map<std::uint64_t, std::int64_t> cut_;
+  std::vector<std::uint32_t> cut_;  ///< As PartialEsvoView::cut.
+  std::uint64_t version_ = 0;
   EsvoStreamCounts counts_;
 };
 

@@ -22,7 +22,8 @@ class PagedNodes : public ContourNodes {
   /// Returns the missing block into which the ray would have continued, or -1.
   template <class Stop>
   std::int64_t missing_block(const GridRay& ray, const Stop& stop, const EsvoHit& hit) const {
-    return would_continue(view(), ray, stop, hit) ? source_->missing_block(hit.voxel.slot) : -1;
+    return would_continue(view(), ray, stop, hit) ? source_->loaded().missing_block(hit.voxel.slot)
+                                                  : -1;
   }
   void load(std::int64_t block) const { source_->load(static_cast<std::size_t>(block)); }
 

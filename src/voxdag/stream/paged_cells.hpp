@@ -36,7 +36,7 @@ class PagedCells {
   ChildDescriptor descriptor(const Node& node, int level, bool with_children) const {
     std::uint64_t slot = source_->view().root;
     for (int l = 0;;) {
-      const std::int64_t block = source_->missing_block(slot);
+      const std::int64_t block = source_->loaded().missing_block(slot);
       if (block >= 0 && (l < level || with_children)) {
         source_->load(static_cast<std::size_t>(block));
         slot = source_->view().root;

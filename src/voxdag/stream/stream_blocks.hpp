@@ -17,12 +17,14 @@ class StreamBlocks : public BlockSource {
 
   const EsvoStream& stream() const { return stream_; }
 
-  EsvoView view() const override { return stream_.view(); }
+  PartialEsvoView loaded() const override { return stream_.loaded(); }
+  std::size_t block_count() const override { return stream_.directory().size(); }
+  std::uint64_t version() const override { return stream_.version(); }
+  std::vector<SlotRange> changes_since(std::uint64_t version) const override {
+    return stream_.changes_since(version);
+  }
   std::size_t load_missing(Vec3d eye) override;
   void begin_part() override { ++part_; }
-  std::int64_t missing_block(std::uint64_t slot) const override {
-    return stream_.missing_block(slot);
-  }
   void want(std::size_t block) const override {
     wanted_[block].store(true, std::memory_order_relaxed);
   }

@@ -12,12 +12,16 @@ class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
-  /// Returns the missing block to which the descriptor in `slot` leads, or -1. Thread-safe.
-  virtual std::int64_t missing_block(std::uint64_t slot) const = 0;
   /// Records that rays want a missing block. Thread-safe.
   virtual void want(std::size_t block) const = 0;
   /// Returns the loaded octree. The view's pointers stay valid when blocks are loaded and evicted.
-  virtual EsvoView view() const = 0;
+  virtual PartialEsvoView loaded() const = 0;
+  EsvoView view() const { return loaded().octree; }
+  /// Returns the number of blocks in the file.
+  virtual std::size_t block_count() const = 0;
+  /// As in EsvoStream: for copies of loaded().
+  virtual std::uint64_t version() const = 0;
+  virtual std::vector<SlotRange> changes_since(std::uint64_t version) const = 0;
 
   /// Loads the blocks that were wanted since the last call, in the order of their apparent size
   /// from `eye`, while there is room. To make room, evicts blocks that were loaded before the last

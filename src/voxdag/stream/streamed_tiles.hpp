@@ -1,0 +1,50 @@
+#pragma once
+/// The passes of a streamed picture, for any device that renders its tiles.
+#include <functional>
+#include <vector>
+
+#include "voxdag/render/render_plan.hpp"
+#include "voxdag/render/tile.hpp"
+#include "voxdag/stream/streamed_image.hpp"
+
+namespace voxdag {
+
+/// Renders tiles of a picture with the blocks that a BlockSource has loaded.
+class StreamedTiles {
+ public:
+  virtual ~StreamedTiles() = default;
+
+  /// Returns tiles that cover the picture.
+  virtual std::vector<ViewTile> all() const = 0;
+  /// Prepares for the blocks that are loaded now: beams end at the loaded voxels.
+  virtual void begin_pass() = 0;
+  /// Renders tiles with the loaded blocks, and makes the source want the blocks that rays missed.
+  /// Returns the tiles of these rays, in order. `stage` names the work for progress; null: no
+  /// reports. Throws Cancelled.
+  virtual std::vector<ViewTile> render(const std::vector<ViewTile>& tiles, const char* stage) = 0;
+  /// Renders a tile whose blocks do not fit into memory together: its rays wait for one block after
+  /// another (paged_caster.hpp). The work may be left to take_image().
+  virtual void render_paged(const ViewTile& tile) = 0;
+  /// Sets the steps of primary rays in the loaded blocks.
+  virtual void count_steps() = 0;
+
+  /// Returns the number of tiles that may need memory at the same time, once not all of them can.
+  virtual std::size_t most_at_once() const = 0;
+  /// Returns the number of them that render_paged() renders if their blocks do not fit. More tiles
+  /// are halved before.
+  virtual std::size_t most_paged() const = 0;
+
+  /// Returns the picture so far, before the filter.
+  virtual RenderedImage image() = 0;
+  /// Returns the finished picture, before the filter.
+  virtual RenderedImage take_image() = 0;
+};
+
+/// Renders a picture in passes, as render_streamed() (streamed_image.hpp) describes. `plan` and
+/// `options` are those of `tiles`.
+RenderedImage render_passes(BlockSource& source, StreamedTiles& tiles, const RenderPlan& plan,
+                            const RenderOptions& options,
+                            const std::function<void(const RenderedImage&)>& on_pass,
+                            Progress* progress);
+
+}  // namespace voxdag
