@@ -56,7 +56,7 @@ build() {
     "${configure[@]}" >"$build-configure.log" 2>&1 ||
       { cat "$build-configure.log" >&2; exit 1; }
   fi
-  within cmake --build "$build" --target voxdag_app cuda_tests -- -j "$(nproc)"
+  within cmake --build "$build" --target voxdag_app cuda_tests stream_cuda_tests -- -j "$(nproc)"
 }
 
 # Prints the path of sponza.obj, or nothing.
@@ -74,11 +74,13 @@ if [ -n "$pack" ]; then
   content=build/cuda-pack/content
   rm -rf $content
   mkdir -p $content/lib
-  cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests $content
-  strip $content/voxdag $content/cuda_tests
-  ! ldd $content/voxdag $content/cuda_tests | grep "not found" || die "libraries are missing"
+  programs=($content/voxdag $content/cuda_tests $content/stream_cuda_tests)
+  cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests \
+    build/cuda-pack/tests/stream_cuda/stream_cuda_tests $content
+  strip "${programs[@]}"
+  ! ldd "${programs[@]}" | grep "not found" || die "libraries are missing"
   # Copies all libraries except the C library, which must match the loader of the other machine.
-  ldd $content/voxdag $content/cuda_tests | awk '$3 ~ "^/" { print $3 }' | sort -u |
+  ldd "${programs[@]}" | awk '$3 ~ "^/" { print $3 }' | sort -u |
     grep -vE '/(lib(c|m|dl|rt|pthread|resolv|mvec)|ld-linux[^/]*)\.so' | xargs cp -Lt $content/lib
   sponza=$(find_sponza)
   [ -z "$sponza" ] || cp "$sponza" $content
@@ -99,10 +101,11 @@ if [ -n "$packed" ]; then
   rm -rf $work
   mkdir -p $work
   tar -C $work -xzf "$packed"
-  program=$work/voxdag tests=$work/cuda_tests libraries=$PWD/$work/lib
+  program=$work/voxdag tests=$work/cuda_tests stream_tests=$work/stream_cuda_tests libraries=$PWD/$work/lib
 else
   build $work -DCMAKE_CUDA_ARCHITECTURES="${capability/./}-real"
-  program=$work/apps/voxdag/voxdag tests=$work/tests/cuda/cuda_tests libraries=
+  program=$work/apps/voxdag/voxdag tests=$work/tests/cuda/cuda_tests
+  stream_tests=$work/tests/stream_cuda/stream_cuda_tests libraries=
 fi
 [ -z "${LD_LIBRARY_PATH-}" ] || libraries=${libraries:+$libraries:}$LD_LIBRARY_PATH
 ours() { within env LD_LIBRARY_PATH="$libraries" "$@"; }
@@ -114,9 +117,12 @@ attempt() { "$@" || { echo "gpu-check: FAILED: $*" >&2; failures=$((failures + 1
 
 echo "== tests"
 attempt ours $tests --gtest_brief=1
+attempt ours $stream_tests --gtest_brief=1
 if [ $sanitize = yes ]; then
   attempt ours compute-sanitizer --error-exitcode 1 $tests --gtest_brief=1 \
     --gtest_filter='CudaTimedCasts.*:CudaTrace.Stops*:CudaRender.Filters*:CudaRender.AnEmpty*'
+  attempt ours compute-sanitizer --error-exitcode 1 $stream_tests --gtest_brief=1 \
+    --gtest_filter='CudaStreaming.IsThePicture*'
 fi
 scene=$work/courtyard
 voxdag scene courtyard -o $scene.ply

@@ -65,9 +65,6 @@ TEST_F(DeviceOption, PicturesAndBenchmarksTakeIt) {
 
 TEST_F(DeviceOption, OtherDevicesAreBadUsage) {
   expect_failure(trace("gpu", "gpu.npy"), 2, "\"gpu\" is not cpu, cuda");
-  expect_failure(run_voxdag({"render", path("in.vdag"), "-o", path("out.png"), "--memory", "1M",
-                             "--device", "cuda"}),
-                 2, "--memory: has no effect with --mesh, --look or --device cuda");
 }
 
 }  // namespace

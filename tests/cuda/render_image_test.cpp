@@ -3,38 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
 
 #include "cuda/cubes.hpp"
 #include "cuda/cuda_device.hpp"
+#include "cuda/like_the_cpu.hpp"
 #include "cuda/pictures.hpp"
 #include "support/ball_octree.hpp"
 #include "support/test_esvo.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/render_image.hpp"
-#include "voxdag/image/color.hpp"
 
 namespace voxdag {
 namespace {
 
 using CudaRender = OnCudaDevice;
 
-int grey_level(float linear) { return static_cast<int>(linear_to_srgb(linear) * 255 + 0.5f); }
-
-/// Expects pictures and passes that differ by at most one grey level.
 void expect_like(const RenderedImage& image, const RenderedImage& expected) {
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < expected.rgb.size(); ++i) {
-    int apart = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      apart = std::max(
-          apart, std::abs(grey_level(image.rgb[i][axis]) - grey_level(expected.rgb[i][axis])));
-    wrong += apart > 1 ? 1 : 0;
-    EXPECT_NEAR(image.occlusion[i], expected.occlusion[i], 1.0 / 255);
-    EXPECT_NEAR(image.shadow[i], expected.shadow[i], 1.0 / 255);
-  }
-  EXPECT_EQ(wrong, 0u) << "of " << expected.rgb.size() << " pixels";
-  EXPECT_EQ(image.depth, expected.depth);
+  expect_pixels_like(image, expected);
   EXPECT_EQ(image.steps, expected.steps);
   EXPECT_EQ(image.rays, expected.rays);
 }

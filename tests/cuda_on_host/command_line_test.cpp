@@ -61,6 +61,25 @@ TEST_F(DeviceCommands, RenderMakesThePictureOfTheCpu) {
     }
 }
 
+TEST_F(DeviceCommands, StreamedPicturesAndFilmsAreThoseOfTheCpu) {
+  for (const std::string memory : {"1M", "1G"}) {
+    expect_like_cpu({"render", path("in.esvo"), "-o", path("s.exr"), "--size", "50x30", "--memory",
+                     memory, "--ao", "8"},
+                    "s.exr");
+    write_text(path("keys.json"),
+               R"({"keys": [{"time": 0, "eye": [3, 2, 5], "target": [1, 1, 1]},
+                            {"time": 1, "eye": [5, 2, 3], "target": [1, 1, 1]}]})");
+    const std::vector<std::string> film = {
+        "render",          path("in.esvo"), "-o", path("f%d.exr"), "--size", "20x12", "--path",
+        path("keys.json"), "--fps",         "2",  "--memory",      memory};
+    ASSERT_EQ(run_on("cpu", film).status, 0);
+    const std::string first = read_text(path("f0.exr")), last = read_text(path("f2.exr"));
+    const ProcessResult cuda = run_on("cuda", film);
+    ASSERT_EQ(cuda.status, 0) << cuda.err;
+    EXPECT_TRUE(read_text(path("f0.exr")) == first && read_text(path("f2.exr")) == last);
+  }
+}
+
 TEST_F(DeviceCommands, BenchTraceMeasuresItAtEveryLayout) {
   for (const auto& [scene, layouts] :
        {std::pair{"in.vdag", std::vector<std::string>{"paper", "wide"}},
@@ -145,6 +164,13 @@ TEST_F(DeviceCommands, BenchEsvoKeepsTheBuildsIfTheDeviceIsMissing) {
 TEST_F(DeviceCommands, AMissingDeviceIsRefused) {
   expect_failure(run_on("cuda:1", {"render", path("in.vdag"), "-o", path("none.png")}), 1,
                  "no CUDA device 1: the driver lists 1, numbered from 0");
+  EXPECT_FALSE(exists("none.png"));
+  expect_failure(
+      run_on("cuda:1", {"render", path("in.esvo"), "-o", path("none.png"), "--memory", "1G"}), 1,
+      "--device cuda: no CUDA device 1: the driver lists 1, numbered from 0");
+  expect_failure(
+      run_on("cuda", {"render", path("in.esvo"), "-o", path("none.png"), "--memory", "1K"}), 1,
+      "the memory limit is too small: a block and its ancestors need ");
   EXPECT_FALSE(exists("none.png"));
 }
 

@@ -4,8 +4,10 @@
 
 #include "cuda/cubes.hpp"
 #include "cuda/pictures.hpp"
+#include "support/picture_checks.hpp"
 #include "support/test_esvo.hpp"
 #include "support/test_rays.hpp"
+#include "support/wavy_file.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
@@ -15,6 +17,7 @@
 #include "voxdag/cuda/timed_casts.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/render/render_plan.hpp"
+#include "voxdag/stream_cuda/device_stream.hpp"
 
 namespace voxdag {
 namespace {
@@ -148,24 +151,65 @@ TEST_F(CudaOnHost, StreamsMayRunAtOnce) {
   for_all_work([](const auto& work) { work(); });
 }
 
+/// Expects `work` to throw if any of its calls of the runtime fails, to release everything, and to
+/// succeed afterwards.
+template <class Work>
+void expect_clean_failures(const Work& work) {
+  int failing = 0, errors = 0;
+  for (;; ++failing) {
+    host_device().failing_call = failing;
+    const std::string why = failure(work);
+    if (host_device().failing_call) break;  // the work has fewer calls
+    // The result of a wait before a queue is destroyed is ignored.
+    EXPECT_TRUE(why.empty() || why.find("unknown error") != std::string::npos)
+        << "call " << failing << ": " << why;
+    ASSERT_TRUE(host_device().holds_nothing()) << "call " << failing << ": " << why;
+    errors += why.empty() ? 0 : 1;
+  }
+  EXPECT_GT(errors, 20);
+  EXPECT_LT(failing - errors, 6);
+  host_device().failing_call.reset();
+  work();
+}
+
 TEST_F(CudaOnHost, ACallThatFailsIsAnErrorThatLeavesNothingBehind) {
-  for_all_work([](const auto& work) {
-    int failing = 0, errors = 0;
-    for (;; ++failing) {
-      host_device().failing_call = failing;
-      const std::string why = failure(work);
-      if (host_device().failing_call) break;  // the work has fewer calls
-      // The result of a wait before a queue is destroyed is ignored.
-      EXPECT_TRUE(why.empty() || why.find("unknown error") != std::string::npos)
-          << "call " << failing << ": " << why;
-      ASSERT_TRUE(host_device().holds_nothing()) << "call " << failing << ": " << why;
-      errors += why.empty() ? 0 : 1;
-    }
-    EXPECT_GT(errors, 20);
-    EXPECT_LT(failing - errors, 6);
-    host_device().failing_call.reset();
-    work();
-  });
+  for_all_work([](const auto& work) { expect_clean_failures(work); });
+}
+
+/// Streams a small picture, and expects it to equal the CPU's.
+class StreamedWork : private WavyFile {
+ public:
+  StreamedWork() {
+    options.width = 20;
+    options.height = 12;
+    options.samples_per_pixel = 1;
+    options.with_steps = true;
+    picture_ = whole();
+  }
+  void run(std::uint64_t most_bytes) const {
+    StreamBlocks blocks(path(), std::max(most_bytes, least_memory(EsvoStream(path(), bytes))));
+    DeviceStream stream(choose_cuda_device(), blocks);
+    test::expect_same_picture(render_streamed(stream, grid, options), picture_);
+  }
+  std::uint64_t file_bytes() const { return bytes; }
+
+ private:
+  RenderedImage picture_;
+};
+
+TEST_F(CudaOnHost, AStreamedPictureMayRunAtOnceAndFailAnywhere) {
+  const StreamedWork work;
+  host_device().is_eager = true;
+  for (const std::uint64_t memory : {work.file_bytes(), std::uint64_t{0}}) work.run(memory);
+  host_device().is_eager = false;
+  expect_clean_failures([&] { work.run(work.file_bytes()); });
+}
+
+TEST_F(CudaOnHost, BlocksThatTheDeviceHasNoRoomForSayHowMuchIsNeeded) {
+  const StreamedWork work;
+  host_device().memory_bytes = 1 << 16;
+  const std::string why = failure([&] { work.run(work.file_bytes()); });
+  EXPECT_EQ(why.rfind("the host: out of memory: the memory for blocks needs ", 0), 0u) << why;
 }
 
 }  // namespace

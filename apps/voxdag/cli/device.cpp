@@ -39,8 +39,4 @@ std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice,
   }
 }
 
-std::string device_name(const std::optional<DeviceScene>& scene) {
-  return scene ? scene->device().name : "the CPU";
-}
-
 }  // namespace voxdag

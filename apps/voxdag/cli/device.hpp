@@ -16,7 +16,10 @@ void add_device_option(const Command& command, DeviceChoice& choice);
 /// Calls load_on_device(). Errors name the option.
 std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice, const VoxelSet& scene);
 
-/// Returns "the CPU" or the device's name.
-std::string device_name(const std::optional<DeviceScene>& scene);
+/// Returns the name of the device of a DeviceScene or DeviceStream, or "the CPU".
+template <class OnDevice>
+std::string device_name(const std::optional<OnDevice>& on_device) {
+  return on_device ? on_device->device().name : "the CPU";
+}
 
 }  // namespace voxdag

@@ -219,14 +219,10 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   command
       .parsed("--memory", arguments.stream_memory, parse_memory, "LIMIT",
               "Stream an ESVO: load only the parts that the picture shows, into this much memory "
-              "(512M). A coarse picture is written first and replaced by finer ones; with --path, "
-              "each frame is written once")
-      .only_if(
-          [&arguments] {
-            return arguments.mesh.file.empty() && arguments.look.empty() &&
-                   arguments.device.kind != DeviceChoice::Kind::kCuda;
-          },
-          "with --mesh, --look or --device cuda");
+              "(512M), with --device cuda of the device. A coarse picture is written first and "
+              "replaced by finer ones; with --path, each frame is written once")
+      .only_if([&arguments] { return arguments.mesh.file.empty() && arguments.look.empty(); },
+               "with --mesh or --look");
   add_threads_option(command, session);
   add_quiet_option(command, session);
 }

@@ -2,24 +2,53 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+#include <optional>
+
 #include "cli/stopwatch.hpp"
 #include "render/picture_summary.hpp"
 #include "render/render_film.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/report/human.hpp"
 #include "voxdag/stream/paged_cells.hpp"
 #include "voxdag/stream/stream_blocks.hpp"
+#include "voxdag/stream_cuda/device_stream.hpp"
 
 namespace voxdag {
 namespace {
 
+/// The blocks of the file, on the chosen device.
+struct Streamed {
+  Streamed(const std::filesystem::path& path, std::uint64_t memory, const DeviceChoice& choice)
+      : blocks(path, memory) {
+    if (choice.kind == DeviceChoice::Kind::kCpu) return;
+    try {
+      on_device.emplace(choose_cuda_device(choice.index), blocks);
+    } catch (const Error& error) {
+      if (choice.kind == DeviceChoice::Kind::kCuda) throw Error("--device cuda", "", error.what());
+    }
+  }
+
+  RenderedImage render(const RenderOptions& options,
+                       const std::function<void(const RenderedImage&)>& on_pass,
+                       Progress* progress) {
+    const Grid& grid = blocks.stream().grid();
+    if (on_device) return voxdag::render_streamed(*on_device, grid, options, on_pass, progress);
+    return voxdag::render_streamed(blocks, grid, options, on_pass, progress);
+  }
+
+  StreamBlocks blocks;
+  std::optional<DeviceStream> on_device;
+};
+
 /// Renders a film. Blocks that a frame has loaded stay loaded for the next frame.
-void render_streamed_film(const RenderArguments& arguments, StreamBlocks& blocks,
-                          Session& session) {
+void render_streamed_film(const RenderArguments& arguments, Streamed& streamed, Session& session) {
+  StreamBlocks& blocks = streamed.blocks;
   const Grid& grid = blocks.stream().grid();
   // A frame may take long: it reports its own progress and can be cancelled.
   const auto render = [&](const RenderOptions& options, Progress*) {
-    return render_streamed(blocks, grid, options, {}, &session.progress);
+    return streamed.render(options, {}, &session.progress);
   };
   const auto find_up = [&] { return guess_up(CoarseCells::of(PagedCells(blocks), kUpLevel)); };
   render_film(arguments, {blocks.view(), grid, render, find_up}, picture_options(arguments, true),
@@ -27,7 +56,7 @@ void render_streamed_film(const RenderArguments& arguments, StreamBlocks& blocks
 }
 
 /// Renders a picture. Writes the outputs after each pass; each pass is finer than the one before.
-void render_streamed_picture(const RenderArguments& arguments, StreamBlocks& blocks,
+void render_streamed_picture(const RenderArguments& arguments, Streamed& streamed,
                              Session& session) {
   const auto write = [&](const RenderedImage& image) {
     for (const PicturePass& pass : all_passes(arguments)) write_pass(*pass.kind, pass.path, image);
@@ -38,13 +67,13 @@ void render_streamed_picture(const RenderArguments& arguments, StreamBlocks& blo
     write(image);
     if (first_seconds == 0) first_seconds = watch.since_start();
   };
-  const RenderedImage image = render_streamed(
-      blocks, blocks.stream().grid(), picture_options(arguments, true), on_pass, &session.progress);
+  const RenderedImage image =
+      streamed.render(picture_options(arguments, true), on_pass, &session.progress);
   const double seconds = watch.since_start();
   write(image);
   session.bar.clear();
   if (session.quiet) return;
-  print_picture_summary(arguments.output, image, seconds, device_name(std::nullopt));
+  print_picture_summary(arguments.output, image, seconds, device_name(streamed.on_device));
   fmt::print("  first picture after {}\n",
              human_seconds(first_seconds > 0 ? first_seconds : seconds));
 }
@@ -52,12 +81,13 @@ void render_streamed_picture(const RenderArguments& arguments, StreamBlocks& blo
 }  // namespace
 
 void render_streamed(const RenderArguments& arguments, Session& session) {
-  StreamBlocks blocks(session.subject, arguments.stream_memory);
+  Streamed streamed(session.subject, arguments.stream_memory, arguments.device);
   if (arguments.path.file.empty())
-    render_streamed_picture(arguments, blocks, session);
+    render_streamed_picture(arguments, streamed, session);
   else
-    render_streamed_film(arguments, blocks, session);
+    render_streamed_film(arguments, streamed, session);
   if (session.quiet) return;
+  const StreamBlocks& blocks = streamed.blocks;
   const EsvoStreamCounts& counts = blocks.stream().counts();
   std::uint64_t all = 0;
   for (const EsvoBlockEntry& entry : blocks.stream().directory()) all += entry.slots * 8ull;
@@ -66,6 +96,9 @@ void render_streamed(const RenderArguments& arguments, Session& session) {
              human_bytes(counts.bytes_loaded), human_bytes(all));
   fmt::print("  {} read, {} blocks more than once\n", human_bytes(counts.bytes_read),
              with_commas(counts.blocks_read - counts.blocks_used));
+  if (streamed.on_device && streamed.on_device->pixels_on_cpu() > 0)
+    fmt::print("  {} pixels on the CPU: the memory is too small for the blocks of their tiles\n",
+               with_commas(streamed.on_device->pixels_on_cpu()));
 }
 
 }  // namespace voxdag

@@ -2,6 +2,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_scene.hpp"
+#include "voxdag/cuda/partial_picture.hpp"
 #include "voxdag/cuda/render_image.hpp"
 #include "voxdag/cuda/timed_casts.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
@@ -22,6 +23,30 @@ const CudaDevice& DeviceScene::device() const { refuse(); }
 const VoxelSet& DeviceScene::host() const { refuse(); }
 const DeviceVoxels& DeviceScene::view() const { refuse(); }
 void DeviceScene::make_current() const { refuse(); }
+
+struct DeviceBlocks::Memory {};
+DeviceBlocks::DeviceBlocks(const CudaDevice&, std::uint64_t, std::size_t) { refuse(); }
+const CudaDevice& DeviceBlocks::device() const { refuse(); }
+void DeviceBlocks::make_current() const { refuse(); }
+void DeviceBlocks::update(const PartialEsvoView&, std::span<const SlotRange>) { refuse(); }
+const PartialEsvoView& DeviceBlocks::view() const { refuse(); }
+std::uint8_t* DeviceBlocks::wanted() const { refuse(); }
+std::vector<std::size_t> DeviceBlocks::take_wanted() const { refuse(); }
+
+struct PartialPicture::State {};
+PartialPicture::PartialPicture(const DeviceBlocks&, const RenderPlan&, const RenderOptions&,
+                               Progress*) {
+  refuse();
+}
+std::uint32_t PartialPicture::tile_count() const { refuse(); }
+ViewTile PartialPicture::tile(std::uint32_t) const { refuse(); }
+void PartialPicture::cast_beams() const { refuse(); }
+std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t>,
+                                                  const char*) const {
+  refuse();
+}
+void PartialPicture::count_steps() const { refuse(); }
+void PartialPicture::copy_to(RenderedImage&) const { refuse(); }
 
 struct CudaTracer::State {};
 CudaTracer::CudaTracer(const DeviceScene&, const Grid&) { refuse(); }

@@ -1,56 +1,24 @@
 #include "voxdag/cuda/render_image.hpp"
 
-#include <algorithm>
 #include <cassert>
 
 #include "voxdag/cuda/device_frame.hpp"
-#include "voxdag/cuda/launch_plan.hpp"
+#include "voxdag/cuda/picture_launches.hpp"
 #include "voxdag/cuda/render_kernels.hpp"
-#include "voxdag/cuda/render_pixel.hpp"
-#include "voxdag/cuda/stream.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/source_view_samples.hpp"
 
 namespace voxdag {
 namespace {
 
-/// The number of rays of the first launch: half a second on a slow device.
-constexpr double kFirstRays = 1 << 25;
 /// The number of blocks for which the host finds view samples at a time.
 constexpr std::uint32_t kSourceBlocks = 4096;
-/// The number of coarse beams per launch.
-constexpr std::uint32_t kBeamsPerLaunch = 1 << 18;
-
-/// Block numbers have 32 bits, launches 31.
-constexpr std::uint32_t kMostBlocks = 1u << 30;
-
 /// A buffer for view samples. Two of them alternate: the device reads one while the host fills the
 /// other.
 struct SourceSamples {
   PinnedBuffer<ViewSample> host;
   DeviceBuffer<ViewSample> device;
 };
-
-/// Calls launch(first, last) for all coarse beams of a picture.
-template <class Launch>
-void for_beams(const Camera& camera, const CudaStream& stream, Progress* progress,
-               const Launch& launch) {
-  const auto across = static_cast<std::uint32_t>(beams_across(camera.width) / 2);
-  const auto down = static_cast<std::uint32_t>(beams_across(camera.height) / 2);
-  const std::uint32_t count = across * down;
-  for (std::uint32_t first = 0; first < count; first += kBeamsPerLaunch) {
-    if (progress != nullptr) progress->throw_if_cancelled();
-    launch(first, std::min(count, first + kBeamsPerLaunch));
-    stream.wait("casting beams");
-  }
-}
-
-double rays_per_sample(const RenderSetup& setup) {
-  int rays = 1 + setup.settings.occlusion_samples;
-  for (int i = 0; i < setup.light_count; ++i)
-    rays += setup.lights[i].is_extended() ? setup.settings.light_samples : 1;
-  return rays;
-}
 
 /// Finds the view samples of a launch, one for each pixel.
 void fill(SourceSamples& samples, const ViewSource& source, const RenderSetup& setup,
@@ -68,10 +36,9 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* 
                    const ViewSource* source) {
   const RenderSetup& setup = frame.setup();
   const bool has_source = source != nullptr;
-  LaunchPlan plan(block_count(setup.camera.width, setup.camera.height),
-                  setup.settings.samples_per_pixel, rays_per_sample(setup) * kBlockPixels,
-                  kFirstRays, has_source ? kSourceBlocks : kMostBlocks,
-                  has_source ? 1 : setup.settings.samples_per_pixel);
+  LaunchPlan plan = plan_launches(setup, block_count(setup.camera.width, setup.camera.height),
+                                  has_source ? kSourceBlocks : kMostBlocks,
+                                  has_source ? 1 : setup.settings.samples_per_pixel);
   SourceSamples samples[2];
   for (SourceSamples& part : samples) {
     if (!has_source) break;

@@ -4,6 +4,7 @@
 #include "voxdag/cuda/render_pixel.hpp"
 #include "voxdag/cuda/with_nodes.hpp"
 #include "voxdag/render/count_steps.hpp"
+#include "voxdag/trace/partial_nodes.hpp"
 
 namespace voxdag {
 namespace {
@@ -33,15 +34,32 @@ __global__ void __launch_bounds__(kBeamThreads)
               static_cast<int>(i / across) * kCoarseBeamPixels);
 }
 
+/// Adds the counts of all threads of the warp to `*sum`.
+__device__ void add_of_warp(unsigned long long* sum, unsigned long long count) {
+  for (int step = 16; step > 0; step /= 2) count += __shfl_down_sync(~0u, count, step);
+  if (threadIdx.x % 32 == 0) atomicAdd(sum, count);
+}
+
 template <class Nodes, class Caster>
 __global__ void __launch_bounds__(kBlockPixels)
     render_kernel(Nodes nodes, Caster caster, const __grid_constant__ RenderSetup setup,
                   const __grid_constant__ LaunchRange range, const ViewSample* view_samples,
                   unsigned long long* rays) {
-  unsigned long long count = render_pixel(nodes, caster, setup, range, view_samples,
-                                          range.first_block + blockIdx.x, threadIdx.x);
-  for (int step = 16; step > 0; step /= 2) count += __shfl_down_sync(~0u, count, step);
-  if (threadIdx.x % 32 == 0) atomicAdd(rays, count);
+  add_of_warp(rays, render_pixel(nodes, caster, setup, range, view_samples,
+                                 range.first_block + blockIdx.x, threadIdx.x));
+}
+
+__global__ void __launch_bounds__(kBlockPixels)
+    partial_render_kernel(PartialEsvoView voxels, const __grid_constant__ RenderSetup setup,
+                          const __grid_constant__ LaunchRange range, const std::uint32_t* blocks,
+                          std::uint8_t* wanted, std::uint8_t* missed, unsigned long long* rays) {
+  const std::uint32_t at = range.first_block + blockIdx.x;
+  bool has_missed = false;
+  const PartialNodes nodes(voxels, wanted, has_missed);
+  const std::uint64_t count = render_pixel(nodes, ScalarCaster(nodes), setup, range, nullptr,
+                                           blocks[at], threadIdx.x);
+  if (has_missed) missed[at] = 1;
+  add_of_warp(rays, count);
 }
 
 __global__ void __launch_bounds__(kFilterSide* kFilterSide)
@@ -84,6 +102,14 @@ void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const L
                range.last_block - range.first_block, kBlockPixels, stream, beam_nodes,
                ScalarCaster(nodes), setup, range, view_samples, rays);
       });
+}
+
+void launch_partial_render(const PartialEsvoView& voxels, const RenderSetup& setup,
+                           const LaunchRange& range, const std::uint32_t* blocks,
+                           std::uint8_t* wanted, std::uint8_t* missed, unsigned long long* rays,
+                           cudaStream_t stream) {
+  launch("rendering", partial_render_kernel, range.last_block - range.first_block, kBlockPixels,
+         stream, voxels, setup, range, blocks, wanted, missed, rays);
 }
 
 void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,

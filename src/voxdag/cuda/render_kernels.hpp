@@ -4,6 +4,7 @@
 
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
+#include "voxdag/layout/partial_esvo.hpp"
 #include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/view_sample.hpp"
@@ -21,6 +22,14 @@ void launch_steps(const DeviceVoxels& voxels, const RenderSetup& setup, std::uin
 /// Runs render_pixel() for all pixels of the range and adds the number of rays to `*rays`.
 void launch_render(const DeviceVoxels& voxels, const RenderSetup& setup, const LaunchRange& range,
                    const ViewSample* view_samples, unsigned long long* rays, cudaStream_t stream);
+
+/// Runs render_pixel() for the pixels of the blocks `blocks[range.first_block]` and on, at an ESVO
+/// with missing blocks, and adds the number of rays to `*rays`. Where rays miss blocks, sets
+/// `wanted[block]` to 1 for these blocks and `missed[i]` for the pixels of `blocks[i]`.
+void launch_partial_render(const PartialEsvoView& voxels, const RenderSetup& setup,
+                           const LaunchRange& range, const std::uint32_t* blocks,
+                           std::uint8_t* wanted, std::uint8_t* missed, unsigned long long* rays,
+                           cudaStream_t stream);
 
 /// Sets `filtered` to filtered_color() of every pixel.
 void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,

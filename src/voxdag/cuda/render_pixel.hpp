@@ -31,6 +31,12 @@ VOXDAG_HD inline ViewTile block_tile(const Camera& camera, std::uint32_t block) 
   return tile;
 }
 
+/// Returns the block of pixel (x,y).
+VOXDAG_HD inline std::uint32_t block_at(const Camera& camera, int x, int y) {
+  return static_cast<std::uint32_t>(y / kBlockHeight) * blocks_across(camera.width) +
+         static_cast<std::uint32_t>(x / kBlockWidth);
+}
+
 /// Returns the x position of a thread's pixel in its block. The lowest five bits of the thread
 /// index are x y x y x within the warp's 8×4 pixels, lowest first; the next ones are x, y and y of
 /// the warp.

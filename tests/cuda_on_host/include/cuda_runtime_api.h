@@ -70,6 +70,7 @@ struct cudaLaunchConfig_t {
 };
 
 #define __global__
+#define __device__
 #define __grid_constant__
 #define __launch_bounds__(...)
 

@@ -1,0 +1,110 @@
+#include "voxdag/cuda/partial_picture.hpp"
+
+#include "voxdag/cuda/device_frame.hpp"
+#include "voxdag/cuda/device_voxels.hpp"
+#include "voxdag/cuda/picture_launches.hpp"
+#include "voxdag/cuda/render_kernels.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr const char* kTiles = "the list of tiles";
+
+}  // namespace
+
+struct PartialPicture::State {
+  State(const DeviceBlocks& blocks_in, const RenderPlan& plan, const RenderOptions& options,
+        Progress* progress_in)
+      : blocks(blocks_in),
+        frame(plan, options.beams, options.with_steps, options.filter),
+        has_beams(options.beams),
+        progress(progress_in),
+        tile_count(block_count(options.width, options.height)),
+        tiles(make_device_buffer<std::uint32_t>(tile_count, kTiles)),
+        missed(make_device_buffer<std::uint8_t>(tile_count, kTiles)) {}
+
+  DeviceVoxels voxels() const {
+    DeviceVoxels view;
+    view.layout = DeviceLayout::kContours;
+    view.esvo = blocks.view().octree;
+    return view;
+  }
+
+  DeviceBlocks blocks;
+  DeviceFrame frame;
+  bool has_beams;
+  Progress* progress;
+  std::uint32_t tile_count;
+  DeviceBuffer<std::uint32_t> tiles;  ///< Those of a call of render().
+  DeviceBuffer<std::uint8_t> missed;  ///< For each of them, whether its rays missed blocks.
+  CudaStream stream;  // last, so that it is destroyed before the memory that it uses
+};
+
+PartialPicture::PartialPicture(const DeviceBlocks& blocks, const RenderPlan& plan,
+                               const RenderOptions& options, Progress* progress) {
+  blocks.make_current();
+  state_ = std::make_shared<const State>(blocks, plan, options, progress);
+}
+
+std::uint32_t PartialPicture::tile_count() const { return state_->tile_count; }
+
+ViewTile PartialPicture::tile(std::uint32_t index) const {
+  return block_tile(state_->frame.setup().camera, index);
+}
+
+void PartialPicture::cast_beams() const {
+  const State& state = *state_;
+  if (!state.has_beams) return;
+  state.blocks.make_current();
+  for_beams(state.frame.setup().camera, state.stream, state.progress,
+            [&](std::uint32_t first, std::uint32_t last) {
+              launch_beams(state.voxels(), state.frame.setup(), first, last,
+                           state.frame.beam_starts(), state.stream.get());
+            });
+}
+
+std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t> tiles,
+                                                  const char* stage) const {
+  const State& state = *state_;
+  const RenderSetup& setup = state.frame.setup();
+  state.blocks.make_current();
+  std::vector<std::uint8_t> missed(tiles.size());
+  copy_to_device(state.tiles.data(), tiles.data(), tiles.size_bytes());
+  copy_to_device(state.missed.data(), missed.data(), missed.size());
+  LaunchPlan plan = plan_launches(setup, static_cast<std::uint32_t>(tiles.size()), kMostBlocks,
+                                  setup.settings.samples_per_pixel);
+  const CudaEvent begin, end;
+  while (const auto range = plan.next()) {
+    if (state.progress != nullptr) state.progress->throw_if_cancelled();
+    begin.record(state.stream);
+    launch_partial_render(state.blocks.view(), setup, *range, state.tiles.data(),
+                          state.blocks.wanted(), state.missed.data(), state.frame.rays(),
+                          state.stream.get());
+    end.record(state.stream);
+    state.stream.wait("rendering");
+    plan.measured(*range, seconds_between(begin, end));
+    if (state.progress != nullptr && stage != nullptr)
+      state.progress->report(stage, plan.fraction());
+  }
+  copy_to_host(missed.data(), state.missed.data(), missed.size());
+  std::vector<std::uint32_t> left;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    if (missed[i] != 0) left.push_back(tiles[i]);
+  return left;
+}
+
+void PartialPicture::count_steps() const {
+  const State& state = *state_;
+  state.blocks.make_current();
+  for_beams(state.frame.setup().camera, state.stream, state.progress,
+            [&](std::uint32_t first, std::uint32_t last) {
+              launch_steps(state.voxels(), state.frame.setup(), first, last, state.stream.get());
+            });
+}
+
+void PartialPicture::copy_to(RenderedImage& image) const {
+  state_->blocks.make_current();
+  state_->frame.copy_to(image, false);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,46 @@
+#pragma once
+/// Renders parts of a picture of an ESVO with missing blocks on a CUDA device.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "voxdag/cuda/device_blocks.hpp"
+#include "voxdag/parallel/progress.hpp"
+#include "voxdag/render/render_plan.hpp"
+#include "voxdag/render/tile.hpp"
+
+namespace voxdag {
+
+/// A picture in the memory of the device of some blocks. Its tiles are the blocks of pixels in
+/// render_pixel.hpp.
+class PartialPicture {
+ public:
+  /// `progress` may be null; it can cancel the work. It and `plan` must outlive this object. Throws
+  /// Error if there is not enough memory.
+  PartialPicture(const DeviceBlocks& blocks, const RenderPlan& plan, const RenderOptions& options,
+                 Progress* progress);
+
+  /// Returns the number of tiles; they are counted row by row.
+  std::uint32_t tile_count() const;
+  ViewTile tile(std::uint32_t index) const;
+
+  /// Finds where rays may start, in the blocks that are in memory now, if the options ask for
+  /// beams. Rays may start there even if other blocks are in memory later.
+  void cast_beams() const;
+  /// Renders all samples of the pixels of different tiles. Returns those of the tiles whose rays
+  /// missed blocks, and marks these blocks as wanted. `stage` names the work for progress; null: no
+  /// reports. Throws Cancelled, and Error if the device fails.
+  std::vector<std::uint32_t> render(std::span<const std::uint32_t> tiles, const char* stage) const;
+  /// Sets the picture's steps of primary rays in the blocks that are in memory.
+  void count_steps() const;
+
+  /// Copies the picture, without a filter, and its number of rays.
+  void copy_to(RenderedImage& image) const;
+
+ private:
+  struct State;
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace voxdag
