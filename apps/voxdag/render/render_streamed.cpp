@@ -96,9 +96,6 @@ void render_streamed(const RenderArguments& arguments, Session& session) {
              human_bytes(counts.bytes_loaded), human_bytes(all));
   fmt::print("  {} read, {} blocks more than once\n", human_bytes(counts.bytes_read),
              with_commas(counts.blocks_read - counts.blocks_used));
-  if (streamed.on_device && streamed.on_device->pixels_on_cpu() > 0)
-    fmt::print("  {} pixels on the CPU: the memory is too small for the blocks of their tiles\n",
-               with_commas(streamed.on_device->pixels_on_cpu()));
 }
 
 }  // namespace voxdag

@@ -45,6 +45,8 @@ std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t>
                                                   const char*) const {
   refuse();
 }
+std::uint32_t PartialPicture::most_resumed() const { refuse(); }
+std::size_t PartialPicture::resume(std::span<const std::uint32_t>, int, bool) const { refuse(); }
 void PartialPicture::count_steps() const { refuse(); }
 void PartialPicture::copy_to(RenderedImage&) const { refuse(); }
 

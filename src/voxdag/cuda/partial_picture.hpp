@@ -32,6 +32,15 @@ class PartialPicture {
   /// missed blocks, and marks these blocks as wanted. `stage` names the work for progress; null: no
   /// reports. Throws Cancelled, and Error if the device fails.
   std::vector<std::uint32_t> render(std::span<const std::uint32_t> tiles, const char* stage) const;
+  /// Returns the most tiles that resume() takes: their logs take at most 64 MiB, or are of one
+  /// tile.
+  std::uint32_t most_resumed() const;
+  /// Continues a sample of the pixels of different tiles, in the first call (`begins`) from the
+  /// start, and returns the number of tiles whose rays wait for blocks. Marks these blocks as
+  /// wanted; each ray goes on from there in a later call with its block in memory. A pixel's
+  /// samples must come in order. Throws Cancelled, and Error if the device fails or has not enough
+  /// memory for the logs.
+  std::size_t resume(std::span<const std::uint32_t> tiles, int sample, bool begins) const;
   /// Sets the picture's steps of primary rays in the blocks that are in memory.
   void count_steps() const;
 
@@ -40,7 +49,7 @@ class PartialPicture {
 
  private:
   struct State;
-  std::shared_ptr<const State> state_;
+  std::shared_ptr<State> state_;
 };
 
 }  // namespace voxdag

@@ -62,6 +62,18 @@ __global__ void __launch_bounds__(kBlockPixels)
   add_of_warp(rays, count);
 }
 
+__global__ void __launch_bounds__(kBlockPixels)
+    resume_kernel(PartialEsvoView voxels, const __grid_constant__ RenderSetup setup, int sample,
+                  const std::uint32_t* tiles, PixelLogs logs, std::uint8_t* wanted,
+                  std::uint8_t* missed, unsigned long long* rays) {
+  const std::uint32_t at = blockIdx.x * kBlockPixels + threadIdx.x;
+  bool has_missed = false;
+  const std::uint64_t count = resume_pixel(voxels, setup, sample, tiles[blockIdx.x], threadIdx.x,
+                                           logs, at, wanted, has_missed);
+  if (has_missed) missed[blockIdx.x] = 1;
+  add_of_warp(rays, count);
+}
+
 __global__ void __launch_bounds__(kFilterSide* kFilterSide)
     filter_kernel(const __grid_constant__ FilterInput input, const FilterSample* samples,
                   Vec3f* filtered) {
@@ -110,6 +122,14 @@ void launch_partial_render(const PartialEsvoView& voxels, const RenderSetup& set
                            cudaStream_t stream) {
   launch("rendering", partial_render_kernel, range.last_block - range.first_block, kBlockPixels,
          stream, voxels, setup, range, blocks, wanted, missed, rays);
+}
+
+void launch_resume(const PartialEsvoView& voxels, const RenderSetup& setup, int sample,
+                   const std::uint32_t* tiles, std::uint32_t count, const PixelLogs& logs,
+                   std::uint8_t* wanted, std::uint8_t* missed, unsigned long long* rays,
+                   cudaStream_t stream) {
+  launch("rendering", resume_kernel, count, kBlockPixels, stream, voxels, setup, sample, tiles,
+         logs, wanted, missed, rays);
 }
 
 void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,

@@ -4,6 +4,7 @@
 
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
+#include "voxdag/cuda/resume_pixel.hpp"
 #include "voxdag/layout/partial_esvo.hpp"
 #include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_setup.hpp"
@@ -30,6 +31,14 @@ void launch_partial_render(const PartialEsvoView& voxels, const RenderSetup& set
                            const LaunchRange& range, const std::uint32_t* blocks,
                            std::uint8_t* wanted, std::uint8_t* missed, unsigned long long* rays,
                            cudaStream_t stream);
+
+/// Runs resume_pixel() for all pixels of tiles[0] to tiles[count - 1], which are the pixels of
+/// `logs` in this order, and adds the number of rays to `*rays`. Sets `missed[i]` if rays of
+/// tiles[i] wait for blocks.
+void launch_resume(const PartialEsvoView& voxels, const RenderSetup& setup, int sample,
+                   const std::uint32_t* tiles, std::uint32_t count, const PixelLogs& logs,
+                   std::uint8_t* wanted, std::uint8_t* missed, unsigned long long* rays,
+                   cudaStream_t stream);
 
 /// Sets `filtered` to filtered_color() of every pixel.
 void launch_filter(const FilterInput& input, const FilterSample* samples, Vec3f* filtered,

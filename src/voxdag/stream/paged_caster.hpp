@@ -31,14 +31,6 @@ class PagedNodes : public ContourNodes {
   BlockSource* source_;
 };
 
-/// Moves the start of a ray to where it met a voxel. The ray meets the same voxels from there on,
-/// to the bit.
-inline void begin_at(const EsvoHit& hit, GridRay& ray) {
-  // The ray must start before the contour's plane, or it would not enter through it.
-  const float before = float_from_bits(bits_of_float(hit.t) - 1);
-  ray.t_min = hit.is_through_contour() && hit.t > ray.t_min ? std::max(before, ray.t_min) : hit.t;
-}
-
 /// Casts a ray. The result equals that of cast() with all blocks loaded.
 template <class Stop>
 bool cast(const PagedNodes& nodes, const GridRay& ray, const Stop& stop, EsvoHit& hit) {

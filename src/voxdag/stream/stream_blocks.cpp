@@ -10,6 +10,14 @@ StreamBlocks::StreamBlocks(const std::filesystem::path& path, std::uint64_t memo
       wanted_(std::make_unique<std::atomic<bool>[]>(stream_.directory().size())),
       loaded_in_(stream_.directory().size()) {}
 
+int StreamBlocks::depth(std::size_t block) const {
+  int depth = 0;
+  for (std::int64_t above = stream_.parent(block); above >= 0;
+       above = stream_.parent(static_cast<std::size_t>(above)))
+    ++depth;
+  return depth;
+}
+
 std::vector<std::size_t> StreamBlocks::take_wanted() {
   std::vector<std::size_t> blocks;
   for (std::size_t i = 0; i < stream_.directory().size(); ++i)
@@ -82,7 +90,7 @@ std::size_t StreamBlocks::load_missing(Vec3d eye) {
   for (const std::size_t block : wanted) {
     mark_above(block);
     // Making room for one block may have evicted the parent of another.
-    if (!stream_.can_load(block)) continue;
+    if (stream_.is_loaded(block) || !stream_.can_load(block)) continue;
     if (!make_room(block)) continue;
     stream_.load(block);
     loaded_in_[block] = part_;

@@ -19,6 +19,7 @@ class StreamBlocks : public BlockSource {
 
   PartialEsvoView loaded() const override { return stream_.loaded(); }
   std::size_t block_count() const override { return stream_.directory().size(); }
+  int depth(std::size_t block) const override;
   std::uint64_t version() const override { return stream_.version(); }
   std::vector<SlotRange> changes_since(std::uint64_t version) const override {
     return stream_.changes_since(version);

@@ -66,17 +66,28 @@ class CpuTiles : public StreamedTiles {
     return missed;
   }
 
-  void render_paged(const ViewTile& tile) override {
-    const PagedNodes nodes(source_);
-    rays_ += renderer_->render_one(nodes, PagedCaster(nodes, progress_), tile);
+  /// Renders the tiles a few at a time.
+  void render_rest(const std::vector<ViewTile>& tiles) override {
+    const Vec3d eye = plan_.setup().camera.eye;
+    const auto at_once = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    for (std::size_t begin = 0; begin < tiles.size(); begin += at_once) {
+      const auto first = tiles.begin() + static_cast<std::ptrdiff_t>(begin);
+      std::vector<ViewTile> part(
+          first, first + static_cast<std::ptrdiff_t>(std::min(at_once, tiles.size() - begin)));
+      source_.begin_part();
+      do {
+        part = render(part, nullptr);
+      } while (source_.load_missing(eye) > 0 && !part.empty());
+      const PagedNodes nodes(source_);
+      for (const ViewTile& tile : part)
+        rays_ += renderer_->render_one(nodes, PagedCaster(nodes, progress_), tile);
+      if (progress_ != nullptr)
+        progress_->report("stream", static_cast<double>(begin) / static_cast<double>(tiles.size()),
+                          rays_);
+    }
   }
 
   void count_steps() override { renderer_->count(); }
-
-  std::size_t most_at_once() const override {
-    return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  }
-  std::size_t most_paged() const override { return most_at_once(); }
 
   RenderedImage image() override { return plan_.image(); }
   RenderedImage take_image() override {
@@ -102,7 +113,7 @@ RenderedImage render_streamed(BlockSource& source, const Grid& grid, const Rende
                               Progress* progress) {
   RenderPlan plan(source.view(), grid, options);
   CpuTiles tiles(source, plan, options, progress);
-  return render_passes(source, tiles, plan, options, on_pass, progress);
+  return render_passes(source, tiles, plan, options, on_pass);
 }
 
 }  // namespace voxdag

@@ -19,6 +19,8 @@ class BlockSource {
   EsvoView view() const { return loaded().octree; }
   /// Returns the number of blocks in the file.
   virtual std::size_t block_count() const = 0;
+  /// Returns the number of a block's ancestors.
+  virtual int depth(std::size_t block) const = 0;
   /// As in EsvoStream: for copies of loaded().
   virtual std::uint64_t version() const = 0;
   virtual std::vector<SlotRange> changes_since(std::uint64_t version) const = 0;

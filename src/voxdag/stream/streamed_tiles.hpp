@@ -22,17 +22,10 @@ class StreamedTiles {
   /// Returns the tiles of these rays, in order. `stage` names the work for progress; null: no
   /// reports. Throws Cancelled.
   virtual std::vector<ViewTile> render(const std::vector<ViewTile>& tiles, const char* stage) = 0;
-  /// Renders a tile whose blocks do not fit into memory together: its rays wait for one block after
-  /// another (paged_caster.hpp). The work may be left to take_image().
-  virtual void render_paged(const ViewTile& tile) = 0;
+  /// Renders tiles whose blocks do not fit into memory together, and loads blocks meanwhile.
+  virtual void render_rest(const std::vector<ViewTile>& tiles) = 0;
   /// Sets the steps of primary rays in the loaded blocks.
   virtual void count_steps() = 0;
-
-  /// Returns the number of tiles that may need memory at the same time, once not all of them can.
-  virtual std::size_t most_at_once() const = 0;
-  /// Returns the number of them that render_paged() renders if their blocks do not fit. More tiles
-  /// are halved before.
-  virtual std::size_t most_paged() const = 0;
 
   /// Returns the picture so far, before the filter.
   virtual RenderedImage image() = 0;
@@ -44,7 +37,6 @@ class StreamedTiles {
 /// `options` are those of `tiles`.
 RenderedImage render_passes(BlockSource& source, StreamedTiles& tiles, const RenderPlan& plan,
                             const RenderOptions& options,
-                            const std::function<void(const RenderedImage&)>& on_pass,
-                            Progress* progress);
+                            const std::function<void(const RenderedImage&)>& on_pass);
 
 }  // namespace voxdag

@@ -1,12 +1,11 @@
 #include "voxdag/stream_cuda/device_stream.hpp"
 
+#include <algorithm>
 #include <numeric>
+#include <span>
 
-#include "voxdag/cpu/packets/packet_caster.hpp"
-#include "voxdag/cpu/tile_renderer.hpp"
 #include "voxdag/cuda/partial_picture.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
-#include "voxdag/stream/paged_caster.hpp"
 #include "voxdag/stream/streamed_tiles.hpp"
 
 namespace voxdag {
@@ -35,24 +34,33 @@ class DeviceTiles : public StreamedTiles {
 
   std::vector<ViewTile> render(const std::vector<ViewTile>& tiles, const char* stage) override {
     stream_.update();
-    std::vector<std::uint32_t> indices;
-    indices.reserve(tiles.size());
-    for (const ViewTile& tile : tiles)
-      indices.push_back(block_at(plan_.setup().camera, tile.x, tile.y));
-    const std::vector<std::uint32_t> missed = picture_.render(indices, stage);
+    const std::vector<std::uint32_t> missed = picture_.render(indices_of(tiles), stage);
     stream_.want_missed();
     return tiles_of(missed);
   }
 
-  void render_paged(const ViewTile& tile) override { paged_.push_back(tile); }
+  /// Renders the tiles ray by ray: each ray waits for one block after another.
+  void render_rest(const std::vector<ViewTile>& tiles) override {
+    const std::vector<std::uint32_t> indices = indices_of(tiles);
+    const auto samples = static_cast<std::size_t>(plan_.setup().settings.samples_per_pixel);
+    for (std::size_t begin = 0; begin < indices.size();) {
+      const auto part = std::span(indices).subspan(
+          begin, std::min<std::size_t>(picture_.most_resumed(), indices.size() - begin));
+      for (std::size_t sample = 0; sample < samples; ++sample)
+        render_sample(part, static_cast<int>(sample), [&](std::size_t waiting) {
+          const auto done =
+              static_cast<double>(begin * samples + part.size() * (sample + 1) - waiting);
+          if (progress_ != nullptr)
+            progress_->report("stream", done / static_cast<double>(indices.size() * samples));
+        });
+      begin += part.size();
+    }
+  }
 
   void count_steps() override {
     stream_.update();
     picture_.count_steps();
   }
-
-  std::size_t most_at_once() const override { return 256; }
-  std::size_t most_paged() const override { return 1; }
 
   RenderedImage image() override {
     RenderedImage image = plan_.image();
@@ -62,7 +70,6 @@ class DeviceTiles : public StreamedTiles {
 
   RenderedImage take_image() override {
     picture_.copy_to(plan_.image());
-    render_on_cpu();
     return std::move(plan_.image());
   }
 
@@ -74,19 +81,31 @@ class DeviceTiles : public StreamedTiles {
     return tiles;
   }
 
-  /// Renders the tiles of render_paged() into the picture in the host's memory.
-  void render_on_cpu() {
-    if (paged_.empty()) return;
-    const PagedNodes nodes(stream_.source());
-    const PagedCaster caster(nodes, progress_);
-    const TileRenderer renderer(nodes, caster, plan_.setup(), false, nullptr);
-    for (std::size_t i = 0; i < paged_.size(); ++i) {
-      if (progress_ != nullptr) progress_->throw_if_cancelled();
-      plan_.image().rays += renderer.render_one(nodes, caster, paged_[i]);
-      stream_.add_pixels_on_cpu(paged_[i].pixels());
-      if (progress_ != nullptr)
-        progress_->report("stream",
-                          static_cast<double>(i + 1) / static_cast<double>(paged_.size()));
+  std::vector<std::uint32_t> indices_of(const std::vector<ViewTile>& tiles) const {
+    std::vector<std::uint32_t> indices;
+    indices.reserve(tiles.size());
+    for (const ViewTile& tile : tiles)
+      indices.push_back(block_at(plan_.setup().camera, tile.x, tile.y));
+    return indices;
+  }
+
+  /// Renders a sample of the tiles' pixels, in rounds. Each round loads the deepest block for which
+  /// rays wait, and the others while there is room. So the rounds end: rays that wait for the
+  /// deepest block pass it, or wait for one of its children, which is then the deepest.
+  /// Calls `on_round` with the number of tiles that wait.
+  template <class OnRound>
+  void render_sample(std::span<const std::uint32_t> tiles, int sample, const OnRound& on_round) {
+    BlockSource& source = stream_.source();
+    for (bool begins = true;; begins = false) {
+      stream_.update();
+      const std::size_t waiting = picture_.resume(tiles, sample, begins);
+      on_round(waiting);
+      if (waiting == 0) return;
+      const std::vector<std::size_t> wanted = stream_.want_missed();
+      source.load(*std::max_element(
+          wanted.begin(), wanted.end(),
+          [&](std::size_t a, std::size_t b) { return source.depth(a) < source.depth(b); }));
+      source.load_missing(plan_.setup().camera.eye);
     }
   }
 
@@ -94,7 +113,6 @@ class DeviceTiles : public StreamedTiles {
   RenderPlan& plan_;
   Progress* progress_;
   PartialPicture picture_;
-  std::vector<ViewTile> paged_;
 };
 
 }  // namespace
@@ -111,8 +129,10 @@ void DeviceStream::update() {
   version_ = version;
 }
 
-void DeviceStream::want_missed() {
-  for (const std::size_t block : blocks_.take_wanted()) source_->want(block);
+std::vector<std::size_t> DeviceStream::want_missed() {
+  std::vector<std::size_t> blocks = blocks_.take_wanted();
+  for (const std::size_t block : blocks) source_->want(block);
+  return blocks;
 }
 
 RenderedImage render_streamed(DeviceStream& stream, const Grid& grid, const RenderOptions& options,
@@ -120,7 +140,7 @@ RenderedImage render_streamed(DeviceStream& stream, const Grid& grid, const Rend
                               Progress* progress) {
   RenderPlan plan(stream.source().view(), grid, options);
   DeviceTiles tiles(stream, plan, options, progress);
-  return render_passes(stream.source(), tiles, plan, options, on_pass, progress);
+  return render_passes(stream.source(), tiles, plan, options, on_pass);
 }
 
 }  // namespace voxdag

@@ -6,6 +6,7 @@
 ///
 /// The host's blocks and the device's are equal copies of one pool.
 #include <cstdint>
+#include <vector>
 
 #include "voxdag/cuda/device_blocks.hpp"
 #include "voxdag/stream/streamed_image.hpp"
@@ -25,25 +26,19 @@ class DeviceStream {
 
   /// Copies the blocks that have changed since the last call to the device.
   void update();
-  /// Tells the source which blocks the device's rays missed since the last call.
-  void want_missed();
-
-  /// Returns the number of pixels, of all pictures so far, that the CPU rendered because their
-  /// blocks did not fit into memory together.
-  std::uint64_t pixels_on_cpu() const { return pixels_on_cpu_; }
-  void add_pixels_on_cpu(int pixels) { pixels_on_cpu_ += static_cast<std::uint64_t>(pixels); }
+  /// Tells the source which blocks the device's rays missed since the last call, and returns them.
+  std::vector<std::size_t> want_missed();
 
  private:
   BlockSource* source_;
   DeviceBlocks blocks_;
   std::uint64_t version_ = 0;  ///< Of the blocks on the device.
-  std::uint64_t pixels_on_cpu_ = 0;
 };
 
 /// Returns the picture that render_streamed() (streamed_image.hpp) makes on the CPU, up to
-/// rounding. The tiles are 16×8 pixels. If the blocks of one tile do not fit into memory together,
-/// the CPU renders it, with the blocks in the host's memory. The CPU also filters. Throws like the
-/// version for the CPU, and Error if the device fails or its memory is too small.
+/// rounding. The tiles are 16×8 pixels. If no more blocks fit, the rays of the remaining tiles wait
+/// for one block after another (trace/resumed_rays.hpp), on the device too. The CPU filters. Throws
+/// like the version for the CPU, and Error if the device fails or its memory is too small.
 RenderedImage render_streamed(DeviceStream& stream, const Grid& grid, const RenderOptions& options,
                               const std::function<void(const RenderedImage&)>& on_pass = {},
                               Progress* progress = nullptr);

@@ -1,6 +1,5 @@
 #pragma once
-/// The node layout for rays at an ESVO with missing blocks, which reports the blocks that rays
-/// miss.
+/// Rays at an ESVO with missing blocks, and a node layout that reports the blocks that they miss.
 #include "voxdag/layout/partial_esvo.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 
@@ -20,6 +19,18 @@ VOXDAG_HD bool would_continue(const EsvoView& esvo, const GridRay& ray, const St
     t_exit = t < t_exit ? t : t_exit;
   }
   return !stop(hit.level, hit.t, t_exit);
+}
+
+/// Moves the start of a ray to where it met a voxel. The ray meets the same voxels from there on,
+/// to the bit.
+VOXDAG_HD inline void begin_at(const EsvoHit& hit, GridRay& ray) {
+  if (!hit.is_through_contour() || !(hit.t > ray.t_min)) {
+    ray.t_min = hit.t;
+    return;
+  }
+  // The ray must start before the contour's plane, or it would not enter through it.
+  const float before = float_from_bits(bits_of_float(hit.t) - 1);
+  ray.t_min = before > ray.t_min ? before : ray.t_min;
 }
 
 /// ContourNodes for the rays of one thread.
