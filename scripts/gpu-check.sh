@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds voxdag for the CUDA device of this machine, runs the tests that need a device, and measures
-# rays per second. Takes less than 8 minutes, and needs no network if the packages are installed.
+# rays per second, and both papers again on coarse grids. Takes less than 8 minutes, and needs no network if the packages are installed.
 #
 #   scripts/gpu-check.sh [OPTION...]
 #     --tests        builds and tests, measures nothing
@@ -164,6 +164,10 @@ if [ $measure = yes ]; then
   fi
   bench courtyard-2048 $scene.vdag $scene.ply paper,wide
   bench_esvo courtyard-rates $scene.ply
+  echo "== papers"
+  attempt voxdag bench papers --quick --device cuda -o $work/papers
+  ! grep -F "differ from the CPU's" $work/papers/report.md || failures=$((failures + 1))
+  cp $work/papers/report.{html,json} "$folder" || failures=$((failures + 1))
   echo "== results: $folder"
 fi
 echo "== done in $SECONDS s, $failures failures"

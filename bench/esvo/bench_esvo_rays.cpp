@@ -220,7 +220,8 @@ class SceneRays {
       }
       if (row.rays == 0) continue;
       step("pictures of " + scene_.name);
-      row.seconds = picture_cost(octrees.contours, views_, size, plan_.lod_pixels, plan_.repeat);
+      row.seconds = picture_cost(octrees.contours.file, on_device ? &*on_device : nullptr, views_,
+                                 size, plan_.lod_pixels, plan_.repeat);
       results_.rates.push_back(row);
     }
   }

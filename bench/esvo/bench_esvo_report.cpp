@@ -268,7 +268,7 @@ Json esvo_bench_json(const EsvoBenchResults& results, const Json& machine) {
                 {"device_name", row.on_cuda ? Json(results.cuda_device) : machine.at("processor")},
                 {"ray_count", row.rays},
                 {"picture_seconds", row.seconds.picture},
-                {"filter_seconds", row.seconds.filter}};
+                {"filter_seconds", json_number(row.seconds.filter)}};
     for (const EsvoForm form : kEsvoForms) {
       const auto at = static_cast<std::size_t>(form);
       object[name_of(form)] = {{"mrays_per_s", json_number(row.mrays_per_second[at])},

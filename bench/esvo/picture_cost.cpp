@@ -6,6 +6,7 @@
 
 #include "voxdag/cpu/post_filter.hpp"
 #include "voxdag/cpu/render_image.hpp"
+#include "voxdag/cuda/render_image.hpp"
 
 namespace voxdag {
 namespace {
@@ -26,8 +27,9 @@ double fastest_seconds(int repeat, const Work& work) {
 
 }  // namespace
 
-PictureCost picture_cost(const EsvoFile& esvo, std::span<const View> views, ImageSize size,
-                         float lod_pixels, int repeat) {
+PictureCost picture_cost(const EsvoFile& esvo, const DeviceScene* on_device,
+                         std::span<const View> views, ImageSize size, float lod_pixels,
+                         int repeat) {
   PictureCost sum;
   for (const View& view : views) {
     RenderOptions options;
@@ -37,6 +39,16 @@ PictureCost picture_cost(const EsvoFile& esvo, std::span<const View> views, Imag
     options.lod_pixels = lod_pixels;
     options.shadows = false;
     options.occlusion_samples = 0;
+    if (on_device != nullptr) {
+      const auto seconds = [&](FilterKind filter) {
+        options.filter = filter;
+        return fastest_seconds(repeat, [&] { render_image(*on_device, esvo.grid(), options); });
+      };
+      const double picture = seconds(FilterKind::kNone);
+      sum.picture += picture;
+      sum.filter += seconds(FilterKind::kGuided) - picture;
+      continue;
+    }
     options.filter = FilterKind::kGuided;
     RenderedImage image = render_image(esvo.view(), esvo.grid(), options);
     const Camera camera = make_camera(image.view, image.width, image.height);
@@ -47,6 +59,7 @@ PictureCost picture_cost(const EsvoFile& esvo, std::span<const View> views, Imag
     sum.picture +=
         fastest_seconds(repeat, [&] { image = render_image(esvo.view(), esvo.grid(), options); });
   }
+  if (!(sum.filter > 0)) sum.filter = NAN;
   return sum;
 }
 

@@ -17,13 +17,24 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Section machine_section(const Json& machine, int threads) {
+Section machine_section(const Json& machine, int threads, const PapersDevice& device) {
   Section section{"The machine", 2, {}};
   section.parts.emplace_back(Paragraph{fmt::format(
       "{}, {} threads, {:.0f} GiB of memory, {}. Measured by {} until {}.",
       machine.at("processor").get<std::string>(), threads,
       machine.at("memory_bytes").get<double>() / (1 << 30), machine.at("system").get<std::string>(),
       program_name(), machine.at("time").get<std::string>())});
+  section.parts.emplace_back(Paragraph{
+      device.is_cuda()
+          ? fmt::format("{} casts the rays at voxels and renders the pictures. The processor "
+                        "builds, casts rays at triangles (Embree), and measures silhouettes and "
+                        "Figure 7b of the SVDAG paper.{}",
+                        device.name,
+                        device.option == "auto"
+                            ? " It also does what needs more memory than the device has; the "
+                              "results in the file report.json name the device of each run."
+                            : "")
+          : std::string("The processor casts all rays and renders the pictures.")});
   return section;
 }
 
@@ -56,9 +67,11 @@ double typical_seconds(const PapersPlan& plan) {
   return kScenes * per_scene + frames * kFrameSeconds * pixels / (1024 * 768);
 }
 
-PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
-  CellStore cells(plan.folder / "cells", progress);
+PapersReport bench_papers(const PapersPlan& wanted, Progress& progress) {
   const ScratchFolder made;
+  PapersPlan plan = wanted;
+  plan.device = find_device(plan.device_choice, made.path(), progress);
+  CellStore cells(plan.folder / "cells", progress);
   const SvdagResults svdag = measure_svdag(plan, made.path(), cells, progress);
   const EsvoResults esvo = measure_esvo(plan, scan_of(svdag.scenes), made.path(), cells, progress);
 
@@ -71,15 +84,18 @@ PapersReport bench_papers(const PapersPlan& plan, Progress& progress) {
   const Json machine = machine_json();
   const int threads =
       plan.threads > 0 ? plan.threads : static_cast<int>(std::thread::hardware_concurrency());
-  Document document{"The papers, measured again", {machine_section(machine, threads)}};
+  Document document{"The papers, measured again", {machine_section(machine, threads, plan.device)}};
   for (const auto& chapter : {svdag_chapter(svdag, threads, report.has_charts),
                               esvo_chapter(esvo, threads, report.has_charts)})
     document.sections.insert(document.sections.end(), chapter.begin(), chapter.end());
 
-  const Json json{{"program", program_name()},
-                  {"machine", machine},
-                  {"svdag", svdag_json(svdag)},
-                  {"esvo", esvo_json(esvo)}};
+  const Json json{
+      {"program", program_name()},
+      {"machine", machine},
+      {"device", plan.device.is_cuda() ? "cuda" : "cpu"},
+      {"device_name", plan.device.is_cuda() ? Json(plan.device.name) : machine.at("processor")},
+      {"svdag", svdag_json(svdag)},
+      {"esvo", esvo_json(esvo)}};
   report.html = plan.folder / "report.html";
   report.markdown = plan.folder / "report.md";
   report.json = plan.folder / "report.json";

@@ -19,7 +19,7 @@ double typical_seconds(const PapersPlan& plan);
 
 /// Runs the plan. Writes report.html, report.md, report.json, the charts, and one file per run in
 /// cells/ to the plan's folder, which is made if it does not exist. An interrupted run keeps its
-/// finished measurements. Throws Error and Cancelled.
+/// finished measurements. Throws Error, also if the chosen device is missing, and Cancelled.
 PapersReport bench_papers(const PapersPlan& plan, Progress& progress);
 
 }  // namespace voxdag

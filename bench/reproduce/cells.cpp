@@ -37,6 +37,7 @@ std::optional<CellResult> read_result(const fs::path& file) {
     result.is_kept = true;
     result.failure = json.at("failure");
     result.json = json.at("result");
+    result.output_check = json.at("output_check");
     const Json& cost = json.at("cost");
     result.cost = {cost.at("wall_seconds"), cost.at("user_seconds"), cost.at("system_seconds"),
                    cost.at("peak_memory_bytes")};
@@ -44,6 +45,14 @@ std::optional<CellResult> read_result(const fs::path& file) {
   } catch (const Json::exception&) {
     return std::nullopt;
   }
+}
+
+/// Returns a checksum of the cell's output if the cell keeps it and the output is there; else "".
+std::string output_check(const Cell& cell) {
+  std::ifstream stream(cell.output, std::ios::binary);
+  if (!cell.keeps_output || !stream) return "";
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  return fmt::format("{:016x}", xxh3_64(std::as_bytes(std::span(bytes))));
 }
 
 /// Returns the argument with the input in it, if there is one, replaced by text(input). The input
@@ -98,6 +107,7 @@ void CellStore::add_input(const fs::path& file, std::uint64_t check) {
 
 std::string CellStore::key_of(const Cell& cell) const {
   std::string text = fmt::format("{}\n{}\n", machine_, cell.seconds_limit);
+  if (!cell.device.empty()) text += cell.device + "\n";
   const std::string extension = cell.output.extension();
   for (const std::string& argument : cell.arguments) {
     const auto content = [this](const fs::path& input) { return "content " + contents_.at(input); };
@@ -118,8 +128,8 @@ CellResult CellStore::run(const Cell& cell) {
     contents_[cell.output] = key;
     writers_[cell.output] = cell;
   }
-  const bool lacks_output = cell.keeps_output && !fs::exists(cell.output);
-  if (auto result = read_result(file_of(key)); result && !lacks_output) {
+  if (auto result = read_result(file_of(key));
+      result && result->output_check == output_check(cell)) {
     kept_.insert(key);
     return *result;
   }
@@ -128,7 +138,8 @@ CellResult CellStore::run(const Cell& cell) {
   CellResult result = measure(cell);
   const Json json{{"command", command_of(cell)}, {"program", program_name()},
                   {"machine", machine_json()},   {"cost", cost_json(result.cost)},
-                  {"failure", result.failure},   {"result", result.json}};
+                  {"failure", result.failure},   {"output_check", output_check(cell)},
+                  {"result", result.json}};
   write_whole_file(file_of(key), json.dump(2) + "\n");
   return result;
 }

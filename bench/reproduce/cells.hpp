@@ -20,16 +20,18 @@ struct Cell {
   /// The files that it reads. Each is an argument, or a part of one: "NAME=FILE --option".
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;  ///< The file that it writes; or empty.
+  std::string device;            ///< Name of the CUDA device that it uses; or empty.
   double seconds_limit = 0;      ///< 0: none.
   bool prints_json = true;
-  bool keeps_output = false;  ///< A kept result counts only if the output is still there.
+  bool keeps_output = false;  ///< A kept result counts only if the output is still the same.
 };
 
 struct CellResult {
   std::string failure;          ///< Why there is no JSON; or empty.
   nlohmann::ordered_json json;  ///< What the command printed; null if it prints no JSON.
   ProcessCost cost;
-  bool is_kept = false;  ///< From an earlier run of the report.
+  std::string output_check;  ///< Of a kept result: the checksum of an output that the cell keeps.
+  bool is_kept = false;      ///< From an earlier run of the report.
 };
 
 /// Returns the command as one line for a reader: "voxdag build sponza.obj -r 1024 --json". Files
@@ -37,8 +39,9 @@ struct CellResult {
 std::string command_of(const Cell& cell);
 
 /// Runs cells, and keeps their results in a folder as JSON files. A result is used again only for
-/// the same arguments, contents of the inputs, program (version and commit), processor and number
-/// of cores. The content of textures and material files that a mesh names does not count.
+/// the same arguments, contents of the inputs, program (version and commit), processor, number of
+/// cores and CUDA device. The content of textures and material files that a mesh names does not
+/// count.
 class CellStore {
  public:
   /// Creates the folder if it does not exist. Throws Error if it cannot be made.

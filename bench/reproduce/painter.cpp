@@ -62,6 +62,7 @@ ScenePicture Painter::paint(const std::string& file, const std::string& pass, Im
     cell.arguments.insert(cell.arguments.end(),
                           {"--pass", pass + "=" + cell.output.string(), "-o", "../picture.png"});
   cell.arguments.insert(cell.arguments.end(), options.begin(), options.end());
+  plan_.device.cast(cell);
   picture.result = built_.failure.empty() ? cells_.run(cell) : built_;
   fs::remove(plan_.folder / "picture.png");
   return picture;

@@ -1,10 +1,10 @@
 #pragma once
 /// The plan of `voxdag bench papers`: scenes, resolutions, and limits of time and memory.
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
 
+#include "bench/reproduce/papers_device.hpp"
 #include "voxdag/image/image_size.hpp"
 
 namespace voxdag {
@@ -47,6 +47,8 @@ struct PapersPlan {
   double cell_seconds = 600;       ///< Time limit of one build for the tables.
   std::uint64_t memory_bytes = 0;  ///< `--memory` of every build; 0: its default.
   int threads = 0;                 ///< 0: one per processor.
+  DeviceChoice device_choice;      ///< Casts rays and renders pictures.
+  PapersDevice device;             ///< The chosen device; bench_papers() sets it.
 };
 
 /// Makes the plan one that finishes within minutes: coarse grids and procedural stand-ins alone.
@@ -56,7 +58,7 @@ inline void make_quick(PapersPlan& plan) {
   plan.table1_levels = {9, 10, 11};
   plan.table2_levels = {9, 10, 11};
   plan.figure1_levels = 13;
-  plan.cell_seconds = std::min(plan.cell_seconds, 20.0);
+  plan.cell_seconds = 20;
   plan.flight = {10, 12, 6, {512, 384}, {0.05, 0.4}};
   plan.pictures = {11, {640, 360}};
   plan.esvo = {{7, 8}, {{512, 384}}, 8, {6, 7}, 8};

@@ -99,22 +99,37 @@ class EsvoRival {
   /// Returns the casts of `set`. Primary rays with beams start where the ESVO's own beams end.
   /// They are valid until the next call.
   EsvoRival(const TraceScene& scene, const TracePlan& plan)
-      : scene_(scene), plan_(plan), layout_(make_trace_layout("contours", *scene.esvo)) {}
+      : scene_(scene),
+        plan_(plan),
+        layout_(make_trace_layout("contours", *scene.esvo)),
+        on_device_(load_on_device(plan.device, *scene.esvo, layout_->device_layout())) {}
+
+  bool on_cuda() const { return on_device_.has_value(); }
+  /// Casts on the CPU from now on.
+  void leave_device() { on_device_.reset(); }
 
   TraceRunner prepare(const View& view, RayClass rays, const std::vector<CastRay>& set) {
-    if (rays != RayClass::kPrimaryBeams) return named(layout_->runner(rays, set));
+    if (rays != RayClass::kPrimaryBeams) return runner_of(rays, set, {});
     beams_ = std::make_unique<BeamPass>(
         *scene_.esvo, scene_.grid, picture_options(*scene_.esvo, scene_.grid, view, plan_.rays),
         plan_.rays.beam_pixels);
     beams_->run();
+    if (on_device_) {
+      const TimedBeams beams(*on_device_, beams_->setup());
+      casts_ = primary_rays(beams_->setup(), beams.starts().data());
+      return runner_of(rays, casts_, beams);
+    }
     casts_ = primary_rays(beams_->setup(), beams_->starts());
-    TraceRunner runner = named(layout_->runner(rays, casts_));
+    TraceRunner runner = runner_of(rays, casts_, {});
     runner.before = [this] { beams_->run(); };
     return runner;
   }
 
  private:
-  static TraceRunner named(TraceRunner runner) {
+  TraceRunner runner_of(RayClass rays, const std::vector<CastRay>& set,
+                        const std::optional<TimedBeams>& beams) const {
+    TraceRunner runner =
+        on_device_ ? cuda_runner(*on_device_, rays, set, beams) : layout_->runner(rays, set);
     runner.name = "esvo";
     return runner;
   }
@@ -122,9 +137,19 @@ class EsvoRival {
   const TraceScene& scene_;
   const TracePlan& plan_;
   std::unique_ptr<TraceLayout> layout_;
+  std::optional<DeviceScene> on_device_;
   std::unique_ptr<BeamPass> beams_;
   std::vector<CastRay> casts_;
 };
+
+/// Casts on the CPU unless the ESVO and all layouts fit into the memory of the device.
+void use_one_device(EsvoRival& esvo, std::vector<std::optional<DeviceScene>>& device_scenes) {
+  bool all_fit = esvo.on_cuda();
+  for (const auto& scene : device_scenes) all_fit = all_fit && scene.has_value();
+  if (all_fit) return;
+  esvo.leave_device();
+  for (auto& scene : device_scenes) scene.reset();
+}
 
 }  // namespace
 
@@ -147,8 +172,10 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
   std::vector<std::optional<DeviceScene>> device_scenes;
   for (const auto& layout : layouts) {
     device_scenes.push_back(load_on_device(plan.device, scene.voxels, layout->device_layout()));
-    if (device_scenes.back()) results.cuda_device = device_scenes.back()->device().name;
   }
+  if (esvo) use_one_device(*esvo, device_scenes);
+  for (const std::optional<DeviceScene>& device_scene : device_scenes)
+    if (device_scene) results.cuda_device = device_scene->device().name;
 
   std::vector<std::array<RowSums, kRayClasses.size()>> sums(layouts.size());
   const double steps = static_cast<double>(views.size() * kRayClasses.size());

@@ -23,7 +23,8 @@ struct TraceScene {
   VoxelSet voxels;
   const Mesh* mesh = nullptr;  ///< The voxels' mesh, for rivals that cast at triangles.
   std::filesystem::path file;  ///< The voxels' .vdag, for rivals that are programs; or empty.
-  /// An ESVO of the same mesh on the same grid, which casts the same rays as a rival; or empty.
+  /// An ESVO of the same mesh on the same grid, which casts the same rays as a rival, on the same
+  /// device; or empty.
   std::optional<VoxelSet> esvo{};
 };
 

@@ -83,6 +83,8 @@ Json trace_json(const TraceResults& results, const Json& machine) {
     array.push_back({{"program", program_name()},
                      {"scene", shadows.scene},
                      {"resolution", std::int64_t{1} << shadows.levels},
+                     {"device", "cpu"},
+                     {"device_name", machine.at("processor")},
                      {"threads", results.threads},
                      {"rays", "soft_lamp"},
                      {"size", {results.rays.width, results.rays.height}},

@@ -61,6 +61,11 @@ TEST_F(DeviceOption, PicturesAndBenchmarksTakeIt) {
                   "--no-silhouettes", "--device", "cuda"});
   EXPECT_EQ(esvo.status, 1);
   EXPECT_EQ(esvo.err, "voxdag: --device cuda: " + reason + "\n");
+  const ProcessResult papers =
+      run_voxdag({"bench", "papers", "--quick", "--device", "cuda", "-q", "-o", path("report")});
+  EXPECT_EQ(papers.status, 1);
+  EXPECT_EQ(papers.err, "voxdag: --device cuda: " + reason + "\n");
+  EXPECT_FALSE(exists("report/report.json"));
 }
 
 TEST_F(DeviceOption, OtherDevicesAreBadUsage) {

@@ -161,7 +161,49 @@ TEST_F(DeviceCommands, BenchEsvoKeepsTheBuildsIfTheDeviceIsMissing) {
   EXPECT_TRUE(json.at("rays").empty());
 }
 
+TEST_F(DeviceCommands, BenchPapersMeasuresBothChaptersOnIt) {
+  const auto report = [&](const char* device, const char* scenes) {
+    const ProcessResult result =
+        run_on(device, {"bench", "papers", "--quick", "--only", scenes, "--table1=16",
+                        "--table2=16", "--esvo-tables=16", "--figure1=32", "--pictures=16",
+                        "--esvo-pictures=16", "--flight-esvo=16", "--flight-triangles=32",
+                        "--frames=1", "--size=24x16", "--cell-seconds=600", "-o", path("report")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::string text = read_text(path("report/report.md"));
+    EXPECT_EQ(text.find("differ from the CPU's"), std::string::npos) << text;
+    EXPECT_EQ(text.find("the host casts the rays at voxels") == std::string::npos,
+              device == std::string("cpu"));
+    return std::pair{result.out, nlohmann::json::parse(read_text(path("report/report.json")))};
+  };
+  const auto rays_at_esvos = [](const nlohmann::json& json) {
+    return json.at("esvo").at("scenes").at(0).at("rays").at(0).at("result").at("rays").at(0);
+  };
+  const auto [ignored, cuda] = report("cuda", "SanMiguel,Sibenik");
+  EXPECT_EQ(cuda.at("device"), "cuda");
+  EXPECT_EQ(cuda.at("device_name"), "the host");
+  EXPECT_EQ(rays_at_esvos(cuda).at("device"), "cuda");
+  const nlohmann::json& svdag = cuda.at("svdag");
+  const std::string picture = svdag.at("figure1").at("picture");
+  EXPECT_NE(picture.find("--device cuda"), std::string::npos) << picture;
+  for (const char* run : {"with_esvo", "with_triangles", "with_voxels", "with_cones"})
+    for (const nlohmann::json& row : svdag.at("flight").at(run).at("rows"))
+      EXPECT_EQ(row.at("device"), "cuda") << run;
+  for (const nlohmann::json& row : svdag.at("flight").at("with_lamps").at("rows"))
+    EXPECT_EQ(row.at("device"), row.at("rays") == "soft_lamp" ? "cpu" : "cuda");
+
+  const auto [again, same] = report("cuda", "SanMiguel,Sibenik");
+  EXPECT_NE(again.find(": 0 measured, "), std::string::npos) << again;
+  const auto [other, cpu] = report("cpu", "Sibenik");
+  EXPECT_EQ(cpu.at("device"), "cpu");
+  EXPECT_EQ(rays_at_esvos(cpu).at("device"), "cpu");
+  EXPECT_EQ(cpu.at("esvo").at("scenes").at(0).at("builds"),
+            cuda.at("esvo").at("scenes").at(0).at("builds"))
+      << "builds are kept";
+}
+
 TEST_F(DeviceCommands, AMissingDeviceIsRefused) {
+  expect_failure(run_on("cuda:1", {"bench", "papers", "--quick", "-q", "-o", path("no_report")}), 1,
+                 "--device cuda: no CUDA device 1: the driver lists 1, numbered from 0");
   expect_failure(run_on("cuda:1", {"render", path("in.vdag"), "-o", path("none.png")}), 1,
                  "no CUDA device 1: the driver lists 1, numbered from 0");
   EXPECT_FALSE(exists("none.png"));

@@ -12,6 +12,7 @@
 #include "bench/papers/paper_scenes.hpp"
 #include "bench/reproduce/bench_papers.hpp"
 #include "cli/commands.hpp"
+#include "cli/device.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -24,6 +25,7 @@ struct PapersArguments {
   std::vector<int> table1, table2, esvo;  ///< Levels; empty: those of the plan.
   std::optional<int> flight_esvo, flight_triangles, frames, figure1, pictures, esvo_pictures;
   std::optional<ImageSize> size;
+  std::optional<double> cell_seconds;
   bool quick = false;
 };
 
@@ -50,6 +52,7 @@ void run(const PapersArguments& arguments, Session& session) {
   if (!arguments.table2.empty()) plan.table2_levels = sorted(arguments.table2);
   if (!arguments.esvo.empty()) plan.esvo.levels = sorted(arguments.esvo);
   plan.esvo.picture_levels = arguments.esvo_pictures.value_or(plan.esvo.picture_levels);
+  plan.cell_seconds = arguments.cell_seconds.value_or(plan.cell_seconds);
   FlightPlan& flight = plan.flight;
   flight.esvo_levels = arguments.flight_esvo.value_or(flight.esvo_levels);
   flight.triangles_levels = arguments.flight_triangles.value_or(flight.triangles_levels);
@@ -111,11 +114,14 @@ void add_bench_papers_command(const Command& bench, Session& session) {
   command.parsed("--size", arguments->size, parse_image_size, "WxH",
                  "Size of frames and pictures in pixels (default: the papers' sizes for frames, "
                  "960x540 for pictures)");
-  command.number("--cell-seconds", arguments->plan.cell_seconds, NumberRange::from(1, 1e6),
-                 "SECONDS", "Time limit of one run; the report names the runs that it excludes");
+  command.optional_number<double>(
+      "--cell-seconds", arguments->cell_seconds, NumberRange::from(1, 1e6), "SECONDS",
+      "Time limit of one run; the report names the runs that it excludes (default: 600, with "
+      "--quick 20)");
   command.parsed("--memory", arguments->plan.memory_bytes, parse_memory, "LIMIT",
                  "Maximum memory of one build: 512M, 16GiB (default: three quarters of the "
                  "available memory)");
+  add_device_option(command, arguments->plan.device_choice);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {

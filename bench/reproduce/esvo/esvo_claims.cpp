@@ -45,6 +45,14 @@ Values speedups(const std::vector<EsvoSceneRuns>& scenes, EsvoForm form, EsvoFor
   });
 }
 
+/// Returns how many times as fast as triangles the CPU casts at contours with beams.
+Values advantages_over_triangles(const std::vector<EsvoSceneRuns>& scenes) {
+  return per_size(scenes, [](const CellResult& run, ImageSize size) {
+    return esvo_rate_on_cpu(run, size, EsvoForm::kContoursBeams) /
+           esvo_rate(run, size, EsvoForm::kTriangles);
+  });
+}
+
 Values densities(const std::vector<EsvoSceneRuns>& scenes) {
   Values values;
   for_each_finest(
@@ -74,7 +82,7 @@ Values filter_advantages(const std::vector<EsvoSceneRuns>& scenes) {
   return per_size(scenes, [](const CellResult& run, ImageSize size) {
     const auto& row = *rays_of_size(run, size);
     return row.at("ray_count").get<double>() * 1e-6 /
-           esvo_rate(run, size, EsvoForm::kContoursBeams) / row.at("filter_seconds").get<double>();
+           esvo_rate(run, size, EsvoForm::kContoursBeams) / filter_seconds(row);
   });
 }
 
@@ -93,7 +101,7 @@ Section esvo_claims_section(const std::vector<EsvoSceneRuns>& scenes) {
   claims.add_range("Beams make them faster (rate / rate)", "1.0 to 1.4",
                    speedups(scenes, EsvoForm::kContoursBeams, EsvoForm::kContours), is_faster);
   claims.add_range("Contours with beams are faster than triangles (rate / rate)", "1.05 to 2.1",
-                   speedups(scenes, EsvoForm::kContoursBeams, EsvoForm::kTriangles), is_faster);
+                   advantages_over_triangles(scenes), is_faster);
   claims.add_range(
       "The filter is one to two orders of magnitude faster than the casts (casts / "
       "filter)",
@@ -101,8 +109,8 @@ Section esvo_claims_section(const std::vector<EsvoSceneRuns>& scenes) {
   Section section{"Claims", 2, {}};
   section.parts.emplace_back(Paragraph{
       "Figures are those of the paper's scenes and their variants, at the finest resolution that "
-      "was measured. Ratios of speeds are those of this machine's processor; the paper measured a "
-      "GPU."});
+      "was measured. Ratios of speeds are those of the device named above, and those to triangles "
+      "of the processor; the paper measured a GPU."});
   section.parts.emplace_back(claims.take("Claims of the paper"));
   return section;
 }

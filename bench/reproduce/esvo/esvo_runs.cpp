@@ -31,6 +31,7 @@ Cell rays_cell(const PapersPlan& plan, const FoundScene& scene, int levels) {
                     "--json"};
   if (plan.threads > 0)
     cell.arguments.insert(cell.arguments.end(), {"--threads", std::to_string(plan.threads)});
+  plan.device.cast(cell);
   return cell;
 }
 
@@ -74,6 +75,18 @@ double esvo_rate(const CellResult& run, ImageSize size, EsvoForm form) {
   if (row == nullptr) return NAN;
   const Json& rate = row->at(name_of(form)).at("mrays_per_s");
   return rate.is_null() ? NAN : rate.get<double>();
+}
+
+double esvo_rate_on_cpu(const CellResult& run, ImageSize size, EsvoForm form) {
+  const Json* row = rays_of_size(run, size);
+  if (row == nullptr) return NAN;
+  const Json& rate = row->at(name_of(form)).at("cpu_mrays_per_s");
+  return rate.is_null() ? esvo_rate(run, size, form) : rate.get<double>();
+}
+
+double filter_seconds(const Json& row) {
+  const Json& seconds = row.at("filter_seconds");
+  return seconds.is_null() ? NAN : seconds.get<double>();
 }
 
 std::vector<SilhouetteRow> silhouettes_of(const EsvoSceneRuns& runs) {

@@ -27,6 +27,10 @@ double bytes_per_voxel(const CellResult& build);
 const nlohmann::ordered_json* rays_of_size(const CellResult& run, ImageSize size);
 /// Returns million rays per second; NaN if the form was not measured.
 double esvo_rate(const CellResult& run, ImageSize size, EsvoForm form);
+/// Returns the CPU's rate of a run, also if the run's rates are those of a CUDA device.
+double esvo_rate_on_cpu(const CellResult& run, ImageSize size, EsvoForm form);
+/// Returns the seconds of the filter alone; NaN if they were not measured.
+double filter_seconds(const nlohmann::ordered_json& row);
 
 /// Returns the silhouettes of all resolutions of a scene.
 std::vector<SilhouetteRow> silhouettes_of(const EsvoSceneRuns& runs);

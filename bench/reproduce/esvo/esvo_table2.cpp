@@ -46,7 +46,7 @@ void add_rows(Table& rates, Table& costs, const EsvoSceneRuns& runs, const Serie
     const Json& measured = *rays_of_size(run.result, size);
     const double casts = measured.at("ray_count").get<double>() * 1e-6 /
                          esvo_rate(run.result, size, EsvoForm::kContoursBeams);
-    const double filter = measured.at("filter_seconds");
+    const double filter = filter_seconds(measured);
     costs.rows.push_back({runs.scene.title(), resolution_text(run.levels), size_text,
                           seconds_text(casts), seconds_text(measured.at("picture_seconds")),
                           seconds_text(filter), number_text(casts / filter)});
@@ -74,10 +74,11 @@ Section esvo_table2_section(const std::vector<EsvoSceneRuns>& scenes) {
   Section section{"Table 2: primary rays", 2, {}};
   section.parts.emplace_back(Paragraph{
       "Four views of each scene. Rays end at cells of one pixel, as in the paper. Triangles are "
-      "those of Embree: single rays or packets of 16, whichever is faster; a displaced surface has "
-      "none. The time of beams counts. The paper's rates are those of a Quadro FX 5800, of the "
-      "largest octree that fitted into its 4 GB; ours are those of this machine's processor, of "
-      "the finest octree that the time limit allows. The two stand beside each other only for "
+      "those of Embree on the processor: single rays or packets of 16, whichever is faster; a "
+      "displaced surface has none. The time of beams counts. The paper's rates are those of a "
+      "Quadro FX 5800, of the largest octree that fitted into its 4 GB; ours are those of the "
+      "device named above, of the finest octree that the time limit allows. The two stand beside "
+      "each other only for "
       "octrees of equal depth."});
   section.parts.emplace_back(std::move(rates));
   section.parts.emplace_back(Paragraph{

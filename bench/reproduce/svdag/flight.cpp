@@ -74,7 +74,7 @@ class FlightRunner {
     FlightRun run = trace_path(plan_, scene_, dag, path_, plan_.flight.frames, options);
     run.cell.inputs.insert(run.cell.inputs.end(), more_inputs.begin(), more_inputs.end());
     if (failure_.empty())
-      run.result = cells_.run(run.cell);
+      measure(run, cells_);
     else
       run.result.failure = failure_;
     return run;
@@ -117,7 +117,17 @@ FlightRun trace_path(const PapersPlan& plan, const FoundScene& scene, const DagF
                         "2",
                         "--json"};
   run.cell.arguments.insert(run.cell.arguments.end(), options.begin(), options.end());
+  plan.device.cast(run.cell);
   return run;
+}
+
+void measure(FlightRun& run, CellStore& cells) {
+  run.result = cells.run(run.cell);
+  if (!run.result.failure.empty()) return;
+  for (const auto& row : run.result.json)
+    if (row.at("rival") == "voxdag_cpu" && row.at("rival_agreement") != 1)
+      run.result.failure =
+          fmt::format("hits of {} differ from the CPU's", row.at("device_name").get<std::string>());
 }
 
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,

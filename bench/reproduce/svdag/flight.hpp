@@ -47,6 +47,10 @@ FlightRun trace_path(const PapersPlan& plan, const FoundScene& scene, const DagF
 /// measured.
 double mrays_per_second(const FlightRun& run, const std::string& rays);
 
+/// Sets the run's result. A hit of a CUDA device that differs from the CPU's is a failure. Throws
+/// Error and Cancelled.
+void measure(FlightRun& run, CellStore& cells);
+
 /// The measurements of one scene's fly-through.
 struct Flight {
   FoundScene scene;
@@ -64,7 +68,8 @@ std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<F
                                      CellStore& cells);
 
 /// Returns how many times as fast as a rival voxdag casts a kind of rays in a run; NaN if it was
-/// not measured. The rival's name starts with `rival`: the fastest of those counts.
+/// not measured. The rival's name starts with `rival`: the fastest of those counts. Embree compares
+/// with voxdag on the CPU.
 double speed_ratio(const FlightRun& run, const std::string& rays, const std::string& rival);
 
 /// Returns the sections of Figures 6, 7a, 7b and 8a. `is_drawn`: whether their charts are there.

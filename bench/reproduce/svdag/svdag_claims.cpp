@@ -135,8 +135,8 @@ Section svdag_claims_section(const std::vector<SvdagSceneBuilds>& scenes,
   Section section{"Claims", 2, {}};
   section.parts.emplace_back(Paragraph{
       "Sizes and times are those of the paper's scenes and their variants. Ratios of speeds are "
-      "those of the fly-through below, on this machine's processor and with Embree as the tracer "
-      "of triangles; the paper measured GPUs."});
+      "those of the fly-through below, on the device named above. Ratios to triangles are those of "
+      "the processor, with Embree as the tracer of triangles. The paper measured GPUs."});
   section.parts.emplace_back(claims.take("Claims of the paper"));
   return section;
 }

@@ -56,7 +56,7 @@ std::optional<SvdagFigure1> measure_figure1(const PapersPlan& plan,
   const CameraPathFile path(plan.folder / "view.json", path_at_view(*scene), cells);
   figure.rays = trace_path(plan, *scene, {painter.voxels(), plan.figure1_levels}, path, 1, {});
   if (figure.build.failure.empty())
-    figure.rays.result = cells.run(figure.rays.cell);
+    measure(figure.rays, cells);
   else
     figure.rays.result.failure = figure.build.failure;
   return figure;
