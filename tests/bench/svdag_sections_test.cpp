@@ -109,13 +109,30 @@ TEST(FlightSections, TheFasterOfARivalsCastsStandsBesideTheDag) {
     run->result.failure = "no memory";
   const std::string text = markdown_of({"", flight_sections(flight, false)});
   EXPECT_NE(text.find("**Shadow rays, Lucy (variant) at 32K³**"), std::string::npos) << text;
-  EXPECT_NE(text.find("| triangles (Embree) | 40 | 0.5 | 99.5 % |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| triangles (Embree, on the processor) | 40 | 0.5 | 99.5 % |"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("Not measured: no memory."), std::string::npos) << text;
   const std::vector<Chart> charts = flight_charts(flight);
   ASSERT_EQ(charts.size(), 4u);
   const std::vector<ChartLine>& shadow = charts[1].panels.at(0).lines;
   EXPECT_EQ(shadow.at(0).y, (std::vector<double>{100, 1000.0 / 30}));  // ms for a million rays
   EXPECT_EQ(shadow.at(2).y, (std::vector<double>{25, 25}));
+}
+
+TEST(FlightSections, EmbreeComparesWithTheDagOnTheProcessor) {
+  Flight flight;
+  flight.scene = scene_in_state(SceneState::kVariant).scene;
+  flight.with_triangles.result.json = {rows_of("shadow", "embree_single", 10),
+                                       rows_of("shadow", "voxdag_cpu", 2)};
+  for (FlightRun* run :
+       {&flight.with_esvo, &flight.with_voxels, &flight.with_cones, &flight.with_lamps})
+    run->result.failure = "no memory";
+  const std::string text = markdown_of({"", flight_sections(flight, false)});
+  EXPECT_NE(text.find("| DAG, on the processor | 2 | 10 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| triangles (Embree, on the processor) | 10 | 0.2 |"), std::string::npos)
+      << text;
+  EXPECT_EQ(speed_ratio(flight.with_triangles, "shadow", "embree"), 0.2);
 }
 
 }  // namespace
