@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds voxdag for the CUDA device of this machine, runs the tests that need a device, and measures
-# rays per second, and both papers again on coarse grids. Takes less than 8 minutes, and needs no network if the packages are installed.
+# rays per second, and both papers again on coarse grids, for at most 8 minutes. Needs no network
+# if the packages are installed.
 #
 #   scripts/gpu-check.sh [OPTION...]
 #     --tests        builds and tests, measures nothing
@@ -15,7 +16,7 @@
 # or the packed scenes lie beside the checkout.
 set -euo pipefail
 
-usage() { sed -n '2,15s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '2,16s/^# \{0,1\}//p' "$0"; }
 die() { echo "gpu-check: $*" >&2; exit 1; }
 
 measure=yes sanitize=no folder='' pack='' packed=''
@@ -101,7 +102,8 @@ if [ -n "$packed" ]; then
   rm -rf $work
   mkdir -p $work
   tar -C $work -xzf "$packed"
-  program=$work/voxdag tests=$work/cuda_tests stream_tests=$work/stream_cuda_tests libraries=$PWD/$work/lib
+  program=$work/voxdag tests=$work/cuda_tests stream_tests=$work/stream_cuda_tests
+  libraries=$PWD/$work/lib
 else
   build $work -DCMAKE_CUDA_ARCHITECTURES="${capability/./}-real"
   program=$work/apps/voxdag/voxdag tests=$work/tests/cuda/cuda_tests
@@ -143,7 +145,8 @@ bench() {
     --rays 8000000 -o "$folder/$1.json"
   [ ! -f "$folder/$1.json" ] || attempt hits_agree "$folder/$1.json"
 }
-# bench_esvo NAME MESH: measures rays per second at ESVOs of 1024³; fails if a hit differs from the CPU's.
+# bench_esvo NAME MESH: measures rays per second at ESVOs of 1024³; fails if a hit differs from the
+# CPU's.
 bench_esvo() {
   echo "== $1"
   attempt voxdag bench esvo "$1=$2" -r 1024 --views 2 --device cuda -o "$folder/$1.json"

@@ -26,7 +26,7 @@ inline RenderedImage render_cubes(const EsvoView& esvo, const Grid& grid,
   plan.image().rays =
       renderer.render(make_tiles(options.width, options.height, options.tile_size), nullptr);
   if (options.with_steps) renderer.count();
-  if (options.filter && source == nullptr) filter_picture(plan.image());
+  if (source == nullptr) filter_picture(plan.image(), options.filter);
   return plan.finish();
 }
 
