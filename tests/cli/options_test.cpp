@@ -131,6 +131,14 @@ TEST_F(Options, WithoutEffectAreRefused) {
   expect_failure(build({"--method", "sort"}, "bad.esvo"), 2, "--method: is for DAGs only");
   expect_failure(build({"--ao-distance", "1"}, "bad.esvo"), 2,
                  "--ao-distance: has no effect without --bake-ao");
+  expect_failure(build({"--ao-resolution", "8"}, "bad.esvo"), 2,
+                 "--ao-resolution: has no effect without --bake-ao");
+  expect_failure(build({"--bake-ao", "--ao-resolution", "1000"}, "bad.esvo"), 2, "power of two");
+  expect_failure(build({"--bake-ao", "--ao-resolution", "4K"}, "bad.esvo"), 2,
+                 "--ao-resolution: 4096 is more than the ESVO's resolution, ");
+  expect_failure(run_voxdag({"build", path("sponge.ply"), "--voxel-size", "0.1", "--bake-ao",
+                             "--ao-resolution", "4096", "-o", path("bad.esvo")}),
+                 1, "--ao-resolution: 4096 is more than the ESVO's resolution, ");
   expect_failure(build({"--bake-ao", "8", "--no-attributes"}, "bad.esvo"), 2, "--no-attributes");
   expect_failure(run_voxdag({"scene", "sponge", "--view", "-o", path("bad.ply")}), 2, "--view");
   expect_failure(run_voxdag({"scene", "sponge", "--view", "--json"}), 2, "--json");

@@ -202,5 +202,24 @@ TEST_F(RenderCommand, OcclusionCanBeBakedIntoAnEsvo) {
   EXPECT_NE(picture("plain"), picture("baked"));
 }
 
+TEST_F(RenderCommand, BakedOcclusionIsThatOfTheOctreesOwnVoxelsUnlessAskedFor) {
+  const auto build = [](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"build", path("sponge.ply"), "-r", "32", "--bake-ao", "16",
+                                      "-o",    path("ao.esvo")};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const ProcessResult info = run_voxdag({"info", path("ao.esvo"), "--json"});
+    return std::pair(nlohmann::json::parse(info.out).at("build").at("bake_ao_resolution"),
+                     read_text(path("ao.esvo")));
+  };
+  const auto [usual, bytes] = build({});
+  EXPECT_EQ(usual, "32");
+  EXPECT_EQ(build({"--ao-resolution", "32"}), std::pair(usual, bytes));
+  const auto [coarse, coarse_bytes] = build({"--ao-resolution", "8"});
+  EXPECT_EQ(coarse, "8");
+  EXPECT_NE(coarse_bytes, bytes);
+}
+
 }  // namespace
 }  // namespace voxdag

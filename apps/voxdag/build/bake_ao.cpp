@@ -3,11 +3,12 @@
 #include <fmt/core.h>
 
 #include "cli/parse.hpp"
+#include "cli/usage_error.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Returns a grid of the cube of `grid` with at most 2^levels voxels a side.
+/// Returns a grid of the cube of `grid` with 2^levels voxels a side, at most as many as `grid` has.
 Grid coarser(Grid grid, int levels) {
   for (; grid.levels > levels; --grid.levels) {
     grid.voxel_size *= 2;
@@ -33,6 +34,19 @@ void add_bake_options(const Command& command, BakeArguments& arguments,
               "side)")
       .needs(bake)
       .in_group(group);
+  command
+      .parsed("--ao-resolution", arguments.levels, parse_levels, "N",
+              "With --bake-ao: voxels per side of the octree at which the rays are cast (default: "
+              "those of the ESVO)")
+      .needs(bake)
+      .in_group(group);
+}
+
+void BakeArguments::check_levels(int esvo_levels) const {
+  if (levels && *levels > esvo_levels)
+    throw UsageError("--ao-resolution",
+                     fmt::format("{} is more than the ESVO's resolution, {}",
+                                 std::int64_t{1} << *levels, std::int64_t{1} << esvo_levels));
 }
 
 void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
@@ -40,25 +54,27 @@ void add_bake_settings(const BakeArguments& arguments, const Grid& grid,
   if (arguments.rays == 0) return;
   settings["bake_ao_rays"] = std::to_string(arguments.rays);
   settings["bake_ao_distance"] = fmt::format("{}", arguments.distance_in(grid));
+  settings["bake_ao_resolution"] = std::to_string(std::int64_t{1} << arguments.levels_in(grid));
 }
 
 Occluders::Occluders(const Mesh& mesh, const Grid& grid, const BakeArguments& arguments,
                      const EsvoOptions& build, const SurfaceShading& shading,
                      const DisplacedTriangles* displaced, Progress& progress)
-    : grid_(grid) {
-  constexpr int kFinest = 10;
-  const Grid own = coarser(grid, kFinest);
+    : grid_(grid), progress_(progress) {
+  const Grid own = coarser(grid, arguments.levels_in(grid));
   EsvoOptions options = build;
   options.settings.attributes = false;
+  options.stage = "occluders";
   EsvoMemory memory(options.memory);
   const EsvoResult result = build_esvo(mesh, own, options, &shading, displaced, memory, &progress);
   esvo_ = {memory.take(), result.root, own.levels};
-  memory_ = {options.memory, esvo_.slots.size() * sizeof(std::uint64_t)};
+  memory_ = {options.memory, esvo_.slots.capacity() * sizeof(std::uint64_t)};
   openness_.emplace(esvo_.view(), own, arguments.rays, arguments.distance_in(grid));
 }
 
 SurfaceLight Occluders::light() const {
   return [this](const SurfacePlace& place) {
+    progress_.throw_if_cancelled();  // A task may cast millions of rays.
     return (*openness_)(grid_.to_world(place.point), place.normal, place.face);
   };
 }

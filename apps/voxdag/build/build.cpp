@@ -86,6 +86,7 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
   check_distinct(arguments.access.outputs, session);
   if (arguments.levels.has_value() == arguments.voxel_size.has_value())
     throw UsageError("give exactly one of -r/--resolution and --voxel-size");
+  if (arguments.levels) arguments.esvo.bake.check_levels(*arguments.levels);
 }
 
 }  // namespace

@@ -117,6 +117,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   const std::optional<Box3d> bounds =
       displaced ? std::optional(displaced_bounds(*displaced, source.mesh)) : std::nullopt;
   metadata.grid = choose_grid(source.mesh, bounds, arguments);
+  esvo.bake.check_levels(metadata.grid.levels);
   metadata.source = {std::filesystem::path(session.subject).filename().string(),
                      source.mesh.vertices.size(), source.mesh.triangles.size()};
   metadata.program = "voxdag " VOXDAG_VERSION;

@@ -144,8 +144,7 @@ Section figure11_section(const EsvoPictures& pictures) {
   Section section{"Figure 11: the paper's filter and guides", 2, {}};
   section.parts.emplace_back(Paragraph{
       "Figure 11 of the paper is the algorithm of its filter. It also averages across the edges of "
-      "large voxels and across shadows, which the paper's pictures do not have. By default "
-      "`render` "
+      "large voxels and across shadows; the paper's pictures have no shadows. By default `render` "
       "leaves out pixels of other surfaces and in other light."});
   add_row(section, pictures.guides, {"The paper's filter.", "With guides (the command's)."});
   return section;

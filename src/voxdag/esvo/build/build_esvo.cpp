@@ -112,7 +112,7 @@ EsvoResult build_esvo(const Mesh& mesh, const Grid& grid, const EsvoOptions& opt
         weight_so_far += cells[finished.cell].weight;
         assembler.add(finished);
         if (progress != nullptr)
-          progress->report("octree", weight_so_far / total_weight,
+          progress->report(options.stage, weight_so_far / total_weight,
                            static_cast<std::uint64_t>(weight_so_far));
       });
   return assembler.finish();

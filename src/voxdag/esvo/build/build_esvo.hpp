@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
@@ -27,7 +28,8 @@ namespace voxdag {
 struct EsvoOptions {
   EsvoSettings settings;
   PackOptions pack;
-  MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
+  MemoryBudget* memory = nullptr;     ///< Counts the builder's memory. Null: no limit.
+  std::string_view stage = "octree";  ///< The name of the work for Progress.
 };
 
 /// Receives finished blocks, one at a time, in order.
