@@ -5,6 +5,16 @@
 
 namespace voxdag {
 
+namespace {
+
+/// The finest octree of a scene has no finer cubes to compare with.
+std::string saved_text(const LevelsSaved& saved) {
+  if (saved.at_least && saved.levels == 0) return "–";
+  return fmt::format("{}{:.1f}", saved.at_least ? "> " : "", saved.levels);
+}
+
+}  // namespace
+
 Section silhouettes_section(const std::vector<EsvoSceneRuns>& scenes) {
   Table table{"Rays on the wrong side of a silhouette, per million",
               {"scene", "octree", "cubes", "contours", "levels of cubes saved"},
@@ -16,7 +26,7 @@ Section silhouettes_section(const std::vector<EsvoSceneRuns>& scenes) {
       const LevelsSaved saved = levels_saved(rows, row);
       table.rows.push_back({runs.scene.title(), resolution_text(row.levels),
                             number_text(1e6 * row.cubes), number_text(1e6 * row.contours),
-                            fmt::format("{}{:.1f}", saved.at_least ? "> " : "", saved.levels)});
+                            saved_text(saved)});
     }
   }
   Section section{"Contours and silhouettes", 2, {}};
