@@ -144,7 +144,9 @@ struct LevelsSaved {
   bool at_least = false;  ///< No measured cubes are as good: this is a lower bound.
 };
 
-/// Returns the saved levels, from the silhouettes of the scene.
+/// Returns the saved levels, from the silhouettes of the scene: of cubes of the row's grid and
+/// finer ones, or of coarser ones if contours are worse than cubes. Without wrong rays of the row's
+/// cubes there is nothing to save: at least 0.
 LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row);
 
 /// Returns the results as JSON; bench/README.md lists the keys.

@@ -204,13 +204,18 @@ int coarse_levels(const std::vector<SilhouetteRow>& rows, const std::string& sce
 }
 
 LevelsSaved levels_saved(const std::vector<SilhouetteRow>& rows, const SilhouetteRow& row) {
+  // Without wrong rays there is nothing to compare.
+  if (row.cubes == 0) return {0, true};
+  const bool are_better = row.contours < row.cubes;
   const SilhouetteRow* before = nullptr;
   for (const SilhouetteRow& next : rows) {
-    if (next.scene != row.scene) continue;
+    if (next.scene != row.scene || (are_better && next.levels < row.levels)) continue;
     if (next.cubes <= row.contours) {
       if (before == nullptr) return {static_cast<double>(next.levels - row.levels)};
       const double whole = std::log(before->cubes / next.cubes);
-      const double part = whole > 0 ? std::log(before->cubes / row.contours) / whole : 0;
+      const double part = next.cubes == 0 ? 1
+                          : whole > 0     ? std::log(before->cubes / row.contours) / whole
+                                          : 0;
       return {before->levels + part * (next.levels - before->levels) - row.levels};
     }
     before = &next;

@@ -102,6 +102,26 @@ ScenePicture picture_of(const std::string& kind) {
   return picture;
 }
 
+TEST(EsvoSections, LevelsAreSavedBesideCubesOfTheSameGridAndFinerOnes) {
+  const auto saved = [](const std::vector<SilhouetteRow>& rows, std::size_t row) {
+    const LevelsSaved levels = levels_saved(rows, rows[row]);
+    return std::pair(levels.levels, levels.at_least);
+  };
+  const std::vector<SilhouetteRow> usual{
+      {"a", 10, 8e-4, 1e-4}, {"a", 11, 4e-4, 5e-5}, {"a", 12, 2e-4, 2e-5}, {"a", 13, 1e-4, 1e-5}};
+  EXPECT_EQ(saved(usual, 0), std::pair(3.0, false));
+  EXPECT_EQ(saved(usual, 1), std::pair(2.0, true));
+  EXPECT_EQ(saved(usual, 3), std::pair(0.0, true));
+  // In a closed room hardly any ray misses: coarser cubes may have no wrong rays by chance.
+  const std::vector<SilhouetteRow> room{{"b", 10, 0, 0}, {"b", 11, 7e-5, 9e-6}, {"b", 12, 0, 0}};
+  EXPECT_EQ(saved(room, 0), std::pair(0.0, true));
+  EXPECT_EQ(saved(room, 1), std::pair(1.0, false));
+  EXPECT_EQ(saved(room, 2), std::pair(0.0, true));
+  // Contours that are worse than the cubes of their grid.
+  const std::vector<SilhouetteRow> worse{{"c", 10, 4e-4, 9e-4}, {"c", 11, 2e-4, 4e-4}};
+  EXPECT_EQ(saved(worse, 1), std::pair(-1.0, false));
+}
+
 TEST(EsvoSections, FiltersStandSideBySide) {
   EsvoPictures pictures;
   pictures.filters = {picture_of("naive"), picture_of("plain")};
