@@ -114,6 +114,10 @@ void add_build_command(const Command& program, Session& session) {
           "sub-volumes in parallel; paper: one sub-volume at a time, as the paper does. All "
           "write the same file (default: hash)")
       .in_group(kDagOptions);
+  command
+      .flag("--compact", arguments->compact,
+            "Write the compact form, about a quarter of the bytes; every command reads it")
+      .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "
                  "quarters of the available memory)");

@@ -29,6 +29,7 @@ struct BuildArguments {
   std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
   bool as_esvo = false;
+  bool compact = false;  ///< Write the compact form.
   EsvoArguments esvo;
 };
 

@@ -27,11 +27,12 @@ Option add_look_option(const Command& command, std::string& file) {
                       "normals");
 }
 
-std::optional<SceneFile> open_look(const std::string& file, const SceneFile& scene) {
+std::optional<SceneInput> open_look(const std::string& file, const SceneInput& scene,
+                                    Session& session) {
   if (file.empty()) return std::nullopt;
   if (scene.voxels().esvo() != nullptr)
     throw Error("--look", "", "needs a DAG, but the scene is an ESVO, which has a look of its own");
-  SceneFile look(file);
+  SceneInput look(file, &session.progress);
   if (look.voxels().esvo() == nullptr) throw Error(file, "", "is not an ESVO");
   if (!have_same_cube(look.grid(), scene.grid()))
     throw Error(file, "", "is of another mesh: its grid has another place or size than the DAG's");

@@ -3,6 +3,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/look_input.hpp"
+#include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "render/picture_summary.hpp"
 #include "render/render_arguments.hpp"
@@ -11,17 +12,16 @@
 #include "render/render_streamed.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
-#include "voxdag/file/scene_file.hpp"
 #include "voxdag/film/frame_names.hpp"
 
 namespace voxdag {
 namespace {
 
 void render_loaded(const RenderArguments& arguments, Session& session) {
-  const SceneFile file(session.subject);
+  const SceneInput file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
-  const std::optional<SceneFile> look = open_look(arguments.look, file);
+  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   std::optional<DeviceScene> device_look;
   if (look && device_scene) {

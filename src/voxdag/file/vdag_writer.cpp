@@ -10,6 +10,7 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/checksum.hpp"
+#include "voxdag/layout/compact/compact_bytes.hpp"
 
 namespace voxdag {
 namespace {
@@ -46,23 +47,7 @@ std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
   return head;
 }
 
-}  // namespace
-
-void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata) {
-  assert(metadata.grid.levels == view.levels);
-  const std::string json = vdag_metadata_json(metadata);
-  try {
-    parse_vdag_metadata(json);
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
-  const std::vector<OutputChunk> chunks = {
-      {kChunkMeta, bytes_of(json.data(), json.size())},
-      {kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))},
-      {kChunkNodes, bytes_of(view.nodes, view.node_words())},
-      {kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count)}};
-
+void write_chunks(const std::filesystem::path& path, const std::vector<OutputChunk>& chunks) {
   AtomicFile file(path);
   file.write(std::span<const std::byte>(make_head(chunks)));
   for (const OutputChunk& chunk : chunks) {
@@ -70,6 +55,40 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
     file.write_zeros(vdag_align(chunk.bytes.size()) - chunk.bytes.size());
   }
   file.commit();
+}
+
+/// Returns the JSON of META. Throws Error for the path if a reader would refuse it.
+std::string checked_json(const std::filesystem::path& path, const VdagMetadata& metadata) {
+  std::string json = vdag_metadata_json(metadata);
+  try {
+    parse_vdag_metadata(json);
+  } catch (const Error& error) {
+    throw error.in_file(path.string());
+  }
+  return json;
+}
+
+}  // namespace
+
+void write_vdag(const std::filesystem::path& path, const SvdagView& view,
+                const VdagMetadata& metadata) {
+  assert(metadata.grid.levels == view.levels);
+  const std::string json = checked_json(path, metadata);
+  write_chunks(
+      path, {{kChunkMeta, bytes_of(json.data(), json.size())},
+             {kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))},
+             {kChunkNodes, bytes_of(view.nodes, view.node_words())},
+             {kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count)}});
+}
+
+void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
+                const VdagMetadata& metadata) {
+  assert(metadata.grid.levels == compact.levels);
+  const std::string json = checked_json(path, metadata);
+  const std::vector<std::byte> head = compact_head(compact);
+  write_chunks(path, {{kChunkMeta, bytes_of(json.data(), json.size())},
+                      {kChunkCompactHead, head},
+                      {kChunkCompactStream, std::as_bytes(compact.words())}});
 }
 
 }  // namespace voxdag

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/compact/compact_svdag.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -11,6 +12,10 @@ namespace voxdag {
 /// depend on the arguments alone. metadata.grid.levels must equal view.levels. Throws Error if the
 /// file cannot be written, or if the grid has values that parse_vdag_metadata() would refuse.
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
+                const VdagMetadata& metadata);
+
+/// Writes a DAG in the compact form, in the same way.
+void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
                 const VdagMetadata& metadata);
 
 }  // namespace voxdag
