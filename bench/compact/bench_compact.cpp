@@ -58,11 +58,11 @@ class Bench {
 
   void measure_file(const std::string& path) {
     const SceneFile file(path);
-    if (file.voxels().dag() == nullptr) throw Error(path, "", "is not a DAG");
+    const VoxelSet voxels = file.voxels();
+    if (voxels.dag() == nullptr) throw Error(path, "", "is not a DAG");
     const std::string& source = file.metadata().source.name;
-    measure(*file.voxels().dag(),
-            add_run(source.empty() ? fs::path(path).filename().string() : source,
-                    file.voxels().levels()));
+    measure(*voxels.dag(),
+            add_run(source.empty() ? fs::path(path).filename().string() : source, voxels.levels()));
   }
 
   void measure_mesh(const std::string& scene) {

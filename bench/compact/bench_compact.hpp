@@ -59,8 +59,8 @@ CompactResults bench_compact(const CompactPlan& plan, Progress& progress);
 nlohmann::ordered_json compact_json(const CompactResults& results,
                                     const nlohmann::ordered_json& machine);
 std::string compact_table(const CompactResults& results);
-/// Returns a panel for each resolution, with bars of bits per voxel. Throws Error if there is
-/// nothing to plot.
+/// Returns a panel for each resolution, with bars of bits per voxel for the forms that rays can
+/// walk. Throws Error if there is nothing to plot.
 Chart compact_chart(const CompactResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag

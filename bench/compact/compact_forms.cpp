@@ -10,7 +10,8 @@ namespace voxdag {
 
 std::span<const CompactForm> compact_forms() {
   static constexpr std::array kForms{
-      CompactForm{"svo", "SVO", [](const SvdagView& dag, Progress&) { return svo_size(dag); }},
+      CompactForm{"svo", "SVO", [](const SvdagView& dag, Progress&) { return svo_size(dag); },
+                  false},
       CompactForm{"svdag", "SVDAG",
                   [](const SvdagView& dag, Progress&) { return svdag_size(dag); }},
       CompactForm{"ssvdag", "SSVDAG",

@@ -13,6 +13,7 @@ struct CompactForm {
   const char* title;  ///< In tables and plots: "SSVDAG".
   /// Encodes the DAG and returns its size. Throws Error and Cancelled.
   CompactSize (*measure)(const SvdagView& dag, Progress& progress);
+  bool is_random_access = true;  ///< Whether rays can walk it. Plots show only such forms.
 };
 
 /// Returns all forms, in the order of tables. A new form needs its line in this list only.

@@ -104,15 +104,17 @@ Chart compact_chart(const CompactResults& results, const std::filesystem::path& 
   for (const auto& [levels, runs] : by_levels) {
     ChartPanel panel;
     panel.title = resolution(levels) + "³";
-    panel.y = {"bits per voxel", AxisScale::kLog10};
+    panel.y.label = "bits per voxel";
     for (const CompactRun* run : runs)
       panel.groups.push_back(std::filesystem::path(run->scene).stem());
     for (std::size_t i = 0; i < runs.front()->forms.size(); ++i) {
-      ChartLine bars{runs.front()->forms[i].form->title, {}, {}, static_cast<int>(i)};
+      const CompactForm& form = *runs.front()->forms[i].form;
+      if (!form.is_random_access) continue;
+      ChartLine bars{form.title, {}, {}, static_cast<int>(&form - compact_forms().data())};
       for (const CompactRun* run : runs) bars.y.push_back(run->bits_per_voxel(run->forms[i]));
       panel.lines.push_back(std::move(bars));
     }
-    chart.panels.push_back(std::move(panel));
+    if (!panel.lines.empty()) chart.panels.push_back(std::move(panel));
   }
   if (chart.panels.empty()) throw Error("there is nothing to plot");
   return chart;

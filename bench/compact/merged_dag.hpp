@@ -31,7 +31,7 @@ using MergedNode = std::array<MergedChild, 8>;
 enum class MergeRule {
   /// Mirrors. Pairs are equal if they differ by mirrors of single axes that are invariances: a
   /// representative that only a mirror of two or three axes at once leaves alone counts as one
-  /// without invariances. This is what the program of the SSVDAG paper compares.
+  /// without invariances. Molenaar and Eisemann state this as the rule of SSVDAGs.
   kPublishedMirrors,
   kMirrors,     ///< Mirrors, with all invariances.
   kSymmetries,  ///< All 48 symmetries, with all invariances.
