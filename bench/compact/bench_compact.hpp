@@ -22,7 +22,7 @@ struct CompactPlan {
 /// A DAG in one form.
 struct FormResult {
   const CompactForm* form = nullptr;
-  CompactSize size;
+  SizeInParts size;
   double seconds = 0;  ///< Wall-clock seconds of the encoder, from the DAG in memory.
 };
 

@@ -2,7 +2,7 @@
 /// The forms that `voxdag bench compact` compares.
 #include <span>
 
-#include "bench/compact/compact_size.hpp"
+#include "bench/report/size_in_parts.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -12,7 +12,7 @@ struct CompactForm {
   const char* key;    ///< In JSON and on the command line: "ssvdag".
   const char* title;  ///< In tables and plots: "SSVDAG".
   /// Encodes the DAG and returns its size. Throws Error and Cancelled.
-  CompactSize (*measure)(const SvdagView& dag, Progress& progress);
+  SizeInParts (*measure)(const SvdagView& dag, Progress& progress);
   bool is_random_access = true;  ///< Whether rays can walk it. Plots show only such forms.
 };
 

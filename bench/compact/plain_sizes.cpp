@@ -4,11 +4,11 @@
 
 namespace voxdag {
 
-CompactSize svo_size(const SvdagView& dag) {
+SizeInParts svo_size(const SvdagView& dag) {
   return {{{"child masks", count_svdag(dag).svo_nodes()}}};
 }
 
-CompactSize svdag_size(const SvdagView& dag) {
+SizeInParts svdag_size(const SvdagView& dag) {
   std::uint64_t masks = 0;
   for (std::uint64_t at = 0; at < dag.node_words(); at += 1 + popcount8(child_mask(dag.nodes + at)))
     ++masks;

@@ -3,17 +3,17 @@
 ///
 /// Viktor Kämpe, Erik Sintorn and Ulf Assarsson: High Resolution Sparse Voxel DAGs, SIGGRAPH 2013,
 /// Section 5 and Table 2.
-#include "bench/compact/compact_size.hpp"
+#include "bench/report/size_in_parts.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
 
 /// Returns the size of the octree without pointers: a byte, the child mask, for each node down to
 /// those of 2³ voxels. Nothing can walk it at random; it is the bound of all pointered octrees.
-CompactSize svo_size(const SvdagView& dag);
+SizeInParts svo_size(const SvdagView& dag);
 
 /// Returns the size of the layout of files and rays (layout/svdag.hpp): 4 bytes for each mask and
 /// each pointer, 8 for each leaf block of 4³ voxels.
-CompactSize svdag_size(const SvdagView& dag);
+SizeInParts svdag_size(const SvdagView& dag);
 
 }  // namespace voxdag

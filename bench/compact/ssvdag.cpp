@@ -10,7 +10,7 @@ constexpr std::uint64_t kShortPlaces = 1 << 13, kPlaces = 1 << 30;
 
 }  // namespace
 
-CompactSize ssvdag_size(const MergedDag& dag) {
+SizeInParts ssvdag_size(const MergedDag& dag) {
   if (dag.leaf_blocks.empty()) return {};
   std::uint64_t tag_words = 0, short_words = 0, long_words = 0;
   // The places of the nodes of the level below.
@@ -48,7 +48,7 @@ CompactSize ssvdag_size(const MergedDag& dag) {
            {"starts of levels", 4 * inner_levels}}};
 }
 
-CompactSize ssvdag_size(const SvdagView& dag, const Progress& progress) {
+SizeInParts ssvdag_size(const SvdagView& dag, const Progress& progress) {
   if (dag.is_empty()) return {};
   return ssvdag_size(merge_nodes(list_nodes(dag), MergeRule::kPublishedMirrors, progress));
 }

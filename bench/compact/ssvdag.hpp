@@ -17,16 +17,16 @@
 /// The papers leave open how nodes with equally many pointers are ordered; sizes depend on it by
 /// about a thousandth. Here they keep the order of the DAG. The authors' program does not see that
 /// a node is its own mirror image if its children are, and takes up to 6% more (bench/README.md).
-#include "bench/compact/compact_size.hpp"
 #include "bench/compact/merged_dag.hpp"
+#include "bench/report/size_in_parts.hpp"
 
 namespace voxdag {
 
 /// Returns the size of a DAG that was merged by mirrors. Throws Error if a level is too large for
 /// 30-bit places.
-CompactSize ssvdag_size(const MergedDag& dag);
+SizeInParts ssvdag_size(const MergedDag& dag);
 
 /// Merges by the mirrors that the authors' program finds. Throws Error and Cancelled.
-CompactSize ssvdag_size(const SvdagView& dag, const Progress& progress);
+SizeInParts ssvdag_size(const SvdagView& dag, const Progress& progress);
 
 }  // namespace voxdag

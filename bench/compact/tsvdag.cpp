@@ -111,7 +111,7 @@ class LevelPointers {
 
 }  // namespace
 
-CompactSize tsvdag_size(const TransformDag& dag) {
+SizeInParts tsvdag_size(const TransformDag& dag) {
   if (dag.leaf_blocks.empty()) return {};
   std::uint64_t tag_words = 0, table_entries = 0;
   std::array<std::uint64_t, 4> words{};  // by words a pointer
@@ -152,7 +152,7 @@ CompactSize tsvdag_size(const TransformDag& dag) {
            {"leaves", 8 * dag.leaf_blocks.size()}}};
 }
 
-CompactSize tsvdag_size(const SvdagView& dag, int move_height, const Progress& progress) {
+SizeInParts tsvdag_size(const SvdagView& dag, int move_height, const Progress& progress) {
   if (dag.is_empty()) return {};
   return tsvdag_size(merge_transformed(list_nodes(dag), move_height, progress));
 }

@@ -25,8 +25,8 @@
 /// The authors' program counts neither the lengths of code words nor the starts of tables and
 /// levels, and neither does this. It leaves the order of equally frequent nodes and pointers open;
 /// here they keep the order of the DAG.
-#include "bench/compact/compact_size.hpp"
 #include "bench/compact/transform_dag.hpp"
+#include "bench/report/size_in_parts.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -35,9 +35,9 @@ namespace voxdag {
 inline constexpr int kTsvdagMoveHeight = 4;
 
 /// Returns the size of a merged DAG. Throws Error if a pointer needs more than 64 bits.
-CompactSize tsvdag_size(const TransformDag& dag);
+SizeInParts tsvdag_size(const TransformDag& dag);
 
 /// Merges and encodes a DAG. Throws Error and Cancelled.
-CompactSize tsvdag_size(const SvdagView& dag, int move_height, const Progress& progress);
+SizeInParts tsvdag_size(const SvdagView& dag, int move_height, const Progress& progress);
 
 }  // namespace voxdag

@@ -175,7 +175,7 @@ TEST(CompactMerge, ThePublishedRuleMissesInvariancesOfTwoAxes) {
 
 TEST(CompactPlainSizes, ArePartsOfTheLayout) {
   const Svdag dag = brute_svdag(5, random_voxels(5, 200, 3));
-  const CompactSize size = svdag_size(dag.view());
+  const SizeInParts size = svdag_size(dag.view());
   EXPECT_EQ(size.bytes(), dag.view().bytes());
   EXPECT_EQ(size.parts[2], (SizePart{"leaf blocks", 8 * dag.leaf_blocks.size()}));
   // One voxel of 8³: a node each of 8³, 4³ and 2³ voxels.
@@ -202,7 +202,7 @@ TEST(CompactSsvdag, PlacesFrom8192OnTakeTwoWords) {
     dag.leaf_blocks.push_back(i);
     dag.nodes[1].emplace_back()[0] = {i, 0};
   }
-  const CompactSize size = ssvdag_size(dag);
+  const SizeInParts size = ssvdag_size(dag);
   EXPECT_EQ(size.parts[0], (SizePart{"tags", 2 * 8194}));
   EXPECT_EQ(size.parts[1], (SizePart{"16-bit pointers", 2 * 8193}));
   EXPECT_EQ(size.parts[2], (SizePart{"32-bit pointers", 4}));

@@ -1,5 +1,5 @@
 #pragma once
-/// The size of a DAG in a compact form.
+/// A size as the sum of the sizes of parts.
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -14,7 +14,7 @@ struct SizePart {
   friend bool operator==(const SizePart&, const SizePart&) = default;
 };
 
-struct CompactSize {
+struct SizeInParts {
   std::vector<SizePart> parts;
 
   std::uint64_t bytes() const {
