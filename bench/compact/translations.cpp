@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <numeric>
+#include <tuple>
 
 #include "bench/compact/symmetry.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
@@ -18,16 +19,24 @@ constexpr std::uint64_t kX = 0x9E3779B97F4A7C15u, kY = 0xC2B2AE3D27D4EB4Fu,
 
 constexpr int kMostVoxels = CubeGrid::kMostSize * CubeGrid::kMostSize * CubeGrid::kMostSize;
 
-/// An image of a cube, and the hash of its view from the lower corner.
-struct CornerView {
+/// An image of a cube, and the hash of its voxels as seen from their lower corner.
+struct ImageView {
   std::uint64_t hash = 0;
   std::uint32_t cube = 0;
   std::uint8_t symmetry = 0;
+  std::array<std::uint8_t, 3> lo{};  ///< The lower corner: the empty layers below the voxels.
 
-  auto operator<=>(const CornerView&) const = default;
+  Vec3i corner() const { return {lo[0], lo[1], lo[2]}; }
+  /// Whether the views are equal but for the symmetry, as those of a symmetric cube are.
+  bool is_same(const ImageView& other) const {
+    return hash == other.hash && cube == other.cube && lo == other.lo;
+  }
+  friend bool operator<(const ImageView& a, const ImageView& b) {
+    return std::tie(a.hash, a.cube, a.lo, a.symmetry) < std::tie(b.hash, b.cube, b.lo, b.symmetry);
+  }
 };
 
-/// Returns the term of each voxel of a cube in the hash of its view from the lower corner.
+/// Returns the term of each voxel of a cube in the hash of its view from voxel 0.
 std::vector<std::uint64_t> hash_terms(int size) {
   std::vector<std::uint64_t> terms;
   std::uint64_t at_z = 1;
@@ -41,10 +50,24 @@ std::vector<std::uint64_t> hash_terms(int size) {
   return terms;
 }
 
-/// The corner views of the images of all cubes that a move can make, by hash.
-class CornerViews {
+ImageView make_view(const CubeGrid& cube, const GridMargins& margins, std::uint32_t number,
+                    int symmetry, const std::vector<std::uint64_t>& terms) {
+  const ImageIndex index(symmetry, cube.size);
+  ImageView view{0, number, static_cast<std::uint8_t>(symmetry), {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int from = kAxisOrders[symmetry / 8][axis];
+    const bool is_mirrored = ((symmetry >> axis) & 1) != 0;
+    view.lo[axis] = static_cast<std::uint8_t>(is_mirrored ? margins.hi[from] : margins.lo[from]);
+  }
+  const int corner = view.lo[0] + cube.size * (view.lo[1] + cube.size * view.lo[2]);
+  for_each_voxel(cube, [&](int x, int y, int z) { view.hash += terms[index(x, y, z) - corner]; });
+  return view;
+}
+
+/// The views of the images of all cubes that a move can make, by hash.
+class ImageViews {
  public:
-  explicit CornerViews(const std::vector<CubeGrid>& cubes) {
+  explicit ImageViews(const std::vector<CubeGrid>& cubes) {
     if (cubes.empty()) return;
     std::vector<std::uint32_t> movable;
     for (std::size_t i = 0; i < cubes.size(); ++i)
@@ -52,30 +75,24 @@ class CornerViews {
     const std::vector<std::uint64_t> terms = hash_terms(cubes[0].size);
     views_.resize(movable.size() * kSymmetries);
     parallel_for(movable.size(), 64, [&](std::size_t i) {
-      for (int s = 0; s < kSymmetries; ++s) {
-        CornerView& view = views_[i * kSymmetries + s];
-        view = {0, movable[i], static_cast<std::uint8_t>(s)};
-        const ImageIndex index(s, cubes[movable[i]].size);
-        for_each_voxel(cubes[movable[i]],
-                       [&](int x, int y, int z) { view.hash += terms[index(x, y, z)]; });
-      }
+      const CubeGrid& cube = cubes[movable[i]];
+      const GridMargins margins = margins_of(cube);
+      for (int s = 0; s < kSymmetries; ++s)
+        views_[i * kSymmetries + s] = make_view(cube, margins, movable[i], s, terms);
     });
     std::sort(views_.begin(), views_.end());
-    // A cube that is its own image has views of equal hash; one of them is enough.
     views_.erase(std::unique(views_.begin(), views_.end(),
-                             [](const CornerView& a, const CornerView& b) {
-                               return a.hash == b.hash && a.cube == b.cube;
-                             }),
+                             [](const ImageView& a, const ImageView& b) { return a.is_same(b); }),
                  views_.end());
   }
 
   /// Keeps the views of cubes for which is_open(cube) is true.
   template <class IsOpen>
   void restrict_to(const IsOpen& is_open) {
-    std::erase_if(views_, [&](const CornerView& view) { return !is_open(view.cube); });
+    std::erase_if(views_, [&](const ImageView& view) { return !is_open(view.cube); });
     bits_ = std::max(16, static_cast<int>(std::bit_width(views_.size())) + 3);
     filter_.assign((std::size_t{1} << bits_) / 64, 0);
-    for (const CornerView& view : views_)
+    for (const ImageView& view : views_)
       filter_[slot(view.hash) / 64] |= std::uint64_t{1} << (slot(view.hash) % 64);
   }
 
@@ -85,7 +102,8 @@ class CornerViews {
   template <class Use>
   void find(std::uint64_t hash, const Use& use) const {
     if (((filter_[slot(hash) / 64] >> (slot(hash) % 64)) & 1) == 0) return;
-    for (auto at = std::lower_bound(views_.begin(), views_.end(), CornerView{hash, 0, 0});
+    const auto is_less = [](const ImageView& view, std::uint64_t h) { return view.hash < h; };
+    for (auto at = std::lower_bound(views_.begin(), views_.end(), hash, is_less);
          at != views_.end() && at->hash == hash; ++at)
       use(*at);
   }
@@ -93,7 +111,7 @@ class CornerViews {
  private:
   std::size_t slot(std::uint64_t hash) const { return hash >> (64 - bits_); }
 
-  std::vector<CornerView> views_;
+  std::vector<ImageView> views_;
   int bits_ = 16;
   std::vector<std::uint64_t> filter_;  ///< Bit slot(hash) is set if there may be views.
 };
@@ -149,12 +167,13 @@ class Search {
       view_hashes(cube, hashes);
       const int n = cube.size;
       for (int i = 0; i < n * n * n; ++i) {
-        if (hashes[i] == 0) continue;
-        views_.find(hashes[i], [&](const CornerView& view) {
+        const Vec3i from{i % n, i / n % n, i / n / n};
+        if (!has_voxels_at_all_sides(hashes, from, i, n)) continue;
+        views_.find(hashes[i], [&](const ImageView& view) {
           std::atomic<std::uint32_t>& best = best_[view.cube];
           std::uint32_t seen = best.load(std::memory_order_relaxed);
-          if (rank >= seen) return;
-          const Vec3i by{-(i % n), -(i / n % n), -(i / n / n)};
+          const Vec3i by = view.corner() - from;
+          if (rank >= seen || std::max({by.x, by.y, by.z}) > 0) return;
           if (!is_moved_grid(cube, by, image_of_grid(view.symmetry, cubes_[view.cube]))) return;
           while (rank < seen && !best.compare_exchange_weak(seen, rank)) {
           }
@@ -163,9 +182,18 @@ class Search {
     }
   }
 
+  /// Returns whether the view from voxel `i` has voxels in its first layer on each axis.
+  static bool has_voxels_at_all_sides(const std::array<std::uint64_t, kMostVoxels>& hashes,
+                                      Vec3i from, int i, int n) {
+    const std::uint64_t hash = hashes[i];
+    return hash != (from.x == n - 1 ? 0 : hashes[i + 1] * kX) &&
+           hash != (from.y == n - 1 ? 0 : hashes[i + n] * kY) &&
+           hash != (from.z == n - 1 ? 0 : hashes[i + n * n] * kZ);
+  }
+
   const std::vector<CubeGrid>& cubes_;
   std::vector<std::uint32_t> order_;  ///< Cubes by rank.
-  CornerViews views_;
+  ImageViews views_;
   std::vector<std::atomic<std::uint32_t>> best_;  ///< For each cube, the smallest rank of a source.
 };
 

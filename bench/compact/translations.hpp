@@ -7,10 +7,10 @@
 /// first, and X is made from the first possible P of that order, which may be X itself.
 ///
 /// The search here is another than in the paper and finds the same. A move leaves layers of X
-/// empty, so X must have empty layers at its faces. If one of its lower corners stays, X is what P
-/// looks like from one of its voxels on, in the positive direction of each axis. A polynomial hash
-/// of that view does not depend on empty layers behind; each P looks up the hashes of the views
-/// from all its voxels, mirrored in all 8 ways, among those of the 48 images of all X.
+/// empty, so X must have empty layers at its faces. If a move goes to lower coordinates on all
+/// axes, the voxels of X are those that are seen in P from a corner on, in the positive direction
+/// of each axis. Each P, mirrored in all 8 ways, looks up a polynomial hash of its view from each
+/// corner among the hashes of the voxels of the 48 images of all X.
 #include <cstdint>
 #include <vector>
 
