@@ -90,10 +90,13 @@ class ImageViews {
   template <class IsOpen>
   void restrict_to(const IsOpen& is_open) {
     std::erase_if(views_, [&](const ImageView& view) { return !is_open(view.cube); });
-    bits_ = std::max(16, static_cast<int>(std::bit_width(views_.size())) + 3);
+    bits_ = std::max(16, static_cast<int>(std::bit_width(views_.size())) + kFilterBits);
     filter_.assign((std::size_t{1} << bits_) / 64, 0);
     for (const ImageView& view : views_)
       filter_[slot(view.hash) / 64] |= std::uint64_t{1} << (slot(view.hash) % 64);
+    begins_.assign((std::size_t{1} << (bits_ - kFilterBits)) + 1, 0);
+    for (const ImageView& view : views_) ++begins_[(slot(view.hash) >> kFilterBits) + 1];
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
   }
 
   bool empty() const { return views_.empty(); }
@@ -102,18 +105,21 @@ class ImageViews {
   template <class Use>
   void find(std::uint64_t hash, const Use& use) const {
     if (((filter_[slot(hash) / 64] >> (slot(hash) % 64)) & 1) == 0) return;
-    const auto is_less = [](const ImageView& view, std::uint64_t h) { return view.hash < h; };
-    for (auto at = std::lower_bound(views_.begin(), views_.end(), hash, is_less);
-         at != views_.end() && at->hash == hash; ++at)
-      use(*at);
+    const std::size_t bucket = slot(hash) >> kFilterBits;
+    for (std::size_t i = begins_[bucket]; i < begins_[bucket + 1]; ++i)
+      if (views_[i].hash == hash) use(views_[i]);
   }
 
  private:
+  /// The filter has this many bits more than the buckets.
+  static constexpr int kFilterBits = 4;
+
   std::size_t slot(std::uint64_t hash) const { return hash >> (64 - bits_); }
 
-  std::vector<ImageView> views_;
+  std::vector<ImageView> views_;  ///< Sorted by hash.
   int bits_ = 16;
   std::vector<std::uint64_t> filter_;  ///< Bit slot(hash) is set if there may be views.
+  std::vector<std::uint32_t> begins_;  ///< Of the views in each bucket, by the highest bits.
 };
 
 /// Writes the hash of the view from each voxel on.
