@@ -61,6 +61,11 @@ def draw_lines(axes, panel):
                   linestyle=line["style"], marker=MARKERS[color] if line["markers"] else None)
 
 
+def are_long(groups):
+    """Returns whether the names of groups of bars do not fit beside each other."""
+    return sum(len(group) + 1 for group in groups) > 60
+
+
 def draw_bars(axes, panel):
     width = 0.8 / len(panel["lines"])
     for i, line in enumerate(panel["lines"]):
@@ -68,6 +73,9 @@ def draw_bars(axes, panel):
         axes.bar([group + left for group in range(len(panel["groups"]))], numbers(line["y"]),
                  0.92 * width, color=PALETTE[line["color"] % len(PALETTE)], label=line["label"])
     axes.set_xticks(range(len(panel["groups"])), panel["groups"])
+    if are_long(panel["groups"]):
+        axes.set_xticks(range(len(panel["groups"])), panel["groups"], rotation=30, ha="right",
+                        rotation_mode="anchor")
     axes.tick_params(axis="x", length=0)
     axes.grid(axis="x", visible=False)
 
@@ -87,7 +95,8 @@ def draw_panel(axes, panel):
         axes.set_ylim(bottom=0)
     if panel["groups"]:
         # Below the bars, where it hides none of them.
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=4)
+        below = -0.3 if are_long(panel["groups"]) else -0.08
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, below), ncols=4)
     elif any(line["label"] for line in panel["lines"]):
         axes.legend()
 

@@ -1,0 +1,99 @@
+/// The command line of `voxdag bench compact`.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench/bench_output.hpp"
+#include "bench/compact/bench_compact.hpp"
+#include "bench/report/bench_machine.hpp"
+#include "cli/commands.hpp"
+#include "cli/mesh_input.hpp"
+#include "cli/parse.hpp"
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+struct BenchCompactArguments {
+  CompactPlan plan;
+  MeshAccess access;
+  BenchOutput output;
+};
+
+std::string known_forms() {
+  std::string names;
+  for (const CompactForm& form : compact_forms())
+    names += (names.empty() ? "" : ", ") + std::string(form.key);
+  return names;
+}
+
+const CompactForm* parse_form(const std::string& text) {
+  for (const CompactForm& form : compact_forms())
+    if (form.key == text) return &form;
+  throw std::invalid_argument("must be one of " + known_forms());
+}
+
+void run(const BenchCompactArguments& arguments, Session& session) {
+  arguments.output.check_writable(session.progress);
+  const nlohmann::ordered_json machine = machine_json();
+  const CompactResults results = bench_compact(arguments.plan, session.progress);
+  arguments.output.write(
+      compact_json(results, machine),
+      {[&](const std::string& file) { return compact_chart(results, file); }},
+      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
+                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
+                  machine.at("load_average").get<double>(), compact_table(results)),
+      session);
+  for (const CompactRun& run : results.runs)
+    if (!run.failure.empty()) throw Error(run.failure);
+}
+
+void finish_plan(CompactPlan& plan, const MeshAccess& access) {
+  plan.read.allow_outside = access.allow_outside;
+  plan.read.any_assimp_importer = access.any_importer;
+  std::sort(plan.levels.begin(), plan.levels.end());
+  if (plan.forms.empty())
+    for (const CompactForm& form : compact_forms()) plan.forms.push_back(&form);
+  std::sort(plan.forms.begin(), plan.forms.end());
+  plan.forms.erase(std::unique(plan.forms.begin(), plan.forms.end()), plan.forms.end());
+}
+
+}  // namespace
+
+void add_bench_compact_command(const Command& bench, Session& session) {
+  const auto arguments = std::make_shared<BenchCompactArguments>();
+  CompactPlan& plan = arguments->plan;
+  plan.levels = {11, 12};
+  const Command command =
+      bench.add("compact", "Measure the bytes of DAGs in the compact forms of several papers",
+                "voxdag bench compact sponza.obj lucy.vdag -r 2048,4096,8192 --plot compact.svg\n"
+                "A .vdag file keeps its own resolution.");
+  command
+      .texts("scenes", plan.scenes, "MESH...",
+             "Mesh files, procedural scenes as NAME or NAME:SIZE, or .vdag files of DAGs")
+      .required();
+  command.list("-r,--resolution", plan.levels, parse_levels, "N,N...",
+               "Voxels per side of meshes (default: 2048,4096)");
+  command.list("--forms", plan.forms, parse_form, "FORM,FORM...",
+               "Any of " + known_forms() + " (default: all)");
+  add_mesh_access_options(command, arguments->access);
+  command.text("-o,--output", arguments->output.json_file, "FILE.json",
+               "Also write the JSON to a file");
+  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
+               "Plot bars of bits per voxel");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.when_parsed([arguments, &session] {
+    finish_plan(arguments->plan, arguments->access);
+    session.inputs = arguments->plan.scenes;
+    arguments->output.check_distinct(session);
+    session.work = [arguments, &session] { run(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,144 @@
+#include "bench/compact/bench_compact.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "bench/build/bench_mesh.hpp"
+#include "bench/compact/plain_sizes.hpp"
+#include "bench/report/scratch_folder.hpp"
+#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/file/scene_file.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+class Bench {
+ public:
+  Bench(const CompactPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
+
+  CompactResults run() {
+    for (const std::string& scene : plan_.scenes) {
+      const std::size_t runs = results_.runs.size();
+      try {
+        if (fs::path(scene).extension() == ".vdag")
+          measure_file(scene);
+        else
+          measure_mesh(scene);
+      } catch (const Cancelled&) {
+        throw;
+      } catch (const Error& error) {
+        if (results_.runs.size() == runs) add_run(fs::path(scene).filename(), 0);
+        results_.runs.back().failure = error.what();
+      }
+    }
+    return std::move(results_);
+  }
+
+ private:
+  CompactRun& add_run(const std::string& scene, int levels) {
+    CompactRun& run = results_.runs.emplace_back();
+    run.scene = scene;
+    run.levels = levels;
+    run.build_seconds = std::numeric_limits<double>::quiet_NaN();
+    return run;
+  }
+
+  void measure_file(const std::string& path) {
+    const SceneFile file(path);
+    const VoxelSet voxels = file.voxels();
+    if (voxels.dag() == nullptr) throw Error(path, "", "is not a DAG");
+    const std::string& source = file.metadata().source.name;
+    measure(*voxels.dag(),
+            add_run(source.empty() ? fs::path(path).filename().string() : source, voxels.levels()));
+  }
+
+  void measure_mesh(const std::string& scene) {
+    const PreparedMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
+    MemoryBudget memory = command_budget(0);
+    ReadOptions read = plan_.read;
+    read.progress = &progress_;
+    read.memory = &memory;
+    const Mesh mesh = read_mesh(prepared.path, read);
+    BuildOptions options;
+    options.memory = &memory;
+    for (const int levels : plan_.levels) {
+      CompactRun& run = add_run(prepared.identity.name, levels);
+      const auto start = std::chrono::steady_clock::now();
+      const BuildResult built = build_svdag(mesh, fit_grid(mesh, levels), options, &progress_);
+      run.build_seconds = seconds_since(start);
+      measure(built.dag.view(), run);
+    }
+  }
+
+  void measure(const SvdagView& dag, CompactRun& run) {
+    const SvdagCounts counts = count_svdag(dag);
+    run.voxels = counts.voxels;
+    run.svo_nodes = counts.svo_nodes();
+    run.dag_nodes = counts.dag_nodes();
+    run.reference_bytes = svdag_size(dag).bytes();
+    if (run.voxels == 0) throw Error(run.scene, std::to_string(1 << run.levels), "has no voxels");
+    for (const CompactForm* form : plan_.forms) {
+      progress_.report(fmt::format("encoding {} {} as {}", run.scene, 1 << run.levels, form->title),
+                       0);
+      const auto start = std::chrono::steady_clock::now();
+      FormResult result{form, form->measure(dag, progress_), 0};
+      result.seconds = seconds_since(start);
+      run.forms.push_back(std::move(result));
+    }
+  }
+
+  const CompactPlan& plan_;
+  Progress& progress_;
+  ScratchFolder folder_;
+  CompactResults results_;
+};
+
+}  // namespace
+
+double CompactRun::part_of_reference(const FormResult& result) const {
+  return static_cast<double>(result.size.bytes()) / static_cast<double>(reference_bytes);
+}
+
+double CompactRun::bits_per_voxel(const FormResult& result) const {
+  return 8 * static_cast<double>(result.size.bytes()) / static_cast<double>(voxels);
+}
+
+std::vector<FormMeans> form_means(const CompactResults& results) {
+  std::vector<FormMeans> means;
+  for (const CompactForm& form : compact_forms()) {
+    FormMeans mean{&form};
+    for (const CompactRun& run : results.runs) {
+      if (!run.failure.empty()) continue;
+      for (const FormResult& result : run.forms) {
+        if (result.form != &form) continue;
+        ++mean.runs;
+        mean.part_of_reference += std::log(run.part_of_reference(result));
+        mean.bits_per_voxel += std::log(run.bits_per_voxel(result));
+      }
+    }
+    if (mean.runs == 0) continue;
+    mean.part_of_reference = std::exp(mean.part_of_reference / static_cast<double>(mean.runs));
+    mean.bits_per_voxel = std::exp(mean.bits_per_voxel / static_cast<double>(mean.runs));
+    means.push_back(mean);
+  }
+  return means;
+}
+
+CompactResults bench_compact(const CompactPlan& plan, Progress& progress) {
+  return Bench(plan, progress).run();
+}
+
+}  // namespace voxdag

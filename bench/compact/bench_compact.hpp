@@ -1,0 +1,66 @@
+#pragma once
+/// `voxdag bench compact`: bytes of DAGs in the compact forms of several papers.
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/compact/compact_forms.hpp"
+#include "bench/report/charts.hpp"
+#include "voxdag/readers/read_options.hpp"
+
+namespace voxdag {
+
+struct CompactPlan {
+  /// Mesh files, procedural scenes as NAME or NAME:SIZE, and .vdag files of DAGs.
+  std::vector<std::string> scenes;
+  std::vector<int> levels;                ///< Of the grids of meshes; ascending.
+  std::vector<const CompactForm*> forms;  ///< In the order of compact_forms().
+  ReadOptions read;                       ///< Rights of the readers; its other members are unused.
+};
+
+/// A DAG in one form.
+struct FormResult {
+  const CompactForm* form = nullptr;
+  SizeInParts size;
+  double seconds = 0;  ///< Wall-clock seconds of the encoder, from the DAG in memory.
+};
+
+/// A scene at one resolution.
+struct CompactRun {
+  std::string scene;
+  int levels = 0;
+  std::uint64_t voxels = 0, svo_nodes = 0, dag_nodes = 0;
+  double build_seconds = 0;           ///< NaN: the DAG was read from a file.
+  std::uint64_t reference_bytes = 0;  ///< In kReferenceForm.
+  std::vector<FormResult> forms;
+  std::string failure;  ///< Not empty: the members above are not all known.
+
+  double part_of_reference(const FormResult& result) const;
+  double bits_per_voxel(const FormResult& result) const;
+};
+
+struct CompactResults {
+  std::vector<CompactRun> runs;
+};
+
+/// Geometric means over all runs without a failure.
+struct FormMeans {
+  const CompactForm* form = nullptr;
+  std::size_t runs = 0;
+  double part_of_reference = 0, bits_per_voxel = 0;
+};
+std::vector<FormMeans> form_means(const CompactResults& results);
+
+/// Builds or opens each scene and measures all forms. A scene that fails is a run with a failure.
+/// Throws Cancelled.
+CompactResults bench_compact(const CompactPlan& plan, Progress& progress);
+
+nlohmann::ordered_json compact_json(const CompactResults& results,
+                                    const nlohmann::ordered_json& machine);
+std::string compact_table(const CompactResults& results);
+/// Returns a panel for each resolution, with bars of bits per voxel for the forms that rays can
+/// walk. Throws Error if there is nothing to plot.
+Chart compact_chart(const CompactResults& results, const std::filesystem::path& file);
+
+}  // namespace voxdag

@@ -1,0 +1,90 @@
+// Tests rays at the compact form: the same hits as at the plain form, to the bit.
+#include <gtest/gtest.h>
+
+#include "support/brute_svdag.hpp"
+#include "support/random_bits.hpp"
+#include "support/test_rays.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/cpu/decoded_cache.hpp"
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/compact_svdag_nodes.hpp"
+#include "voxdag/trace/stop_below_size.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
+
+namespace voxdag {
+namespace {
+
+Grid example_grid(int levels) {
+  Grid grid;
+  grid.levels = levels;
+  grid.origin = {-3, 1, 5};
+  grid.voxel_size = 0.25;
+  grid.quantization_scale = 1024;
+  return grid;
+}
+
+/// Expects equal results of random rays of every kind, with and without level of detail.
+template <class Cache>
+void expect_equal_hits(const Svdag& dag, int rays_per_kind) {
+  const CompactSvdag compact = encode_svdag(dag.view());
+  Cache cache;
+  const CompactSvdagNodes<Cache> nodes(compact.view(), cache);
+  const SvdagNodes plain(dag.view());
+  const Grid grid = example_grid(dag.levels);
+  TestRays rays(grid, 7);
+  int hits = 0;
+  for (int kind = 0; kind < static_cast<int>(RayKind::kCount); ++kind)
+    for (int i = 0; i < rays_per_kind; ++i) {
+      const GridRay ray = make_grid_ray(grid, rays.make(static_cast<RayKind>(kind)));
+      const auto compare = [&](const auto& stop) {
+        CellHit expected, found;
+        const bool is_hit = cast(plain, ray, stop, expected);
+        ASSERT_EQ(cast(nodes, ray, stop, found), is_hit);
+        if (!is_hit) return;
+        ++hits;
+        EXPECT_EQ(found.t, expected.t);
+        EXPECT_EQ(found.x, expected.x);
+        EXPECT_EQ(found.y, expected.y);
+        EXPECT_EQ(found.z, expected.z);
+        EXPECT_EQ(found.level, expected.level);
+      };
+      compare(StopAtVoxels());
+      compare([](int level, float, float) { return level >= 3; });
+    }
+  if (dag.leaf_blocks.size() > 50) {
+    EXPECT_GT(hits, 100);
+  }
+}
+
+std::vector<Svdag> example_dags() {
+  std::vector<Svdag> dags;
+  for (int levels = 2; levels <= 9; ++levels)
+    for (const int count : {0, 1, 60, 3000})
+      dags.push_back(brute_svdag(levels, random_voxels(levels, count, 5)));
+  return dags;
+}
+
+TEST(CompactRays, HitTheSameVoxelsWithACacheOfTheLastNode) {
+  for (const Svdag& dag : example_dags()) expect_equal_hits<LastDecoded>(dag, 40);
+}
+
+TEST(CompactRays, HitTheSameVoxelsWithALargeCache) {
+  for (const Svdag& dag : example_dags()) expect_equal_hits<DecodedCache>(dag, 40);
+}
+
+TEST(CompactRays, EndAtAnyStream) {
+  const Svdag dag = brute_svdag(7, random_voxels(7, 3000, 5));
+  CompactSvdag compact = encode_svdag(dag.view());
+  Random random(9);
+  const Grid grid = example_grid(7);
+  for (int round = 0; round < 50; ++round) {
+    for (std::size_t i = 0; i + 1 < compact.stream.size(); ++i) compact.stream[i] = random();
+    LastDecoded cache;
+    const CompactSvdagNodes<LastDecoded> nodes(compact.view(), cache);
+    TestRays rays(grid, static_cast<unsigned>(round));
+    for (int i = 0; i < 20; ++i) closest_hit(nodes, grid, rays.make(RayKind::kGeneric));
+  }
+}
+
+}  // namespace
+}  // namespace voxdag
