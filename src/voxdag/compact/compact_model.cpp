@@ -34,7 +34,7 @@ class SampleSink {
 
 class CountSink {
  public:
-  explicit CountSink(const CompactTrees& trees) : trees_(trees) {
+  explicit CountSink(const CompactTrees& trees) {
     for (const ContextTree& tree : trees) {
       counts.emplace_back(tree.tables());
       views_.push_back(tree.view());
@@ -48,7 +48,6 @@ class CountSink {
   std::vector<SymbolCounts> counts;
 
  private:
-  const CompactTrees& trees_;
   std::vector<ContextTreeView> views_;
 };
 
