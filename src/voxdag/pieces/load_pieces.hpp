@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "voxdag/esvo/build/piece_sampler.hpp"
-#include "voxdag/esvo/build/piece_stack.hpp"
-#include "voxdag/esvo/build/triangle_source.hpp"
+#include "voxdag/pieces/piece_sampler.hpp"
+#include "voxdag/pieces/piece_stack.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
 
 namespace voxdag {
 

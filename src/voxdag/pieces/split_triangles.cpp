@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build/split_triangles.hpp"
+#include "voxdag/pieces/split_triangles.hpp"
 
 #include <array>
 #include <bit>

@@ -1,10 +1,10 @@
 #pragma once
-/// A cell of an ESVO under construction: its size, its position and the surface in it.
+/// A cell of an octree under construction: its size, its position and the surface in it.
 #include <cstdint>
 #include <span>
 
-#include "voxdag/esvo/build/surface_triangle.hpp"
-#include "voxdag/esvo/shape/surface_polygon.hpp"
+#include "voxdag/pieces/surface_polygon.hpp"
+#include "voxdag/pieces/surface_triangle.hpp"
 
 namespace voxdag {
 

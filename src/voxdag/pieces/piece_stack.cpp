@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build/piece_stack.hpp"
+#include "voxdag/pieces/piece_stack.hpp"
 
 #include <algorithm>
 #include <bit>

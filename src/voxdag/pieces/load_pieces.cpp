@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build/load_pieces.hpp"
+#include "voxdag/pieces/load_pieces.hpp"
 
 #include "voxdag/voxelize/overlap.hpp"
 

@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build/surface_sum.hpp"
+#include "voxdag/pieces/surface_sum.hpp"
 
 #include <cmath>
 

@@ -10,8 +10,8 @@
 #include <cmath>
 
 #include "voxdag/core/vec.hpp"
-#include "voxdag/esvo/encode/esvo_tree.hpp"
-#include "voxdag/esvo/encode/principal_axis.hpp"
+#include "voxdag/pieces/principal_axis.hpp"
+#include "voxdag/pieces/voxel_value.hpp"
 
 namespace voxdag {
 

@@ -1,12 +1,13 @@
 #pragma once
-/// A triangle for the ESVO builder: the voxels that it meets, its position and its appearance.
+/// A triangle for the builders of octrees: the voxels that it meets, its position and its
+/// appearance.
 #include <algorithm>
 #include <optional>
 #include <span>
 
 #include "voxdag/core/vec2.hpp"
-#include "voxdag/esvo/shape/fit_contour.hpp"
-#include "voxdag/esvo/shape/surface_polygon.hpp"
+#include "voxdag/pieces/contour_direction.hpp"
+#include "voxdag/pieces/surface_polygon.hpp"
 #include "voxdag/surface/surface_shading.hpp"
 #include "voxdag/voxelize/triangle_setup.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The triangles that an ESVO is built from.
+/// The triangles that an octree is built from.
 #include <cmath>
 #include <cstdint>
 #include <vector>

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "voxdag/esvo/build/child_triangles.hpp"
-#include "voxdag/esvo/build/triangle_source.hpp"
+#include "voxdag/pieces/child_triangles.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
 
 namespace voxdag {
 

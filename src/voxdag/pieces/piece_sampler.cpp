@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build/piece_sampler.hpp"
+#include "voxdag/pieces/piece_sampler.hpp"
 
 #include <array>
 

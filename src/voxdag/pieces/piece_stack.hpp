@@ -9,8 +9,8 @@
 #include <cstdint>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/esvo/build/cell.hpp"
-#include "voxdag/esvo/build/child_triangles.hpp"
+#include "voxdag/pieces/cell.hpp"
+#include "voxdag/pieces/child_triangles.hpp"
 #include "voxdag/voxelize/cell_classify.hpp"
 
 namespace voxdag {

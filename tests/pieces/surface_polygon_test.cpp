@@ -1,5 +1,5 @@
 // Tests polygons and the octants of their cell.
-#include "voxdag/esvo/shape/surface_polygon.hpp"
+#include "voxdag/pieces/surface_polygon.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "voxdag/esvo/build/cell.hpp"
+#include "voxdag/pieces/cell.hpp"
 #include "voxdag/surface/surface_shading.hpp"
 
 namespace voxdag {
