@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/checksum.hpp"
@@ -15,8 +16,19 @@ namespace voxdag {
 namespace {
 
 struct OutputChunk {
-  std::uint32_t id;
-  std::span<const std::byte> bytes;
+  std::uint32_t id, flags;
+  std::vector<std::span<const std::byte>> parts;
+
+  std::uint64_t length() const {
+    std::uint64_t sum = 0;
+    for (const auto& part : parts) sum += part.size();
+    return sum;
+  }
+  std::uint64_t checksum() const {
+    Xxh3Stream stream;
+    for (const auto& part : parts) stream.add(part);
+    return stream.digest();
+  }
 };
 
 template <class T>
@@ -30,8 +42,8 @@ std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
   std::vector<std::byte> head(vdag_align(table_end));
   std::uint64_t offset = head.size();
   for (std::size_t i = 0; i < chunks.size(); ++i) {
-    const VdagChunkEntry entry{chunks[i].id, kVdagChunkRequired, offset, chunks[i].bytes.size(),
-                               xxh3_64(chunks[i].bytes)};
+    const VdagChunkEntry entry{chunks[i].id, chunks[i].flags, offset, chunks[i].length(),
+                               chunks[i].checksum()};
     std::memcpy(head.data() + sizeof(VdagHeader) + i * sizeof entry, &entry, sizeof entry);
     offset += vdag_align(entry.length);
   }
@@ -49,7 +61,7 @@ std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
 }  // namespace
 
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata) {
+                const VdagMetadata& metadata, const DagAttributesView& attributes) {
   assert(metadata.grid.levels == view.levels);
   const std::string json = vdag_metadata_json(metadata);
   try {
@@ -57,17 +69,23 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
   } catch (const Error& error) {
     throw error.in_file(path.string());
   }
-  const std::vector<OutputChunk> chunks = {
-      {kChunkMeta, bytes_of(json.data(), json.size())},
-      {kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))},
-      {kChunkNodes, bytes_of(view.nodes, view.node_words())},
-      {kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count)}};
+  std::vector<OutputChunk> chunks;
+  const auto add = [&](std::uint32_t id, std::span<const std::byte> bytes) {
+    chunks.push_back({id, kVdagChunkRequired, {bytes}});
+  };
+  add(kChunkMeta, bytes_of(json.data(), json.size()));
+  add(kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1)));
+  add(kChunkNodes, bytes_of(view.nodes, view.node_words()));
+  add(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count));
+  const AttributeChunks attribute_chunks(attributes);
+  for (const AttributeChunk& chunk : attribute_chunks.chunks())
+    chunks.push_back({chunk.id, 0, chunk.parts});
 
   AtomicFile file(path);
   file.write(std::span<const std::byte>(make_head(chunks)));
   for (const OutputChunk& chunk : chunks) {
-    file.write(chunk.bytes);
-    file.write_zeros(vdag_align(chunk.bytes.size()) - chunk.bytes.size());
+    for (const auto& part : chunk.parts) file.write(part);
+    file.write_zeros(vdag_align(chunk.length()) - chunk.length());
   }
   file.commit();
 }

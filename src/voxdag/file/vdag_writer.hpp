@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -10,7 +11,8 @@ namespace voxdag {
 /// Writes the file, which appears under `path` when it is complete (see AtomicFile). Its bytes
 /// depend on the arguments alone. metadata.grid.levels must equal view.levels. Throws Error if the
 /// file cannot be written, or if the grid has values that parse_vdag_metadata() would refuse.
+/// `attributes` are those of the DAG's cells; empty: none.
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata);
+                const VdagMetadata& metadata, const DagAttributesView& attributes = {});
 
 }  // namespace voxdag

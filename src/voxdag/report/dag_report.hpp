@@ -5,13 +5,22 @@
 #include <string>
 
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 
 namespace voxdag {
+
+/// Counts and bytes of a DAG's attributes; 0 without them.
+struct AttributeSizes {
+  std::uint64_t cells = 0;
+  std::uint64_t index_bytes = 0, color_bytes = 0, normal_bytes = 0;
+};
+AttributeSizes sizes_of(const DagAttributesView& attributes);
 
 struct DagReport {
   VdagMetadata metadata;
   std::uint64_t svdag_bytes = 0;  ///< SvdagView::bytes()
   std::uint64_t file_bytes = 0;
+  AttributeSizes attributes;
 };
 
 /// Returns the keys of `info --json`; docs/cli.md lists them.
