@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "build/attribute_options.hpp"
 #include "build/bake_ao.hpp"
 #include "build/displace_option.hpp"
 #include "cli/mesh_input.hpp"
@@ -29,6 +30,7 @@ struct BuildArguments {
   std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
   bool as_esvo = false;
+  AttributeArguments attributes;  ///< For DAGs.
   EsvoArguments esvo;
 };
 

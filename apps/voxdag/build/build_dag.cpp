@@ -18,8 +18,8 @@ namespace {
 
 /// Wall-clock seconds of the steps of a build.
 struct StageSeconds {
-  double read = 0, build = 0, write = 0;
-  double total() const { return read + build + write; }
+  double read = 0, build = 0, attributes = 0, write = 0;
+  double total() const { return read + build + attributes + write; }
 };
 
 nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
@@ -33,6 +33,7 @@ nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
                      {"sort", build.sort_seconds},
                      {"canonical", build.canonical_seconds},
                      {"build", seconds.build},
+                     {"attributes", seconds.attributes},
                      {"write", seconds.write},
                      {"total", seconds.total()}};
   json["voxels_per_second"] = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
@@ -44,12 +45,23 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
   const double rate = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
   return fmt::format(
       "{}\n"
-      "  time          {}: read {}, build {}, write {}\n"
+      "  time          {}: read {}, build {}, {}write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
       dag_table(dag), human_seconds(seconds.total()), human_seconds(seconds.read),
-      human_seconds(seconds.build), human_seconds(seconds.write), human_count(rate),
-      human_bytes(peak_resident_bytes()));
+      human_seconds(seconds.build),
+      seconds.attributes > 0 ? "attributes " + human_seconds(seconds.attributes) + ", " : "",
+      human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
+}
+
+/// Reads the mesh, and its appearance if attributes are wanted.
+MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess& access,
+                               Session& session) {
+  if (arguments.attributes.is_wanted())
+    return read_mesh_file_with_appearance(session.subject, access, session);
+  MeshWithAppearance source;
+  source.mesh = read_mesh_file(session.subject, access, session);
+  return source;
 }
 
 }  // namespace
@@ -63,7 +75,8 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   MemoryBudget memory = command_budget(arguments.memory_limit);
   MeshAccess access = arguments.access;
   access.memory = &memory;
-  Mesh mesh = read_mesh_file(session.subject, access, session);
+  MeshWithAppearance source = read_source(arguments, access, session);
+  Mesh& mesh = source.mesh;
   seconds.read = watch.lap();
 
   DagReport report;
@@ -74,8 +87,12 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   report.metadata.build = grid_settings(arguments);
   const BuildResult result =
       build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
-  memory.release(memory_bytes(mesh));
-  mesh = {};
+  const bool has_attributes = arguments.attributes.is_wanted();
+  const auto free_source = [&] {
+    memory.release(memory_bytes(mesh) + memory_bytes(source.appearance));
+    source = {};
+  };
+  if (!has_attributes) free_source();
   seconds.build = watch.lap();
 
   progress.throw_if_cancelled();
@@ -85,7 +102,21 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   counting.resize(0);
   report.svdag_bytes = view.bytes();
   progress.throw_if_cancelled();
-  write_vdag(arguments.output, view, report.metadata);
+  DagAttributes attributes;
+  if (has_attributes) {
+    watch.lap();
+    const MemoryReservation dag_bytes(&memory, view.bytes());
+    std::vector<std::string> warnings;
+    const SurfaceShading shading(mesh, source.appearance, &warnings, &progress, &memory);
+    print_warnings(warnings, session);
+    attributes = build_wanted_attributes(arguments.attributes, source, view, shading, memory,
+                                         report.metadata, progress);
+    seconds.attributes = watch.lap();
+  }
+  if (has_attributes) free_source();
+  progress.throw_if_cancelled();
+  report.attributes = sizes_of(attributes.view());
+  write_vdag(arguments.output, view, report.metadata, attributes.view());
   seconds.write = watch.lap();
   std::error_code unknown;
   report.file_bytes = std::filesystem::file_size(arguments.output, unknown);

@@ -27,7 +27,8 @@ void esvo_info(const std::string& path, bool json) {
 void info(const std::string& path, bool json) {
   if (is_esvo_file(path)) return esvo_info(path, json);
   const VdagFile file(path);
-  const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes()};
+  const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes(),
+                         sizes_of(file.attributes())};
   if (json) {
     fmt::print("{}", json_text(dag_json(report)));
     return;
