@@ -83,7 +83,7 @@ TEST_F(AttributesCommand, HitsHaveTheColoursAndNormalsOfAnEsvoOfTheSameVoxels) {
                3.0;
     }
   }
-  ASSERT_GT(hits, 500);
+  ASSERT_GT(hits, 300);
   EXPECT_LT(apart / hits, 8);
   EXPECT_GT(cosine / hits, 0.995);
 }
