@@ -154,12 +154,28 @@ TEST_F(AttributesCommand, PicturesShowThem) {
   EXPECT_NE(picture(dag), picture(grey));
 }
 
+TEST_F(AttributesCommand, ConvertKeepsThemOrRefuses) {
+  const std::string colored = build("a.vdag", {"--color", "--normal"}), grey = build("b.vdag", {});
+  const auto convert = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"convert", colored, "-o", dir_ / "c.vdag"});
+    return run_voxdag(options);
+  };
+  ASSERT_EQ(convert({}).status, 0);
+  EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(colored));
+  expect_failure(convert({"--compact"}), 1, "use --drop-attributes");
+  expect_failure(convert({"--levels", "5"}), 1, "use --drop-attributes");
+  ASSERT_EQ(convert({"--drop-attributes"}).status, 0);
+  EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(grey));
+  EXPECT_EQ(convert({"--compact", "--drop-attributes"}).status, 0);
+}
+
 TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
   expect_failure(run_build("a.vdag", {"--attribute-resolution", "32"}), 2, "without --color");
   expect_failure(run_build("a.vdag", {"--normal", "--color-bound", "0.1"}), 2, "without --color");
   expect_failure(run_build("a.vdag", {"--color", "--normal-bound", "3"}), 2, "without --normal");
   expect_failure(run_build("a.vdag", {"--color", "--attribute-resolution", "128"}), 2,
                  "128 is more than the grid's resolution, 64");
+  expect_failure(run_build("a.vdag", {"--color", "--compact"}), 2, "only the plain form");
   expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
   EXPECT_EQ(dir_.count(), 1);
 }

@@ -20,8 +20,8 @@
 #include "cli/device.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
+#include "cli/scene_input.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/scene_file.hpp"
 #include "voxdag/film/path_file.hpp"
 
 namespace voxdag {
@@ -41,8 +41,9 @@ struct BenchTraceArguments {
 
 /// Returns the voxels of the ESVO in a file, which `file` keeps open. Throws Error unless they are
 /// on the grid of `dag`.
-VoxelSet open_esvo(const std::string& path, const SceneFile& dag, std::optional<SceneFile>& file) {
-  file.emplace(path);
+VoxelSet open_esvo(const std::string& path, const SceneInput& dag, std::optional<SceneInput>& file,
+                   Session& session) {
+  file.emplace(path, &session.progress);
   if (file->voxels().esvo() == nullptr) throw Error(path, "", "is not an ESVO");
   if (dag.voxels().esvo() != nullptr) throw Error("--esvo", "", "needs a DAG to compare with");
   if (file->grid() != dag.grid()) throw Error(path, "", "is not on the grid of the DAG");
@@ -61,7 +62,7 @@ void follow_path(const BenchTraceArguments& arguments, const TraceScene& scene, 
 }
 
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
-  const SceneFile file(session.subject);
+  const SceneInput file(session.subject, &session.progress);
   if (file.voxels().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
     throw Error("--openvdb", "", "needs a DAG, but the file is an ESVO");
   Mesh mesh;
@@ -72,8 +73,9 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
   const std::string& name = file.metadata().source.name;
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
                    file.voxels(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
-  std::optional<SceneFile> esvo;
-  if (!arguments.esvo_file.empty()) scene.esvo = open_esvo(arguments.esvo_file, file, esvo);
+  std::optional<SceneInput> esvo;
+  if (!arguments.esvo_file.empty())
+    scene.esvo = open_esvo(arguments.esvo_file, file, esvo, session);
   TracePlan plan = arguments.plan;
   if (!arguments.path_file.empty()) follow_path(arguments, scene, plan);
   TraceResults results;

@@ -31,6 +31,7 @@ struct BuildArguments {
   bool stats = false;
   bool as_esvo = false;
   AttributeArguments attributes;  ///< For DAGs.
+  bool compact = false;           ///< Write the compact form.
   EsvoArguments esvo;
 };
 

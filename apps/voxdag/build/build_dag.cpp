@@ -6,8 +6,10 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/io/process_memory.hpp"
+#include "voxdag/layout/compact/compact_bytes.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/report/dag_report.hpp"
@@ -18,8 +20,8 @@ namespace {
 
 /// Wall-clock seconds of the steps of a build.
 struct StageSeconds {
-  double read = 0, build = 0, attributes = 0, write = 0;
-  double total() const { return read + build + attributes + write; }
+  double read = 0, build = 0, attributes = 0, compact = 0, write = 0;
+  double total() const { return read + build + attributes + compact + write; }
 };
 
 nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
@@ -34,6 +36,7 @@ nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
                      {"canonical", build.canonical_seconds},
                      {"build", seconds.build},
                      {"attributes", seconds.attributes},
+                     {"compact", seconds.compact},
                      {"write", seconds.write},
                      {"total", seconds.total()}};
   json["voxels_per_second"] = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
@@ -45,12 +48,13 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
   const double rate = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
   return fmt::format(
       "{}\n"
-      "  time          {}: read {}, build {}, {}write {}\n"
+      "  time          {}: read {}, build {}, {}{}write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
       dag_table(dag), human_seconds(seconds.total()), human_seconds(seconds.read),
       human_seconds(seconds.build),
       seconds.attributes > 0 ? "attributes " + human_seconds(seconds.attributes) + ", " : "",
+      dag.compact ? fmt::format("compact {}, ", human_seconds(seconds.compact)) : "",
       human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
 }
 
@@ -100,7 +104,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   MemoryReservation counting(&memory, view.bytes());
   report.metadata.counts = count_svdag(view);
   counting.resize(0);
-  report.svdag_bytes = view.bytes();
+  report = report_of(view, report.metadata, 0);
   progress.throw_if_cancelled();
   DagAttributes attributes;
   if (has_attributes) {
@@ -116,7 +120,14 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   if (has_attributes) free_source();
   progress.throw_if_cancelled();
   report.attributes = sizes_of(attributes.view());
-  write_vdag(arguments.output, view, report.metadata, attributes.view());
+  if (arguments.compact) {
+    const CompactSvdag compact = encode_svdag(view, {.memory = &memory}, &progress);
+    seconds.compact = watch.lap();
+    write_vdag(arguments.output, compact, report.metadata);
+    report.compact = bytes_of(compact.view(), compact_head(compact).size());
+  } else {
+    write_vdag(arguments.output, view, report.metadata, attributes.view());
+  }
   seconds.write = watch.lap();
   std::error_code unknown;
   report.file_bytes = std::filesystem::file_size(arguments.output, unknown);

@@ -5,6 +5,7 @@
 namespace voxdag {
 
 void add_build_command(const Command& program, Session& session);
+void add_convert_command(const Command& program, Session& session);
 void add_info_command(const Command& program, Session& session);
 void add_verify_command(const Command& program, Session& session);
 void add_render_command(const Command& program, Session& session);

@@ -27,11 +27,12 @@ Option add_look_option(const Command& command, std::string& file) {
                       "DAG get its colours and normals");
 }
 
-std::optional<SceneFile> open_look(const std::string& file, const SceneFile& scene) {
+std::optional<SceneInput> open_look(const std::string& file, const SceneInput& scene,
+                                    Session& session) {
   if (file.empty()) return std::nullopt;
   if (scene.voxels().esvo() != nullptr)
     throw Error("--look", "", "needs a DAG, but the scene is an ESVO, which has a look of its own");
-  SceneFile look(file);
+  SceneInput look(file, &session.progress);
   if (look_of(look).is_empty())
     throw Error(file, "", "is neither an ESVO nor a DAG with colours or normals");
   if (!have_same_cube(look.grid(), scene.grid()))
@@ -39,7 +40,7 @@ std::optional<SceneFile> open_look(const std::string& file, const SceneFile& sce
   return look;
 }
 
-LookView look_of(const SceneFile& file) {
+LookView look_of(const SceneInput& file) {
   const VoxelSet voxels = file.voxels();
   if (voxels.esvo() != nullptr) return *voxels.esvo();
   return file.colored_dag();

@@ -6,7 +6,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
-#include "voxdag/file/scene_file.hpp"
+#include "cli/scene_input.hpp"
 
 namespace voxdag {
 namespace {
@@ -18,7 +18,7 @@ struct ExportArguments {
 };
 
 void export_file(ExportArguments& arguments, Session& session) {
-  const SceneFile file(session.subject);
+  const SceneInput file(session.subject, &session.progress);
   const VoxelSet voxels = file.voxels();
   arguments.options.progress = [&session](double fraction, std::uint64_t done) {
     session.progress.throw_if_cancelled();

@@ -4,9 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
+#include "cli/scene_input.hpp"
 #include "voxdag/core/printable.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
-#include "voxdag/file/vdag_file.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/esvo_report.hpp"
 #include "voxdag/report/human.hpp"
@@ -24,11 +25,20 @@ void esvo_info(const std::string& path, bool json) {
                printable(report.metadata.program), esvo_table(report), esvo_level_table(report));
 }
 
-void info(const std::string& path, bool json) {
+/// Decodes a compact DAG, so that the report has the bytes of both forms.
+DagReport dag_report(const std::string& path, Progress& progress) {
+  const DagInput file(path, &progress);
+  DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
+  report.attributes = sizes_of(file.attributes());
+  if (!file.is_compact()) return report;
+  const CompactFile compact(path);
+  report.compact = bytes_of(compact.view(), compact.head_bytes());
+  return report;
+}
+
+void info(const std::string& path, bool json, Progress& progress) {
   if (is_esvo_file(path)) return esvo_info(path, json);
-  const VdagFile file(path);
-  const DagReport report{file.metadata(), file.view().bytes(), file.file_bytes(),
-                         sizes_of(file.attributes())};
+  const DagReport report = dag_report(path, progress);
   if (json) {
     fmt::print("{}", json_text(dag_json(report)));
     return;
@@ -46,8 +56,9 @@ void add_info_command(const Command& program, Session& session) {
                   "voxdag info scene.vdag --json");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   add_json_option(command, session);
-  command.when_parsed(
-      [&session] { session.work = [&session] { info(session.subject, session.json); }; });
+  command.when_parsed([&session] {
+    session.work = [&session] { info(session.subject, session.json, session.progress); };
+  });
 }
 
 }  // namespace voxdag

@@ -9,12 +9,14 @@
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
+#include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
+#include "inspect/verify_compact.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
-#include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -56,7 +58,7 @@ void announce_samples(std::uint64_t samples, const Check& check, Session& sessio
 VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
-  const VdagFile file(session.subject);
+  const DagInput file(session.subject, &session.progress);
   const Mesh mesh = read_mesh_file(arguments.mesh, arguments.access, session);
   const auto check_samples = [&](std::uint64_t samples) {
     return check_cover(file.view(), file.grid(), mesh, samples, arguments.seed, &session.progress);
@@ -153,8 +155,19 @@ VerifyCheck mesh_check(const VerifyArguments& arguments, Session& session) {
                                        : cover_check(arguments, session);
 }
 
+/// Returns whether the file is a compact DAG; false for a file that is damaged.
+bool holds_compact(const std::string& path) {
+  try {
+    return is_compact_file(path);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 void verify(const VerifyArguments& arguments, Session& session) {
-  VerifyReport report = verify_vdag(session.subject);
+  VerifyReport report = holds_compact(session.subject)
+                            ? verify_compact(session.subject, session.progress)
+                            : verify_vdag(session.subject);
   session.progress.throw_if_cancelled();
   if (!arguments.mesh.empty()) {
     if (report.passed())

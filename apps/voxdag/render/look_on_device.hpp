@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "cli/device.hpp"
+#include "cli/scene_input.hpp"
 #include "voxdag/cuda/device_attributes.hpp"
-#include "voxdag/file/scene_file.hpp"
 #include "voxdag/layout/look.hpp"
 
 namespace voxdag {
@@ -15,7 +15,7 @@ class LookOnDevice {
   /// Takes the look of `file`, which is the file of the scene or that of --look (`is_own` is
   /// false). Copies it to the device of `scene`, if there is one. Resets `scene` if the device of
   /// --device auto has no room for both. An ESVO needs no look of its own.
-  LookOnDevice(const DeviceChoice& device, const SceneFile& file, bool is_own,
+  LookOnDevice(const DeviceChoice& device, const SceneInput& file, bool is_own,
                std::optional<DeviceScene>& scene);
 
   /// Returns a view for the scene's device, or for the host if there is none.

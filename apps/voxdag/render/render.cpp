@@ -3,6 +3,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/look_input.hpp"
+#include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "render/look_on_device.hpp"
 #include "render/picture_summary.hpp"
@@ -12,17 +13,16 @@
 #include "render/render_streamed.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
-#include "voxdag/file/scene_file.hpp"
 #include "voxdag/film/frame_names.hpp"
 
 namespace voxdag {
 namespace {
 
 void render_loaded(const RenderArguments& arguments, Session& session) {
-  const SceneFile file(session.subject);
+  const SceneInput file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
-  const std::optional<SceneFile> look = open_look(arguments.look, file);
+  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   const LookOnDevice look_on_device(arguments.device, look ? *look : file, !look, device_scene);
   options.look = look_on_device.view();

@@ -9,11 +9,11 @@
 #include "cli/device.hpp"
 #include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
+#include "cli/scene_input.hpp"
 #include "trace/hit_rows.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/file/scene_file.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
@@ -28,9 +28,9 @@ struct TraceArguments {
 };
 
 void trace(const TraceArguments& arguments, Session& session) {
-  const SceneFile file(session.subject);
+  const SceneInput file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
-  const std::optional<SceneFile> look = open_look(arguments.look, file);
+  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
   const std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   std::optional<CudaTracer> cuda;
   if (device_scene) cuda.emplace(*device_scene, file.grid());

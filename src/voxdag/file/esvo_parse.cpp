@@ -8,11 +8,7 @@
 
 namespace voxdag {
 
-bool is_esvo(const std::vector<VdagChunk>& chunks) {
-  for (const VdagChunk& chunk : chunks)
-    if (chunk.id == kChunkEsvo) return true;
-  return false;
-}
+bool is_esvo(const std::vector<VdagChunk>& chunks) { return has_chunk(chunks, kChunkEsvo); }
 
 EsvoMetadata read_esvo_metadata(const std::vector<VdagChunk>& chunks) {
   return read_metadata_chunk(chunks, parse_esvo_metadata);

@@ -59,6 +59,10 @@ inline constexpr std::uint32_t kChunkMeta =
 inline constexpr std::uint32_t kChunkLevels = vdag_chunk_id("LEVL");  ///< u64 level_begin[0..L-2].
 inline constexpr std::uint32_t kChunkNodes = vdag_chunk_id("NODE");   ///< u32 SvdagView::nodes.
 inline constexpr std::uint32_t kChunkLeafBlocks = vdag_chunk_id("LEAF");  ///< u64 leaf_blocks.
+inline constexpr std::uint32_t kChunkCompactHead =
+    vdag_chunk_id("CHED");  ///< See layout/compact/compact_bytes.hpp.
+inline constexpr std::uint32_t kChunkCompactStream =
+    vdag_chunk_id("CSTR");                                          ///< u32 CompactSvdag::stream.
 inline constexpr std::uint32_t kChunkEsvo = vdag_chunk_id("ESVO");  ///< u64 slots of all blocks.
 inline constexpr std::uint32_t kChunkEsvoBlocks =
     vdag_chunk_id("EBLK");  ///< EsvoBlockEntry of each block.

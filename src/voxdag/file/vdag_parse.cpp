@@ -76,8 +76,9 @@ VdagChunk read_entry(std::span<const std::byte> file, const VdagChunkEntry& entr
       vdag_align(entry.length) > file.size() - expected_offset)
     fail(place, "extends past the end of the file");
   const bool required = (entry.flags & kVdagChunkRequired) != 0;
-  constexpr std::uint32_t kKnown[] = {kChunkMeta,       kChunkLevels, kChunkNodes,
-                                      kChunkLeafBlocks, kChunkEsvo,   kChunkEsvoBlocks};
+  constexpr std::uint32_t kKnown[] = {kChunkMeta,       kChunkLevels,      kChunkNodes,
+                                      kChunkLeafBlocks, kChunkCompactHead, kChunkCompactStream,
+                                      kChunkEsvo,       kChunkEsvoBlocks};
   if (required && std::find(std::begin(kKnown), std::end(kKnown), entry.id) == std::end(kKnown))
     fail(place, "unknown required chunk: this file needs a newer version of voxdag");
   return {entry.id, required, entry.offset, entry.checksum,
@@ -109,6 +110,11 @@ std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file) {
   }
   if (end != file.size()) fail(ErrorPlace::byte(end), "has bytes after the last chunk");
   return chunks;
+}
+
+bool has_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
+  return std::any_of(chunks.begin(), chunks.end(),
+                     [id](const VdagChunk& chunk) { return chunk.id == id; });
 }
 
 void check_vdag_checksums(const std::vector<VdagChunk>& chunks) {
@@ -174,8 +180,9 @@ void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&)) {
 VdagContents parse_vdag(std::span<const std::byte> file) {
   VdagContents contents;
   contents.chunks = read_vdag_chunks(file);
-  for (const VdagChunk& chunk : contents.chunks)
-    if (chunk.id == kChunkEsvo) fail("", "holds an ESVO, but a DAG is needed");
+  if (has_chunk(contents.chunks, kChunkEsvo)) fail("", "holds an ESVO, but a DAG is needed");
+  if (has_chunk(contents.chunks, kChunkCompactStream))
+    fail("", "holds a compact DAG, but one in the plain form is needed: voxdag convert --plain");
   check_vdag_checksums(contents.chunks);
   contents.metadata = read_vdag_metadata(contents.chunks);
   contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);

@@ -36,6 +36,8 @@ struct VdagContents {
 /// more.
 std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file);
 
+bool has_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id);
+
 /// Throws Error if the checksum of a chunk's bytes differs from the one in the table.
 void check_vdag_checksums(const std::vector<VdagChunk>& chunks);
 

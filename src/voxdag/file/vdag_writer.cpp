@@ -11,6 +11,7 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/checksum.hpp"
+#include "voxdag/layout/compact/compact_bytes.hpp"
 
 namespace voxdag {
 namespace {
@@ -58,29 +59,7 @@ std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
   return head;
 }
 
-}  // namespace
-
-void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata, const DagAttributesView& attributes) {
-  assert(metadata.grid.levels == view.levels);
-  const std::string json = vdag_metadata_json(metadata);
-  try {
-    parse_vdag_metadata(json);
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
-  std::vector<OutputChunk> chunks;
-  const auto add = [&](std::uint32_t id, std::span<const std::byte> bytes) {
-    chunks.push_back({id, kVdagChunkRequired, {bytes}});
-  };
-  add(kChunkMeta, bytes_of(json.data(), json.size()));
-  add(kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1)));
-  add(kChunkNodes, bytes_of(view.nodes, view.node_words()));
-  add(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count));
-  const AttributeChunks attribute_chunks(attributes);
-  for (const AttributeChunk& chunk : attribute_chunks.chunks())
-    chunks.push_back({chunk.id, 0, chunk.parts});
-
+void write_chunks(const std::filesystem::path& path, const std::vector<OutputChunk>& chunks) {
   AtomicFile file(path);
   file.write(std::span<const std::byte>(make_head(chunks)));
   for (const OutputChunk& chunk : chunks) {
@@ -88,6 +67,49 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
     file.write_zeros(vdag_align(chunk.length()) - chunk.length());
   }
   file.commit();
+}
+
+/// Returns the JSON of META. Throws Error for the path if a reader would refuse it.
+std::string checked_json(const std::filesystem::path& path, const VdagMetadata& metadata) {
+  std::string json = vdag_metadata_json(metadata);
+  try {
+    parse_vdag_metadata(json);
+  } catch (const Error& error) {
+    throw error.in_file(path.string());
+  }
+  return json;
+}
+
+/// Returns a required chunk.
+OutputChunk required(std::uint32_t id, std::span<const std::byte> bytes) {
+  return {id, kVdagChunkRequired, {bytes}};
+}
+
+}  // namespace
+
+void write_vdag(const std::filesystem::path& path, const SvdagView& view,
+                const VdagMetadata& metadata, const DagAttributesView& attributes) {
+  assert(metadata.grid.levels == view.levels);
+  const std::string json = checked_json(path, metadata);
+  std::vector<OutputChunk> chunks = {
+      required(kChunkMeta, bytes_of(json.data(), json.size())),
+      required(kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))),
+      required(kChunkNodes, bytes_of(view.nodes, view.node_words())),
+      required(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count))};
+  const AttributeChunks attribute_chunks(attributes);
+  for (const AttributeChunk& chunk : attribute_chunks.chunks())
+    chunks.push_back({chunk.id, 0, chunk.parts});
+  write_chunks(path, chunks);
+}
+
+void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
+                const VdagMetadata& metadata) {
+  assert(metadata.grid.levels == compact.levels);
+  const std::string json = checked_json(path, metadata);
+  const std::vector<std::byte> head = compact_head(compact);
+  write_chunks(path, {required(kChunkMeta, bytes_of(json.data(), json.size())),
+                      required(kChunkCompactHead, head),
+                      required(kChunkCompactStream, std::as_bytes(compact.words()))});
 }
 
 }  // namespace voxdag

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/compact/compact_svdag.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
@@ -14,5 +15,9 @@ namespace voxdag {
 /// `attributes` are those of the DAG's cells; empty: none.
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata, const DagAttributesView& attributes = {});
+
+/// Writes a DAG in the compact form, in the same way.
+void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
+                const VdagMetadata& metadata);
 
 }  // namespace voxdag

@@ -1,7 +1,6 @@
 #include "voxdag/file/verify_vdag.hpp"
 
 #include <algorithm>
-#include <initializer_list>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
@@ -16,27 +15,6 @@ namespace {
 
 using Result = VerifyCheck::Result;
 
-/// Runs `work` unless one of the checks in `needed` (by index) did not pass.
-template <class Work>
-void run_check(VerifyReport& report, std::string name, std::initializer_list<std::size_t> needed,
-               const Work& work) {
-  VerifyCheck check;
-  check.name = std::move(name);
-  for (const std::size_t index : needed)
-    if (check.detail.empty() && report.checks[index].result != Result::kPassed)
-      check.detail = report.checks[index].name + " did not pass";
-  if (check.detail.empty()) {
-    try {
-      work();
-      check.result = Result::kPassed;
-    } catch (const Error& error) {
-      check.result = Result::kFailed;
-      check.detail = error.what();
-    }
-  }
-  report.checks.push_back(std::move(check));
-}
-
 void compare(const std::string& name, std::uint64_t stated, std::uint64_t counted) {
   if (stated != counted)
     throw Error("", ErrorPlace::chunk("META") / ("counts." + name),
@@ -49,11 +27,15 @@ void compare_levels(const std::string& name, const std::vector<std::uint64_t>& s
     compare(name + '[' + std::to_string(level) + ']', stated[level], counted[level]);
 }
 
+}  // namespace
+
 void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted) {
   compare("voxels", stated.voxels, counted.voxels);
   compare_levels("svo_nodes_per_level", stated.svo_nodes_per_level, counted.svo_nodes_per_level);
   compare_levels("dag_nodes_per_level", stated.dag_nodes_per_level, counted.dag_nodes_per_level);
 }
+
+namespace {
 
 VerifyReport verify_esvo(std::span<const std::byte> file) {
   VerifyReport report;

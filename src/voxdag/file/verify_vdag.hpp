@@ -1,8 +1,14 @@
 #pragma once
 /// Runs all checks of a .vdag file and reports the result of each.
+#include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
 
 namespace voxdag {
 
@@ -18,6 +24,31 @@ struct VerifyReport {
   std::vector<VerifyCheck> checks;  ///< Always the same checks in the same order.
   bool passed() const;
 };
+
+/// Runs `work` as the check `name` and adds its result to the report: it fails with the Error that
+/// work throws, and is skipped if one of the checks in `needed` (by index) did not pass.
+template <class Work>
+void run_check(VerifyReport& report, std::string name, std::initializer_list<std::size_t> needed,
+               const Work& work) {
+  VerifyCheck check;
+  check.name = std::move(name);
+  for (const std::size_t index : needed)
+    if (check.detail.empty() && report.checks[index].result != VerifyCheck::Result::kPassed)
+      check.detail = report.checks[index].name + " did not pass";
+  if (check.detail.empty()) {
+    try {
+      work();
+      check.result = VerifyCheck::Result::kPassed;
+    } catch (const Error& error) {
+      check.result = VerifyCheck::Result::kFailed;
+      check.detail = error.what();
+    }
+  }
+  report.checks.push_back(std::move(check));
+}
+
+/// Throws Error if the counts that a file states are not those of its DAG.
+void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted);
 
 /// Runs all checks, but skips those that make no sense after a failed one:
 ///   container        magic, version, sizes, chunk table, padding

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/printable.hpp"
+#include "voxdag/layout/compact/compact_parts.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
@@ -30,6 +31,8 @@ std::string row(const std::string& name, const std::string& svo, const std::stri
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
 }
+
+std::uint64_t whole_bytes(std::uint64_t bits) { return (bits + 7) / 8; }
 
 Json vec_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -85,6 +88,12 @@ AttributeSizes sizes_of(const DagAttributesView& attributes) {
           attributes.normals.bytes()};
 }
 
+CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes) {
+  const CompactParts parts = compact_parts(compact);
+  return {head_bytes, whole_bytes(parts.node_bits), whole_bytes(parts.unit_bits),
+          whole_bytes(parts.shared_brick_bits)};
+}
+
 Json dag_json(const DagReport& report) {
   const VdagMetadata& metadata = report.metadata;
   const SvdagCounts& counts = metadata.counts;
@@ -98,11 +107,22 @@ Json dag_json(const DagReport& report) {
   json["svo_nodes_per_level"] = counts.svo_nodes_per_level;
   json["dag_nodes_per_level"] = counts.dag_nodes_per_level;
   json["bytes"] = {{"svo_pointerless", svo_bytes},
-                   {"svdag_paper", report.svdag_bytes},
+                   {"svdag_paper", report.svdag_bytes()},
+                   {"svdag_nodes", report.node_bytes},
+                   {"svdag_leaf_blocks", report.leaf_bytes},
                    {"file", report.file_bytes}};
   json["bits_per_voxel"] = {{"svo_pointerless", bits_per_voxel(svo_bytes, counts)},
-                            {"svdag_paper", bits_per_voxel(report.svdag_bytes, counts)},
+                            {"svdag_paper", bits_per_voxel(report.svdag_bytes(), counts)},
                             {"file", bits_per_voxel(report.file_bytes, counts)}};
+  if (report.compact) {
+    const CompactBytes& compact = *report.compact;
+    json["bytes"]["compact"] = compact.total();
+    json["bytes"]["compact_parts"] = {{"head", compact.head},
+                                      {"nodes", compact.nodes},
+                                      {"units", compact.units},
+                                      {"shared_bricks", compact.shared_bricks}};
+    json["bits_per_voxel"]["compact"] = bits_per_voxel(compact.total(), counts);
+  }
   if (metadata.attributes.resolution != 0)
     json["attributes"] = attributes_json(metadata.attributes, report.attributes);
   add_placement_json(json, metadata.grid, metadata.source, metadata.program, metadata.build);
@@ -139,11 +159,28 @@ std::string dag_table(const DagReport& report) {
   text += row("", "SVO", "DAG", "ratio");
   text += row("nodes", with_commas(counts.svo_nodes()), with_commas(counts.dag_nodes()),
               ratio_of(counts.svo_nodes(), counts.dag_nodes()));
-  text += row("size", human_bytes(svo_bytes), human_bytes(report.svdag_bytes),
-              ratio_of(svo_bytes, report.svdag_bytes));
+  text += row("size", human_bytes(svo_bytes), human_bytes(report.svdag_bytes()),
+              ratio_of(svo_bytes, report.svdag_bytes()));
   text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(svo_bytes, counts)),
-              fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes, counts)), "");
-  return text + attributes_table(report.metadata.attributes, report.attributes);
+              fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)), "");
+  text += attributes_table(report.metadata.attributes, report.attributes);
+  if (!report.compact) return text;
+  const CompactBytes& compact = *report.compact;
+  text += '\n';
+  text += row("", "plain", "compact", "part");
+  const auto compact_row = [&](const char* name, std::uint64_t plain, std::uint64_t bytes) {
+    text += row(name, plain == 0 ? "" : human_bytes(plain), human_bytes(bytes),
+                fmt::format("{:.3f}", quotient(static_cast<double>(bytes),
+                                               static_cast<double>(report.svdag_bytes()))));
+  };
+  compact_row("all", report.svdag_bytes(), compact.total());
+  compact_row("nodes", 0, compact.nodes);
+  compact_row("units", 0, compact.units);
+  compact_row("shared bricks", 0, compact.shared_bricks);
+  compact_row("head", 0, compact.head);
+  text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)),
+              fmt::format("{:.3f}", bits_per_voxel(compact.total(), counts)), "");
+  return text;
 }
 
 std::string level_table(const SvdagCounts& counts) {

@@ -2,10 +2,13 @@
 /// Reports the counts and sizes of a DAG as tables and as JSON, for `build` and `info`.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/compact/compact_svdag.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
 
@@ -16,12 +19,34 @@ struct AttributeSizes {
 };
 AttributeSizes sizes_of(const DagAttributesView& attributes);
 
+/// The bytes of a DAG in the compact form, by part.
+struct CompactBytes {
+  std::uint64_t head = 0;   ///< Context trees, their tables, and the lengths of shared nodes.
+  std::uint64_t nodes = 0;  ///< Nodes above the units.
+  std::uint64_t units = 0;  ///< Units with their inline bricks.
+  std::uint64_t shared_bricks = 0;
+  std::uint64_t total() const { return head + nodes + units + shared_bricks; }
+};
+
 struct DagReport {
   VdagMetadata metadata;
-  std::uint64_t svdag_bytes = 0;  ///< SvdagView::bytes()
+  std::uint64_t node_bytes = 0;  ///< Of nodes above the leaf blocks, in the paper's layout.
+  std::uint64_t leaf_bytes = 0;  ///< Of leaf blocks, in the paper's layout.
   std::uint64_t file_bytes = 0;
+  std::optional<CompactBytes> compact;  ///< If the file has this form.
   AttributeSizes attributes;
+
+  std::uint64_t svdag_bytes() const { return node_bytes + leaf_bytes; }
 };
+
+/// Returns a report of the file with this DAG.
+inline DagReport report_of(const SvdagView& dag, const VdagMetadata& metadata,
+                           std::uint64_t file_bytes) {
+  return {metadata, dag.node_words() * 4, dag.leaf_block_count * 8, file_bytes, std::nullopt, {}};
+}
+
+/// Returns the bytes of a compact DAG whose head has `head_bytes`.
+CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes);
 
 /// Returns the keys of `info --json`; docs/cli.md lists them.
 nlohmann::ordered_json dag_json(const DagReport& report);

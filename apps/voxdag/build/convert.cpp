@@ -1,0 +1,114 @@
+/// `voxdag convert`: writes a DAG in its other form, or with fewer levels.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/output_files.hpp"
+#include "cli/parse.hpp"
+#include "cli/scene_input.hpp"
+#include "cli/stopwatch.hpp"
+#include "voxdag/compact/coarsen.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+struct ConvertArguments {
+  std::string output;
+  bool compact = false, plain = false;
+  bool drop_attributes = false;
+  std::optional<int> levels;
+  std::uint64_t memory_limit = 0;
+};
+
+/// Returns the metadata for a grid of fewer levels, whose DAG has these voxels.
+VdagMetadata coarser(VdagMetadata metadata, const SvdagView& dag) {
+  const double factor = static_cast<double>(std::int64_t{1} << (metadata.grid.levels - dag.levels));
+  metadata.grid.levels = dag.levels;
+  metadata.grid.voxel_size *= factor;
+  metadata.grid.quantization_scale /= factor;
+  metadata.counts = count_svdag(dag);
+  metadata.build["coarsened_from"] =
+      std::to_string(metadata.grid.resolution() * static_cast<std::int64_t>(factor));
+  return metadata;
+}
+
+void convert(const ConvertArguments& arguments, Session& session) {
+  check_writable(arguments.output);
+  const Stopwatch watch;
+  MemoryBudget memory = command_budget(arguments.memory_limit);
+  const DagInput file(session.subject, &session.progress, &memory);
+  SvdagView dag = file.view();
+  VdagMetadata metadata = file.metadata();
+  Svdag coarse;
+  const bool is_coarser = arguments.levels && *arguments.levels != dag.levels;
+  if (is_coarser) {
+    if (*arguments.levels > dag.levels)
+      throw Error(session.subject, "",
+                  fmt::format("has {} voxels a side, so that it cannot get {}",
+                              with_commas(static_cast<std::uint64_t>(file.grid().resolution())),
+                              with_commas(std::uint64_t{1} << *arguments.levels)));
+    coarse = coarsen(dag, *arguments.levels, &memory, &session.progress);
+    dag = coarse.view();
+    metadata = coarser(metadata, dag);
+  }
+  const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
+  const DagAttributesView attributes =
+      arguments.drop_attributes ? DagAttributesView{} : file.attributes();
+  if (!attributes.is_empty() && (compact || is_coarser))
+    throw Error(session.subject, "",
+                "has colours or normals, which the compact form and a coarser grid cannot keep: "
+                "use --drop-attributes");
+  if (attributes.is_empty()) metadata.attributes = {};
+  if (compact) {
+    write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
+               metadata);
+  } else {
+    write_vdag(arguments.output, dag, metadata, attributes);
+  }
+  session.bar.clear();
+  if (session.quiet) return;
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
+  fmt::print("{}: {}, {} form, {}\n", arguments.output,
+             human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
+             compact ? "compact" : "plain", human_seconds(watch.since_start()));
+}
+
+}  // namespace
+
+void add_convert_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<ConvertArguments>();
+  const Command command =
+      program.add("convert", "Write a DAG in the compact or the plain form, or with fewer levels",
+                  "voxdag convert scene.vdag --compact -o small.vdag");
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
+  const Option compact = command.flag("--compact", arguments->compact,
+                                      "Write the compact form (default: the form of FILE)");
+  command.flag("--plain", arguments->plain, "Write the plain form, the layout of the paper")
+      .not_with(compact);
+  command.optional_number<int>(
+      "--levels", arguments->levels, NumberRange::whole(kMinLevels, kMaxLevels), "L",
+      "Write a coarser grid, of 2^L voxels a side: a voxel is set if one in it was");
+  command.flag("--drop-attributes", arguments->drop_attributes,
+               "Leave out the colours and normals");
+  command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
+                 "Maximum memory, including the program (default: three quarters of the available "
+                 "memory)");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.when_parsed([arguments, &session] {
+    check_distinct({{"--output", arguments->output}}, session);
+    session.work = [arguments, &session] { convert(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

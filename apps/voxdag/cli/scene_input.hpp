@@ -1,0 +1,53 @@
+#pragma once
+/// Opens the scene of a command: a DAG in either form, or an ESVO.
+#include <filesystem>
+#include <variant>
+
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/vdag_file.hpp"
+#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// A DAG of any form in memory, in the plain one. Move-only; views stay valid when it is moved.
+class DagInput {
+ public:
+  /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts
+  /// what it holds. Throws Error(path, place, reason), OverMemory and Cancelled.
+  DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
+
+  SvdagView view() const;
+  /// Returns the colours and normals of the DAG's cells; empty if the file has none.
+  DagAttributesView attributes() const;
+  const VdagMetadata& metadata() const { return metadata_; }
+  const Grid& grid() const { return metadata_.grid; }
+  std::uint64_t file_bytes() const { return file_bytes_; }
+  /// Returns whether the file has the compact form.
+  bool is_compact() const { return std::holds_alternative<Svdag>(dag_); }
+
+ private:
+  std::variant<VdagFile, Svdag> dag_;
+  VdagMetadata metadata_;
+  std::uint64_t file_bytes_ = 0;
+  MemoryReservation memory_;
+};
+
+/// A scene of any kind in memory. Move-only; views stay valid when it is moved.
+class SceneInput {
+ public:
+  /// As DagInput, and reads an ESVO.
+  SceneInput(const std::filesystem::path& path, Progress* progress);
+
+  VoxelSet voxels() const;
+  /// Returns the DAG with its attributes; empty for an ESVO and a file without attributes.
+  ColoredDagView colored_dag() const;
+  const SceneMetadata& metadata() const;
+  const Grid& grid() const { return metadata().grid; }
+
+ private:
+  std::variant<DagInput, EsvoFile> scene_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,56 @@
+#include "inspect/verify_compact.hpp"
+
+#include <algorithm>
+
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/file/compact_file.hpp"
+#include "voxdag/file/vdag_format.hpp"
+#include "voxdag/io/file_copy.hpp"
+#include "voxdag/layout/compact/compact_bytes.hpp"
+#include "voxdag/layout/validate_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Throws Error unless the compact form of `dag` is the one of the file.
+void check_bytes(const Svdag& dag, const CompactContents& file, Progress& progress) {
+  const CompactSvdag again = encode_svdag(dag.view(), {}, &progress);
+  const auto check = [](const char* chunk, std::span<const std::byte> expected,
+                        std::span<const std::byte> found) {
+    if (!std::equal(expected.begin(), expected.end(), found.begin(), found.end()))
+      throw Error("", ErrorPlace::chunk(chunk), "has not the bytes that its voxels lead to");
+  };
+  const std::vector<std::byte> head = compact_head(again);
+  check("CHED", head, chunk_bytes(file.chunks, kChunkCompactHead, 1));
+  check("CSTR", std::as_bytes(again.words()), chunk_bytes(file.chunks, kChunkCompactStream, 1));
+}
+
+}  // namespace
+
+VerifyReport verify_compact(const std::filesystem::path& path, Progress& progress) {
+  const FileCopy file(path);
+  VerifyReport report;
+  CompactContents contents;
+  Svdag dag;
+  // Cancelled is an Error, but no result of a check.
+  const auto check = [&](const char* name, std::initializer_list<std::size_t> needed,
+                         const auto& work) {
+    run_check(report, name, needed, work);
+    progress.throw_if_cancelled();
+  };
+  enum : std::size_t { kContainer, kChecksums, kMetadata, kStructure };
+  check("container", {}, [&] { contents.chunks = read_vdag_chunks(file.bytes()); });
+  check("checksums", {kContainer}, [&] { check_vdag_checksums(contents.chunks); });
+  check("metadata", {kContainer}, [&] { contents.metadata = read_vdag_metadata(contents.chunks); });
+  check("structure", {kContainer, kChecksums, kMetadata}, [&] {
+    contents = parse_compact(file.bytes());
+    dag = decode_svdag(contents.view(), nullptr, &progress);
+    validate_svdag(dag.view());
+  });
+  check("canonical", {kStructure}, [&] { check_bytes(dag, contents, progress); });
+  check("counts", {kStructure},
+        [&] { compare_counts(contents.metadata.counts, count_svdag(dag.view())); });
+  return report;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,20 @@
+#pragma once
+/// The checks of a compact DAG.
+#include <filesystem>
+
+#include "voxdag/file/verify_vdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// Runs all checks, but skips those that make no sense after a failed one:
+///   container   magic, version, sizes, chunk table, padding
+///   checksums   every chunk has its checksum
+///   metadata    the JSON and its values
+///   structure   the head is right, and the stream decodes to a DAG
+///   canonical   encoding that DAG again gives the same bytes
+///   counts      the metadata has the counts of the DAG
+/// Throws Error only if the file cannot be read, and Cancelled.
+VerifyReport verify_compact(const std::filesystem::path& path, Progress& progress);
+
+}  // namespace voxdag

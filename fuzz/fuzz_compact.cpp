@@ -1,0 +1,84 @@
+/// Fuzzes the reader of compact DAGs: any bytes give an Error, or a DAG that is safe to read. What
+/// decodes is a valid DAG in canonical order.
+///
+/// The mutator keeps the offsets and checksums of the container correct (chunk_mutator.hpp). It
+/// needs no corpus, because it starts with small DAGs of random voxels.
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "chunk_mutator.hpp"
+#include "support/brute_svdag.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/compact_file.hpp"
+#include "voxdag/layout/compact/compact_nodes.hpp"
+#include "voxdag/layout/validate_svdag.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Reads nodes depth first, `left` of them at most.
+void read_nodes(const CompactSvdagView& dag, CompactRange range, int level, int& left) {
+  if (left-- <= 0) return;
+  if (range.begin > range.end || range.end > dag.stream_bits) std::abort();
+  if (level == dag.coded_levels() - 4) {
+    CompactUnit unit;
+    read_unit(dag, range, unit);
+    return;
+  }
+  CompactNode node;
+  read_node(dag, range, level, node);
+  for (int i = 0; i < 8; ++i)
+    if ((node.mask >> i & 1) != 0) read_nodes(dag, node.children[i], level + 1, left);
+}
+
+void walk(const CompactContents& contents) {
+  const CompactSvdagView view = contents.view();
+  int left = 1000;
+  if (!view.is_empty()) read_nodes(view, root_node(view), 0, left);
+  Svdag dag;
+  try {
+    MemoryBudget memory(std::uint64_t{256} << 20);
+    dag = decode_svdag(view, &memory);
+  } catch (const Error&) {
+    return;
+  }
+  validate_svdag(dag.view());
+  if (dag.nodes.size() > 100'000) return;
+  check_canonical(dag.view());
+}
+
+void change(std::vector<Piece>& pieces, std::mt19937& rng) {
+  Piece& piece = pieces[rng() % pieces.size()];
+  switch (rng() % 8) {
+    case 0:
+      return change_bytes(piece.bytes);
+    case 1:
+      return change_entry(piece.entry, rng);
+    default:
+      return change_word<std::uint32_t>(piece.bytes, rng);
+  }
+}
+
+std::string seed_file(std::mt19937& rng) {
+  const int levels = 2 + static_cast<int>(rng() % 7);
+  const Svdag dag = brute_svdag(
+      levels, random_voxels(levels, static_cast<int>(rng() % 200), static_cast<unsigned>(rng())));
+  const TempDir dir;
+  write_vdag(dir / "file.vdag", encode_svdag(dag.view()), example_metadata(dag.view()));
+  return read_text(dir / "file.vdag");
+}
+
+}  // namespace
+}  // namespace voxdag
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return voxdag::read_and_walk(data, size, voxdag::parse_compact, voxdag::walk);
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return voxdag::mutate_chunks(data, size, max_size, seed, voxdag::change, voxdag::seed_file);
+}

@@ -1,0 +1,15 @@
+#pragma once
+/// The DAG of a coarser grid.
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// Returns the minimal DAG, in canonical order, of the grid of `levels` levels, from kMinLevels to
+/// those of `dag`, in which a voxel is set if its cell in `dag` has voxels. `dag` must be valid.
+/// O(DAG) time. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
+Svdag coarsen(const SvdagView& dag, int levels, MemoryBudget* memory = nullptr,
+              Progress* progress = nullptr);
+
+}  // namespace voxdag

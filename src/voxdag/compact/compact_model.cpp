@@ -1,0 +1,148 @@
+#include "voxdag/compact/compact_model.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+
+#include "voxdag/compact/train_tree.hpp"
+#include "voxdag/compact/unit_symbols.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+
+namespace voxdag {
+namespace {
+
+/// About this many bricks are samples for the trees.
+constexpr std::uint64_t kSampledBricks = 40000;
+
+/// Returns whether the item is one of the samples, of which there is one in `stride` items on
+/// average, at no regular distance.
+bool is_sample(std::uint64_t item, std::uint64_t stride) {
+  std::uint64_t x = item * 0x9E3779B97F4A7C15ull;
+  x = (x ^ x >> 32) * 0xD6E8FEB86659FD93ull;
+  return (x >> 32) % stride == 0;
+}
+
+class SampleSink {
+ public:
+  void symbol(CompactSymbol symbol, std::uint64_t features, std::uint32_t value) {
+    samples[symbol].push_back({features, value});
+  }
+  void raw(std::uint32_t, int) {}
+
+  std::array<std::vector<ContextSample>, kCompactSymbols> samples;
+};
+
+class CountSink {
+ public:
+  explicit CountSink(const CompactTrees& trees) : trees_(trees) {
+    for (const ContextTree& tree : trees) {
+      counts.emplace_back(tree.tables());
+      views_.push_back(tree.view());
+    }
+  }
+  void symbol(CompactSymbol symbol, std::uint64_t features, std::uint32_t value) {
+    counts[symbol].add(views_[symbol].table(features), value);
+  }
+  void raw(std::uint32_t, int) {}
+
+  std::vector<SymbolCounts> counts;
+
+ private:
+  const CompactTrees& trees_;
+  std::vector<ContextTreeView> views_;
+};
+
+/// Calls visit_unit, visit_shared_brick or visit_node for item `i` of all nodes that have
+/// symbols: the units, the shared bricks, and the nodes above the units.
+class AllNodes {
+ public:
+  explicit AllNodes(const NumberedNodes& nodes) : nodes_(nodes) {
+    parts_.push_back(nodes.nodes(nodes.unit_level()).size());
+    parts_.push_back(nodes.shared(nodes.brick_level()).size());
+    for (int level = 0; level < nodes.unit_level(); ++level)
+      parts_.push_back(nodes.nodes(level).size());
+    for (const std::uint64_t part : parts_) size_ += part;
+  }
+  std::uint64_t size() const { return size_; }
+
+  template <class Sink>
+  void visit(std::uint64_t i, Sink& sink) const {
+    std::size_t part = 0;
+    for (; i >= parts_[part]; ++part) i -= parts_[part];
+    if (part == 0) {
+      visit_unit(nodes_, nodes_.nodes(nodes_.unit_level())[i], sink);
+    } else if (part == 1) {
+      visit_shared_brick(nodes_, nodes_.shared(nodes_.brick_level())[i], sink);
+    } else {
+      const int level = static_cast<int>(part) - 2;
+      std::uint8_t kinds[8];
+      visit_node(nodes_, nodes_.nodes(level)[i], level, sink, kinds);
+    }
+  }
+
+ private:
+  const NumberedNodes& nodes_;
+  std::vector<std::uint64_t> parts_;
+  std::uint64_t size_ = 0;
+};
+
+std::uint64_t count_bricks(const NumberedNodes& nodes) {
+  const SvdagView& dag = nodes.dag();
+  const int level = nodes.brick_level();
+  // Most bricks have two to six leaves, which is precise enough for a number of samples.
+  return (dag.level_begin[level + 1] - dag.level_begin[level]) / 5 + 1;
+}
+
+}  // namespace
+
+void SymbolCounts::set_frequencies(ContextTree& tree) const {
+  for (std::size_t t = 0; t < counts_.size(); ++t) {
+    std::uint64_t most = 0;
+    for (const std::uint64_t count : counts_[t]) most = std::max(most, count);
+    int shift = 0;
+    while (most >> shift >= 1u << 24) ++shift;
+    std::array<std::uint32_t, 256> scaled{};
+    for (std::size_t s = 0; s < 256; ++s)
+      if (counts_[t][s] != 0)
+        scaled[s] = std::max(static_cast<std::uint32_t>(counts_[t][s] >> shift), 1u);
+    tree.weights[t] = weights_for(scaled);
+  }
+  tree.prepare();
+}
+
+CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
+                          Progress* progress) {
+  const AllNodes all(nodes);
+  const std::uint64_t stride = std::max<std::uint64_t>(count_bricks(nodes) / kSampledBricks, 1);
+  SampleSink samples;
+  // About 30 symbols a brick; vectors grow by doubling.
+  const std::uint64_t sampled_bricks = std::min(count_bricks(nodes) * 5, 2 * kSampledBricks);
+  const MemoryReservation sampled(budget, 2 * sampled_bricks * 30 * sizeof(ContextSample));
+  for (std::uint64_t i = 0; i < all.size(); ++i) {
+    poll_seldom(progress, i);
+    if (is_sample(i, stride)) all.visit(i, samples);
+  }
+  CompactTrees trees;
+  parallel_for(kCompactSymbols, [&](std::size_t symbol) {
+    const auto s = static_cast<CompactSymbol>(symbol);
+    const int share = s == kCellMask ? 1 : s == kLeafMask ? 2 : 8;
+    const TreeLimits limits{kCompactFeatures[s], std::max(most_tables / share, 1), stride};
+    trees[s] = train_tree(samples.samples[s], limits, progress);
+    samples.samples[s] = {};
+  });
+
+  std::size_t tables = 0;
+  for (const ContextTree& tree : trees) tables += tree.tables();
+  tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees); });
+  const MemoryReservation counted(budget, tables * 256 * sizeof(std::uint64_t) * 3);
+  polled_for(all.size(), 1024, progress, "model",
+             [&](std::size_t i) { all.visit(i, sinks.local()); });
+  for (std::size_t s = 0; s < trees.size(); ++s) {
+    SymbolCounts sum(trees[s].tables());
+    for (const CountSink& sink : sinks) sum.add(sink.counts[s]);
+    sum.set_frequencies(trees[s]);
+  }
+  return trees;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,36 @@
+#pragma once
+/// Chooses the context trees of a compact DAG.
+#include <array>
+#include <vector>
+
+#include "voxdag/compact/numbered_nodes.hpp"
+#include "voxdag/layout/compact/compact_svdag.hpp"
+
+namespace voxdag {
+
+using CompactTrees = std::array<ContextTree, kCompactSymbols>;
+
+/// Trees and frequencies for all symbols but kUnitBits, whose tree is a single table that is not
+/// used. `most_tables` limits the tables of each tree: more tables make fewer bytes, but reading
+/// slower. Throws OverMemory and Cancelled.
+CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
+                          Progress* progress);
+
+/// The symbols of one context tree, counted by table.
+class SymbolCounts {
+ public:
+  explicit SymbolCounts(std::size_t tables) : counts_(tables) {}
+
+  void add(std::uint32_t table, std::uint32_t symbol) { ++counts_[table][symbol]; }
+  void add(const SymbolCounts& other) {
+    for (std::size_t t = 0; t < counts_.size(); ++t)
+      for (std::size_t s = 0; s < 256; ++s) counts_[t][s] += other.counts_[t][s];
+  }
+  /// Gives the tree the frequencies of these counts, and prepares it for reading.
+  void set_frequencies(ContextTree& tree) const;
+
+ private:
+  std::vector<std::array<std::uint64_t, 256>> counts_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,58 @@
+#include "voxdag/file/compact_file.hpp"
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_format.hpp"
+#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/layout/compact/compact_bytes.hpp"
+
+namespace voxdag {
+
+bool is_compact(const std::vector<VdagChunk>& chunks) {
+  return has_chunk(chunks, kChunkCompactStream);
+}
+
+CompactSvdagView CompactContents::view() const {
+  CompactSvdagView view = head.view();
+  if (!view.is_empty())
+    view.stream = chunk_values<std::uint32_t>(chunks, kChunkCompactStream).data();
+  return view;
+}
+
+CompactContents parse_compact(std::span<const std::byte> file) {
+  CompactContents contents;
+  contents.chunks = read_vdag_chunks(file);
+  if (!is_compact(contents.chunks)) throw Error("", "", "does not hold a compact DAG");
+  check_vdag_checksums(contents.chunks);
+  contents.metadata = read_vdag_metadata(contents.chunks);
+  const auto stream = chunk_values<std::uint32_t>(contents.chunks, kChunkCompactStream);
+  const std::span<const std::byte> head = chunk_bytes(contents.chunks, kChunkCompactHead, 1);
+  contents.head_bytes = head.size();
+  try {
+    contents.head = parse_compact_head(head, contents.metadata.grid.levels, stream.size());
+  } catch (const Error& error) {
+    throw error.within(ErrorPlace::chunk("CHED"));
+  }
+  // Readers may load the word after the last bit.
+  if (!stream.empty() && stream.back() != 0)
+    throw Error("", ErrorPlace::chunk("CSTR"), "the last word is not zero");
+  return contents;
+}
+
+CompactFile::CompactFile(const std::filesystem::path& path) : file_(path) {
+  try {
+    contents_ = parse_compact(file_.bytes());
+  } catch (const Error& error) {
+    throw error.in_file(path.string());
+  }
+}
+
+bool is_compact_file(const std::filesystem::path& path) {
+  const MappedFile mapping(path, MappedFile::Access::kRandom);
+  try {
+    return is_compact(read_vdag_chunks(mapping.bytes()));
+  } catch (const Error& error) {
+    throw error.in_file(path.string());
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,55 @@
+#pragma once
+/// Reads a DAG in the compact form from a .vdag file.
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/io/file_copy.hpp"
+#include "voxdag/layout/compact/compact_svdag.hpp"
+
+namespace voxdag {
+
+/// Returns whether these are the chunks of a compact DAG.
+bool is_compact(const std::vector<VdagChunk>& chunks);
+
+struct CompactContents {
+  std::vector<VdagChunk> chunks;
+  VdagMetadata metadata;
+  CompactSvdag head;  ///< Without a stream.
+  std::uint64_t head_bytes = 0;
+
+  /// Returns the DAG. Its stream points into the bytes that were parsed.
+  CompactSvdagView view() const;
+};
+
+/// Parses the bytes of a file; vdag_parse.hpp describes the container and the rules for errors.
+/// Checks everything but the contents of the stream: any stream is safe to walk and to decode, and
+/// decode_svdag() and verify find what is wrong with it.
+CompactContents parse_compact(std::span<const std::byte> file);
+
+/// Reads the file into memory and checks its checksums and its head. Views stay valid when the
+/// object is moved, and when other programs change the file (see FileCopy).
+class CompactFile {
+ public:
+  /// Reads the file. Throws Error(path, place, reason) for a file that cannot be read or fails a
+  /// check.
+  explicit CompactFile(const std::filesystem::path& path);
+
+  CompactSvdagView view() const { return contents_.view(); }
+  const VdagMetadata& metadata() const { return contents_.metadata; }
+  const Grid& grid() const { return contents_.metadata.grid; }
+  const CompactContents& contents() const { return contents_; }
+  std::uint64_t head_bytes() const { return contents_.head_bytes; }
+  std::uint64_t file_bytes() const { return file_.bytes().size(); }
+
+ private:
+  FileCopy file_;
+  CompactContents contents_;
+};
+
+/// Returns whether the file is a compact DAG, and false for other .vdag and .esvo files. Reads only
+/// its chunk table. Throws Error(path, place, reason) for a file that is none of them.
+bool is_compact_file(const std::filesystem::path& path);
+
+}  // namespace voxdag

@@ -1,0 +1,181 @@
+// Tests the compact form: every DAG comes back, the same bits for any number of threads, and any
+// bits are safe to read.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "support/brute_svdag.hpp"
+#include "support/random_bits.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/layout/compact/compact_bytes.hpp"
+#include "voxdag/layout/compact/compact_nodes.hpp"
+#include "voxdag/layout/compact/compact_parts.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Voxels of a tilted plane, of which a part is repeated all over the grid.
+std::vector<Vec3i> repeated_plane(int levels) {
+  std::vector<Vec3i> voxels;
+  const std::int32_t n = 1 << levels;
+  for (std::int32_t y = 0; y < n; ++y)
+    for (std::int32_t x = 0; x < n; ++x) {
+      const std::int32_t z = (x % 32 * 3 + y % 64 * 5) / 8 % n;
+      voxels.push_back({x, y, z});
+      if (x / 16 % 2 == 0) voxels.push_back({x, y, n - 1 - z});
+    }
+  return voxels;
+}
+
+std::vector<Svdag> example_dags() {
+  std::vector<Svdag> dags;
+  for (int levels = 2; levels <= 8; ++levels)
+    for (const int count : {0, 1, 2, 30, 400, 5000})
+      dags.push_back(
+          brute_svdag(levels, random_voxels(levels, count, static_cast<unsigned>(count))));
+  for (int levels = 4; levels <= 8; ++levels)
+    dags.push_back(brute_svdag(levels, repeated_plane(levels)));
+  dags.push_back(brute_svdag(kMaxLevels, {{0, 0, 0}, {1048575, 524288, 1}, {77, 77, 77}}));
+  dags.push_back(brute_svdag(6, [] {
+    std::vector<Vec3i> all;
+    for (std::uint64_t i = 0; i < 64 * 64 * 64; ++i) all.push_back(morton_decode(i));
+    return all;
+  }()));
+  return dags;
+}
+
+TEST(CompactSvdag, EveryDagComesBack) {
+  for (const Svdag& dag : example_dags()) {
+    const CompactSvdag compact = encode_svdag(dag.view());
+    EXPECT_EQ(compact.levels, dag.levels);
+    EXPECT_EQ(decode_svdag(compact.view()), dag) << dag.levels << " levels";
+  }
+}
+
+TEST(CompactSvdag, TheHeadComesBack) {
+  for (const Svdag& dag : example_dags()) {
+    const CompactSvdag compact = encode_svdag(dag.view());
+    const std::vector<std::byte> head = compact_head(compact);
+    CompactSvdag read = parse_compact_head(head, dag.levels, compact.words().size());
+    read.stream = compact.stream;
+    EXPECT_EQ(decode_svdag(read.view()), dag);
+    EXPECT_EQ(compact_head(read), head);
+  }
+}
+
+TEST(CompactSvdag, HasTheSameBitsForAnyNumberOfThreads) {
+  const Svdag dag = brute_svdag(8, repeated_plane(8));
+  const CompactSvdag compact = encode_svdag(dag.view());
+  for (const std::size_t threads : {1u, 3u, 8u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const CompactSvdag again = encode_svdag(dag.view());
+    EXPECT_EQ(again.stream, compact.stream);
+    EXPECT_EQ(compact_head(again), compact_head(compact));
+    EXPECT_EQ(decode_svdag(compact.view()), dag);
+  }
+}
+
+TEST(CompactSvdag, FewerTablesGiveTheSameVoxels) {
+  const Svdag dag = brute_svdag(8, repeated_plane(8));
+  for (const int tables : {1, 16, kMostTables})
+    EXPECT_EQ(decode_svdag(encode_svdag(dag.view(), {.tables = tables}).view()), dag);
+}
+
+TEST(CompactSvdag, IsSmallerThanThePapersLayout) {
+  const Svdag dag = brute_svdag(8, repeated_plane(8));
+  const CompactSvdag compact = encode_svdag(dag.view());
+  EXPECT_LT(compact.stream_bits / 8, dag.view().bytes() / 2);
+}
+
+TEST(CompactSvdag, ThePartsAddUp) {
+  for (const Svdag& dag : example_dags()) {
+    const CompactSvdag compact = encode_svdag(dag.view());
+    const CompactParts parts = compact_parts(compact.view());
+    EXPECT_EQ(parts.node_bits + parts.unit_bits + parts.shared_brick_bits, compact.stream_bits);
+  }
+}
+
+/// Reads the node with all that is below it, to a limited number of nodes.
+void walk(const CompactSvdagView& dag, CompactRange range, int level, int& left) {
+  if (left-- <= 0) return;
+  ASSERT_LE(range.begin, range.end);
+  ASSERT_LE(range.end, dag.stream_bits);
+  if (level == dag.coded_levels() - 4) {
+    CompactUnit unit;
+    read_unit(dag, range, unit);
+    return;
+  }
+  CompactNode node;
+  read_node(dag, range, level, node);
+  for (int i = 0; i < 8; ++i)
+    if ((node.mask >> i & 1) != 0) walk(dag, node.children[i], level + 1, left);
+}
+
+TEST(CompactSvdag, AnyStreamIsSafeToRead) {
+  Random random(5);
+  const Svdag dag = brute_svdag(8, repeated_plane(8));
+  const CompactSvdag compact = encode_svdag(dag.view());
+  int refused = 0;
+  for (int round = 0; round < 600; ++round) {
+    CompactSvdag broken = compact;
+    if (round < 300) {
+      const std::uint64_t bit = random() % compact.stream_bits;
+      broken.stream[bit / 32] ^= 1u << bit % 32;
+    } else {
+      for (std::size_t i = 0; i + 1 < broken.stream.size(); ++i) broken.stream[i] = random();
+    }
+    int nodes = 2000;
+    walk(broken.view(), root_node(broken.view()), 0, nodes);
+    try {
+      decode_svdag(broken.view());
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 500);
+}
+
+TEST(CompactSvdag, EveryTruncatedOrChangedHeadIsRefusedOrHarmless) {
+  const Svdag dag = brute_svdag(6, repeated_plane(6));
+  const CompactSvdag compact = encode_svdag(dag.view());
+  const std::vector<std::byte> head = compact_head(compact);
+  for (std::size_t size = 0; size < head.size(); ++size)
+    EXPECT_THROW(parse_compact_head(std::span(head).first(size), 6, compact.stream.size()), Error)
+        << size << " bytes";
+  for (std::size_t bit = 0; bit < head.size() * 8; ++bit) {
+    std::vector<std::byte> changed = head;
+    changed[bit / 8] ^= std::byte{1} << bit % 8;
+    try {
+      CompactSvdag read = parse_compact_head(changed, 6, compact.stream.size());
+      read.stream = compact.stream;
+      decode_svdag(read.view());
+    } catch (const Error&) {
+    }
+  }
+}
+
+TEST(CompactSvdag, AMemoryLimitIsKeptOrRefused) {
+  const Svdag dag = brute_svdag(8, repeated_plane(8));
+  MemoryBudget small(std::uint64_t{1} << 16);
+  EXPECT_THROW(encode_svdag(dag.view(), {.memory = &small}), OverMemory);
+  EXPECT_EQ(small.used(), 0u);
+  MemoryBudget large(std::uint64_t{1} << 30);
+  const CompactSvdag compact = encode_svdag(dag.view(), {.memory = &large});
+  EXPECT_EQ(large.used(), 0u);
+  MemoryBudget tiny(1000);
+  EXPECT_THROW(decode_svdag(compact.view(), &tiny), OverMemory);
+  EXPECT_EQ(tiny.used(), 0u);
+}
+
+TEST(CompactSvdag, CanBeCancelled) {
+  const Svdag dag = brute_svdag(8, repeated_plane(8));
+  const CompactSvdag compact = encode_svdag(dag.view());
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(encode_svdag(dag.view(), {}, &progress), Cancelled);
+  EXPECT_THROW(decode_svdag(compact.view(), nullptr, &progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,192 @@
+#include "voxdag/layout/compact/symbol_coder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "support/random_bits.hpp"
+#include "voxdag/layout/compact/adaptive_bits.hpp"
+#include "voxdag/layout/compact/context_tree.hpp"
+
+namespace voxdag {
+namespace {
+
+struct Coded {
+  std::uint32_t start, frequency;  ///< A frequency of 0 marks a raw number of `start` bits.
+  std::uint32_t value;
+};
+
+std::vector<Coded> random_symbols(Random& random, std::size_t count) {
+  std::vector<Coded> symbols;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (random() % 4 == 0) {
+      const std::uint32_t bits = random() % 33;
+      const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+      symbols.push_back({bits, 0, static_cast<std::uint32_t>(random() & mask)});
+    } else {
+      const std::uint32_t frequency = random() % 8 == 0 ? 4096 : 1 + random() % 4095;
+      symbols.push_back({static_cast<std::uint32_t>(random() % (4097 - frequency)), frequency, 0});
+    }
+  }
+  return symbols;
+}
+
+void put(const std::vector<Coded>& symbols, SymbolWriter& out) {
+  for (const Coded& s : symbols) {
+    if (s.frequency == 0) {
+      out.put_raw(s.value, static_cast<int>(s.start));
+    } else {
+      out.put(s.start, s.frequency);
+    }
+  }
+}
+
+void expect(const std::vector<Coded>& symbols, SymbolReader& in) {
+  for (const Coded& s : symbols) {
+    if (s.frequency == 0) {
+      ASSERT_EQ(in.take_raw(static_cast<int>(s.start)), s.value);
+    } else {
+      ASSERT_GE(in.slot(), s.start);
+      ASSERT_LT(in.slot(), s.start + s.frequency);
+      in.take(s.start, s.frequency);
+    }
+  }
+}
+
+TEST(SymbolCoder, ClosedRecordsGiveBackTheirSymbols) {
+  Random random(1);
+  for (int round = 0; round < 2000; ++round) {
+    const std::vector<Coded> symbols = random_symbols(random, random() % 40);
+    BitWriter bits;
+    bits.put(random() & 0x1FFF, 13);
+    SymbolWriter writer;
+    put(symbols, writer);
+    writer.close(bits);
+    const std::uint64_t end = bits.bits();
+    bits.put(random() & 0x7FFFFFFF, 31);
+    const std::vector<std::uint32_t> words = bits.finish();
+    SymbolReader reader(words.data(), 13, end);
+    expect(symbols, reader);
+    EXPECT_TRUE(reader.is_finished());
+  }
+}
+
+TEST(SymbolCoder, OpenRecordsKeepTheirTailAndDoNotNeedTheirEnd) {
+  Random random(2);
+  for (int round = 0; round < 2000; ++round) {
+    const std::vector<Coded> symbols = random_symbols(random, random() % 40);
+    const std::uint32_t tail = random() & 0xFFFF, behind = random();
+    BitWriter bits;
+    SymbolWriter writer;
+    put(symbols, writer);
+    writer.leave_open(tail, bits);
+    const std::uint64_t end = bits.bits();
+    bits.put(behind, 32);
+    const std::uint64_t stream_end = bits.bits();
+    const std::vector<std::uint32_t> words = bits.finish();
+    SymbolReader reader(words.data(), 0, stream_end);
+    expect(symbols, reader);
+    EXPECT_TRUE(reader.is_full());
+    EXPECT_EQ(reader.tail(), tail);
+    EXPECT_EQ(reader.position(), end);
+  }
+}
+
+TEST(SymbolCoder, SymbolsThatAreCertainTakeNoBits) {
+  BitWriter bits;
+  SymbolWriter writer;
+  for (int i = 0; i < 1000; ++i) writer.put(0, 4096);
+  writer.close(bits);
+  EXPECT_EQ(bits.bits(), 0u);
+}
+
+TEST(SymbolCoder, ARecordTakesTheBitsOfItsInformation) {
+  // 300 symbols of 1/2 and 300 of 1/16 have 1500 bits. A state of 17 bits loses less than 1%.
+  BitWriter bits;
+  SymbolWriter writer;
+  for (int i = 0; i < 300; ++i) {
+    writer.put(2048, 2048);
+    writer.put(256, 256);
+  }
+  writer.close(bits);
+  EXPECT_GE(bits.bits(), 1500u);
+  EXPECT_LE(bits.bits(), 1515u);
+}
+
+TEST(SymbolCoder, AnyBitsAreSafeToRead) {
+  Random random(3);
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<std::uint32_t> words(8);
+    for (std::uint32_t& word : words) word = random();
+    words.back() = 0;
+    const std::uint64_t end = random() % 193, begin = random() % (end + 1);
+    SymbolReader reader(words.data(), begin, end);
+    for (int i = 0; i < 100; ++i) {
+      if (random() % 3 == 0) {
+        reader.take_raw(static_cast<int>(random() % 33));
+        continue;
+      }
+      const std::uint32_t frequency = 1 + random() % 4096;
+      const std::uint32_t slot = reader.slot();
+      reader.take(slot >= frequency ? slot - frequency + 1 : 0, frequency);
+      ASSERT_LE(reader.position(), end);
+    }
+  }
+}
+
+TEST(Frequencies, AddUpForAnyWeights) {
+  Random random(4);
+  for (int round = 0; round < 2000; ++round) {
+    WeightCodes weights{};
+    const std::size_t used = 1 + random() % 256;
+    for (std::size_t s = 0; s < used; ++s)
+      weights[s] =
+          static_cast<std::uint8_t>(random() % 2 == 0 ? 1 : random() % (kMostWeightCode + 1));
+    weights[0] = 1;
+    const Frequencies frequencies = frequencies_of(weights);
+    std::uint32_t sum = 0;
+    for (std::size_t s = 0; s < 256; ++s) {
+      EXPECT_EQ(frequencies[s] != 0, weights[s] != 0);
+      sum += frequencies[s];
+    }
+    EXPECT_EQ(sum, 4096u);
+  }
+}
+
+TEST(Frequencies, FollowTheCounts) {
+  std::array<std::uint32_t, 256> counts{};
+  counts[7] = 3'000'000;
+  counts[9] = 1'000'000;
+  counts[200] = 1;
+  const Frequencies frequencies = frequencies_of(weights_for(counts));
+  EXPECT_NEAR(frequencies[7], 3072, 64);
+  EXPECT_NEAR(frequencies[9], 1024, 64);
+  EXPECT_GE(frequencies[200], 1);
+}
+
+TEST(AdaptiveBits, GiveBackWhatWasWritten) {
+  std::mt19937_64 random(5);
+  std::vector<std::uint64_t> values;
+  for (int i = 0; i < 3000; ++i)
+    values.push_back((random() & ((std::uint64_t{1} << 62) - 1)) >> random() % 62);
+  AdaptiveBitWriter out;
+  AdaptiveCount count;
+  AdaptiveBit bit;
+  for (const std::uint64_t value : values) {
+    count.put(out, value);
+    out.put(value % 7 == 0, bit);
+  }
+  const std::vector<std::byte> bytes = out.finish();
+  AdaptiveBitReader in(bytes);
+  AdaptiveCount read;
+  AdaptiveBit read_bit;
+  for (const std::uint64_t value : values) {
+    EXPECT_EQ(read.get(in), value);
+    EXPECT_EQ(in.get(read_bit), value % 7 == 0);
+  }
+  EXPECT_TRUE(in.is_at_end());
+}
+
+}  // namespace
+}  // namespace voxdag
