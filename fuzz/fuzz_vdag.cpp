@@ -14,9 +14,11 @@
 
 #include "chunk_mutator.hpp"
 #include "support/brute_svdag.hpp"
+#include "support/number_colors.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
+#include "voxdag/layout/look.hpp"
 #include "voxdag/layout/svdag_lookup.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 #include "voxdag/trace/cast.hpp"
@@ -66,11 +68,24 @@ bool passes(const SvdagView& view, void (*check)(const SvdagView&)) {
   }
 }
 
+/// Reads the attributes of the voxels and of the cells above them.
+void read_attributes(const VdagContents& contents, const std::vector<Vec3i>& voxels) {
+  const ColoredDagView colored{contents.view, contents.attributes};
+  if (colored.is_empty()) return;
+  for (const Vec3i voxel : voxels)
+    for (int shift = 0; shift <= contents.view.levels; ++shift) {
+      const Vec3i cell{voxel.x >> shift, voxel.y >> shift, voxel.z >> shift};
+      const StoredLook look = look_at(colored, cell, contents.view.levels - shift);
+      if (!look.has_color && !look.has_normal) std::abort();
+    }
+}
+
 void walk(const VdagContents& contents) {
   const SvdagView& view = contents.view;
   const SvdagCounts counts = count_svdag(view);
   const std::vector<Vec3i> voxels = first_voxels(view);
   cast_rays(view, contents.metadata.grid, voxels);
+  read_attributes(contents, voxels);
   const bool canonical = passes(view, check_canonical), minimal = passes(view, check_minimal);
   if (!canonical || !minimal || voxels.size() > kMostVoxels) return;
   const Svdag reference = brute_svdag(view.levels, voxels);
@@ -97,8 +112,12 @@ void change(std::vector<Piece>& pieces, std::mt19937& rng) {
 
 std::string seed_file(std::mt19937& rng) {
   const int levels = 2 + static_cast<int>(rng() % 7);
-  return vdag_file_bytes(brute_svdag(
-      levels, random_voxels(levels, static_cast<int>(rng() % 20), static_cast<unsigned>(rng()))));
+  const Svdag dag = brute_svdag(
+      levels, random_voxels(levels, static_cast<int>(rng() % 20), static_cast<unsigned>(rng())));
+  if (rng() % 2 == 0) return vdag_file_bytes(dag);
+  const int finest = static_cast<int>(rng() % static_cast<unsigned>(levels + 1));
+  const NumberColors colors(dag.view(), finest);
+  return vdag_file_bytes(dag, colors.view().attributes);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <sstream>
 
+#include "colored_waves.hpp"
 #include "npy_rays.hpp"
 #include "process.hpp"
 #include "support/temp_dir.hpp"
@@ -22,24 +22,6 @@ namespace {
 const std::string kPlace = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
 const std::string kAttributes = ", ('normal', '<f4', (3,)), ('color', '|u1', (3,))";
 constexpr std::size_t kPlaceBytes = 18, kAttributeBytes = 15;
-
-/// Returns a wavy mesh whose vertices all have different colours.
-std::string colored_waves() {
-  constexpr int kSide = 20;
-  std::ostringstream text;
-  for (int i = 0; i <= kSide; ++i)
-    for (int j = 0; j <= kSide; ++j) {
-      text << "v " << i << " " << 3 * std::sin(0.5 * i) * std::cos(0.4 * j) << " " << j;
-      for (const int step : {37, 61, 89}) text << " " << (i * step + j * (step + 4)) % 101 / 100.0;
-      text << "\n";
-    }
-  for (int i = 0; i < kSide; ++i)
-    for (int j = 0; j < kSide; ++j) {
-      const int first = 1 + i * (kSide + 1) + j, next = first + kSide + 1;
-      text << "f " << first << " " << first + 1 << " " << next + 1 << " " << next << "\n";
-    }
-  return text.str();
-}
 
 struct Attributes {
   Vec3f normal;
@@ -242,7 +224,7 @@ TEST_F(TraceCommand, RefusesTheLookOfSomethingElse) {
       expect_failure(run_voxdag(words), 1, reason);
     }
   };
-  refused(dag, dag, "dag.vdag: is not an ESVO");
+  refused(dag, dag, "dag.vdag: is neither an ESVO nor a DAG with colours");
   refused(dag, dir_ / "hair.esvo", "hair.esvo: is of another mesh");
   refused(dag, dir_ / "absent.esvo", "absent.esvo");
   refused(esvo, esvo, "--look: needs a DAG");

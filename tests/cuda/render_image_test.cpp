@@ -9,9 +9,11 @@
 #include "cuda/like_the_cpu.hpp"
 #include "cuda/pictures.hpp"
 #include "support/ball_octree.hpp"
+#include "support/number_colors.hpp"
 #include "support/test_esvo.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/render_image.hpp"
+#include "voxdag/cuda/device_attributes.hpp"
 
 namespace voxdag {
 namespace {
@@ -62,6 +64,27 @@ TEST_F(CudaRender, LooksUpColoursAndNormalsAsTheCpuDoes) {
   const RenderedImage image = render_image(scene, picture_grid(), options);
   expect_like(image, expected);
   EXPECT_EQ(image.normal, expected.normal);
+}
+
+TEST_F(CudaRender, LooksUpTheAttributesOfADagAsTheCpuDoes) {
+  const Svdag dag = picture_scene();
+  for (const int finest : {dag.levels, dag.levels - 2}) {
+    const NumberColors attributes(dag.view(), finest);
+    const ColoredDagView colored = attributes.view();
+    const DeviceScene scene(device_, dag.view());
+    const DeviceAttributes device_attributes(scene, colored.attributes);
+    for (const Picture& picture : pictures(4)) {
+      SCOPED_TRACE(picture.name);
+      RenderOptions options = picture.options;
+      options.look = colored;
+      const RenderedImage expected = render_image(dag.view(), picture_grid(), options);
+      EXPECT_NE(expected.radiance,
+                render_image(dag.view(), picture_grid(), picture.options).radiance);
+      options.look = device_attributes.view();
+      const RenderedImage image = render_image(scene, picture_grid(), options);
+      expect_like(image, expected);
+    }
+  }
 }
 
 TEST_F(CudaRender, IsWithinOneGreyLevelOfTheCpuForTheCubesOfAnEsvo) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "voxdag/esvo/build/piece_stack.hpp"
+#include "voxdag/pieces/piece_stack.hpp"
 
 namespace voxdag {
 namespace {

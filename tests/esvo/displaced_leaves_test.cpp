@@ -13,7 +13,7 @@
 #include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/build/build_esvo.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
-#include "voxdag/esvo/build/triangle_source.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,4 +1,4 @@
-#include "voxdag/esvo/build/duplicate_surfaces.hpp"
+#include "voxdag/pieces/duplicate_surfaces.hpp"
 
 #include <gtest/gtest.h>
 

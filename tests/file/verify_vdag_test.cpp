@@ -32,13 +32,14 @@ TEST(VerifyVdag, AValidFilePassesEveryCheck) {
   for (int levels = 2; levels <= 7; ++levels)
     for (const int count : {0, 1, 100})
       EXPECT_EQ(verify(vdag_file_bytes(brute_svdag(levels, random_voxels(levels, count, 3)))),
-                "container, checksums, metadata, structure, canonical order, minimality, counts");
+                "container, checksums, metadata, structure, canonical order, minimality, counts, "
+                "attributes");
 }
 
 TEST(VerifyVdag, ADamagedContainerSkipsTheRest) {
   EXPECT_EQ(verify("nothing"),
             "container! header: not a .vdag file, -checksums, -metadata, -structure, "
-            "-canonical order, -minimality, -counts");
+            "-canonical order, -minimality, -counts, -attributes");
 }
 
 TEST(VerifyVdag, AWrongChecksumIsTheOnlyFaultOfAnOtherwiseValidFile) {
@@ -46,7 +47,7 @@ TEST(VerifyVdag, AWrongChecksumIsTheOnlyFaultOfAnOtherwiseValidFile) {
   bytes[bytes.find("bunny")] = 'f';
   EXPECT_EQ(verify(bytes),
             "container, checksums! chunk META: checksum is wrong, metadata, structure, "
-            "canonical order, minimality, counts");
+            "canonical order, minimality, counts, attributes");
 }
 
 TEST(VerifyVdag, FindsADagThatIsNotMinimal) {
@@ -54,7 +55,8 @@ TEST(VerifyVdag, FindsADagThatIsNotMinimal) {
   dag.leaf_blocks[1] = dag.leaf_blocks[0];
   EXPECT_EQ(verify(vdag_file_bytes(dag)),
             "container, checksums, metadata, structure, canonical order, minimality! "
-            "chunk LEAF, leaf block 1: leaf block equals an earlier leaf block, counts");
+            "chunk LEAF, leaf block 1: leaf block equals an earlier leaf block, counts, "
+            "attributes");
 }
 
 TEST(VerifyVdag, FindsAnotherOrder) {
@@ -62,7 +64,7 @@ TEST(VerifyVdag, FindsAnotherOrder) {
   std::swap(dag.nodes[1], dag.nodes[2]);
   EXPECT_EQ(verify(vdag_file_bytes(dag)),
             "container, checksums, metadata, structure, canonical order! chunk NODE, level 0, "
-            "word 1: child is not the next in depth-first order, minimality, counts");
+            "word 1: child is not the next in depth-first order, minimality, counts, attributes");
 }
 
 TEST(VerifyVdag, FindsWrongCounts) {
@@ -71,9 +73,10 @@ TEST(VerifyVdag, FindsWrongCounts) {
   VdagMetadata metadata = example_metadata(dag.view());
   metadata.counts.svo_nodes_per_level[1] = 3;
   write_vdag(dir / "a.vdag", dag.view(), metadata);
-  EXPECT_EQ(summary(verify_vdag(dir / "a.vdag")),
-            "container, checksums, metadata, structure, canonical order, minimality, "
-            "counts! chunk META, counts.svo_nodes_per_level[1]: is 3, but the DAG has 2");
+  EXPECT_EQ(
+      summary(verify_vdag(dir / "a.vdag")),
+      "container, checksums, metadata, structure, canonical order, minimality, "
+      "counts! chunk META, counts.svo_nodes_per_level[1]: is 3, but the DAG has 2, attributes");
 }
 
 }  // namespace

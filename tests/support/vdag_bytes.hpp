@@ -31,9 +31,9 @@ inline VdagMetadata example_metadata(const SvdagView& view) {
 }
 
 /// Returns the bytes of the file that write_vdag() writes.
-inline std::string vdag_file_bytes(const Svdag& dag) {
+inline std::string vdag_file_bytes(const Svdag& dag, const DagAttributesView& attributes = {}) {
   const TempDir dir;
-  write_vdag(dir / "file.vdag", dag.view(), example_metadata(dag.view()));
+  write_vdag(dir / "file.vdag", dag.view(), example_metadata(dag.view()), attributes);
   return read_text(dir / "file.vdag");
 }
 

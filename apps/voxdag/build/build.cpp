@@ -87,6 +87,7 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
   if (arguments.levels.has_value() == arguments.voxel_size.has_value())
     throw UsageError("give exactly one of -r/--resolution and --voxel-size");
   if (arguments.levels) arguments.esvo.bake.check_levels(*arguments.levels);
+  if (arguments.levels) arguments.attributes.check_levels(*arguments.levels);
 }
 
 }  // namespace
@@ -114,9 +115,12 @@ void add_build_command(const Command& program, Session& session) {
           "sub-volumes in parallel; paper: one sub-volume at a time, as the paper does. All "
           "write the same file (default: hash)")
       .in_group(kDagOptions);
+  add_attribute_options(command, arguments->attributes, kDagOptions);
   command
       .flag("--compact", arguments->compact,
             "Write the compact form, about a quarter of the bytes; every command reads it")
+      .only_if([&arguments = *arguments] { return !arguments.attributes.is_wanted(); },
+               "with --color and --normal, which only the plain form can store")
       .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "build/attribute_options.hpp"
 #include "build/bake_ao.hpp"
 #include "build/displace_option.hpp"
 #include "cli/mesh_input.hpp"
@@ -29,7 +30,8 @@ struct BuildArguments {
   std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
   bool as_esvo = false;
-  bool compact = false;  ///< Write the compact form.
+  AttributeArguments attributes;  ///< For DAGs.
+  bool compact = false;           ///< Write the compact form.
   EsvoArguments esvo;
 };
 

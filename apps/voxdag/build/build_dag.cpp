@@ -20,8 +20,8 @@ namespace {
 
 /// Wall-clock seconds of the steps of a build.
 struct StageSeconds {
-  double read = 0, build = 0, compact = 0, write = 0;
-  double total() const { return read + build + compact + write; }
+  double read = 0, build = 0, attributes = 0, compact = 0, write = 0;
+  double total() const { return read + build + attributes + compact + write; }
 };
 
 nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
@@ -35,6 +35,7 @@ nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
                      {"sort", build.sort_seconds},
                      {"canonical", build.canonical_seconds},
                      {"build", seconds.build},
+                     {"attributes", seconds.attributes},
                      {"compact", seconds.compact},
                      {"write", seconds.write},
                      {"total", seconds.total()}};
@@ -47,13 +48,24 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
   const double rate = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
   return fmt::format(
       "{}\n"
-      "  time          {}: read {}, build {}, {}write {}\n"
+      "  time          {}: read {}, build {}, {}{}write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
       dag_table(dag), human_seconds(seconds.total()), human_seconds(seconds.read),
       human_seconds(seconds.build),
+      seconds.attributes > 0 ? "attributes " + human_seconds(seconds.attributes) + ", " : "",
       dag.compact ? fmt::format("compact {}, ", human_seconds(seconds.compact)) : "",
       human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
+}
+
+/// Reads the mesh, and its appearance if attributes are wanted.
+MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess& access,
+                               Session& session) {
+  if (arguments.attributes.is_wanted())
+    return read_mesh_file_with_appearance(session.subject, access, session);
+  MeshWithAppearance source;
+  source.mesh = read_mesh_file(session.subject, access, session);
+  return source;
 }
 
 }  // namespace
@@ -67,7 +79,8 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   MemoryBudget memory = command_budget(arguments.memory_limit);
   MeshAccess access = arguments.access;
   access.memory = &memory;
-  Mesh mesh = read_mesh_file(session.subject, access, session);
+  MeshWithAppearance source = read_source(arguments, access, session);
+  Mesh& mesh = source.mesh;
   seconds.read = watch.lap();
 
   DagReport report;
@@ -78,8 +91,12 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   report.metadata.build = grid_settings(arguments);
   const BuildResult result =
       build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
-  memory.release(memory_bytes(mesh));
-  mesh = {};
+  const bool has_attributes = arguments.attributes.is_wanted();
+  const auto free_source = [&] {
+    memory.release(memory_bytes(mesh) + memory_bytes(source.appearance));
+    source = {};
+  };
+  if (!has_attributes) free_source();
   seconds.build = watch.lap();
 
   progress.throw_if_cancelled();
@@ -89,13 +106,27 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   counting.resize(0);
   report = report_of(view, report.metadata, 0);
   progress.throw_if_cancelled();
+  DagAttributes attributes;
+  if (has_attributes) {
+    watch.lap();
+    const MemoryReservation dag_bytes(&memory, view.bytes());
+    std::vector<std::string> warnings;
+    const SurfaceShading shading(mesh, source.appearance, &warnings, &progress, &memory);
+    print_warnings(warnings, session);
+    attributes = build_wanted_attributes(arguments.attributes, source, view, shading, memory,
+                                         report.metadata, progress);
+    seconds.attributes = watch.lap();
+  }
+  if (has_attributes) free_source();
+  progress.throw_if_cancelled();
+  report.attributes = sizes_of(attributes.view());
   if (arguments.compact) {
     const CompactSvdag compact = encode_svdag(view, {.memory = &memory}, &progress);
     seconds.compact = watch.lap();
     write_vdag(arguments.output, compact, report.metadata);
     report.compact = bytes_of(compact.view(), compact_head(compact).size());
   } else {
-    write_vdag(arguments.output, view, report.metadata);
+    write_vdag(arguments.output, view, report.metadata, attributes.view());
   }
   seconds.write = watch.lap();
   std::error_code unknown;

@@ -23,6 +23,7 @@ namespace {
 struct ConvertArguments {
   std::string output;
   bool compact = false, plain = false;
+  bool drop_attributes = false;
   std::optional<int> levels;
   std::uint64_t memory_limit = 0;
 };
@@ -47,7 +48,8 @@ void convert(const ConvertArguments& arguments, Session& session) {
   SvdagView dag = file.view();
   VdagMetadata metadata = file.metadata();
   Svdag coarse;
-  if (arguments.levels && *arguments.levels != dag.levels) {
+  const bool is_coarser = arguments.levels && *arguments.levels != dag.levels;
+  if (is_coarser) {
     if (*arguments.levels > dag.levels)
       throw Error(session.subject, "",
                   fmt::format("has {} voxels a side, so that it cannot get {}",
@@ -58,11 +60,18 @@ void convert(const ConvertArguments& arguments, Session& session) {
     metadata = coarser(metadata, dag);
   }
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
+  const DagAttributesView attributes =
+      arguments.drop_attributes ? DagAttributesView{} : file.attributes();
+  if (!attributes.is_empty() && (compact || is_coarser))
+    throw Error(session.subject, "",
+                "has colours or normals, which the compact form and a coarser grid cannot keep: "
+                "use --drop-attributes");
+  if (attributes.is_empty()) metadata.attributes = {};
   if (compact) {
     write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
                metadata);
   } else {
-    write_vdag(arguments.output, dag, metadata);
+    write_vdag(arguments.output, dag, metadata, attributes);
   }
   session.bar.clear();
   if (session.quiet) return;
@@ -89,6 +98,8 @@ void add_convert_command(const Command& program, Session& session) {
   command.optional_number<int>(
       "--levels", arguments->levels, NumberRange::whole(kMinLevels, kMaxLevels), "L",
       "Write a coarser grid, of 2^L voxels a side: a voxel is set if one in it was");
+  command.flag("--drop-attributes", arguments->drop_attributes,
+               "Leave out the colours and normals");
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "
                  "memory)");

@@ -22,9 +22,9 @@ bool have_same_cube(const Grid& a, const Grid& b) {
 }  // namespace
 
 Option add_look_option(const Command& command, std::string& file) {
-  return command.text("--look", file, "ESVO",
-                      "An .esvo file of the same mesh: the voxels of a DAG get its colours and "
-                      "normals");
+  return command.text("--look", file, "FILE",
+                      "An .esvo file or a coloured .vdag file of the same mesh: the voxels of a "
+                      "DAG get its colours and normals");
 }
 
 std::optional<SceneInput> open_look(const std::string& file, const SceneInput& scene,
@@ -33,10 +33,17 @@ std::optional<SceneInput> open_look(const std::string& file, const SceneInput& s
   if (scene.voxels().esvo() != nullptr)
     throw Error("--look", "", "needs a DAG, but the scene is an ESVO, which has a look of its own");
   SceneInput look(file, &session.progress);
-  if (look.voxels().esvo() == nullptr) throw Error(file, "", "is not an ESVO");
+  if (look_of(look).is_empty())
+    throw Error(file, "", "is neither an ESVO nor a DAG with colours or normals");
   if (!have_same_cube(look.grid(), scene.grid()))
     throw Error(file, "", "is of another mesh: its grid has another place or size than the DAG's");
   return look;
+}
+
+LookView look_of(const SceneInput& file) {
+  const VoxelSet voxels = file.voxels();
+  if (voxels.esvo() != nullptr) return *voxels.esvo();
+  return file.colored_dag();
 }
 
 }  // namespace voxdag

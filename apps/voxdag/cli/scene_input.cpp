@@ -49,11 +49,21 @@ SvdagView DagInput::view() const {
   return std::visit([](const auto& dag) -> SvdagView { return dag.view(); }, dag_);
 }
 
+DagAttributesView DagInput::attributes() const {
+  const VdagFile* const plain = std::get_if<VdagFile>(&dag_);
+  return plain == nullptr ? DagAttributesView{} : plain->attributes();
+}
+
 SceneInput::SceneInput(const std::filesystem::path& path, Progress* progress)
     : scene_(open(path, progress)) {}
 
 VoxelSet SceneInput::voxels() const {
   return std::visit([](const auto& file) { return VoxelSet(file.view()); }, scene_);
+}
+
+ColoredDagView SceneInput::colored_dag() const {
+  const DagInput* const dag = std::get_if<DagInput>(&scene_);
+  return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
 }
 
 const SceneMetadata& SceneInput::metadata() const {

@@ -19,6 +19,8 @@ class DagInput {
   DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
 
   SvdagView view() const;
+  /// Returns the colours and normals of the DAG's cells; empty if the file has none.
+  DagAttributesView attributes() const;
   const VdagMetadata& metadata() const { return metadata_; }
   const Grid& grid() const { return metadata_.grid; }
   std::uint64_t file_bytes() const { return file_bytes_; }
@@ -39,6 +41,8 @@ class SceneInput {
   SceneInput(const std::filesystem::path& path, Progress* progress);
 
   VoxelSet voxels() const;
+  /// Returns the DAG with its attributes; empty for an ESVO and a file without attributes.
+  ColoredDagView colored_dag() const;
   const SceneMetadata& metadata() const;
   const Grid& grid() const { return metadata().grid; }
 

@@ -29,6 +29,7 @@ void esvo_info(const std::string& path, bool json) {
 DagReport dag_report(const std::string& path, Progress& progress) {
   const DagInput file(path, &progress);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
+  report.attributes = sizes_of(file.attributes());
   if (!file.is_compact()) return report;
   const CompactFile compact(path);
   report.compact = bytes_of(compact.view(), compact.head_bytes());

@@ -5,6 +5,7 @@
 #include "cli/look_input.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
+#include "render/look_on_device.hpp"
 #include "render/picture_summary.hpp"
 #include "render/render_arguments.hpp"
 #include "render/render_film.hpp"
@@ -23,12 +24,8 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
   const std::optional<SceneInput> look = open_look(arguments.look, file, session);
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
-  std::optional<DeviceScene> device_look;
-  if (look && device_scene) {
-    device_look = load_on_chosen_device(arguments.device, look->voxels());
-    if (!device_look) device_scene.reset();  // --device auto, without memory for both
-  }
-  if (look) options.look = device_look ? device_look->view().esvo : *look->voxels().esvo();
+  const LookOnDevice look_on_device(arguments.device, look ? *look : file, !look, device_scene);
+  options.look = look_on_device.view();
   std::optional<CpuScene> cpu_scene;
   if (!device_scene) cpu_scene.emplace(scene);
   const std::unique_ptr<ViewSource> source =

@@ -3,8 +3,6 @@
 #include <cstring>
 #include <limits>
 
-#include "voxdag/layout/esvo_lookup.hpp"
-#include "voxdag/layout/stored_values.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 
 namespace voxdag {
@@ -18,11 +16,11 @@ void put(std::byte*& row, const T& value) {
 
 }  // namespace
 
-HitRows::HitRows(int levels, const EsvoView& look) : levels_(levels), look_(look) {
+HitRows::HitRows(int levels, const LookView& look) : levels_(levels), look_(look) {
   dtype_ = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
   row_bytes_ = 18;
-  normals_ = has_stored(look, EsvoAttachmentKind::kNormals);
-  colors_ = has_stored(look, EsvoAttachmentKind::kColors);
+  normals_ = look.has_normals();
+  colors_ = look.has_colors();
   if (normals_) {
     dtype_ += ", ('normal', '<f4', (3,))";
     row_bytes_ += sizeof(Vec3f);
@@ -50,10 +48,10 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   Vec3<std::uint8_t> color{};
   const int shift = levels_ - hit.level;
   const Vec3i cell{hit.voxel.x >> shift, hit.voxel.y >> shift, hit.voxel.z >> shift};
-  EsvoVoxel voxel;
-  if (hit.hit && find_esvo_voxel(look_, cell, hit.level, voxel)) {
-    if (normals_) stored_normal(look_, voxel, normal);
-    if (colors_) stored_srgb8(look_, voxel, color);
+  if (hit.hit) {
+    const StoredLook look = look_at(look_, cell, hit.level);
+    normal = look.normal;
+    for (int c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(255 * look.color[c] + 0.5f);
   }
   if (normals_) put(row, normal);
   if (colors_) put(row, color);

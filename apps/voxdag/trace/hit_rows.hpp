@@ -4,18 +4,18 @@
 #include <span>
 #include <string>
 
-#include "voxdag/layout/esvo.hpp"
+#include "voxdag/layout/look.hpp"
 #include "voxdag/trace/hit.hpp"
 
 namespace voxdag {
 
-/// Rows of a structured array without padding: t, voxel, face, hit; with an ESVO also the normal
-/// and colour that it stores for the voxel. The normal and colour are looked up by voxel, so they
+/// Rows of a structured array without padding: t, voxel, face, hit; with a look also the normal and
+/// colour that it stores for the voxel. The normal and colour are looked up by voxel, so they
 /// do not depend on the device that cast the ray.
 class HitRows {
  public:
-  /// The hits are at voxels of 2^levels. `look` is the ESVO, or empty.
-  HitRows(int levels, const EsvoView& look);
+  /// The hits are at voxels of 2^levels. `look` may be empty.
+  HitRows(int levels, const LookView& look);
 
   /// Returns the dtype for NpyHeader.
   const std::string& dtype() const { return dtype_; }
@@ -28,7 +28,7 @@ class HitRows {
   void pack_one(const Hit& hit, std::byte* row) const;
 
   int levels_;
-  EsvoView look_;
+  LookView look_;
   bool normals_ = false, colors_ = false;
   std::string dtype_;
   std::size_t row_bytes_ = 0;

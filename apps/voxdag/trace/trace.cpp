@@ -27,11 +27,6 @@ struct TraceArguments {
   DeviceChoice device;
 };
 
-/// Returns an empty view for a DAG.
-EsvoView esvo_of(const VoxelSet& scene) {
-  return scene.esvo() != nullptr ? *scene.esvo() : EsvoView{};
-}
-
 void trace(const TraceArguments& arguments, Session& session) {
   const SceneInput file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
@@ -42,7 +37,7 @@ void trace(const TraceArguments& arguments, Session& session) {
   NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
   std::optional<CpuScene> cpu_scene;
   if (!cuda) cpu_scene.emplace(scene, reader.rows());
-  const HitRows hit_rows(scene.levels(), esvo_of(look ? look->voxels() : scene));
+  const HitRows hit_rows(scene.levels(), look_of(look ? *look : file));
   NpyWriter writer(arguments.output, hit_rows.dtype(), {}, hit_rows.row_bytes(), reader.rows());
 
   const std::size_t batch =
@@ -91,8 +86,8 @@ void add_trace_command(const Command& program, Session& session) {
       .text(
           "-o,--output", arguments->output, "HITS.npy",
           "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
-          "the ray starts inside), hit; for an ESVO and with --look also normal (world space) and "
-          "color (sRGB, 0 to 255)")
+          "the ray starts inside), hit; with stored normals and colours (of an ESVO, of a coloured "
+          "DAG, or of --look) also normal (world space) and color (sRGB, 0 to 255)")
       .required();
   add_look_option(command, arguments->look);
   add_device_option(command, arguments->device);

@@ -1,6 +1,7 @@
 /// Replaces the CUDA backend in a build without nvcc. Every function reports that CUDA is missing.
 #include "voxdag/core/error.hpp"
 #include "voxdag/cuda/device.hpp"
+#include "voxdag/cuda/device_attributes.hpp"
 #include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/cuda/partial_picture.hpp"
 #include "voxdag/cuda/render_image.hpp"
@@ -23,6 +24,10 @@ const CudaDevice& DeviceScene::device() const { refuse(); }
 const VoxelSet& DeviceScene::host() const { refuse(); }
 const DeviceVoxels& DeviceScene::view() const { refuse(); }
 void DeviceScene::make_current() const { refuse(); }
+
+struct DeviceAttributes::Memory {};
+DeviceAttributes::DeviceAttributes(const DeviceScene&, const DagAttributesView&) { refuse(); }
+const ColoredDagView& DeviceAttributes::view() const { refuse(); }
 
 struct DeviceBlocks::Memory {};
 DeviceBlocks::DeviceBlocks(const CudaDevice&, std::uint64_t, std::size_t) { refuse(); }

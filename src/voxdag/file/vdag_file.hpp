@@ -17,6 +17,7 @@ class VdagFile {
   explicit VdagFile(const std::filesystem::path& path);
 
   const SvdagView& view() const { return contents_.view; }
+  const DagAttributesView& attributes() const { return contents_.attributes; }
   const VdagMetadata& metadata() const { return contents_.metadata; }
   const Grid& grid() const { return contents_.metadata.grid; }
   const std::vector<VdagChunk>& chunks() const { return contents_.chunks; }

@@ -1,14 +1,65 @@
 #include "voxdag/file/vdag_metadata.hpp"
 
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
 #include "voxdag/file/metadata_json.hpp"
 
 namespace voxdag {
+namespace {
+
+MetadataJson values_json(const AttributesMetadata::Values& values) {
+  return {{"bound", values.bound}, {"errors", values.errors}};
+}
+
+MetadataJson attributes_json(const AttributesMetadata& attributes) {
+  MetadataJson json;
+  json["resolution"] = attributes.resolution;
+  if (attributes.colors) json["color"] = values_json(*attributes.colors);
+  if (attributes.normals) json["normal"] = values_json(*attributes.normals);
+  return json;
+}
+
+AttributesMetadata read_attributes(const MetadataField& field, const Grid& grid) {
+  AttributesMetadata attributes;
+  const std::uint64_t resolution = field.at("resolution").count();
+  if (!std::has_single_bit(resolution) ||
+      resolution > static_cast<std::uint64_t>(grid.resolution()))
+    field.at("resolution").fail("not a power of two up to the grid's resolution");
+  attributes.resolution = static_cast<std::int64_t>(resolution);
+  const auto read = [&](const char* name, std::optional<AttributesMetadata::Values>& values) {
+    if (!field.value.contains(name)) return;
+    const MetadataField of = field.at(name);
+    values = {of.at("bound").finite(), of.at("errors").count()};
+  };
+  read("color", attributes.colors);
+  read("normal", attributes.normals);
+  return attributes;
+}
+
+}  // namespace
+
+double AttributesMetadata::color_psnr_db(std::uint64_t cells) const {
+  if (!colors || colors->errors == 0) return std::numeric_limits<double>::infinity();
+  return 10 * std::log10(255.0 * 255 * 3 * static_cast<double>(cells) /
+                         static_cast<double>(colors->errors));
+}
+
+double AttributesMetadata::normal_mean_degrees(std::uint64_t cells) const {
+  if (!normals || cells == 0) return 0;
+  const double distance = static_cast<double>(normals->errors) / 256 / static_cast<double>(cells);
+  return distance / 127 * 180 / std::numbers::pi;
+}
 
 std::string vdag_metadata_json(const VdagMetadata& metadata) {
   MetadataJson json = begin_metadata_json(metadata);
   json["counts"] = {{"voxels", metadata.counts.voxels},
                     {"svo_nodes_per_level", metadata.counts.svo_nodes_per_level},
                     {"dag_nodes_per_level", metadata.counts.dag_nodes_per_level}};
+  if (metadata.attributes.resolution != 0)
+    json["attributes"] = attributes_json(metadata.attributes);
   finish_metadata_json(json, metadata);
   return metadata_text(json);
 }
@@ -23,6 +74,8 @@ VdagMetadata parse_vdag_metadata(std::string_view text) {
   metadata.counts.voxels = counts.at("voxels").count();
   metadata.counts.svo_nodes_per_level = counts.at("svo_nodes_per_level").counts(levels);
   metadata.counts.dag_nodes_per_level = counts.at("dag_nodes_per_level").counts(levels);
+  if (json.is_object() && json.contains("attributes"))
+    metadata.attributes = read_attributes(root.at("attributes"), metadata.grid);
   return metadata;
 }
 

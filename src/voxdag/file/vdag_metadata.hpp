@@ -1,5 +1,7 @@
 #pragma once
 /// The metadata of a DAG in a .vdag file: the JSON of its META chunk.
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,8 +10,29 @@
 
 namespace voxdag {
 
+/// How the attributes of the DAG's cells were made. Members are 0 or empty without attributes.
+struct AttributesMetadata {
+  /// The bound that the encoder kept, and the errors that it left.
+  struct Values {
+    double bound = 0;          ///< Colours: 0 to 1; normals: degrees.
+    std::uint64_t errors = 0;  ///< Colours: sum of squared differences of all channels, in steps
+                               ///< of 8 bits; normals: sum of distances, in 1/256 steps of 8 bits.
+    friend bool operator==(const Values&, const Values&) = default;
+  };
+  std::int64_t resolution = 0;  ///< M: cells a side at the finest level with attributes.
+  std::optional<Values> colors, normals;
+
+  /// Returns the peak signal-to-noise ratio of the colours of `cells` cells, in dB; infinity if
+  /// they are exact.
+  double color_psnr_db(std::uint64_t cells) const;
+  /// Returns the mean angle by which the normals of `cells` cells differ, in degrees.
+  double normal_mean_degrees(std::uint64_t cells) const;
+  friend bool operator==(const AttributesMetadata&, const AttributesMetadata&) = default;
+};
+
 struct VdagMetadata : SceneMetadata {
   SvdagCounts counts;
+  AttributesMetadata attributes;
   friend bool operator==(const VdagMetadata&, const VdagMetadata&) = default;
 };
 

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/checksum.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
@@ -186,6 +187,7 @@ VdagContents parse_vdag(std::span<const std::byte> file) {
   contents.metadata = read_vdag_metadata(contents.chunks);
   contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);
   check_vdag_svdag(contents.view, validate_svdag);
+  contents.attributes = read_attribute_chunks(contents.chunks, contents.view);
   return contents;
 }
 

@@ -9,6 +9,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -24,7 +25,9 @@ struct VdagChunk {
 struct VdagContents {
   std::vector<VdagChunk> chunks;
   VdagMetadata metadata;
-  SvdagView view;  ///< Points into the bytes that were parsed.
+  // Views of the bytes that were parsed.
+  SvdagView view;
+  DagAttributesView attributes;  ///< Empty if the file has none.
 };
 
 /// Reads header and chunk table. Checks magic, version, size and table checksum. Checks that every
@@ -72,7 +75,7 @@ SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels);
 /// Runs validate_svdag, check_canonical or check_minimal. Errors name the chunk.
 void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&));
 
-/// Runs all steps and validate_svdag(). The result is safe to walk.
+/// Runs all steps, validate_svdag() and the checks of attributes. The result is safe to walk.
 VdagContents parse_vdag(std::span<const std::byte> file);
 
 }  // namespace voxdag

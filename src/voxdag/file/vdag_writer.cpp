@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/checksum.hpp"
@@ -16,8 +17,19 @@ namespace voxdag {
 namespace {
 
 struct OutputChunk {
-  std::uint32_t id;
-  std::span<const std::byte> bytes;
+  std::uint32_t id, flags;
+  std::vector<std::span<const std::byte>> parts;
+
+  std::uint64_t length() const {
+    std::uint64_t sum = 0;
+    for (const auto& part : parts) sum += part.size();
+    return sum;
+  }
+  std::uint64_t checksum() const {
+    Xxh3Stream stream;
+    for (const auto& part : parts) stream.add(part);
+    return stream.digest();
+  }
 };
 
 template <class T>
@@ -31,8 +43,8 @@ std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
   std::vector<std::byte> head(vdag_align(table_end));
   std::uint64_t offset = head.size();
   for (std::size_t i = 0; i < chunks.size(); ++i) {
-    const VdagChunkEntry entry{chunks[i].id, kVdagChunkRequired, offset, chunks[i].bytes.size(),
-                               xxh3_64(chunks[i].bytes)};
+    const VdagChunkEntry entry{chunks[i].id, chunks[i].flags, offset, chunks[i].length(),
+                               chunks[i].checksum()};
     std::memcpy(head.data() + sizeof(VdagHeader) + i * sizeof entry, &entry, sizeof entry);
     offset += vdag_align(entry.length);
   }
@@ -51,8 +63,8 @@ void write_chunks(const std::filesystem::path& path, const std::vector<OutputChu
   AtomicFile file(path);
   file.write(std::span<const std::byte>(make_head(chunks)));
   for (const OutputChunk& chunk : chunks) {
-    file.write(chunk.bytes);
-    file.write_zeros(vdag_align(chunk.bytes.size()) - chunk.bytes.size());
+    for (const auto& part : chunk.parts) file.write(part);
+    file.write_zeros(vdag_align(chunk.length()) - chunk.length());
   }
   file.commit();
 }
@@ -68,17 +80,26 @@ std::string checked_json(const std::filesystem::path& path, const VdagMetadata& 
   return json;
 }
 
+/// Returns a required chunk.
+OutputChunk required(std::uint32_t id, std::span<const std::byte> bytes) {
+  return {id, kVdagChunkRequired, {bytes}};
+}
+
 }  // namespace
 
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata) {
+                const VdagMetadata& metadata, const DagAttributesView& attributes) {
   assert(metadata.grid.levels == view.levels);
   const std::string json = checked_json(path, metadata);
-  write_chunks(
-      path, {{kChunkMeta, bytes_of(json.data(), json.size())},
-             {kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))},
-             {kChunkNodes, bytes_of(view.nodes, view.node_words())},
-             {kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count)}});
+  std::vector<OutputChunk> chunks = {
+      required(kChunkMeta, bytes_of(json.data(), json.size())),
+      required(kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))),
+      required(kChunkNodes, bytes_of(view.nodes, view.node_words())),
+      required(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count))};
+  const AttributeChunks attribute_chunks(attributes);
+  for (const AttributeChunk& chunk : attribute_chunks.chunks())
+    chunks.push_back({chunk.id, 0, chunk.parts});
+  write_chunks(path, chunks);
 }
 
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
@@ -86,9 +107,9 @@ void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
   assert(metadata.grid.levels == compact.levels);
   const std::string json = checked_json(path, metadata);
   const std::vector<std::byte> head = compact_head(compact);
-  write_chunks(path, {{kChunkMeta, bytes_of(json.data(), json.size())},
-                      {kChunkCompactHead, head},
-                      {kChunkCompactStream, std::as_bytes(compact.words())}});
+  write_chunks(path, {required(kChunkMeta, bytes_of(json.data(), json.size())),
+                      required(kChunkCompactHead, head),
+                      required(kChunkCompactStream, std::as_bytes(compact.words()))});
 }
 
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/layout/compact/compact_svdag.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -11,8 +12,9 @@ namespace voxdag {
 /// Writes the file, which appears under `path` when it is complete (see AtomicFile). Its bytes
 /// depend on the arguments alone. metadata.grid.levels must equal view.levels. Throws Error if the
 /// file cannot be written, or if the grid has values that parse_vdag_metadata() would refuse.
+/// `attributes` are those of the DAG's cells; empty: none.
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata);
+                const VdagMetadata& metadata, const DagAttributesView& attributes = {});
 
 /// Writes a DAG in the compact form, in the same way.
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/io/file_copy.hpp"
@@ -88,6 +89,8 @@ VerifyReport verify_vdag(const std::filesystem::path& path) {
             [&] { check_vdag_svdag(contents.view, check_minimal); });
   run_check(report, "counts", {kStructure, kMetadata},
             [&] { compare_counts(contents.metadata.counts, count_svdag(contents.view)); });
+  run_check(report, "attributes", {kStructure},
+            [&] { read_attribute_chunks(contents.chunks, contents.view); });
   return report;
 }
 

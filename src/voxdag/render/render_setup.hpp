@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/esvo.hpp"
+#include "voxdag/layout/look.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/sample_tables.hpp"
@@ -57,7 +57,7 @@ struct RenderSetup {
   Light lights[kMaxLights];
   int light_count = 0;
   SampleTables tables;
-  EsvoView look;  ///< See RenderOptions.
+  LookView look;  ///< See RenderOptions.
   ImageBuffers image;
   /// The t at which the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without
   /// beams.

@@ -1,7 +1,6 @@
 #pragma once
 /// The stored colours and normals of cubes.
-#include "voxdag/layout/esvo_lookup.hpp"
-#include "voxdag/layout/stored_values.hpp"
+#include "voxdag/layout/look.hpp"
 #include "voxdag/render/view_sample.hpp"
 
 namespace voxdag {
@@ -20,13 +19,13 @@ VOXDAG_HD inline bool is_of_back(Vec3f normal, Vec3f view, Vec3f entered) {
 
 /// Sets the colour and the normal for shading of a sample at cell `cell` of `level` to those that
 /// `look` stores there, as far as it stores any. The other parameters are those of is_of_back().
-VOXDAG_HD inline void set_stored_look(const EsvoView& look, Vec3i cell, int level, Vec3f view,
+VOXDAG_HD inline void set_stored_look(const LookView& look, Vec3i cell, int level, Vec3f view,
                                       Vec3f entered, ViewSample& sample) {
-  EsvoVoxel voxel;
-  if (!find_esvo_voxel(look, cell, level, voxel)) return;
-  stored_color(look, voxel, sample.albedo);
-  if (stored_normal(look, voxel, sample.normal) && is_of_back(sample.normal, view, entered))
-    sample.normal = -sample.normal;
+  const StoredLook stored = look_at(look, cell, level);
+  if (stored.has_color)
+    for (int c = 0; c < 3; ++c) sample.albedo[c] = srgb_to_linear(stored.color[c]);
+  if (!stored.has_normal) return;
+  sample.normal = is_of_back(stored.normal, view, entered) ? -stored.normal : stored.normal;
 }
 
 }  // namespace voxdag

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/printable.hpp"
@@ -35,7 +36,57 @@ std::uint64_t whole_bytes(std::uint64_t bits) { return (bits + 7) / 8; }
 
 Json vec_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
+double bits_per_cell(std::uint64_t bytes, const AttributeSizes& sizes) {
+  return quotient(8 * static_cast<double>(bytes), static_cast<double>(sizes.cells));
+}
+
+Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
+  Json json;
+  json["index_bytes"] = sizes.index_bytes;
+  const auto add = [&](const char* name, std::uint64_t bytes, double bound) -> Json& {
+    json[name] = {{"resolution", metadata.resolution},
+                  {"cells", sizes.cells},
+                  {"bytes", bytes},
+                  {"bits_per_cell", bits_per_cell(bytes, sizes)},
+                  {"bound", bound}};
+    return json[name];
+  };
+  if (metadata.colors) {
+    const double psnr = metadata.color_psnr_db(sizes.cells);
+    // Lossless colours have no PSNR.
+    add("color", sizes.color_bytes, metadata.colors->bound)["psnr_db"] =
+        std::isfinite(psnr) ? Json(psnr) : Json();
+  }
+  if (metadata.normals)
+    add("normal", sizes.normal_bytes, metadata.normals->bound)["mean_degrees"] =
+        metadata.normal_mean_degrees(sizes.cells);
+  return json;
+}
+
+/// Returns the attributes, a line each, or nothing without them.
+std::string attributes_table(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
+  if (metadata.resolution == 0) return "";
+  std::string text = fmt::format(
+      "\n  {:<14}{} of {}³ and coarser, index {}\n", "cells", with_commas(sizes.cells),
+      with_commas(static_cast<std::uint64_t>(metadata.resolution)), human_bytes(sizes.index_bytes));
+  if (metadata.colors)
+    text += fmt::format("  {:<14}{}, {:.3f} bits/cell, PSNR {:.1f} dB\n", "colours",
+                        human_bytes(sizes.color_bytes), bits_per_cell(sizes.color_bytes, sizes),
+                        metadata.color_psnr_db(sizes.cells));
+  if (metadata.normals)
+    text += fmt::format("  {:<14}{}, {:.3f} bits/cell, mean error {:.2f}°\n", "normals",
+                        human_bytes(sizes.normal_bytes), bits_per_cell(sizes.normal_bytes, sizes),
+                        metadata.normal_mean_degrees(sizes.cells));
+  return text;
+}
+
 }  // namespace
+
+AttributeSizes sizes_of(const DagAttributesView& attributes) {
+  if (attributes.is_empty()) return {};
+  return {attributes.index.cells, attributes.index.bytes(), attributes.colors.bytes(),
+          attributes.normals.bytes()};
+}
 
 CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes) {
   const CompactParts parts = compact_parts(compact);
@@ -72,6 +123,8 @@ Json dag_json(const DagReport& report) {
                                       {"shared_bricks", compact.shared_bricks}};
     json["bits_per_voxel"]["compact"] = bits_per_voxel(compact.total(), counts);
   }
+  if (metadata.attributes.resolution != 0)
+    json["attributes"] = attributes_json(metadata.attributes, report.attributes);
   add_placement_json(json, metadata.grid, metadata.source, metadata.program, metadata.build);
   return json;
 }
@@ -110,6 +163,7 @@ std::string dag_table(const DagReport& report) {
               ratio_of(svo_bytes, report.svdag_bytes()));
   text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(svo_bytes, counts)),
               fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)), "");
+  text += attributes_table(report.metadata.attributes, report.attributes);
   if (!report.compact) return text;
   const CompactBytes& compact = *report.compact;
   text += '\n';

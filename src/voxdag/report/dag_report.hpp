@@ -7,9 +7,17 @@
 
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/layout/compact/compact_svdag.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
+
+/// Counts and bytes of a DAG's attributes; 0 without them.
+struct AttributeSizes {
+  std::uint64_t cells = 0;
+  std::uint64_t index_bytes = 0, color_bytes = 0, normal_bytes = 0;
+};
+AttributeSizes sizes_of(const DagAttributesView& attributes);
 
 /// The bytes of a DAG in the compact form, by part.
 struct CompactBytes {
@@ -26,6 +34,7 @@ struct DagReport {
   std::uint64_t leaf_bytes = 0;  ///< Of leaf blocks, in the paper's layout.
   std::uint64_t file_bytes = 0;
   std::optional<CompactBytes> compact;  ///< If the file has this form.
+  AttributeSizes attributes;
 
   std::uint64_t svdag_bytes() const { return node_bytes + leaf_bytes; }
 };
@@ -33,7 +42,7 @@ struct DagReport {
 /// Returns a report of the file with this DAG.
 inline DagReport report_of(const SvdagView& dag, const VdagMetadata& metadata,
                            std::uint64_t file_bytes) {
-  return {metadata, dag.node_words() * 4, dag.leaf_block_count * 8, file_bytes, std::nullopt};
+  return {metadata, dag.node_words() * 4, dag.leaf_block_count * 8, file_bytes, std::nullopt, {}};
 }
 
 /// Returns the bytes of a compact DAG whose head has `head_bytes`.

@@ -2,8 +2,8 @@
 /// The light that is baked into the colours of a cell.
 #include <optional>
 
-#include "voxdag/esvo/build/piece_sampler.hpp"
 #include "voxdag/esvo/build/surface_light.hpp"
+#include "voxdag/pieces/piece_sampler.hpp"
 
 namespace voxdag {
 

@@ -5,13 +5,13 @@
 
 #include "voxdag/esvo/build/block_assembler.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
-#include "voxdag/esvo/build/duplicate_surfaces.hpp"
-#include "voxdag/esvo/build/load_pieces.hpp"
-#include "voxdag/esvo/build/memory_gate.hpp"
 #include "voxdag/esvo/build/open_edges.hpp"
 #include "voxdag/esvo/build/subtree_builder.hpp"
 #include "voxdag/esvo/build/top_cells.hpp"
 #include "voxdag/parallel/ordered_pipeline.hpp"
+#include "voxdag/pieces/duplicate_surfaces.hpp"
+#include "voxdag/pieces/load_pieces.hpp"
+#include "voxdag/pieces/memory_gate.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/esvo/build/decide_cell.hpp"
-#include "voxdag/esvo/build/surface_sum.hpp"
 #include "voxdag/esvo/encode/esvo_tree.hpp"
+#include "voxdag/pieces/surface_sum.hpp"
 
 namespace voxdag {
 

@@ -6,24 +6,10 @@
 #include <vector>
 
 #include "voxdag/esvo/build/baked_light.hpp"
+#include "voxdag/pieces/sum_pieces.hpp"
 
 namespace voxdag {
 namespace {
-
-void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
-               const SurfaceSample& sample) {
-  // A triangle that only touches the cell has a small weight, so that every voxel has a colour. An
-  // almost transparent piece has a small weight too, because part of it may pass the alpha test.
-  const float area = static_cast<float>(cell.area(piece) + 1e-6) * std::max(sample.coverage, 1e-3f);
-  sum.add(sample.color, sample.normal, area);
-}
-
-SurfaceSum unlit_sum(const Cell& cell, const PieceSampler& sampler) {
-  SurfaceSum sum;
-  for (const TrianglePiece& piece : cell.pieces)
-    add_piece(sum, cell, piece, sampler.sample(cell, piece));
-  return sum;
-}
 
 /// Returns whether all points of all triangles in the cell have the same colour and normal.
 bool has_one_sample(const Cell& cell) {
@@ -43,14 +29,14 @@ std::optional<float> CellAppearance::light(const Cell& cell, const SurfaceSum& s
 }
 
 SurfaceSum CellAppearance::sum(const Cell& cell) const {
-  SurfaceSum sum = unlit_sum(cell, sampler_);
+  SurfaceSum sum = sum_pieces(cell, sampler_);
   sum.color = sum.color * light(cell, sum).value_or(1.0f);
   return sum;
 }
 
 std::optional<SurfaceSum> CellAppearance::sum_if_uniform(const Cell& cell) const {
   std::optional<SurfaceSum> sum = !settings_.attributes || has_one_sample(cell)
-                                      ? unlit_sum(cell, sampler_)
+                                      ? sum_pieces(cell, sampler_)
                                       : unlit_sum_if_uniform(cell);
   if (!sum) return sum;
   const std::optional<float> arriving = light(cell, *sum);

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "voxdag/esvo/build/esvo_settings.hpp"
-#include "voxdag/esvo/build/piece_sampler.hpp"
-#include "voxdag/esvo/build/surface_sum.hpp"
+#include "voxdag/pieces/piece_sampler.hpp"
+#include "voxdag/pieces/surface_sum.hpp"
 
 namespace voxdag {
 

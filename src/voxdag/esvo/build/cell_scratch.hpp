@@ -3,7 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include "voxdag/esvo/build/decide_cell.hpp"
-#include "voxdag/esvo/build/piece_stack.hpp"
+#include "voxdag/pieces/piece_stack.hpp"
 
 namespace voxdag {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/esvo/build/triangle_source.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <vector>
 
-#include "voxdag/esvo/build/surface_triangle.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/pieces/surface_triangle.hpp"
 
 namespace voxdag {
 namespace {

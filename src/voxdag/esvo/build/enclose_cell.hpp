@@ -8,8 +8,8 @@
 #include <span>
 
 #include "voxdag/esvo/build/decide_cell.hpp"
-#include "voxdag/esvo/build/triangle_source.hpp"
 #include "voxdag/esvo/shape/fit_contour.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
 
 namespace voxdag {
 

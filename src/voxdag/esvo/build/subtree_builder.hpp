@@ -10,7 +10,7 @@
 
 #include "voxdag/esvo/build/built_voxel.hpp"
 #include "voxdag/esvo/build/decide_cell.hpp"
-#include "voxdag/esvo/build/piece_stack.hpp"
+#include "voxdag/pieces/piece_stack.hpp"
 
 namespace voxdag {
 

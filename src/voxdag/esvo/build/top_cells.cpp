@@ -9,10 +9,10 @@
 #include "voxdag/core/morton.hpp"
 #include "voxdag/esvo/build/cell_scratch.hpp"
 #include "voxdag/esvo/build/enclose_cell.hpp"
-#include "voxdag/esvo/build/load_pieces.hpp"
-#include "voxdag/esvo/build/memory_gate.hpp"
-#include "voxdag/esvo/build/split_triangles.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/pieces/load_pieces.hpp"
+#include "voxdag/pieces/memory_gate.hpp"
+#include "voxdag/pieces/split_triangles.hpp"
 
 namespace voxdag {
 namespace {

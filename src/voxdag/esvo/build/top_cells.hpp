@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "voxdag/esvo/build/built_voxel.hpp"
-#include "voxdag/esvo/build/child_triangles.hpp"
-#include "voxdag/esvo/build/triangle_source.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/pieces/child_triangles.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
 
 namespace voxdag {
 

@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "voxdag/core/lanes.hpp"
-#include "voxdag/esvo/encode/principal_axis.hpp"
+#include "voxdag/pieces/principal_axis.hpp"
 
 namespace voxdag {
 namespace {

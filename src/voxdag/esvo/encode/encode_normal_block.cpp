@@ -12,7 +12,7 @@
 
 #include "voxdag/core/bits.hpp"
 #include "voxdag/esvo/encode/normal_fit.hpp"
-#include "voxdag/esvo/encode/principal_axis.hpp"
+#include "voxdag/pieces/principal_axis.hpp"
 
 namespace voxdag {
 namespace {

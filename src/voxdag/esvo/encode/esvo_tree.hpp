@@ -4,16 +4,10 @@
 #include <vector>
 
 #include "voxdag/core/bits.hpp"
-#include "voxdag/core/vec.hpp"
 #include "voxdag/layout/contour.hpp"
+#include "voxdag/pieces/voxel_value.hpp"
 
 namespace voxdag {
-
-/// The attributes of a voxel.
-struct VoxelValue {
-  std::uint8_t color[3] = {};  ///< sRGB encoded.
-  Vec3f normal{};              ///< Unit length.
-};
 
 /// An inner voxel: the contents of its child descriptor. Lists are in the order of the children.
 struct EsvoNode {

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "voxdag/esvo/shape/convex_polyhedron.hpp"
-#include "voxdag/esvo/shape/surface_polygon.hpp"
+#include "voxdag/pieces/surface_polygon.hpp"
 
 namespace voxdag {
 

@@ -1,0 +1,70 @@
+#include "build/attribute_options.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "cli/parse.hpp"
+#include "cli/usage_error.hpp"
+
+namespace voxdag {
+
+void add_attribute_options(const Command& command, AttributeArguments& arguments,
+                           const std::string& group) {
+  AttributeOptions& options = arguments.options;
+  const auto is_wanted = [&arguments] { return arguments.is_wanted(); };
+  command
+      .flag("--color", options.colors,
+            "Also store the colours of all cells: textures, vertex colours and materials, filtered")
+      .in_group(group);
+  command.flag("--normal", options.normals, "Also store the normals of all cells").in_group(group);
+  command
+      .parsed(
+          "--attribute-resolution", arguments.levels, parse_levels, "M",
+          "Cells per side of the finest colours and normals: a power of two from 4, at most the "
+          "grid's resolution (default: the finest that is expected to fit into 4 GiB)")
+      .only_if(is_wanted, "without --color and --normal")
+      .in_group(group);
+  command
+      .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
+              "Largest error of a stored colour, as the weighted mean over the channels (sRGB; 0: "
+              "lossless)")
+      .only_if([&options] { return options.colors; }, "without --color")
+      .in_group(group);
+  command
+      .number("--normal-bound", options.normal_bound_degrees,
+              NumberRange::from(kLeastNormalBound, 180), "DEGREES",
+              "Largest error of a stored normal")
+      .only_if([&options] { return options.normals; }, "without --normal")
+      .in_group(group);
+}
+
+void AttributeArguments::check_levels(int dag_levels) const {
+  if (levels && *levels > dag_levels)
+    throw UsageError("--attribute-resolution",
+                     fmt::format("{} is more than the grid's resolution, {}",
+                                 std::int64_t{1} << *levels, std::int64_t{1} << dag_levels));
+}
+
+DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
+                                      const MeshWithAppearance& source, const SvdagView& dag,
+                                      const SurfaceShading& shading, MemoryBudget& memory,
+                                      VdagMetadata& metadata, Progress& progress) {
+  AttributeOptions options = arguments.options;
+  options.memory = &memory;
+  arguments.check_levels(dag.levels);
+  options.finest_level = arguments.levels
+                             ? *arguments.levels
+                             : finest_level_within(metadata.counts, options,
+                                                   std::min(kAttributeBudget, memory.left()));
+  DagAttributes attributes =
+      build_attributes(source.mesh, metadata.grid, dag, &shading, options, &progress);
+  AttributesMetadata& stored = metadata.attributes;
+  stored.resolution = std::int64_t{1} << options.finest_level;
+  if (options.colors) stored.colors = {options.color_bound, attributes.color_errors.squared};
+  if (options.normals)
+    stored.normals = {options.normal_bound_degrees, attributes.normal_errors.absolute};
+  return attributes;
+}
+
+}  // namespace voxdag

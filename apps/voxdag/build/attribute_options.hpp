@@ -1,0 +1,36 @@
+#pragma once
+/// The options of `voxdag build` for colours and normals on a DAG.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "cli/command.hpp"
+#include "voxdag/attributes/build_attributes.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+
+namespace voxdag {
+
+struct AttributeArguments {
+  AttributeOptions options;
+  std::optional<int> levels;  ///< log2 of --attribute-resolution.
+
+  bool is_wanted() const { return options.colors || options.normals; }
+  /// Throws UsageError if the attributes would be finer than a grid of 2^dag_levels voxels a side.
+  void check_levels(int dag_levels) const;
+};
+
+/// The default resolution of attributes is the finest for which they are expected to take at most
+/// this many bytes.
+inline constexpr std::uint64_t kAttributeBudget = std::uint64_t{4} << 30;
+
+void add_attribute_options(const Command& command, AttributeArguments& arguments,
+                           const std::string& group);
+
+/// Builds the attributes of a DAG, at the resolution that the arguments ask for. Throws UsageError
+/// if that is finer than the DAG. Sets metadata.attributes. Counts memory in `memory`.
+DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
+                                      const MeshWithAppearance& source, const SvdagView& dag,
+                                      const SurfaceShading& shading, MemoryBudget& memory,
+                                      VdagMetadata& metadata, Progress& progress);
+
+}  // namespace voxdag

@@ -1,0 +1,51 @@
+#pragma once
+/// Builds the attributes of a DAG: numbers of its cells, filtered and compressed colours and
+/// normals.
+#include "voxdag/attributes/filter_cells.hpp"
+#include "voxdag/attributes/value_encoder.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+
+namespace voxdag {
+
+struct AttributeOptions {
+  bool colors = false, normals = false;  ///< At least one.
+  int finest_level = 0;                  ///< m: cells of levels 0 to m get attributes.
+  /// The largest error of a stored colour, 0 to 1: the root of the mean of the squared differences
+  /// of the sRGB encoded channels, with the weights of `kColorWeights`. 0: lossless.
+  double color_bound = 0.03;
+  /// The largest angle between a stored and a filtered normal, in degrees, at least
+  /// `kLeastNormalBound`.
+  double normal_bound_degrees = 4;
+  MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
+};
+
+/// Weights of red, green and blue in errors of colours.
+inline constexpr std::array<int, 3> kColorWeights{2, 4, 1};
+/// Rounding a normal to 8 bits can turn it by this angle.
+inline constexpr double kLeastNormalBound = 0.4;
+
+/// Attributes in memory. The view is valid while this object lives unchanged.
+struct DagAttributes {
+  CellIndex index;
+  ValuePages colors, normals;
+  ValueErrors color_errors, normal_errors;
+
+  DagAttributesView view() const { return {index.view(), colors.view(), normals.view()}; }
+};
+
+/// Builds the attributes of the DAG of `mesh` in `grid`. Parameters and errors are those of
+/// filter_cells(). The result depends on mesh, grid and options alone.
+DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
+                               const SurfaceShading* shading, const AttributeOptions& options,
+                               Progress* progress = nullptr);
+
+/// Returns the number of cells of levels 0 to `level` (0 to L) of a DAG with these counts.
+std::uint64_t count_cells(const SvdagCounts& counts, int level);
+
+/// Returns the finest level for which the attributes are expected to fit into `bytes`: a byte per
+/// cell for colours and one for normals, if they are wanted. 0 if none fits.
+int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
+                        std::uint64_t bytes);
+
+}  // namespace voxdag

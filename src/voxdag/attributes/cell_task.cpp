@@ -1,0 +1,76 @@
+#include "voxdag/attributes/cell_task.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace voxdag {
+CellFilter::CellFilter(const SvdagView& dag, const CellIndexView& index,
+                       const TriangleSource& source, const SurfaceShading* shading,
+                       MemoryBudget* memory)
+    : dag_(dag), index_(index), source_(source), sampler_(shading), pieces_(memory) {
+  if (memory == nullptr || memory->limit() == 0) return;
+  const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  most_kept_bytes_ = memory->limit() / 16 / threads;
+}
+
+VoxelValue grey_value() { return {{206, 203, 198}, {0, 1, 0}}; }
+
+void fill_unseen(std::span<VoxelValue> values, const VoxelValue& value) {
+  // Every value of visible surface has a normal.
+  for (VoxelValue& of_cell : values)
+    if (of_cell.normal == Vec3f{}) of_cell = value;
+}
+
+SurfaceSum CellFilter::filter(const CellTask& task, std::vector<VoxelValue>& values) {
+  const std::uint64_t cells = cells_in(dag_, index_, task.cell);
+  first_ = task.cell.number;
+  sums_.assign(cells, {});
+  values.assign(cells, unseen_value());
+  for (std::size_t begin = 0; begin < task.triangles.size(); begin += kMostLoaded) {
+    const std::size_t count = std::min(kMostLoaded, task.triangles.size() - begin);
+    load_pieces(pieces_, sampler_, source_, task.cell.level, task.place,
+                task.triangles.subspan(begin, count));
+    add_pieces(task.cell, pieces_.root());
+  }
+  if (pieces_.held_bytes() > most_kept_bytes_) pieces_.free_memory();
+  return join(task.cell, values);
+}
+
+/// Adds the pieces in a cell to the sums of the finest cells in it.
+void CellFilter::add_pieces(const NumberedCell& cell, StackedCell part) {
+  if (sampler_.shading() != nullptr)
+    pieces_.remove_if(part, [this](const Cell& view, const TrianglePiece& piece) {
+      return sampler_.is_alpha_masked(view, piece);
+    });
+  if (part.is_empty()) return;
+  if (cell.level == index_.finest_level) {
+    sums_[cell.number - first_].add(sum_pieces(pieces_.view(part), sampler_));
+    return;
+  }
+  const PieceStack::Split split = pieces_.begin_split(part);
+  for (std::uint32_t left = split.children & children_of(dag_, cell); left != 0; left &= left - 1) {
+    const int child = std::countr_zero(left);
+    const StackedCell of_child = pieces_.push_child(part, split, child);
+    add_pieces(child_of(dag_, index_, cell, child), of_child);
+    pieces_.pop(of_child);
+  }
+  pieces_.end_split(split);
+}
+
+/// Sums the children of a cell, and sets the values of its subtree.
+SurfaceSum CellFilter::join(const NumberedCell& cell, std::vector<VoxelValue>& values) {
+  SurfaceSum& sum = sums_[cell.number - first_];
+  if (cell.level != index_.finest_level)
+    for (std::uint32_t left = children_of(dag_, cell); left != 0; left &= left - 1)
+      sum.add(join(child_of(dag_, index_, cell, std::countr_zero(left)), values));
+  if (!(sum.area > 0)) return sum;
+  const auto own = values.begin() + static_cast<std::ptrdiff_t>(cell.number - first_);
+  *own = voxel_value(sum);
+  if (cell.level != index_.finest_level)
+    fill_unseen({own + 1, cells_in(dag_, index_, cell) - 1}, *own);
+  return sum;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,18 @@
+#pragma once
+/// Receives the colours and normals of cells while they are made.
+#include <cstdint>
+#include <span>
+
+#include "voxdag/pieces/voxel_value.hpp"
+
+namespace voxdag {
+
+class CellValueSink {
+ public:
+  virtual ~CellValueSink() = default;
+  /// Takes the values of the cells from number `first` on. Several threads call it at the same
+  /// time, with ranges in any order. Each cell comes once.
+  virtual void add(std::uint64_t first, std::span<const VoxelValue> values) = 0;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,34 @@
+#pragma once
+/// The upper cells of a DAG with the triangles in them, down to cells that are filtered at once.
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/layout/numbered_cell.hpp"
+#include "voxdag/parallel/progress.hpp"
+#include "voxdag/pieces/child_triangles.hpp"
+#include "voxdag/pieces/surface_sum.hpp"
+#include "voxdag/pieces/triangle_source.hpp"
+
+namespace voxdag {
+
+struct NumberedTopCell {
+  NumberedCell cell;
+  Vec3i place{};                                 ///< In cells of its level.
+  bool is_task = false;                          ///< Its children are not among the cells.
+  TriangleList triangles;                        ///< Those that meet it. Empty unless a task.
+  SurfaceSum sum;                                ///< Of the surface in it; set later.
+  std::size_t first_child = 0, child_count = 0;  ///< Its children among the cells, in their order.
+};
+
+using NumberedTopCells = CountedVector<NumberedTopCell>;
+
+/// Lists the cells down to tasks, breadth first. Counts them in `memory`; null: no limit. The DAG
+/// must have voxels. Throws Cancelled and OverMemory.
+NumberedTopCells list_top_cells(const SvdagView& dag, const CellIndexView& index,
+                                const TriangleSource& source, MemoryBudget* memory,
+                                Progress* progress);
+
+/// Returns the tasks in the order of their numbers.
+std::vector<std::size_t> tasks_in_order(const NumberedTopCells& cells);
+
+}  // namespace voxdag

@@ -1,0 +1,25 @@
+#pragma once
+/// The attributes of a DAG in the memory of a CUDA device.
+#include <memory>
+
+#include "voxdag/cuda/device_scene.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
+
+namespace voxdag {
+
+/// Copies share the device's memory; the last one frees it.
+class DeviceAttributes {
+ public:
+  /// Copies the attributes of the DAG in `scene` to its device. Throws Error if the device does not
+  /// have enough free memory.
+  DeviceAttributes(const DeviceScene& scene, const DagAttributesView& attributes);
+
+  /// Returns the DAG and its attributes in the device's memory.
+  const ColoredDagView& view() const;
+
+ private:
+  struct Memory;
+  std::shared_ptr<const Memory> memory_;
+};
+
+}  // namespace voxdag

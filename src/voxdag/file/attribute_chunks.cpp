@@ -1,0 +1,148 @@
+#include "voxdag/file/attribute_chunks.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_format.hpp"
+#include "voxdag/layout/build_cell_index.hpp"
+#include "voxdag/layout/validate_value_pages.hpp"
+
+namespace voxdag {
+namespace {
+
+ErrorPlace chunk_place(std::uint32_t id) { return ErrorPlace::chunk(vdag_chunk_name(id)); }
+
+[[noreturn]] void fail(const std::string& reason) { throw Error("", "", reason); }
+
+const VdagChunk* find_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
+  const auto found = std::find_if(chunks.begin(), chunks.end(),
+                                  [id](const VdagChunk& chunk) { return chunk.id == id; });
+  return found == chunks.end() ? nullptr : &*found;
+}
+
+template <class Header>
+Header read_header(std::span<const std::byte> bytes) {
+  Header header;
+  if (bytes.size() < sizeof header) fail("is shorter than its header");
+  if (bytes.size() % 8 != 0) fail("length in bytes is not a multiple of 8");
+  std::memcpy(&header, bytes.data(), sizeof header);
+  return header;
+}
+
+template <class T, std::size_t n>
+void check_zeros(std::uint32_t reserved, const T (&padding)[n]) {
+  if (reserved != 0 || std::any_of(padding, padding + n, [](T v) { return v != 0; }))
+    fail("reserved bytes of the header are not zero");
+}
+
+CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag) {
+  const auto header = read_header<CellIndexHeader>(bytes);
+  check_zeros(header.reserved, header.padding);
+  if (header.finest_level > static_cast<std::uint32_t>(dag.levels))
+    fail("level " + std::to_string(header.finest_level) + " is finer than the voxels");
+  CellIndexView index;
+  index.words = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
+  index.finest_level = static_cast<std::uint8_t>(header.finest_level);
+  index.cells = header.cells;
+  std::uint64_t words = 0;
+  for (int level = 0; level < kMaxLevels; ++level) {
+    index.width[level] = header.width[level];
+    index.begin[level] = words;
+    const std::uint64_t slots = dag.level_begin[level + 1] - dag.level_begin[level];
+    words += (slots * header.width[level] + 63) / 64;
+  }
+  index.begin[kMaxLevels] = words;
+  if (words != (bytes.size() - sizeof header) / 8)
+    fail("has " + std::to_string((bytes.size() - sizeof header) / 8) +
+         " words, but its header needs " + std::to_string(words));
+  validate_cell_index(dag, index);
+  return index;
+}
+
+ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells) {
+  const auto header = read_header<ValuePagesHeader>(bytes);
+  check_zeros(header.reserved, header.padding);
+  if (header.precision > 3) fail("unknown precision " + std::to_string(header.precision));
+  if (header.values != cells)
+    fail("has " + std::to_string(header.values) + " values for " + std::to_string(cells) +
+         " cells");
+  ValuePagesView view;
+  view.values = header.values;
+  view.word_count = header.words;
+  view.precision = {static_cast<int>(header.precision)};
+  // Compares without overflow: all sizes are in words of the chunk.
+  const std::uint64_t words = (bytes.size() - sizeof header) / 8;
+  const std::uint64_t table_words = view.group_count() + (view.page_count() + 3) / 4;
+  if (header.words > words || table_words != words - header.words)
+    fail("has " + std::to_string(words) + " words, but its header needs another number");
+  const auto* const first = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
+  view.groups = first;
+  view.words = first + view.group_count();
+  view.pages = reinterpret_cast<const std::uint16_t*>(view.words + view.word_count);
+  for (std::uint64_t page = view.page_count(); page % 4 != 0; ++page)
+    if (view.pages[page] != 0) fail("has padding that is not zero");
+  validate_value_pages(view);
+  return view;
+}
+
+template <class T>
+std::span<const std::byte> bytes_of(const T* values, std::uint64_t count) {
+  return std::as_bytes(std::span<const T>(values, count));
+}
+
+}  // namespace
+
+AttributeChunks::AttributeChunks(const DagAttributesView& attributes) {
+  if (attributes.is_empty()) return;
+  const CellIndexView& index = attributes.index;
+  index_.finest_level = index.finest_level;
+  index_.cells = index.cells;
+  std::copy(std::begin(index.width), std::end(index.width), std::begin(index_.width));
+  chunks_.push_back(
+      {kChunkCellIndex, {bytes_of(&index_, 1), bytes_of(index.words, index.word_count())}});
+  if (attributes.has_colors()) add(kChunkColors, attributes.colors, colors_);
+  if (attributes.has_normals()) add(kChunkNormals, attributes.normals, normals_);
+}
+
+void AttributeChunks::add(std::uint32_t id, const ValuePagesView& pages, ValuePagesHeader& header) {
+  static constexpr std::byte kZeros[6]{};
+  header.precision = static_cast<std::uint32_t>(pages.precision.code);
+  header.values = pages.values;
+  header.words = pages.word_count;
+  const std::uint64_t padding = (4 - pages.page_count() % 4) % 4 * sizeof(std::uint16_t);
+  chunks_.push_back(
+      {id,
+       {bytes_of(&header, 1), bytes_of(pages.groups, pages.group_count()),
+        bytes_of(pages.words, pages.word_count), bytes_of(pages.pages, pages.page_count()),
+        std::span<const std::byte>(kZeros, padding)}});
+}
+
+DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
+                                        const SvdagView& dag) {
+  DagAttributesView attributes;
+  const auto read = [&](std::uint32_t id, const auto& work) {
+    const VdagChunk* const chunk = find_chunk(chunks, id);
+    if (chunk == nullptr) return false;
+    try {
+      work(chunk->bytes);
+    } catch (const Error& error) {
+      throw error.within(chunk_place(id));
+    }
+    return true;
+  };
+  const bool has_index = read(kChunkCellIndex, [&](std::span<const std::byte> bytes) {
+    attributes.index = read_index(bytes, dag);
+  });
+  const auto read_values = [&](std::uint32_t id, ValuePagesView& view) {
+    read(id, [&](std::span<const std::byte> bytes) {
+      if (!has_index) fail("needs the chunk CIDX, which is missing");
+      view = read_pages(bytes, attributes.index.cells);
+    });
+  };
+  read_values(kChunkColors, attributes.colors);
+  read_values(kChunkNormals, attributes.normals);
+  return attributes;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,65 @@
+#pragma once
+/// The chunks of a DAG's attributes.
+///
+/// CIDX, the numbers of cells:
+///   0    CellIndexHeader   64 bytes
+///   64   CellIndexView::words
+///
+/// COLR and NRML, the values of cells:
+///   0    ValuePagesHeader  64 bytes
+///   64   ValuePagesView::groups, ::words, ::pages
+#include <span>
+#include <vector>
+
+#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
+
+namespace voxdag {
+
+struct CellIndexHeader {
+  std::uint32_t finest_level;
+  std::uint32_t reserved;  ///< Zero.
+  std::uint64_t cells;
+  std::uint8_t width[kMaxLevels];
+  std::uint8_t padding[28];  ///< Zero.
+};
+static_assert(sizeof(CellIndexHeader) == 64 && offsetof(CellIndexHeader, width) == 16);
+
+struct ValuePagesHeader {
+  std::uint32_t precision;
+  std::uint32_t reserved;  ///< Zero.
+  std::uint64_t values;
+  std::uint64_t words;
+  std::uint64_t padding[5];  ///< Zero.
+};
+static_assert(sizeof(ValuePagesHeader) == 64);
+
+/// A chunk as a list of parts that follow each other.
+struct AttributeChunk {
+  std::uint32_t id;
+  std::vector<std::span<const std::byte>> parts;
+};
+
+/// The chunks of attributes, ready to be written. Refers to the attributes and owns the headers.
+class AttributeChunks {
+ public:
+  explicit AttributeChunks(const DagAttributesView& attributes);
+  AttributeChunks(const AttributeChunks&) = delete;
+  AttributeChunks& operator=(const AttributeChunks&) = delete;
+
+  /// Returns no chunks if there are no attributes.
+  const std::vector<AttributeChunk>& chunks() const { return chunks_; }
+
+ private:
+  void add(std::uint32_t id, const ValuePagesView& pages, ValuePagesHeader& header);
+
+  CellIndexHeader index_{};
+  ValuePagesHeader colors_{}, normals_{};
+  std::vector<AttributeChunk> chunks_;
+};
+
+/// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none.
+/// Linear time. Throws Error, whose place names the chunk. The result is safe to read.
+DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks, const SvdagView& dag);
+
+}  // namespace voxdag

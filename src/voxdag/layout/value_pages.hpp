@@ -1,0 +1,182 @@
+#pragma once
+/// Colours or normals of cells, compressed: values of three channels of 8 bits, by number.
+///
+/// A page holds 256 values with consecutive numbers as a sequence of blocks. A block of n values is
+///
+///   header    9 bits: type in bits 0..2, n / 4 - 1 in bits 3..8
+///   ends      by type, see below
+///   weights   n times w bits
+///
+///   type      0      1, 2, 3             4             5, 6, 7
+///   ends      e0     e0, step (6 bits)   n ends        e0, e1
+///   w         0      1, 2, 3             0             2, 3, 4
+///
+/// An end is a colour whose channels have the bits of the precision, first channel lowest. A
+/// channel of b bits becomes one of 8 bits by repeating its highest bits. In types 1 to 3, e1 is e0
+/// plus 4 (step + 1) in each channel, at most 255. The value of weight k is the mean of e0 and e1
+/// with weights m - k and k, m = 2^w - 1, rounded to the nearest integer, halves up. In type 4,
+/// each value is an end.
+///
+/// Pages begin at bytes; 64 pages are a group:
+///
+///   groups    64-bit: the byte of the group's first page
+///   pages     16-bit: the page's first byte, from that of its group
+///   words     64-bit: the pages, bits from the lowest bit of each word up
+///
+/// The last page is filled up with copies of the last value.
+#include <cstdint>
+#include <vector>
+
+#include "voxdag/core/vec.hpp"
+#include "voxdag/layout/bit_words.hpp"
+
+namespace voxdag {
+
+inline constexpr int kPageValues = 256;
+inline constexpr int kGroupPages = 64;
+inline constexpr int kBlockUnit = 4;  ///< Lengths of blocks are multiples of this.
+
+/// A value: a colour (red, green, blue, sRGB encoded) or a normal (see stored_attributes.hpp).
+using Value8 = Vec3<std::uint8_t>;
+
+/// The header of a block.
+struct ValueBlock {
+  enum Type : int { kFlat = 0, kRaw = 4 };
+  static constexpr int kHeaderBits = 9, kStepBits = 6, kStepUnit = 4;
+
+  int type = kFlat;
+  int length = kBlockUnit;  ///< Number of values.
+
+  VOXDAG_HD static constexpr ValueBlock unpack(std::uint64_t bits) {
+    return {static_cast<int>(bits & 7), kBlockUnit * (static_cast<int>(bits >> 3 & 63) + 1)};
+  }
+  VOXDAG_HD constexpr std::uint64_t pack() const {
+    return static_cast<std::uint64_t>((length / kBlockUnit - 1) << 3 | type);
+  }
+  VOXDAG_HD constexpr bool is_line() const { return type != kFlat && type != kRaw; }
+  VOXDAG_HD constexpr bool has_step() const { return type >= 1 && type <= 3; }
+  /// Returns w.
+  VOXDAG_HD constexpr int weight_bits() const {
+    return !is_line() ? 0 : type < 4 ? type : type - 3;
+  }
+  /// Returns the bits of the ends, if an end has `end_bits`.
+  VOXDAG_HD constexpr int ends_bits(int end_bits) const {
+    return type == kFlat  ? end_bits
+           : type == kRaw ? length * end_bits
+           : has_step()   ? end_bits + kStepBits
+                          : 2 * end_bits;
+  }
+  /// Returns the bits of the whole block.
+  VOXDAG_HD constexpr int bits(int end_bits) const {
+    return kHeaderBits + ends_bits(end_bits) + weight_bits() * length;
+  }
+};
+
+/// The bits of an end's channels.
+struct EndPrecision {
+  int code = 0;  ///< 0: 5, 6, 5; 1: 6, 6, 6; 2: 7, 7, 7; 3: 8, 8, 8.
+
+  VOXDAG_HD constexpr int channel_bits(int channel) const {
+    return code > 0 ? code + 5 : channel == 1 ? 6 : 5;
+  }
+  VOXDAG_HD constexpr int bits() const { return code > 0 ? 3 * (code + 5) : 16; }
+  /// Returns the value of an end.
+  VOXDAG_HD constexpr Value8 unpack(std::uint64_t end) const {
+    Value8 value{};
+    for (int c = 0; c < 3; ++c) {
+      const int bits = channel_bits(c);
+      const auto field = static_cast<std::uint32_t>(end) & ((1u << bits) - 1u);
+      end >>= bits;
+      value[c] = static_cast<std::uint8_t>(field << (8 - bits) | field >> (2 * bits - 8));
+    }
+    return value;
+  }
+};
+
+/// Returns the value of weight `k` of `most` between two ends.
+VOXDAG_HD constexpr Value8 mix_ends(Value8 e0, Value8 e1, int k, int most) {
+  Value8 value{};
+  for (int c = 0; c < 3; ++c)
+    value[c] =
+        static_cast<std::uint8_t>((2 * (e0[c] * (most - k) + e1[c] * k) + most) / (2 * most));
+  return value;
+}
+
+/// Returns the second end of types 1 to 3.
+VOXDAG_HD constexpr Value8 stepped_end(Value8 e0, int step) {
+  Value8 end{};
+  for (int c = 0; c < 3; ++c) {
+    const int sum = e0[c] + ValueBlock::kStepUnit * (step + 1);
+    end[c] = static_cast<std::uint8_t>(sum < 255 ? sum : 255);
+  }
+  return end;
+}
+
+/// A view for kernels and readers.
+struct ValuePagesView {
+  const std::uint64_t* groups = nullptr;
+  const std::uint16_t* pages = nullptr;
+  const std::uint64_t* words = nullptr;
+  std::uint64_t word_count = 0;
+  std::uint64_t values = 0;
+  EndPrecision precision;
+
+  VOXDAG_HD bool is_empty() const { return values == 0; }
+  VOXDAG_HD std::uint64_t page_count() const { return (values + kPageValues - 1) / kPageValues; }
+  VOXDAG_HD std::uint64_t group_count() const {
+    return (page_count() + kGroupPages - 1) / kGroupPages;
+  }
+  /// Returns the bytes of both tables and the pages.
+  VOXDAG_HD std::uint64_t bytes() const {
+    return group_count() * 8 + page_count() * 2 + word_count * 8;
+  }
+  /// Returns the bit at which a page begins.
+  VOXDAG_HD std::uint64_t page_begin(std::uint64_t page) const {
+    return 8 * (groups[page / kGroupPages] + pages[page]);
+  }
+};
+
+/// Values in memory. The view is valid while this object lives unchanged.
+struct ValuePages {
+  std::vector<std::uint64_t> groups;
+  std::vector<std::uint16_t> pages;
+  std::vector<std::uint64_t> words;
+  std::uint64_t values = 0;
+  EndPrecision precision;
+
+  ValuePagesView view() const {
+    return {groups.data(), pages.data(), words.data(), words.size(), values, precision};
+  }
+};
+
+/// Returns the value with number `number` < view.values. Passes over half of the page's blocks on
+/// average.
+VOXDAG_HD inline Value8 read_value(const ValuePagesView& view, std::uint64_t number) {
+  std::uint64_t at = view.page_begin(number / kPageValues);
+  int index = static_cast<int>(number % kPageValues);
+  const int end_bits = view.precision.bits();
+  ValueBlock block = ValueBlock::unpack(read_bits(view.words, at, ValueBlock::kHeaderBits));
+  while (index >= block.length) {
+    index -= block.length;
+    at += static_cast<std::uint64_t>(block.bits(end_bits));
+    block = ValueBlock::unpack(read_bits(view.words, at, ValueBlock::kHeaderBits));
+  }
+  at += ValueBlock::kHeaderBits;
+  if (block.type == ValueBlock::kRaw) at += static_cast<std::uint64_t>(index * end_bits);
+  const Value8 e0 = view.precision.unpack(read_bits(view.words, at, end_bits));
+  if (!block.is_line()) return e0;
+  at += static_cast<std::uint64_t>(end_bits);
+  Value8 e1{};
+  if (block.has_step()) {
+    e1 = stepped_end(e0, static_cast<int>(read_bits(view.words, at, ValueBlock::kStepBits)));
+    at += ValueBlock::kStepBits;
+  } else {
+    e1 = view.precision.unpack(read_bits(view.words, at, end_bits));
+    at += static_cast<std::uint64_t>(end_bits);
+  }
+  const int w = block.weight_bits();
+  at += static_cast<std::uint64_t>(index * w);
+  return mix_ends(e0, e1, static_cast<int>(read_bits(view.words, at, w)), (1 << w) - 1);
+}
+
+}  // namespace voxdag

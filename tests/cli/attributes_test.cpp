@@ -1,0 +1,184 @@
+// Tests `voxdag build --color --normal` and the commands that use such files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include "colored_waves.hpp"
+#include "json.hpp"
+#include "npy_rays.hpp"
+#include "process.hpp"
+#include "support/temp_dir.hpp"
+#include "support/test_rays.hpp"
+#include "voxdag/file/npy.hpp"
+#include "voxdag/file/vdag_file.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr const char* kDtype =
+    "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1'), "
+    "('normal', '<f4', (3,)), ('color', '|u1', (3,))]";
+constexpr std::size_t kRowBytes = 33;
+
+class AttributesCommand : public testing::Test {
+ protected:
+  AttributesCommand() { write_text(dir_ / "waves.obj", colored_waves()); }
+
+  ProcessResult run_build(const std::string& name, std::vector<std::string> options) const {
+    options.insert(options.begin(), {"build", dir_ / "waves.obj", "-r", "64", "-o", dir_ / name});
+    return run_voxdag(options);
+  }
+  std::string build(const std::string& name, const std::vector<std::string>& options) const {
+    const ProcessResult result = run_build(name, options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return dir_ / name;
+  }
+  std::vector<std::string> trace(const std::string& scene,
+                                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"trace",           scene, "--rays",
+                                      dir_ / "rays.npy", "-o",  dir_ / "hits.npy"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    NpyReader reader(dir_ / "hits.npy", kDtype, {}, kRowBytes);
+    std::vector<std::string> rows(reader.rows(), std::string(kRowBytes, '\0'));
+    for (std::string& row : rows) reader.read_rows(row.data(), 1);
+    return rows;
+  }
+  void write_rays(const Grid& grid) const {
+    TestRays source(grid, 1);
+    std::vector<std::array<float, 8>> rays(3000);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray ray = source.make(static_cast<RayKind>(i % static_cast<int>(RayKind::kCount)));
+      std::memcpy(rays[i].data(), &ray, sizeof ray);
+    }
+    write_text(dir_ / "rays.npy", rays_npy(rays));
+  }
+
+  TempDir dir_;
+};
+
+/// The encoder of ESVOs rounds differently, so colours and normals are only similar.
+TEST_F(AttributesCommand, HitsHaveTheColoursAndNormalsOfAnEsvoOfTheSameVoxels) {
+  const std::string dag = build("a.vdag", {"--color", "--normal", "--color-bound", "0"});
+  const std::string esvo = build("a.esvo", {"--no-contours"});
+  write_rays(VdagFile(dag).grid());
+  const std::vector<std::string> of_dag = trace(dag), of_esvo = trace(esvo);
+  ASSERT_EQ(of_dag.size(), of_esvo.size());
+  int hits = 0;
+  double apart = 0, cosine = 0;
+  for (std::size_t i = 0; i < of_dag.size(); ++i) {
+    ASSERT_EQ(of_dag[i].substr(0, 18), of_esvo[i].substr(0, 18));
+    if (of_dag[i][17] == 0) continue;
+    ++hits;
+    float a[3], b[3];
+    std::memcpy(a, of_dag[i].data() + 18, sizeof a);
+    std::memcpy(b, of_esvo[i].data() + 18, sizeof b);
+    for (std::size_t c = 0; c < 3; ++c) {
+      cosine += static_cast<double>(a[c] * b[c]);
+      apart += std::abs(static_cast<unsigned char>(of_dag[i][30 + c]) -
+                        static_cast<unsigned char>(of_esvo[i][30 + c])) /
+               3.0;
+    }
+  }
+  ASSERT_GT(hits, 300);
+  EXPECT_LT(apart / hits, 8);
+  EXPECT_GT(cosine / hits, 0.995);
+}
+
+TEST_F(AttributesCommand, ACopyOfTheLookGivesTheSameHits) {
+  const std::string colored = build("a.vdag", {"--color", "--normal"}), grey = build("b.vdag", {});
+  write_rays(VdagFile(colored).grid());
+  EXPECT_EQ(trace(grey, {"--look", colored}), trace(colored));
+}
+
+TEST_F(AttributesCommand, TheGeometryIsThatOfABuildWithoutColours) {
+  const VdagFile colored(build("a.vdag", {"--color"})), grey(build("b.vdag", {}));
+  for (std::size_t i = 1; i < 4; ++i) {
+    const VdagChunk &a = colored.chunks()[i], &b = grey.chunks()[i];
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_TRUE(std::equal(a.bytes.begin(), a.bytes.end(), b.bytes.begin(), b.bytes.end()));
+  }
+  EXPECT_EQ(colored.metadata().counts, grey.metadata().counts);
+  EXPECT_EQ(colored.metadata().source, grey.metadata().source);
+}
+
+TEST_F(AttributesCommand, AnyNumberOfThreadsWritesTheSameFile) {
+  const std::vector<std::string> options = {"--color", "--normal", "--threads"};
+  const auto with = [&](const std::string& name, const std::string& threads) {
+    std::vector<std::string> all = options;
+    all.push_back(threads);
+    return read_text(build(name, all));
+  };
+  EXPECT_EQ(with("a.vdag", "1"), with("b.vdag", "3"));
+}
+
+TEST_F(AttributesCommand, InfoTellsTheirSizesAndErrors) {
+  const std::string dag = build("a.vdag", {"--color", "--normal", "--attribute-resolution", "32"});
+  const auto json = nlohmann::json::parse(run_voxdag({"info", dag, "--json"}).out);
+  const auto& attributes = json.at("attributes");
+  for (const char* kind : {"color", "normal"}) {
+    EXPECT_EQ(attributes.at(kind).at("resolution"), 32);
+    EXPECT_EQ(attributes.at(kind).at("cells"), json.at("svo_nodes"));
+    EXPECT_GT(attributes.at(kind).at("bits_per_cell"), 0);
+  }
+  EXPECT_GT(attributes.at("color").at("psnr_db"), 25);
+  EXPECT_LT(attributes.at("normal").at("mean_degrees"), 4);
+  const std::string text = run_voxdag({"info", dag}).out;
+  for (const char* part : {"colours", "normals", "bits/cell", "PSNR"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  const std::string lossless = build("b.vdag", {"--color", "--color-bound", "0"});
+  const auto exact = nlohmann::json::parse(run_voxdag({"info", lossless, "--json"}).out);
+  EXPECT_TRUE(exact.at("attributes").at("color").at("psnr_db").is_null());
+}
+
+TEST_F(AttributesCommand, VerifyChecksThem) {
+  const std::string dag = build("a.vdag", {"--color", "--normal"});
+  EXPECT_EQ(run_voxdag({"verify", dag}).status, 0);
+  std::string bytes = read_text(dag);
+  bytes[bytes.size() - 65] ^= 1;
+  write_text(dag, bytes);
+  EXPECT_EQ(run_voxdag({"verify", dag}).status, 1);
+}
+
+TEST_F(AttributesCommand, PicturesShowThem) {
+  const std::string dag = build("a.vdag", {"--color"}), grey = build("b.vdag", {});
+  const auto picture = [&](const std::string& scene) {
+    const ProcessResult result =
+        run_voxdag({"render", scene, "--size", "64x64", "--ao", "0", "-o", dir_ / "a.png"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(dir_ / "a.png");
+  };
+  EXPECT_NE(picture(dag), picture(grey));
+}
+
+TEST_F(AttributesCommand, ConvertKeepsThemOrRefuses) {
+  const std::string colored = build("a.vdag", {"--color", "--normal"}), grey = build("b.vdag", {});
+  const auto convert = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"convert", colored, "-o", dir_ / "c.vdag"});
+    return run_voxdag(options);
+  };
+  ASSERT_EQ(convert({}).status, 0);
+  EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(colored));
+  expect_failure(convert({"--compact"}), 1, "use --drop-attributes");
+  expect_failure(convert({"--levels", "5"}), 1, "use --drop-attributes");
+  ASSERT_EQ(convert({"--drop-attributes"}).status, 0);
+  EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(grey));
+  EXPECT_EQ(convert({"--compact", "--drop-attributes"}).status, 0);
+}
+
+TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
+  expect_failure(run_build("a.vdag", {"--attribute-resolution", "32"}), 2, "without --color");
+  expect_failure(run_build("a.vdag", {"--normal", "--color-bound", "0.1"}), 2, "without --color");
+  expect_failure(run_build("a.vdag", {"--color", "--normal-bound", "3"}), 2, "without --normal");
+  expect_failure(run_build("a.vdag", {"--color", "--attribute-resolution", "128"}), 2,
+                 "128 is more than the grid's resolution, 64");
+  expect_failure(run_build("a.vdag", {"--color", "--compact"}), 2, "only the plain form");
+  expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
+  EXPECT_EQ(dir_.count(), 1);
+}
+
+}  // namespace
+}  // namespace voxdag

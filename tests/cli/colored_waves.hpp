@@ -1,0 +1,27 @@
+#pragma once
+/// A mesh with colours for tests of the command line.
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace voxdag {
+
+/// Returns a wavy mesh whose vertices all have different colours.
+inline std::string colored_waves() {
+  constexpr int kSide = 20;
+  std::ostringstream text;
+  for (int i = 0; i <= kSide; ++i)
+    for (int j = 0; j <= kSide; ++j) {
+      text << "v " << i << " " << 3 * std::sin(0.5 * i) * std::cos(0.4 * j) << " " << j;
+      for (const int step : {37, 61, 89}) text << " " << (i * step + j * (step + 4)) % 101 / 100.0;
+      text << "\n";
+    }
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const int first = 1 + i * (kSide + 1) + j, next = first + kSide + 1;
+      text << "f " << first << " " << first + 1 << " " << next + 1 << " " << next << "\n";
+    }
+  return text.str();
+}
+
+}  // namespace voxdag

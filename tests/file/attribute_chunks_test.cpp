@@ -1,0 +1,147 @@
+// Tests the chunks of attributes: what was written is read, and damaged chunks with correct
+// checksums are refused or safe to read.
+#include "voxdag/file/attribute_chunks.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/error_of.hpp"
+#include "support/number_colors.hpp"
+#include "support/vdag_bytes.hpp"
+#include "voxdag/layout/look.hpp"
+
+namespace voxdag {
+namespace {
+
+const Svdag& small_dag() {
+  static const Svdag dag = brute_svdag(5, random_voxels(5, 90, 2));
+  return dag;
+}
+
+std::string colored_file(int finest = 5) {
+  const Svdag& dag = small_dag();
+  const NumberColors colors(dag.view(), finest);
+  VdagMetadata metadata = example_metadata(dag.view());
+  metadata.attributes.resolution = std::int64_t{1} << finest;
+  metadata.attributes.colors = {0.25, 1234};
+  metadata.attributes.normals = {3.5, 99};
+  const TempDir dir;
+  write_vdag(dir / "file.vdag", dag.view(), metadata, colors.view().attributes);
+  return read_text(dir / "file.vdag");
+}
+
+std::string error_of(const std::string& bytes) {
+  return voxdag::error_of([&] { parse_vdag(AlignedBytes(bytes).span()); });
+}
+
+VdagChunkEntry entry_of(const std::string& bytes, std::size_t index) {
+  return peek<VdagChunkEntry>(bytes, entry_offset(index));
+}
+
+/// Reads the attributes of every cell of a file.
+void read_all(const VdagContents& contents) {
+  const ColoredDagView colored{contents.view, contents.attributes};
+  for (int level = 0; level <= colored.dag.levels; ++level)
+    for (std::uint64_t code = 0; code < std::uint64_t{1} << 3 * level; ++code)
+      look_at(colored, morton_decode(code), level);
+}
+
+TEST(AttributeChunks, WhatWasWrittenIsRead) {
+  for (int finest = 0; finest <= 5; ++finest) {
+    const AlignedBytes bytes(colored_file(finest));
+    const VdagContents contents = parse_vdag(bytes.span());
+    const DagAttributesView& attributes = contents.attributes;
+    EXPECT_EQ(attributes.index.finest_level, finest);
+    ASSERT_EQ(attributes.colors.values, attributes.index.cells);
+    ASSERT_EQ(attributes.normals.values, attributes.index.cells);
+    for (std::uint64_t i = 0; i < attributes.index.cells; ++i) {
+      EXPECT_EQ(read_value(attributes.colors, i), color_of_number(i));
+      EXPECT_EQ(read_value(attributes.normals, i), color_of_number(i));
+    }
+    EXPECT_EQ(contents.metadata.attributes.resolution, std::int64_t{1} << finest);
+    EXPECT_EQ(contents.metadata.attributes.colors->errors, 1234u);
+    EXPECT_EQ(contents.metadata.attributes.normals->bound, 3.5);
+  }
+}
+
+TEST(AttributeChunks, TheGeometryHasTheBytesOfAFileWithoutAttributes) {
+  const std::string with = colored_file(), without = vdag_file_bytes(small_dag());
+  for (std::size_t i = 1; i < 4; ++i) {  // all chunks but META
+    const VdagChunkEntry a = entry_of(with, i), b = entry_of(without, i);
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_EQ(with.substr(a.offset, a.length), without.substr(b.offset, b.length));
+  }
+}
+
+TEST(AttributeChunks, AReaderWithoutAttributesCanSkipThem) {
+  const std::string bytes = colored_file();
+  for (std::size_t i = 4; i < 7; ++i) EXPECT_EQ(entry_of(bytes, i).flags, 0u);
+}
+
+TEST(AttributeChunks, EveryFlippedBitIsRefusedWithoutChecksums) {
+  const std::string bytes = colored_file();
+  for (std::size_t i = 4; i < 7; ++i)
+    for (std::uint64_t at = 0; at < entry_of(bytes, i).length; ++at) {
+      std::string changed = bytes;
+      changed[entry_of(bytes, i).offset + at] ^= static_cast<char>(1 << at % 8);
+      ASSERT_NE(error_of(changed), "no error");
+    }
+}
+
+TEST(AttributeChunks, EveryFlippedBitWithCorrectChecksumsIsRefusedOrSafeToRead) {
+  const std::string bytes = colored_file(4);
+  int refused = 0;
+  for (std::size_t i = 4; i < 7; ++i)
+    for (std::uint64_t bit = 0; bit < 8 * entry_of(bytes, i).length; ++bit) {
+      std::string changed = bytes;
+      changed[entry_of(bytes, i).offset + bit / 8] ^= static_cast<char>(1 << bit % 8);
+      repair_checksums(changed);
+      try {
+        const AlignedBytes aligned(changed);
+        const VdagContents contents = parse_vdag(aligned.span());
+        if (bit % 61 == 0) read_all(contents);
+        EXPECT_GT(i, 4u) << "bit " << bit << " of CIDX";
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+  EXPECT_GT(refused, 1000);
+}
+
+/// Returns the file with the last `cut` bytes of chunk `index` removed, and all offsets, sizes and
+/// checksums correct.
+std::string shortened(const std::string& bytes, std::size_t index, std::uint64_t cut) {
+  std::string file = bytes.substr(0, vdag_align(entry_offset(7)));
+  for (std::size_t i = 0; i < 7; ++i) {
+    VdagChunkEntry entry = entry_of(bytes, i);
+    const std::string chunk = bytes.substr(entry.offset, entry.length - (i == index ? cut : 0));
+    entry.offset = file.size();
+    entry.length = chunk.size();
+    poke(file, entry_offset(i), entry);
+    file += chunk;
+    file.resize(vdag_align(file.size()));
+  }
+  poke(file, offsetof(VdagHeader, file_bytes), std::uint64_t{file.size()});
+  repair_checksums(file);
+  return file;
+}
+
+TEST(AttributeChunks, EveryTruncatedChunkIsRefused) {
+  const std::string bytes = colored_file(4);
+  ASSERT_EQ(error_of(shortened(bytes, 4, 0)), "no error");
+  for (std::size_t i = 4; i < 7; ++i)
+    for (std::uint64_t cut = 1; cut <= entry_of(bytes, i).length; ++cut)
+      ASSERT_NE(error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
+}
+
+TEST(AttributeChunks, ColoursWithoutNumbersAreRefused) {
+  std::string bytes = colored_file();
+  VdagChunkEntry entry = entry_of(bytes, 4);
+  entry.id = vdag_chunk_id("XXXX");
+  poke(bytes, entry_offset(4), entry);
+  repair_checksums(bytes);
+  EXPECT_NE(error_of(bytes).find("COLR: needs the chunk CIDX"), std::string::npos)
+      << error_of(bytes);
+}
+
+}  // namespace
+}  // namespace voxdag
