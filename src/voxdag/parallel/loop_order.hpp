@@ -7,7 +7,31 @@
 #include "voxdag/core/thread_sanitizer.hpp"
 
 #ifdef VOXDAG_TSAN
+#include <dlfcn.h>
 #include <sanitizer/tsan_interface.h>
+#include <tbb/parallel_for.h>
+
+namespace tbb::detail::r1 {
+
+/// Replaces TBB's function that runs a loop and waits for its tasks. Calls TBB's, then shows
+/// ThreadSanitizer the order that TBB guarantees: all that the tasks did, up to the last reference
+/// that they release, comes before the return. Without it, ThreadSanitizer reports where the caller
+/// uses its stack again, because the tasks read the counter there after the items of the loop.
+[[gnu::weak]] void execute_and_wait(d1::task& task, d1::task_group_context& task_context,
+                                    d1::wait_context& references,
+                                    d1::task_group_context& wait_context) {
+  static const auto run = reinterpret_cast<decltype(&execute_and_wait)>(
+      ::dlsym(RTLD_NEXT,
+              "_ZN3tbb6detail2r116execute_and_waitERNS0_2d14taskERNS2_18task_group_contextERNS2_"
+              "12wait_contextES6_"));
+  struct Order {
+    d1::wait_context& references;
+    ~Order() { references.reserve(0); }  // an atomic access to the counter, which orders
+  } const order{references};
+  run(task, task_context, references, wait_context);
+}
+
+}  // namespace tbb::detail::r1
 #endif
 
 namespace voxdag {
