@@ -18,7 +18,7 @@ struct CompactRaysPlan {
   std::vector<int> tables{1, 16, 128, 1024, 2048, 4096};
   int views = 2, repeat = 3;
   RayOptions rays;
-  std::size_t most_rays = 200'000;  ///< Of each class and view.
+  std::size_t most_rays = 1'000'000;  ///< Of each class and view.
 };
 
 /// The classes of rays that are measured.

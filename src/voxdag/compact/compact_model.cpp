@@ -34,21 +34,18 @@ class SampleSink {
 
 class CountSink {
  public:
-  explicit CountSink(const CompactTrees& trees) {
-    for (const ContextTree& tree : trees) {
-      counts.emplace_back(tree.tables());
-      views_.push_back(tree.view());
-    }
+  explicit CountSink(const CompactTrees& trees) : trees_(trees) {
+    for (const ContextTree& tree : trees) counts.emplace_back(tree.tables());
   }
   void symbol(CompactSymbol symbol, std::uint64_t features, std::uint32_t value) {
-    counts[symbol].add(views_[symbol].table(features), value);
+    counts[symbol].add(trees_[symbol].table(features), value);
   }
   void raw(std::uint32_t, int) {}
 
   std::vector<SymbolCounts> counts;
 
  private:
-  std::vector<ContextTreeView> views_;
+  const CompactTrees& trees_;
 };
 
 /// Calls visit_unit, visit_shared_brick or visit_node for item `i` of all nodes that have

@@ -34,21 +34,17 @@ Svdag in_corner(const SvdagView& dag) {
 /// The intervals of the symbols of one tree's tables.
 class Intervals {
  public:
-  explicit Intervals(const ContextTree& tree) : tree_(tree.view()), of_(tree.tables()) {
-    for (std::size_t t = 0; t < tree.tables(); ++t) {
-      const std::size_t end = t + 1 < tree.tables() ? tree.table_begin[t + 1] : tree.entries.size();
-      for (std::size_t i = tree.table_begin[t]; i < end; ++i)
-        of_[t][tree.entries[i] & 0xFF] = tree.entries[i] >> 8;
-    }
+  explicit Intervals(const ContextTree& tree) : tree_(&tree), of_(tree.tables()) {
+    for (std::size_t t = 0; t < tree.tables(); ++t) of_[t] = intervals_of(tree.weights[t]);
   }
   void put(std::uint64_t features, std::uint32_t symbol, SymbolWriter& out) const {
-    const std::uint32_t interval = of_[tree_.table(features)][symbol];
-    out.put(interval & 0xFFFu, (interval >> 12) + 1);
+    const SymbolInterval interval = of_[tree_->table(features)][symbol];
+    out.put(interval.start, interval.frequency);
   }
 
  private:
-  ContextTreeView tree_;
-  std::vector<std::array<std::uint32_t, 256>> of_;  ///< start | (frequency - 1) << 12
+  const ContextTree* tree_;
+  std::vector<std::array<SymbolInterval, 256>> of_;
 };
 
 /// Writes records; one for each task.

@@ -45,7 +45,7 @@ class DecodedCache {
   }
 
  private:
-  static constexpr int kNodeBits = 10, kUnitBits = 10, kBrickBits = 12;
+  static constexpr int kNodeBits = 12, kUnitBits = 11, kBrickBits = 13;
   template <class T>
   struct Slot {
     CompactRange range{~std::uint64_t{0}, ~std::uint64_t{0}};

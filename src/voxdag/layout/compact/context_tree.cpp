@@ -57,33 +57,62 @@ WeightCodes weights_for(const std::array<std::uint32_t, 256>& counts) {
   return weights;
 }
 
+std::array<SymbolInterval, 256> intervals_of(const WeightCodes& weights) {
+  const Frequencies frequencies = frequencies_of(weights);
+  std::array<std::uint32_t, 256> order;
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return frequencies[a] > frequencies[b];
+  });
+  std::array<SymbolInterval, 256> intervals;
+  std::uint32_t start = 0;
+  for (const std::uint32_t s : order) {
+    intervals[s] = {static_cast<std::uint16_t>(start), frequencies[s]};
+    start += frequencies[s];
+  }
+  return intervals;
+}
+
 void ContextTree::prepare() {
-  table_begin.clear();
+  steps = nodes;
+  starts.clear();
+  for (std::uint32_t value = 0; value < 1u << kStartBits; ++value) {
+    std::uint32_t at = 0;
+    for (;;) {
+      const int tested = static_cast<int>(nodes[at] & 63u) - kFirstStartFeature;
+      if ((nodes[at] & kLeafNode) != 0 || tested < 0 || tested >= kStartBits) break;
+      at = (nodes[at] >> 8) + (value >> tested & 1u);
+    }
+    starts.push_back(at);
+  }
+
   entries.clear();
-  buckets.assign(tables() << kBucketBits, 0);
-  for (std::size_t t = 0; t < tables(); ++t) {
-    const auto first = static_cast<std::uint32_t>(entries.size());
-    table_begin.push_back(first);
-    const Frequencies frequencies = frequencies_of(weights[t]);
+  std::vector<std::uint32_t> places;
+  for (const WeightCodes& table_weights : weights) {
+    const std::size_t place = entries.size();
+    places.push_back(static_cast<std::uint32_t>(place));
+    entries.resize(place + kBucketWords);
+    const std::array<SymbolInterval, 256> intervals = intervals_of(table_weights);
     std::vector<std::uint32_t> symbols;
     for (std::uint32_t s = 0; s < 256; ++s)
-      if (frequencies[s] != 0) symbols.push_back(s);
-    std::stable_sort(symbols.begin(), symbols.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return frequencies[a] > frequencies[b];
+      if (intervals[s].frequency != 0) symbols.push_back(s);
+    std::sort(symbols.begin(), symbols.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return intervals[a].start < intervals[b].start;
     });
-    std::uint32_t start = 0;
+    std::uint32_t entry = 0;
     for (const std::uint32_t s : symbols) {
-      const std::uint32_t frequency = frequencies[s];
-      const auto entry = static_cast<std::uint32_t>(entries.size()) - first;
+      const std::uint32_t start = intervals[s].start, frequency = intervals[s].frequency;
       entries.push_back(s | start << 8 | (frequency - 1) << 20);
       constexpr std::uint32_t kWidth = kSum >> kBucketBits;
       for (std::uint32_t b = (start + kWidth - 1) / kWidth; b * kWidth < start + frequency; ++b)
-        buckets[t << kBucketBits | b] = static_cast<std::uint8_t>(entry);
-      start += frequency;
+        entries[place + b / 4] |= entry << (8 * (b % 4));
+      ++entry;
     }
     // A table that is not used still ends a search.
     if (symbols.empty()) entries.push_back((kSum - 1) << 20);
   }
+  for (std::uint32_t& step : steps)
+    if ((step & kLeafNode) != 0) step = places[step >> 8] << 8 | kLeafNode;
 }
 
 }  // namespace voxdag

@@ -9,10 +9,17 @@
 ///             leaf:       table << 8 | kLeafNode
 ///             Node 0 is the root. Children follow in the order in which a depth-first walk meets
 ///             their parents; so do the numbers of the tables.
-///   entries   symbol | start << 8 | (frequency - 1) << 20; those of a table are in the order of
-///             decreasing frequency (equal frequencies: of increasing symbols), and their
-///             intervals [start, start + frequency) fill [0, 4096) in this order
-///   buckets   of each table 64 bytes: the entry that holds the slot 64 * i, for a quick start
+/// For reading, prepare() makes
+///
+///   starts    for each value of the features 52 to 59 the first node that tests another one, so
+///   that
+///             a walk through a tree of masks begins some levels below the root
+///   steps     the nodes, whose leaves have the place of the table in `tables` << 8 | kLeafNode
+///   tables    of each table, side by side for few cache misses: 16 bytes, byte i the entry that
+///   holds
+///             the slot 256 * i; then the entries, symbol | start << 8 | (frequency - 1) << 20, in
+///             the order of decreasing frequency (equal frequencies: of increasing symbols). Their
+///             intervals [start, start + frequency) fill [0, 4096) in this order.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -22,30 +29,28 @@
 namespace voxdag {
 
 inline constexpr std::uint32_t kLeafNode = 0x80;
-inline constexpr int kBucketBits = 6;
+inline constexpr int kBucketBits = 4;
+inline constexpr int kBucketWords = (1 << kBucketBits) / 4;
+inline constexpr int kFirstStartFeature = 52, kStartBits = 8;
 inline constexpr int kMostTables = 4096;  ///< The largest number of tables of one tree.
 
 /// A view for kernels.
 struct ContextTreeView {
-  const std::uint32_t* nodes = nullptr;
-  const std::uint32_t* table_begin = nullptr;  ///< The first entry of each table.
-  const std::uint32_t* entries = nullptr;
-  const std::uint8_t* buckets = nullptr;
-
-  /// Returns the table for `features`.
-  VOXDAG_HD std::uint32_t table(std::uint64_t features) const {
-    std::uint32_t node = nodes[0];
-    while ((node & kLeafNode) == 0)
-      node = nodes[(node >> 8) + static_cast<std::uint32_t>(features >> (node & 63u) & 1u)];
-    return node >> 8;
-  }
+  const std::uint32_t* starts = nullptr;
+  const std::uint32_t* steps = nullptr;
+  const std::uint32_t* tables = nullptr;
 
   /// Reads a symbol that has these features.
   VOXDAG_HD std::uint32_t read(SymbolReader& reader, std::uint64_t features) const {
-    const std::uint32_t t = table(features);
+    constexpr std::uint64_t kStarts = (1u << kStartBits) - 1;
+    std::uint32_t node = steps[starts[features >> kFirstStartFeature & kStarts]];
+    while ((node & kLeafNode) == 0)
+      node = steps[(node >> 8) + static_cast<std::uint32_t>(features >> (node & 63u) & 1u)];
+    const std::uint32_t* table = tables + (node >> 8);
     const std::uint32_t slot = reader.slot();
-    const std::uint32_t* entry = entries + table_begin[t] +
-                                 buckets[t << kBucketBits | slot >> (kFrequencyBits - kBucketBits)];
+    const std::uint32_t bucket = slot >> (kFrequencyBits - kBucketBits);
+    const std::uint32_t* entry =
+        table + kBucketWords + (table[bucket >> 2] >> (8 * (bucket & 3u)) & 0xFFu);
     for (;; ++entry) {
       const std::uint32_t start = *entry >> 8 & 0xFFFu, frequency = (*entry >> 20) + 1;
       if (slot - start >= frequency) continue;
@@ -69,6 +74,15 @@ using Frequencies = std::array<std::uint16_t, 256>;
 /// 4096.
 Frequencies frequencies_of(const WeightCodes& weights);
 
+/// The interval [start, start + frequency) of a symbol of a table; the frequency is 0 if the symbol
+/// does not occur.
+struct SymbolInterval {
+  std::uint16_t start = 0, frequency = 0;
+};
+
+/// Returns the intervals of all symbols.
+std::array<SymbolInterval, 256> intervals_of(const WeightCodes& weights);
+
 /// Returns weights in proportion to the counts, of three significant bits, at least 1 for each
 /// symbol that occurs.
 WeightCodes weights_for(const std::array<std::uint32_t, 256>& counts);
@@ -78,19 +92,18 @@ struct ContextTree {
   std::vector<std::uint32_t> nodes{kLeafNode};
   std::vector<WeightCodes> weights{1};  ///< Of each table. All zero: a table that is not used.
 
-  /// What reading needs; made from `weights` by prepare().
-  std::vector<std::uint32_t> table_begin, entries;
-  std::vector<std::uint8_t> buckets;
+  std::vector<std::uint32_t> starts, steps, entries;  ///< Made by prepare(), for reading.
 
+  /// Makes what reading needs from `nodes` and `weights`.
   void prepare();
   std::size_t tables() const { return weights.size(); }
-  ContextTreeView view() const {
-    return {nodes.data(), table_begin.data(), entries.data(), buckets.data()};
+  /// Returns the table for `features`.
+  std::uint32_t table(std::uint64_t features) const {
+    std::uint32_t node = nodes[0];
+    while ((node & kLeafNode) == 0) node = nodes[(node >> 8) + (features >> (node & 63u) & 1u)];
+    return node >> 8;
   }
-  /// Returns the bytes that a reader holds.
-  std::uint64_t bytes() const {
-    return (nodes.size() + table_begin.size() + entries.size()) * 4 + buckets.size();
-  }
+  ContextTreeView view() const { return {starts.data(), steps.data(), entries.data()}; }
 };
 
 }  // namespace voxdag
