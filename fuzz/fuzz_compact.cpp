@@ -10,34 +10,18 @@
 
 #include "chunk_mutator.hpp"
 #include "support/brute_svdag.hpp"
+#include "support/compact_walk.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/compact_file.hpp"
-#include "voxdag/layout/compact/compact_nodes.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Reads nodes depth first, `left` of them at most.
-void read_nodes(const CompactSvdagView& dag, CompactRange range, int level, int& left) {
-  if (left-- <= 0) return;
-  if (range.begin > range.end || range.end > dag.stream_bits) std::abort();
-  if (level == dag.coded_levels() - 4) {
-    CompactUnit unit;
-    read_unit(dag, range, unit);
-    return;
-  }
-  CompactNode node;
-  read_node(dag, range, level, node);
-  for (int i = 0; i < 8; ++i)
-    if ((node.mask >> i & 1) != 0) read_nodes(dag, node.children[i], level + 1, left);
-}
-
 void walk(const CompactContents& contents) {
   const CompactSvdagView view = contents.view();
-  int left = 1000;
-  if (!view.is_empty()) read_nodes(view, root_node(view), 0, left);
+  if (!ranges_are_safe(view, 1000)) std::abort();
   Svdag dag;
   try {
     MemoryBudget memory(std::uint64_t{256} << 20);

@@ -9,7 +9,9 @@
 #include "bench/build/bench_mesh.hpp"
 #include "bench/compact/plain_sizes.hpp"
 #include "bench/report/scratch_folder.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/scene_file.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
@@ -23,6 +25,12 @@ namespace fs = std::filesystem;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Returns the name of the mesh, or of the file if that is unknown.
+std::string name_of(const SceneMetadata& metadata, const std::string& path) {
+  const std::string& source = metadata.source.name;
+  return source.empty() ? fs::path(path).filename().string() : source;
 }
 
 class Bench {
@@ -56,13 +64,25 @@ class Bench {
     return run;
   }
 
+  void measure_compact_file(const std::string& path) {
+    const CompactFile file(path);
+    Svdag dag;
+    try {
+      dag = decode_svdag(file.view(), nullptr, &progress_);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      throw error.in_file(path);
+    }
+    measure(dag.view(), add_run(name_of(file.metadata(), path), dag.levels));
+  }
+
   void measure_file(const std::string& path) {
+    if (is_compact_file(path)) return measure_compact_file(path);
     const SceneFile file(path);
     const VoxelSet voxels = file.voxels();
     if (voxels.dag() == nullptr) throw Error(path, "", "is not a DAG");
-    const std::string& source = file.metadata().source.name;
-    measure(*voxels.dag(),
-            add_run(source.empty() ? fs::path(path).filename().string() : source, voxels.levels()));
+    measure(*voxels.dag(), add_run(name_of(file.metadata(), path), voxels.levels()));
   }
 
   void measure_mesh(const std::string& scene) {

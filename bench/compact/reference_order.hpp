@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "bench/compact/dag_nodes.hpp"
@@ -22,6 +23,37 @@ std::vector<std::uint32_t> reference_order(const std::vector<Node>& parents, std
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return references[a] > references[b]; });
   return order;
+}
+
+/// Places the words of the nodes of each level one after the other, in reference_order(), from the
+/// last level up, so that the places of a node's children are known when the node is placed. A node
+/// has one word for its tags, and for each child `words_of(child)` words, where words_of is
+/// make_words_of(level, places of the level below). Returns the number of nodes.
+template <class Node, class MakeWordsOf>
+std::uint64_t place_levels(const std::vector<std::vector<Node>>& levels, std::size_t leaf_blocks,
+                           const MakeWordsOf& make_words_of) {
+  std::uint64_t count = 0, place = 0;
+  std::vector<std::uint64_t> places(leaf_blocks);
+  if (!levels.empty())
+    for (const std::uint32_t leaf : reference_order(levels.back(), leaf_blocks))
+      places[leaf] = place++;
+  for (std::size_t level = levels.size(); level-- > 0;) {
+    const std::vector<Node>& nodes = levels[level];
+    auto words_of = make_words_of(level, places);
+    const std::vector<std::uint32_t> order = level == 0
+                                                 ? std::vector<std::uint32_t>{0}
+                                                 : reference_order(levels[level - 1], nodes.size());
+    std::vector<std::uint64_t> here(nodes.size());
+    std::uint64_t at = 0;
+    for (const std::uint32_t i : order) {
+      here[i] = at++;
+      ++count;
+      for (const auto& child : nodes[i])
+        if (child.node != kNoNode) at += words_of(child);
+    }
+    places = std::move(here);
+  }
+  return count;
 }
 
 }  // namespace voxdag

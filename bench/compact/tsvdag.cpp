@@ -113,37 +113,20 @@ class LevelPointers {
 
 SizeInParts tsvdag_size(const TransformDag& dag) {
   if (dag.leaf_blocks.empty()) return {};
-  std::uint64_t tag_words = 0, table_entries = 0;
+  std::uint64_t table_entries = 0;
   std::array<std::uint64_t, 4> words{};  // by words a pointer
-  std::vector<std::uint64_t> places(dag.leaf_blocks.size());
-  const std::size_t inner_levels = dag.nodes.size();
-  if (inner_levels > 0) {
-    std::uint64_t place = 0;
-    for (const std::uint32_t leaf : reference_order(dag.nodes[inner_levels - 1], places.size()))
-      places[leaf] = place++;
-  }
-  for (std::size_t level = inner_levels; level-- > 0;) {
-    const std::vector<TransformedNode>& nodes = dag.nodes[level];
-    const LevelPointers pointers(nodes, static_cast<int>(inner_levels - level) + 1,
-                                 dag.move_height > 0, places);
-    table_entries += pointers.table_entries();
-    const std::vector<std::uint32_t> order =
-        level == 0 ? std::vector<std::uint32_t>{0}
-                   : reference_order(dag.nodes[level - 1], nodes.size());
-    std::vector<std::uint64_t> here(nodes.size());
-    std::uint64_t at = 0;
-    for (const std::uint32_t i : order) {
-      here[i] = at++;
-      ++tag_words;
-      for (const TransformedChild& child : nodes[i]) {
-        if (child.node == kNoNode) continue;
-        const int size = pointers.words_of(child);
-        words[size] += size;
-        at += size;
-      }
-    }
-    places = std::move(here);
-  }
+  const std::uint64_t tag_words = place_levels(
+      dag.nodes, dag.leaf_blocks.size(),
+      [&](std::size_t level, const std::vector<std::uint64_t>& places) {
+        LevelPointers pointers(dag.nodes[level], static_cast<int>(dag.nodes.size() - level) + 1,
+                               dag.move_height > 0, places);
+        table_entries += pointers.table_entries();
+        return [&words, pointers = std::move(pointers)](const TransformedChild& child) {
+          const auto size = static_cast<std::uint64_t>(pointers.words_of(child));
+          words[size] += size;
+          return size;
+        };
+      });
   return {{{"tags", 2 * tag_words},
            {"16-bit pointers", 2 * words[1]},
            {"32-bit pointers", 2 * words[2]},

@@ -1,8 +1,9 @@
 #pragma once
 /// `voxdag bench compact-rays`: bytes of the compact form against the time of rays at it.
 ///
-/// The form is encoded with more and more tables. Rays are cast at each as it is, with a cache of
-/// decoded nodes per thread, and at the plain form by the same caster and by the caster of packets.
+/// The benchmark encodes the DAG with 1 to 4096 tables. It casts rays at each result as it is, one
+/// at a time and with a cache of decoded nodes per thread, and casts the same rays at the plain
+/// form, one at a time and in packets.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -18,7 +19,7 @@ struct CompactRaysPlan {
   std::vector<int> tables{1, 16, 128, 1024, 2048, 4096};
   int views = 2, repeat = 3;
   RayOptions rays;
-  std::size_t most_rays = 1'000'000;  ///< Of each class and view.
+  std::size_t most_rays = 1'000'000;  ///< The largest number of rays of a class and view.
 };
 
 /// The classes of rays that are measured.

@@ -42,9 +42,35 @@ TEST_F(BenchCompact, AFileKeepsItsResolution) {
   EXPECT_EQ(result.out.find(" SVO "), std::string::npos) << result.out;
 }
 
+TEST_F(BenchCompact, AFileInTheCompactFormHasTheSameBytes) {
+  ASSERT_EQ(run_voxdag({"convert", path("in.vdag"), "--compact", "-o", path("c.vdag")}).status, 0);
+  const auto bytes_of = [&](const char* file) {
+    const ProcessResult result =
+        run_voxdag({"bench", "compact", path(file), "--forms", "svdag,voxdag", "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out).at("runs")[0].at("forms").at("voxdag").at("bytes");
+  };
+  EXPECT_EQ(bytes_of("c.vdag"), bytes_of("in.vdag"));
+}
+
+TEST_F(BenchCompact, RaysAreCastAtTheCompactFormWithFewAndManyTables) {
+  const ProcessResult result = run_voxdag({"bench", "compact-rays", path("in.vdag"), "--views", "1",
+                                           "--repeat", "1", "--rays", "500", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  EXPECT_GT(json.at("plain").at("primary").at("rays"), 0);
+  ASSERT_EQ(json.at("compact").size(), 6u);
+  EXPECT_EQ(json.at("compact")[0].at("tables"), 1);
+  for (const Json& point : json.at("compact")) {
+    EXPECT_GT(point.at("bytes"), 0);
+    EXPECT_GT(point.at("primary").at("seconds"), 0);
+    EXPECT_GT(point.at("primary").at("decoded_per_ray"), 0);
+  }
+}
+
 TEST_F(BenchCompact, AnUnknownFormIsBadUsage) {
   expect_failure(run_voxdag({"bench", "compact", path("in.vdag"), "--forms", "zip"}), 2,
-                 "svo, svdag, ssvdag, tsvdag");
+                 "svo, svdag, ssvdag, tsvdag, voxdag");
 }
 
 TEST_F(BenchCompact, TheOtherScenesAreMeasuredIfOneFails) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/damaged_bytes.hpp"
 #include "support/error_of.hpp"
 #include "support/vdag_bytes.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
@@ -20,8 +21,8 @@ std::string compact_file_bytes(const Svdag& dag) {
 
 std::string small_file() { return compact_file_bytes(brute_svdag(6, random_voxels(6, 40, 3))); }
 
-std::string error_of(const std::string& bytes) {
-  return voxdag::error_of([&] {
+std::string decode_error(const std::string& bytes) {
+  return error_of([&] {
     const AlignedBytes aligned(bytes);
     decode_svdag(parse_compact(aligned.span()).view());
   });
@@ -47,41 +48,26 @@ TEST(CompactFile, IsNotReadAsAPlainDag) {
   const TempDir dir;
   write_text(dir / "a.vdag", small_file());
   EXPECT_EQ(
-      voxdag::error_of([&] { VdagFile(dir / "a.vdag"); }),
+      error_of([&] { VdagFile(dir / "a.vdag"); }),
       (dir / "a.vdag").string() +
           ": holds a compact DAG, but one in the plain form is needed: voxdag convert --plain");
   const Svdag dag = brute_svdag(4, {});
   write_vdag(dir / "b.vdag", dag.view(), example_metadata(dag.view()));
   EXPECT_FALSE(is_compact_file(dir / "b.vdag"));
-  EXPECT_EQ(voxdag::error_of([&] { CompactFile(dir / "b.vdag"); }),
+  EXPECT_EQ(error_of([&] { CompactFile(dir / "b.vdag"); }),
             (dir / "b.vdag").string() + ": does not hold a compact DAG");
 }
 
 TEST(CompactFile, EveryTruncationIsRefused) {
-  const std::string bytes = small_file();
-  for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_NE(error_of(bytes.substr(0, size)), "no error") << size << " bytes";
+  expect_truncations_are_refused(small_file(), decode_error);
 }
 
 TEST(CompactFile, EveryBitFlipIsRefused) {
-  const std::string bytes = small_file();
-  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
-    std::string changed = bytes;
-    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
-    const std::string error = error_of(changed);
-    EXPECT_NE(error, "no error") << "byte " << bit / 8;
-    EXPECT_EQ(error.find('\n'), std::string::npos);
-  }
+  expect_bit_flips_are_refused(small_file(), decode_error);
 }
 
 TEST(CompactFile, EveryBitFlipWithRightChecksumsIsSurvived) {
-  const std::string bytes = small_file();
-  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
-    std::string changed = bytes;
-    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
-    repair_checksums(changed);
-    EXPECT_EQ(error_of(changed).find('\n'), std::string::npos);
-  }
+  survive_bit_flips(small_file(), decode_error);
 }
 
 }  // namespace

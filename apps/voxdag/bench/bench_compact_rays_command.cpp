@@ -50,6 +50,8 @@ void add_bench_compact_rays_command(const Command& bench, Session& session) {
                  "Number of views whose rays are cast");
   command.number("--repeat", arguments->plan.repeat, NumberRange::whole(1, 1000), "N",
                  "Number of runs; the fastest counts");
+  command.number("--rays", arguments->plan.most_rays, NumberRange::whole(1, 100'000'000), "N",
+                 "Largest number of rays of a kind and view");
   command.text("-o,--output", arguments->output.json_file, "FILE.json",
                "Also write the JSON to a file");
   command.text("--plot", arguments->output.plot_files[0], "FILE.svg",

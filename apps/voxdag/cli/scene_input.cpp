@@ -29,10 +29,9 @@ std::variant<DagInput, EsvoFile> open(const std::filesystem::path& path, Progres
 
 DagInput::DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory)
     : dag_(Svdag()) {
-  // The file is in memory before its size is known to be right; so is a DAG that was decoded.
-  memory_ = MemoryReservation(memory, std::filesystem::file_size(path));
   if (is_compact_file(path)) {
     const CompactFile file(path);
+    memory_ = MemoryReservation(memory, file.file_bytes());
     dag_ = decode(file, path, memory, progress);
     metadata_ = file.metadata();
     file_bytes_ = file.file_bytes();
@@ -41,6 +40,7 @@ DagInput::DagInput(const std::filesystem::path& path, Progress* progress, Memory
     VdagFile file(path);
     metadata_ = file.metadata();
     file_bytes_ = file.file_bytes();
+    memory_ = MemoryReservation(memory, file_bytes_);
     dag_ = std::move(file);
   }
 }

@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// A DAG of any form in memory, in the plain one. Move-only; views stay valid when it is moved.
+/// A DAG in memory, in the plain form. Move-only; views stay valid when it is moved.
 class DagInput {
  public:
   /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts
@@ -37,7 +37,7 @@ class DagInput {
 /// A scene of any kind in memory. Move-only; views stay valid when it is moved.
 class SceneInput {
  public:
-  /// As DagInput, and reads an ESVO.
+  /// Reads a DAG like DagInput, or an ESVO.
   SceneInput(const std::filesystem::path& path, Progress* progress);
 
   VoxelSet voxels() const;

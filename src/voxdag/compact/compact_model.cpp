@@ -14,8 +14,8 @@ namespace {
 /// About this many bricks are samples for the trees.
 constexpr std::uint64_t kSampledBricks = 40000;
 
-/// Returns whether the item is one of the samples, of which there is one in `stride` items on
-/// average, at no regular distance.
+/// Returns whether the item is a sample. One in `stride` items is one, on average and without a
+/// period.
 bool is_sample(std::uint64_t item, std::uint64_t stride) {
   std::uint64_t x = item * 0x9E3779B97F4A7C15ull;
   x = (x ^ x >> 32) * 0xD6E8FEB86659FD93ull;
@@ -48,8 +48,7 @@ class CountSink {
   const CompactTrees& trees_;
 };
 
-/// Calls visit_unit, visit_shared_brick or visit_node for item `i` of all nodes that have
-/// symbols: the units, the shared bricks, and the nodes above the units.
+/// The nodes that have symbols, in one sequence: units, shared bricks, nodes above the units.
 class AllNodes {
  public:
   explicit AllNodes(const NumberedNodes& nodes) : nodes_(nodes) {

@@ -10,13 +10,14 @@ namespace voxdag {
 
 using CompactTrees = std::array<ContextTree, kCompactSymbols>;
 
-/// Trees and frequencies for all symbols but kUnitBits, whose tree is a single table that is not
-/// used. `most_tables` limits the tables of each tree: more tables make fewer bytes, but reading
-/// slower. Throws OverMemory and Cancelled.
+/// Returns the trees and frequencies of all symbols but kUnitBits: lengths are not known yet, so
+/// that its tree is one table without symbols. `most_tables` limits the tables of cell masks, half
+/// of it those of leaf masks, and an eighth those of other symbols. Throws OverMemory and
+/// Cancelled.
 CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
                           Progress* progress);
 
-/// The symbols of one context tree, counted by table.
+/// Counts the symbols of one context tree by table.
 class SymbolCounts {
  public:
   explicit SymbolCounts(std::size_t tables) : counts_(tables) {}

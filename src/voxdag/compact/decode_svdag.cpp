@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Numbers different leaf blocks in the order in which they come.
+/// Numbers the different leaf blocks in the order in which they are first met.
 class LeafBlocks {
  public:
   explicit LeafBlocks(MemoryBudget* budget) : slots_(1 << 12, kNone, budget), blocks_(budget) {}
@@ -54,9 +54,9 @@ class LeafBlocks {
   CountedVector<std::uint64_t> blocks_;
 };
 
-/// Walks the compact DAG depth first. So it meets the nodes of each level in canonical order. A
-/// first walk makes the nodes above the units and lists the units; the units are then read in
-/// parallel and appended in the order of the list.
+/// Walks the compact DAG depth first, which meets the nodes of each level in canonical order. The
+/// walk makes the nodes above the units and lists the units. Then the decoder reads the units in
+/// parallel and appends them in the order of the list.
 class Decoder {
  public:
   Decoder(const CompactSvdagView& compact, MemoryBudget* memory, Progress* progress)
@@ -83,10 +83,11 @@ class Decoder {
   static std::size_t at(int level) { return static_cast<std::size_t>(level); }
   int unit_level() const { return levels_ - 4; }
 
-  /// Appends a node and what is below it. Returns its first word in its level; of a unit, its place
-  /// in the list.
+  /// Appends a node and what is below it, and returns the node's first word in its level. Appends a
+  /// unit to the list, and returns its place there.
   std::uint32_t place_node(int level, CompactRange range) {
     if (level == unit_level()) {
+      if (units_.size() >= kNone) fail_too_large();
       units_.push_back(range);
       return static_cast<std::uint32_t>(units_.size() - 1);
     }
@@ -117,9 +118,7 @@ class Decoder {
   std::size_t append_mask(int level, std::uint32_t mask) {
     CountedVector<std::uint32_t>& words = words_[at(level)];
     const std::size_t place = words.size();
-    if (place > kNone - 16)
-      throw Error(
-          "the DAG is too large: its nodes have more words than 32-bit pointers can address");
+    if (place > kNone - 16) fail_too_large();
     words.resize(place + static_cast<std::size_t>(1 + popcount(mask)));
     words[place] = mask;
     return place;
@@ -187,16 +186,14 @@ class Decoder {
     return static_cast<std::uint32_t>(place);
   }
 
-  /// Joins the levels from the first one of the grid on.
+  /// Joins the levels, without those that the coded grid has above the DAG's grid.
   Svdag assemble() {
     Svdag dag;
     dag.levels = compact_.levels;
     const int missing = levels_ - dag.levels;
     std::uint64_t total = 0;
     for (int level = missing; level <= levels_ - 3; ++level) total += words_[at(level)].size();
-    if (total > kNone - 256)
-      throw Error(
-          "the DAG is too large: its nodes have more words than 32-bit pointers can address");
+    if (total > kNone - 256) fail_too_large();
     const MemoryReservation memory(memory_, total * 4 + leaf_blocks_.blocks().size() * 8);
     dag.nodes.reserve(total);
     for (int level = missing; level <= levels_ - 3; ++level) {
@@ -221,7 +218,10 @@ class Decoder {
     return dag;
   }
 
-  [[noreturn]] static void fail() { throw Error("the compact DAG is not valid"); }
+  [[noreturn]] static void fail() { throw Error("the stream of the compact DAG is broken"); }
+  [[noreturn]] static void fail_too_large() {
+    throw Error("the DAG is too large: its nodes have more words than 32-bit pointers can address");
+  }
 
   struct Brick {
     std::uint64_t leaves[8];
@@ -230,7 +230,7 @@ class Decoder {
   const CompactSvdagView& compact_;
   MemoryBudget* memory_;
   Progress* progress_;
-  int levels_;  ///< The coded ones.
+  int levels_;  ///< C
   std::vector<CountedVector<std::uint32_t>>
       words_;  ///< By level; pointers count from the level's first word.
   std::vector<CountedVector<std::uint32_t>> places_;  ///< Of the shared nodes, by level.

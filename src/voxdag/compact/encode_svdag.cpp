@@ -47,7 +47,7 @@ class Intervals {
   std::vector<std::array<SymbolInterval, 256>> of_;
 };
 
-/// Writes records; one for each task.
+/// Writes the records of one task.
 struct RecordWriter {
   const std::vector<Intervals>& intervals;
   BitWriter bits{};
@@ -57,23 +57,6 @@ struct RecordWriter {
     intervals[symbol].put(features, value, symbols);
   }
   void raw(std::uint32_t value, int count) { symbols.put_raw(value, count); }
-};
-
-/// The bits behind an open record: the first 16 are its tail.
-class Tail {
- public:
-  void put(std::uint64_t value, int count) { bits_.put_long(value, count); }
-
-  /// Writes the record's symbols, then the tail.
-  void finish(SymbolWriter& symbols, BitWriter& out) {
-    const std::uint64_t count = bits_.bits();
-    const std::vector<std::uint32_t> words = bits_.finish();
-    symbols.leave_open(words[0] & ((1u << kStateBits) - 1), out);
-    if (count > kStateBits) out.copy(words.data(), kStateBits, count - kStateBits);
-  }
-
- private:
-  BitWriter bits_;
 };
 
 class Encoder {
@@ -123,8 +106,9 @@ class Encoder {
       subtree_bits_[at(level)][i] = records_[at(level)].bits(i);
   }
 
-  /// Calls visit(index, pointer, inline_left) for each inline child of the node at `word` but the
-  /// last; inline_left counts the child and those after it.
+  /// Calls visit(index, pointer, inline_left) for the inline children of the node at `word` whose
+  /// lengths are stored, which are all but the last. `inline_left` counts the inline children from
+  /// this one on.
   template <class Visit>
   void for_each_length(std::uint32_t word, const Visit& visit) const {
     const std::uint32_t* node = nodes_.dag().nodes + word;
@@ -152,7 +136,7 @@ class Encoder {
     intervals_[kUnitBits] = Intervals(trees_[kUnitBits]);
   }
 
-  /// Returns the bits of an inline child of a node of `level`, with all that follows it.
+  /// Returns the bits of an inline child of a node of `level`, with all that is inline below it.
   std::uint64_t bits_below(int level, std::uint32_t pointer) const {
     return subtree_bits_[at(level + 1)][nodes_.position(pointer)];
   }
@@ -186,19 +170,18 @@ class Encoder {
         out.symbol(kUnitBits, unit_features(node[0], i, left),
                    static_cast<std::uint32_t>(std::bit_width(lengths[i])));
     });
-    Tail tail;
+    out.symbols.leave_open(out.bits);
     for (int i = 0; i < 8; ++i) {
       if (kinds[i] != 0) {
         const std::uint64_t number =
             std::uint64_t{nodes_.shared_number(child_pointer(node, i))} + 1;
-        tail.put(number ^ std::uint64_t{1} << (kinds[i] - 1), kinds[i] - 1);
+        out.bits.put_long(number ^ std::uint64_t{1} << (kinds[i] - 1), kinds[i] - 1);
       } else if (has_length[i]) {
         const auto bits = static_cast<int>(std::bit_width(lengths[i]));
-        if (!above_units) tail.put(static_cast<std::uint64_t>(bits), 6);
-        if (bits > 1) tail.put(lengths[i] ^ std::uint64_t{1} << (bits - 1), bits - 1);
+        if (!above_units) out.bits.put_long(static_cast<std::uint64_t>(bits), 6);
+        if (bits > 1) out.bits.put_long(lengths[i] ^ std::uint64_t{1} << (bits - 1), bits - 1);
       }
     }
-    tail.finish(out.symbols, out.bits);
   }
 
   CompactSvdag assemble() {

@@ -21,8 +21,8 @@ struct CompactOptions {
 CompactSvdag encode_svdag(const SvdagView& dag, const CompactOptions& options = {},
                           Progress* progress = nullptr);
 
-/// Returns the DAG in the paper's layout and canonical order. The compact DAG must be valid (see
-/// validate_compact.hpp). Throws Error if it outgrows 32-bit pointers, OverMemory and Cancelled.
+/// Returns the DAG in the paper's layout and canonical order. Throws Error if the stream is broken
+/// or the DAG outgrows 32-bit pointers; OverMemory and Cancelled.
 Svdag decode_svdag(const CompactSvdagView& compact, MemoryBudget* memory = nullptr,
                    Progress* progress = nullptr);
 

@@ -13,8 +13,8 @@ class EncodedRecords {
  public:
   explicit EncodedRecords(MemoryBudget* budget) : begins_(budget), budget_(budget) {}
 
-  /// Writes `count` records: calls encode(i, writer), where writer is the Writer of one task. The
-  /// writer's `bits` are a BitWriter.
+  /// Writes `count` records. Each task calls make_writer() for a writer of its own, and
+  /// encode(i, writer) for each of its records, which appends record i to writer.bits, a BitWriter.
   template <class MakeWriter, class Encode>
   void write(std::size_t count, Progress* progress, const MakeWriter& make_writer,
              const Encode& encode) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Tells which nodes of a DAG the compact form stores inline and which as shared ones, and numbers
-/// both.
+/// Divides the nodes of a DAG into inline and shared ones, as the compact form stores them, and
+/// numbers both.
 #include <cstdint>
 #include <vector>
 
@@ -10,7 +10,8 @@
 
 namespace voxdag {
 
-/// The numbers of a DAG's nodes. The view must outlive them, have at least four levels, and voxels.
+/// The numbers of a DAG's nodes. The DAG must outlive this object; it has four levels or more, and
+/// voxels.
 class NumberedNodes {
  public:
   /// Counts the pointers to each node. O(DAG) time; 4 bytes of memory per word of the DAG and 4 per
@@ -23,8 +24,8 @@ class NumberedNodes {
 
   /// The first words of the nodes of a level 0 to C-4, in their order.
   const std::vector<std::uint32_t>& nodes(int level) const { return nodes_[index(level)]; }
-  /// The shared nodes of a level 0 to C-3, in the order of their numbers: positions in
-  /// nodes(level); at the level of bricks first words.
+  /// The shared nodes of a level 0 to C-3, in the order of their numbers. A node is its position in
+  /// nodes(level), a brick its first word.
   const std::vector<std::uint32_t>& shared(int level) const { return shared_[index(level)]; }
 
   /// The shared bricks with mask m have the numbers [m] to [m + 1] - 1.

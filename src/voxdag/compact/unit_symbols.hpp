@@ -1,9 +1,9 @@
 #pragma once
-/// Visits the symbols of the nodes of a DAG, as the compact form has them.
+/// Visits the symbols of a DAG's nodes in the order of the compact form.
 ///
 /// A sink has
 ///   symbol(CompactSymbol, features, value)
-///   raw(value, bits)       a number of `bits` bits, each value of which is equally likely
+///   raw(value, bits)       a number of `bits` bits
 #include <bit>
 #include <cstdint>
 
@@ -56,7 +56,7 @@ void visit_leaves(const SvdagView& dag, std::uint32_t brick, int octant, UnitCel
 
 }  // namespace detail
 
-/// Visits everything of the unit at this word.
+/// Visits all symbols of the unit at this word.
 template <class Sink>
 void visit_unit(const NumberedNodes& nodes, std::uint32_t word, Sink& sink) {
   const SvdagView& dag = nodes.dag();
@@ -85,7 +85,7 @@ void visit_unit(const NumberedNodes& nodes, std::uint32_t word, Sink& sink) {
       detail::visit_leaves(dag, child_pointer(unit, i), i, cells, sink);
 }
 
-/// Visits everything of the shared brick at this word.
+/// Visits all symbols of the shared brick at this word.
 template <class Sink>
 void visit_shared_brick(const NumberedNodes& nodes, std::uint32_t word, Sink& sink) {
   UnitCells cells(0);

@@ -1,13 +1,13 @@
 #pragma once
-/// A cache of decoded nodes of a compact DAG, for one thread of a CPU: about 1.2 MiB.
+/// A cache of decoded nodes of a compact DAG, for one thread of a CPU: 2.5 MiB.
 #include <vector>
 
 #include "voxdag/trace/compact_svdag_nodes.hpp"
 
 namespace voxdag {
 
-/// A cache for CompactSvdagNodes. Each node has one place, which the next node with that place
-/// takes.
+/// A cache for CompactSvdagNodes. A node takes the place that its bits select from the node that
+/// was there.
 class DecodedCache {
  public:
   const CompactNode& node(const CompactSvdagView& dag, CompactRange range, int level) {

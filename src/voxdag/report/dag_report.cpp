@@ -90,8 +90,11 @@ AttributeSizes sizes_of(const DagAttributesView& attributes) {
 
 CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes) {
   const CompactParts parts = compact_parts(compact);
+  std::vector<std::uint64_t> shared;
+  for (int level = 0; !compact.is_empty() && level <= compact.coded_levels() - 3; ++level)
+    shared.push_back(compact.shared_nodes(level));
   return {head_bytes, whole_bytes(parts.node_bits), whole_bytes(parts.unit_bits),
-          whole_bytes(parts.shared_brick_bits)};
+          whole_bytes(parts.shared_brick_bits), shared};
 }
 
 Json dag_json(const DagReport& report) {
@@ -121,6 +124,7 @@ Json dag_json(const DagReport& report) {
                                       {"nodes", compact.nodes},
                                       {"units", compact.units},
                                       {"shared_bricks", compact.shared_bricks}};
+    json["compact_shared_nodes_per_level"] = compact.shared_nodes_per_level;
     json["bits_per_voxel"]["compact"] = bits_per_voxel(compact.total(), counts);
   }
   if (metadata.attributes.resolution != 0)

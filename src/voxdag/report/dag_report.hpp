@@ -25,6 +25,7 @@ struct CompactBytes {
   std::uint64_t nodes = 0;  ///< Nodes above the units.
   std::uint64_t units = 0;  ///< Units with their inline bricks.
   std::uint64_t shared_bricks = 0;
+  std::vector<std::uint64_t> shared_nodes_per_level;  ///< Nodes with two or more pointers to them.
   std::uint64_t total() const { return head + nodes + units + shared_bricks; }
 };
 

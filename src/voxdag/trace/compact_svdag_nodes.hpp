@@ -7,9 +7,10 @@
 ///   node(dag, range, level)         returns the node of a level above the units
 ///   unit(dag, range)                returns the unit
 ///   shared_brick(dag, number, mask) returns the eight leaf blocks of the brick
-/// Each returns a reference that is valid until the next call. What cannot be decoded has no
+/// Each returns a reference that is valid until the next call. Nodes that cannot be decoded have no
 /// voxels.
 #include "voxdag/layout/compact/compact_nodes.hpp"
+#include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
 
@@ -74,13 +75,12 @@ class LastDecoded {
 template <class Cache>
 class CompactSvdagNodes {
  public:
-  /// A node of a level above the bricks is its range. A brick in a unit is the range of the unit
-  /// and its octant, a shared brick its number in `range.begin`. A leaf block, and a node of level
-  /// L-1, is its mask in `range.begin`.
+  /// `range` says where a node above the bricks is, or, for an inline brick, its unit. For a shared
+  /// brick `range.begin` is the number; for a leaf block and a node of level L-1 it is the mask.
   struct Node {
     CompactRange range;
-    std::uint8_t octant = 0;  ///< kShared for a shared brick.
-    std::uint8_t mask = 0;    ///< Of a brick.
+    std::uint8_t octant = 0;  ///< A brick's octant in its unit; kShared for a shared one.
+    std::uint8_t mask = 0;    ///< A brick's child mask.
   };
 
   VOXDAG_HD CompactSvdagNodes(const CompactSvdagView& dag, Cache& cache)

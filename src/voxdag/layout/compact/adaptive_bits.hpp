@@ -38,7 +38,7 @@ class AdaptiveBitWriter {
     context.learn(bit);
     normalize();
   }
-  /// Writes the lowest `count` bits of `value`, the highest of them first, each as likely 0 as 1.
+  /// Writes the lowest `count` bits of `value`, the highest of them first, without a context.
   void put_plain(std::uint64_t value, int count) {
     while (count-- > 0) {
       range_ >>= 1;
@@ -109,7 +109,7 @@ class AdaptiveBitReader {
     return value;
   }
   bool is_past_end() const { return read_ > bytes_.size(); }
-  /// Returns whether all bytes were read, and none after them.
+  /// Returns whether the reader needed all bytes and no more.
   bool is_at_end() const { return read_ == bytes_.size(); }
 
  private:
@@ -150,8 +150,8 @@ struct AdaptiveNumber {
   }
 };
 
-/// A number of up to 63 bits: its width as an AdaptiveNumber<6>, then its bits below the leading
-/// one, plain.
+/// A number of up to 63 bits: the count of its bits as an AdaptiveNumber<6>, then its bits below
+/// the leading one, plain.
 struct AdaptiveCount {
   AdaptiveNumber<6> width;
 

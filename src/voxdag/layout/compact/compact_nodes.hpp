@@ -5,8 +5,7 @@
 
 namespace voxdag {
 
-/// The bits of a node and of all that stands inline below it. The end is the end of the node's
-/// parent if the node is the last inline child, and may lie behind the node's own bits.
+/// The bits of a node and of all that stands inline below it.
 struct CompactRange {
   std::uint64_t begin = 0, end = 0;
 };
@@ -28,7 +27,7 @@ struct CompactUnit {
   std::uint64_t bricks[8][8] = {};
 };
 
-/// Faults that only a broken stream has. Reading goes on safely after each of them.
+/// The faults of a broken stream. Readers may ignore them: what they return is safe to use.
 enum class CompactFault { kNone, kMask, kNumber, kLength, kEnd };
 
 /// Returns the bits of shared node `number` of `level`.
@@ -44,32 +43,23 @@ VOXDAG_HD inline CompactRange root_node(const CompactSvdagView& dag) {
 
 namespace detail {
 
-/// The bits behind an open record: first those of its tail, then those of the stream.
+/// Reads the bits behind an open record.
 class TailReader {
  public:
-  VOXDAG_HD TailReader(const SymbolReader& record, const std::uint32_t* words, std::uint64_t end)
-      : words_(words), at_(record.position()), end_(end), tail_(record.tail()) {}
+  VOXDAG_HD TailReader(const std::uint32_t* words, std::uint64_t begin, std::uint64_t end)
+      : words_(words), at_(begin < end ? begin : end), end_(end), is_past_end_(begin > end) {}
 
-  /// Reads `bits` bits, 0 to 63; those behind the end are 0.
+  /// Reads a number of `bits` bits, 0 to 63. Returns 0 if they do not end before the end.
   VOXDAG_HD std::uint64_t read(int bits) {
-    std::uint64_t value = 0;
-    int done = 0;
-    if (tail_bits_ != 0) {
-      done = bits < tail_bits_ ? bits : tail_bits_;
-      value = tail_ & ((1u << done) - 1);
-      tail_ >>= done;
-      tail_bits_ -= done;
+    if (end_ - at_ < static_cast<std::uint64_t>(bits)) {
+      is_past_end_ = true;
+      return 0;
     }
-    while (done < bits) {
-      const int count = bits - done < 32 ? bits - done : 32;
-      if (end_ - at_ < static_cast<std::uint64_t>(count)) {
-        is_past_end_ = true;
-        return value;
-      }
-      value |= static_cast<std::uint64_t>(read_bits(words_, at_, count)) << done;
-      at_ += static_cast<std::uint64_t>(count);
-      done += count;
-    }
+    const int high = bits > 32 ? bits - 32 : 0;
+    const std::uint64_t value = static_cast<std::uint64_t>(read_bits(words_, at_, high))
+                                    << (bits - high) |
+                                read_bits(words_, at_ + static_cast<unsigned>(high), bits - high);
+    at_ += static_cast<unsigned>(bits);
     return value;
   }
   VOXDAG_HD std::uint64_t position() const { return at_; }
@@ -78,9 +68,7 @@ class TailReader {
  private:
   const std::uint32_t* words_;
   std::uint64_t at_, end_;
-  std::uint32_t tail_;
-  int tail_bits_ = kStateBits;
-  bool is_past_end_ = false;
+  bool is_past_end_;
 };
 
 }  // namespace detail
@@ -134,9 +122,8 @@ VOXDAG_HD inline CompactFault read_node(const CompactSvdagView& dag, CompactRang
     --left;
   }
   CompactFault fault = mask == 0 ? CompactFault::kMask : CompactFault::kNone;
-  if (!reader.is_full()) fault = CompactFault::kEnd;
 
-  detail::TailReader tail(reader, dag.stream, range.end);
+  detail::TailReader tail(dag.stream, reader.open_end(), range.end);
   std::uint64_t lengths[8] = {};
   left = inline_left;
   for (int i = 0; i < 8; ++i) {

@@ -12,7 +12,7 @@ struct CompactParts {
   std::uint64_t shared_brick_bits = 0;
 };
 
-/// Returns the parts of the stream. Reads the nodes above the units, once each.
+/// Returns the parts of the stream. Reads each node above the units once.
 CompactParts compact_parts(const CompactSvdagView& compact);
 
 }  // namespace voxdag

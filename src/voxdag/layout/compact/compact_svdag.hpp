@@ -1,28 +1,27 @@
 #pragma once
-/// The compact form of a sparse voxel DAG: about a quarter of the paper's bytes, and walked as it
-/// is.
+/// The compact form of a sparse voxel DAG: a quarter of the paper's bytes, and rays can walk it.
 ///
-/// Two ideas make it small. A node that only one pointer refers to, most of them, stands inline
-/// after its parent and needs no pointer. And the masks of 16³ voxels are one number, coded by what
-/// the reader knows of the cells around each mask. docs/compact.md tells why it works;
+/// Two ideas make it small. Most nodes have one pointer to them. Such a node stands *inline*, right
+/// after its parent, and needs no pointer. And the masks in 16³ voxels are coded as one number,
+/// each mask in the context of the masks around it. docs/compact.md explains why this works;
 /// docs/format.md specifies it to the bit.
 ///
-/// The coded levels are C = max(L, 4); a grid of fewer levels is the corner at (0,0,0) of one of
-/// 16³ voxels. Nodes of level C-4 are *units*, nodes of level C-3 are *bricks*. A node with two or
-/// more pointers to it, and the root, is *shared*. The shared nodes of a level are numbered by
-/// falling number of pointers; equal ones keep the canonical order (layout/svdag.hpp). The shared
-/// bricks are numbered by their masks first, then in this way.
+/// The coded levels are C = max(L, 4). A grid of fewer levels is coded as the corner at (0,0,0) of
+/// a grid of 16³ voxels. Nodes of level C-4 are *units*, nodes of level C-3 are *bricks*. The root,
+/// and each node with two or more pointers to it, is *shared*. The shared nodes of a level are
+/// numbered by decreasing number of pointers; equal ones keep the canonical order (svdag.hpp).
+/// Shared bricks are numbered by their masks first, and those with equal masks in this way.
 ///
-///   stream    | root | shared nodes of level 1 | ... | shared bricks |      bits
-///   node      of a level above the units: a record, then its inline children, each with what
-///   follows
-///             it, in the order of the child index
-///   unit      one closed record, with the masks of its inline bricks
-///   brick     shared: one closed record
-///   shared_begin   of each level: the bit at which each shared node begins
+///   stream        | root | shared nodes of level 1 | ... | shared bricks |    bits
+///   shared_begin  the first bit of each shared node
 ///
-/// symbol_coder.hpp defines records, unit_cells.hpp the masks of a unit, context_tree.hpp how a
-/// symbol is coded.
+///   node above the units   an open record, then its inline children in Morton order, each with
+///                          all that is inline below it
+///   unit                   one closed record, which holds its inline bricks
+///   shared brick           one closed record
+///
+/// symbol_coder.hpp defines records, unit_cells.hpp the contexts of masks, and context_tree.hpp how
+/// a symbol is coded in its context.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,20 +31,20 @@
 
 namespace voxdag {
 
-/// What each context tree codes.
+/// The kinds of symbols. Each has a context tree of its own.
 enum CompactSymbol {
   kNodeMask,   ///< The child mask of a node of level C-4 or above.
-  kChildKind,  ///< 0: an inline child. k > 0: a shared one whose number + 1 has k bits. The number
-               ///< of a brick is counted from the first one with its mask.
-  kUnitBits,   ///< The number of bits of a unit's length in bits.
+  kChildKind,  ///< 0 for an inline child; k for a shared one whose number + 1 has k bits. Numbers
+               ///< of bricks count from the first brick with the same mask.
+  kUnitBits,   ///< How many bits the length of a unit has; the length itself counts bits.
   kBrickMask,
   kLeafMask,
   kCellMask,
   kCompactSymbols
 };
-/// The number of features of each.
+/// The number of features of each kind.
 inline constexpr int kCompactFeatures[kCompactSymbols] = {2, 40, 13, 64, 64, 64};
-/// Symbols of each are below this number.
+/// The symbols of each kind are below this number.
 inline constexpr std::uint32_t kCompactAlphabet[kCompactSymbols] = {256, 33, 64, 256, 256, 256};
 
 /// A view for kernels: points into a CompactSvdag and owns nothing.
@@ -74,7 +73,7 @@ struct CompactSvdag {
   int levels = kMinLevels;
   std::uint64_t stream_bits = 0;
   std::vector<std::uint32_t> stream{0, 0};
-  /// Of level 0, level 1 and so on, and after the last one stream_bits.
+  /// The first bit of each shared node, level after level; then stream_bits.
   std::vector<std::uint64_t> shared_begin{0};
   std::vector<std::uint64_t> shared_counts;  ///< Of levels 0 to C-3; empty if there are no voxels.
   std::vector<std::uint64_t> brick_first = std::vector<std::uint64_t>(257);
@@ -88,17 +87,20 @@ struct CompactSvdag {
   CompactSvdagView view() const;
 };
 
-/// Returns the number that tells levels apart in features: 0 for units, 1 for the level above, 2
-/// for all others.
+/// Returns the class of a level, a feature: 0 for units, 1 for the level above, 2 for all others.
 VOXDAG_HD constexpr std::uint32_t level_class(int level, int coded_levels) {
   const int above = coded_levels - 4 - level;
   return static_cast<std::uint32_t>(above < 2 ? above : 2);
 }
 
-/// Returns the features of the kind of child `index` of a node with this mask. `kinds` are those of
-/// the children before it. Bits 0..7 are the mask, 8..10 the index, 11..28 the kinds of the
-/// children at x-1, y-1 and z-1 (six bits each, 0 where there is none), 30..31 the class of the
-/// node's level, and 32..39 the mask of the child if it is a brick.
+/// Returns the features of the kind of child `index` of a node. `kinds` has the kinds of the
+/// children before it, and 0 where there is no child.
+///
+///   bits 0..7     the child mask of the node
+///   bits 8..10    the index
+///   bits 11..28   the kinds of the children at x-1, y-1 and z-1 in the node, six bits each
+///   bits 30..31   the class of the node's level
+///   bits 32..39   the mask of the child if it is a brick
 VOXDAG_HD inline std::uint64_t kind_features(std::uint32_t mask, int index,
                                              const std::uint8_t (&kinds)[8],
                                              std::uint32_t node_class, std::uint32_t brick_mask) {
@@ -110,8 +112,9 @@ VOXDAG_HD inline std::uint64_t kind_features(std::uint32_t mask, int index,
          static_cast<std::uint64_t>(brick_mask) << 32;
 }
 
-/// Returns the features of the length of a unit, child `index` of a node with this mask, of whose
-/// children `inline_left` are inline and not yet read: bits 0..7, 8..10, and 11..12 (3 at most).
+/// Returns the features of the length of a unit that is child `index` of a node: the child mask of
+/// the node in bits 0..7, the index in bits 8..10, and in bits 11..12 how many inline children the
+/// node has from this one on, 3 at most.
 VOXDAG_HD inline std::uint64_t unit_features(std::uint32_t mask, int index, int inline_left) {
   const int left = inline_left < 3 ? inline_left : 3;
   return mask | static_cast<std::uint64_t>(index) << 8 | static_cast<std::uint64_t>(left) << 11;

@@ -91,7 +91,6 @@ void ContextTree::prepare() {
   for (const WeightCodes& table_weights : weights) {
     const std::size_t place = entries.size();
     places.push_back(static_cast<std::uint32_t>(place));
-    entries.resize(place + kBucketWords);
     const std::array<SymbolInterval, 256> intervals = intervals_of(table_weights);
     std::vector<std::uint32_t> symbols;
     for (std::uint32_t s = 0; s < 256; ++s)
@@ -99,17 +98,14 @@ void ContextTree::prepare() {
     std::sort(symbols.begin(), symbols.end(), [&](std::uint32_t a, std::uint32_t b) {
       return intervals[a].start < intervals[b].start;
     });
-    std::uint32_t entry = 0;
-    for (const std::uint32_t s : symbols) {
-      const std::uint32_t start = intervals[s].start, frequency = intervals[s].frequency;
-      entries.push_back(s | start << 8 | (frequency - 1) << 20);
-      constexpr std::uint32_t kWidth = kSum >> kBucketBits;
-      for (std::uint32_t b = (start + kWidth - 1) / kWidth; b * kWidth < start + frequency; ++b)
-        entries[place + b / 4] |= entry << (8 * (b % 4));
-      ++entry;
-    }
-    // A table that is not used still ends a search.
-    if (symbols.empty()) entries.push_back((kSum - 1) << 20);
+    entries.push_back(static_cast<std::uint32_t>(symbols.size()));
+    for (const std::uint32_t s : symbols)
+      entries.push_back(s | std::uint32_t{intervals[s].start} << 8 |
+                        (std::uint32_t{intervals[s].frequency} - 1) << 20);
+    // A table that is not used reads as one that has the symbol 0 only.
+    if (!symbols.empty()) continue;
+    entries.back() = 1;
+    entries.push_back((kSum - 1) << 20);
   }
   for (std::uint32_t& step : steps)
     if ((step & kLeafNode) != 0) step = places[step >> 8] << 8 | kLeafNode;

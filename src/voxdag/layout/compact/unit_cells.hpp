@@ -1,18 +1,18 @@
 #pragma once
-/// What a reader of a unit knows at each moment: the masks of the cells around the next one.
+/// The surroundings of a mask in a unit: the context in which the mask is coded.
 ///
-/// A unit is a cube of 16³ voxels. It has 2³ bricks of 8³ voxels, 4³ leaves of 4³ and 8³ cells of
-/// 2³; each of them has a mask of eight bits, one for each of its octants. First come the masks of
-/// all bricks, then, for one inline brick after the other, the masks of its leaves and the masks of
-/// its cells, each in Morton order. A mask is coded in the context of the masks around it, which
-/// are zero until they are read, outside the unit, and for the leaves and cells of bricks that are
-/// stored elsewhere. With (dx, dy, dz) for the neighbour at that distance, the features are
+/// A unit is a cube of 16³ voxels. It consists of 2³ bricks of 8³ voxels, 4³ leaves of 4³ and 8³
+/// cells of 2³. Each of them has a mask of eight bits, one bit for each octant. The masks of all
+/// bricks come first. Then come, for one inline brick after the other, the masks of its leaves and
+/// the masks of its cells, both in Morton order. A mask counts as zero until it is read, outside
+/// the unit, and for leaves and cells of shared bricks. The features of a mask are those of its
+/// neighbours of the same size, at the distances (dx, dy, dz):
 ///
 ///   bits 0..23    the masks of (-1,0,0), (0,-1,0) and (0,0,-1), eight bits each
 ///   bits 24..47   the masks of (-1,-1,0), (-1,0,-1) and (0,-1,-1)
 ///   bits 48..49   bits 2 and 6 of the mask of (1,-1,0), the edge at this cell
 ///   bits 50..51   bits 4 and 6 of the mask of (1,0,-1), the edge at this cell
-///   bits 52..63   whether these neighbours are present, as far as the masks of their parents tell:
+///   bits 52..63   whether these neighbours are present, by the masks that were read:
 ///                 (1,0,0) (0,1,0) (0,0,1) (1,-1,0) (1,0,-1) (-1,1,0)
 ///                 (0,1,-1) (-1,0,1) (0,-1,1) (1,1,0) (1,0,1) (0,1,1)
 #include <cstdint>
@@ -92,9 +92,10 @@ class UnitCells {
     leaves_.set_present(b.x, b.y, b.z, mask);
   }
 
-  /// Visits the masks of the leaves and cells of the brick in octant `brick` with this mask: calls
-  /// code_leaf(features, mask) and code_cell(features, mask). `leaves` are the 64-bit masks of the
-  /// eight leaves; a reader gives zeros. Returns false if a mask was zero.
+  /// Visits the masks of the leaves, then of the cells, of the brick in octant `brick`, which has
+  /// the mask `brick_mask`. Calls code_leaf(features, mask) and code_cell(features, mask). `leaves`
+  /// has the 64-bit masks of the eight leaves; a reader passes zeros. Stops at a mask that is zero,
+  /// which only a broken stream has, and returns false.
   template <class CodeLeaf, class CodeCell>
   VOXDAG_HD bool visit_brick(int brick, std::uint32_t brick_mask, std::uint64_t (&leaves)[8],
                              const CodeLeaf& code_leaf, const CodeCell& code_cell) {
