@@ -65,6 +65,18 @@ TEST(CompactSvdag, TheHeadComesBack) {
   }
 }
 
+TEST(CompactSvdag, TheWorkedExampleOfTheFormatHoldsTrue) {
+  // docs/format.md, "A worked example"
+  const Svdag dag = brute_svdag(4, {{0, 0, 0}, {15, 15, 15}});
+  const CompactSvdag compact = encode_svdag(dag.view());
+  EXPECT_EQ(compact.stream_bits, 6u);
+  EXPECT_EQ(compact.stream, (std::vector<std::uint32_t>{0x4C000000u, 0}));
+  const std::vector<std::byte> head = compact_head(compact);
+  ASSERT_EQ(head.size(), 174u);
+  EXPECT_EQ(std::to_integer<int>(head[0]), 0x03);
+  EXPECT_EQ(std::to_integer<int>(head[172]), 0x10);
+}
+
 TEST(CompactSvdag, HasTheSameBitsForAnyNumberOfThreads) {
   const Svdag dag = brute_svdag(8, repeated_plane(8));
   const CompactSvdag compact = encode_svdag(dag.view());
