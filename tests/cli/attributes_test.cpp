@@ -178,7 +178,7 @@ TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
                  "128 is more than the grid's resolution, 64");
   expect_failure(run_voxdag({"build", dir_ / "waves.obj", "--voxel-size", "1", "-o",
                              dir_ / "a.vdag", "--color", "--attribute-resolution", "1024"}),
-                 2, "1024 is more than the grid's resolution, ");
+                 1, "1024 is more than the grid's resolution, ");
   expect_failure(run_build("a.vdag", {"--color", "--compact"}), 2, "only the plain form");
   expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
   EXPECT_EQ(dir_.count(), 1);
