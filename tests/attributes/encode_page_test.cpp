@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 #include <thread>
 #include <vector>
@@ -93,25 +94,62 @@ TEST(EncodePage, FlatPagesAreAlmostFree) {
             0.2);
 }
 
-TEST(EncodePage, ErrorsAreCounted) {
-  for (const NamedValues& set : value_sets(256)) {
-    ValueEncoder encoder(256, make_value_metric(kColorWeights, 12), nullptr);
-    encoder.add(0, set.values);
-    const ValuePages pages = encoder.finish();
-    std::uint64_t squared = 0;
-    double absolute = 0;
-    for (std::size_t i = 0; i < 256; ++i) {
-      double sum = 0;
-      for (int c = 0; c < 3; ++c) {
-        const int d = int{read_value(pages.view(), i)[c]} - int{set.values[i][c]};
-        squared += static_cast<std::uint64_t>(d * d);
-        sum += d * d;
+/// Returns a normal in the xz plane.
+Vec3f normal_at(double degrees) {
+  const double radians = degrees * std::numbers::pi / 180;
+  return {static_cast<float>(std::sin(radians)), 0, static_cast<float>(std::cos(radians))};
+}
+
+TEST(EncodePage, NormalsKeepTheirBoundEvenIfTheStoredVectorIsShort) {
+  for (const double bound : {1.0, 4.0, 20.0, 50.0, 80.0, 120.0})
+    for (double apart = 0; apart < 180; apart += 0.25) {
+      // The mean of two such normals is shorter than they are.
+      const Vec3f normals[] = {normal_at(apart), normal_at(-apart)};
+      std::vector<Value8> values(256);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = pack_normal(normals[i % 2]);
+      const ValuePages pages = encode(values, make_normal_metric(bound));
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3d stored(unpack_normal(read_value(pages.view(), i)));
+        const double cosine = std::clamp(dot(stored, Vec3d(normals[i])), -1.0, 1.0);
+        ASSERT_LE(std::acos(cosine) * 180 / std::numbers::pi, bound + 0.05)
+            << "bound " << bound << ", normals at " << apart << " degrees from z";
       }
-      absolute += std::sqrt(sum);
     }
-    EXPECT_EQ(encoder.errors().squared, squared) << set.name;
-    EXPECT_NEAR(static_cast<double>(encoder.errors().absolute) / 256, absolute, 1) << set.name;
+}
+
+/// The last page of 300 values is filled up with copies, which are not values of cells.
+TEST(EncodePage, ErrorsAreCountedForEveryGivenValueOnce) {
+  for (const std::size_t count : {256, 300})
+    for (const NamedValues& set : value_sets(count)) {
+      ValueEncoder encoder(count, make_value_metric(kColorWeights, 12), nullptr);
+      encoder.add(0, set.values);
+      const ValuePages pages = encoder.finish();
+      std::uint64_t squared = 0;
+      double absolute = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) {
+          const int d = int{read_value(pages.view(), i)[c]} - int{set.values[i][c]};
+          squared += static_cast<std::uint64_t>(d * d);
+          sum += d * d;
+        }
+        absolute += std::sqrt(sum);
+      }
+      EXPECT_EQ(encoder.errors().squared, squared) << set.name;
+      EXPECT_NEAR(static_cast<double>(encoder.errors().absolute) / 256, absolute, 1) << set.name;
+    }
+}
+
+TEST(ValueEncoder, CountsTheMemoryOfIncompletePages) {
+  constexpr std::uint64_t kPages = 1000;
+  MemoryBudget budget;
+  {
+    ValueEncoder encoder(kPages * kPageValues, make_value_metric(kColorWeights, 8), &budget);
+    const std::vector<Value8> half(kPageValues / 2, Value8{1, 2, 3});
+    for (std::uint64_t page = 0; page < kPages; ++page) encoder.add(page * kPageValues, half);
+    EXPECT_GE(budget.used(), kPages * kPageValues * sizeof(Value8));
   }
+  EXPECT_EQ(budget.used(), 0u);
 }
 
 TEST(ValueEncoder, TheOrderOfRangesAndThreadsDoNotMatter) {

@@ -133,6 +133,38 @@ TEST(FilterCells, EveryCellHasTheMeanColourOfTheSurfaceInIt) {
   }
 }
 
+/// The transparent sheet fills whole tasks.
+TEST(FilterCells, CellsWithoutVisibleSurfaceHaveTheValueOfTheNearestCellAboveThatHasSome) {
+  const int levels = 9;
+  Mesh mesh;
+  Appearance appearance;
+  const auto add_sheet = [&](float z, const Rgba16& color) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3f corner : {Vec3f{0, 0, z}, Vec3f{1, 0, z}, Vec3f{1, 1, z}, Vec3f{0, 1, z}})
+      mesh.vertices.push_back(corner);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    appearance.colors.insert(appearance.colors.end(), 6, color);
+  };
+  add_sheet(0, {65535, 0, 0, 65535});
+  add_sheet(1, {0, 65535, 0, 0});
+  appearance.materials.resize(1);
+  appearance.materials[0].alpha_mode = AlphaMode::kMask;
+  const Grid grid = fit_grid(mesh, levels);
+  const SurfaceShading shading(mesh, appearance);
+  const Svdag dag = build_svdag(mesh, grid, {}).dag;
+  const CellIndex index = build_cell_index(dag.view(), levels);
+  ASSERT_GT(index.cells, 8u << 16);
+  Values sink(index.cells);
+  filter_cells(mesh, grid, dag.view(), index.view(), &shading, sink);
+  for (std::uint64_t i = 0; i < index.cells; ++i) {
+    ASSERT_EQ(sink.times[i], 1);
+    ASSERT_EQ((Value8{sink.values[i].color[0], sink.values[i].color[1], sink.values[i].color[2]}),
+              (Value8{255, 0, 0}))
+        << "cell " << i;
+  }
+}
+
 TEST(FilterCells, AnyNumberOfThreadsGivesTheSameAttributes) {
   const ColoredMesh scene(40, 8);
   const SurfaceShading shading(scene.mesh, scene.appearance);

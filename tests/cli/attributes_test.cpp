@@ -132,6 +132,7 @@ TEST_F(AttributesCommand, InfoTellsTheirSizesAndErrors) {
   const std::string lossless = build("b.vdag", {"--color", "--color-bound", "0"});
   const auto exact = nlohmann::json::parse(run_voxdag({"info", lossless, "--json"}).out);
   EXPECT_TRUE(exact.at("attributes").at("color").at("psnr_db").is_null());
+  EXPECT_NE(run_voxdag({"info", lossless}).out.find("bits/cell, lossless"), std::string::npos);
 }
 
 TEST_F(AttributesCommand, VerifyChecksThem) {
@@ -175,6 +176,9 @@ TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
   expect_failure(run_build("a.vdag", {"--color", "--normal-bound", "3"}), 2, "without --normal");
   expect_failure(run_build("a.vdag", {"--color", "--attribute-resolution", "128"}), 2,
                  "128 is more than the grid's resolution, 64");
+  expect_failure(run_voxdag({"build", dir_ / "waves.obj", "--voxel-size", "1", "-o",
+                             dir_ / "a.vdag", "--color", "--attribute-resolution", "1024"}),
+                 1, "1024 is more than the grid's resolution, ");
   expect_failure(run_build("a.vdag", {"--color", "--compact"}), 2, "only the plain form");
   expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
   EXPECT_EQ(dir_.count(), 1);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/number_colors.hpp"
 #include "support/vdag_bytes.hpp"
 
 namespace voxdag {
@@ -77,6 +78,35 @@ TEST(VerifyVdag, FindsWrongCounts) {
       summary(verify_vdag(dir / "a.vdag")),
       "container, checksums, metadata, structure, canonical order, minimality, "
       "counts! chunk META, counts.svo_nodes_per_level[1]: is 3, but the DAG has 2, attributes");
+}
+
+TEST(VerifyVdag, FindsMetadataOfOtherAttributes) {
+  const Svdag dag = brute_svdag(4, {{0, 0, 0}, {15, 15, 15}});
+  const NumberColors colors(dag.view(), 3);
+  const auto detail = [&](const auto& change) {
+    const TempDir dir;
+    VdagMetadata metadata = example_metadata(dag.view());
+    metadata.attributes.resolution = 8;
+    metadata.attributes.colors.emplace();
+    metadata.attributes.normals.emplace();
+    change(metadata.attributes);
+    write_vdag(dir / "a.vdag", dag.view(), metadata, colors.view().attributes);
+    return verify_vdag(dir / "a.vdag").checks.back().detail;
+  };
+  EXPECT_EQ(detail([](AttributesMetadata&) {}), "");
+  EXPECT_EQ(detail([](AttributesMetadata& stated) { stated = {}; }),
+            "chunk META, attributes: is missing, but the file has attributes");
+  EXPECT_EQ(detail([](AttributesMetadata& stated) { stated.resolution = 16; }),
+            "chunk META, attributes.resolution: is 16, but the chunk CIDX has 8");
+  EXPECT_EQ(detail([](AttributesMetadata& stated) { stated.colors.reset(); }),
+            "chunk META, attributes.color: is missing, but the file has the chunk COLR");
+  const TempDir dir;
+  VdagMetadata metadata = example_metadata(dag.view());
+  metadata.attributes.resolution = 8;
+  metadata.attributes.normals.emplace();
+  write_vdag(dir / "a.vdag", dag.view(), metadata);
+  EXPECT_EQ(verify_vdag(dir / "a.vdag").checks.back().detail,
+            "chunk META, attributes.normal: describes the chunk NRML, which is missing");
 }
 
 }  // namespace

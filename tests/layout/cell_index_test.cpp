@@ -94,6 +94,18 @@ TEST(CellIndex, TheNumbersThatWereBuiltAreValid) {
     }
 }
 
+TEST(CellIndex, CountsItsMemoryWhileItIsBuilt) {
+  const Svdag dag = brute_svdag(6, random_voxels(6, 500, 9));
+  MemoryBudget budget;
+  const CellIndex index = build_cell_index(dag.view(), 6, &budget);
+  EXPECT_GE(budget.peak(), index.view().bytes());
+  EXPECT_LE(budget.peak(), 2 * index.view().bytes());
+  EXPECT_EQ(budget.used(), 0u);
+  MemoryBudget small(index.view().bytes() / 2);
+  EXPECT_THROW(build_cell_index(dag.view(), 6, &small), OverMemory);
+  EXPECT_EQ(small.used(), 0u);
+}
+
 TEST(CellIndex, EveryFlippedBitIsRefused) {
   const int levels = 5;
   const Svdag dag = brute_svdag(levels, random_voxels(levels, 60, 5));

@@ -140,5 +140,21 @@ TEST(ValuePages, TablesThatPointElsewhereAreRefused) {
   refused([](ValuePages& pages) { pages.precision.code = 3; });
 }
 
+/// A group begins with its first page, so the offset of that page is 0.
+TEST(ValuePages, AGroupThatBeginsBeforeItsFirstPageIsRefused) {
+  HandWritten words;
+  for (int page = 0; page < 65; ++page) words.header(0, 256).add(kWhite, 16).add(0, 7);
+  ValuePages pages = words.one_page();
+  pages.values = 65 * 256;
+  pages.groups = {0, 64 * 4};
+  pages.pages.clear();
+  for (int page = 0; page < 65; ++page)
+    pages.pages.push_back(static_cast<std::uint16_t>(page % 64 * 4));
+  ASSERT_NO_THROW(validate_value_pages(pages.view()));
+  pages.groups[1] -= 4;
+  pages.pages[64] += 4;
+  EXPECT_NE(error_of([&] { validate_value_pages(pages.view()); }), "no error");
+}
+
 }  // namespace
 }  // namespace voxdag

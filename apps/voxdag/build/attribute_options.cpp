@@ -15,26 +15,28 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
   const auto is_wanted = [&arguments] { return arguments.is_wanted(); };
   command
       .flag("--color", options.colors,
-            "Also store the colours of all cells: textures, vertex colours and materials, filtered")
+            "Also store the colours of all cells, filtered from textures, vertex colours and "
+            "materials")
       .in_group(group);
   command.flag("--normal", options.normals, "Also store the normals of all cells").in_group(group);
   command
       .parsed(
           "--attribute-resolution", arguments.levels, parse_levels, "M",
-          "Cells per side of the finest colours and normals: a power of two from 4, at most the "
-          "grid's resolution (default: the finest that is expected to fit into 4 GiB)")
+          "Resolution of the finest colours and normals, in cells per side: a power of two from 4 "
+          "to the grid's resolution (default: the finest that is expected to fit into 4 GiB and "
+          "the memory limit)")
       .only_if(is_wanted, "without --color and --normal")
       .in_group(group);
   command
       .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
-              "Largest error of a stored colour, as the weighted mean over the channels (sRGB; 0: "
-              "lossless)")
+              "Largest error of a stored colour, 0 to 1: the root of the weighted mean of the "
+              "channels' squared differences, sRGB encoded (0: lossless)")
       .only_if([&options] { return options.colors; }, "without --color")
       .in_group(group);
   command
       .number("--normal-bound", options.normal_bound_degrees,
               NumberRange::from(kLeastNormalBound, 180), "DEGREES",
-              "Largest error of a stored normal")
+              "Largest angle between a stored normal and the filtered one")
       .only_if([&options] { return options.normals; }, "without --normal")
       .in_group(group);
 }
@@ -52,7 +54,6 @@ DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       VdagMetadata& metadata, Progress& progress) {
   AttributeOptions options = arguments.options;
   options.memory = &memory;
-  arguments.check_levels(dag.levels);
   options.finest_level = arguments.levels
                              ? *arguments.levels
                              : finest_level_within(metadata.counts, options,

@@ -15,19 +15,20 @@ struct AttributeArguments {
   std::optional<int> levels;  ///< log2 of --attribute-resolution.
 
   bool is_wanted() const { return options.colors || options.normals; }
-  /// Throws UsageError if the attributes would be finer than a grid of 2^dag_levels voxels a side.
+  /// Throws UsageError if the attributes would be finer than a DAG of `dag_levels`.
   void check_levels(int dag_levels) const;
 };
 
-/// The default resolution of attributes is the finest for which they are expected to take at most
-/// this many bytes.
+/// By default, attributes have the finest resolution at which they are expected to fit into this
+/// many bytes.
 inline constexpr std::uint64_t kAttributeBudget = std::uint64_t{4} << 30;
 
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
                            const std::string& group);
 
-/// Builds the attributes of a DAG, at the resolution that the arguments ask for. Throws UsageError
-/// if that is finer than the DAG. Sets metadata.attributes. Counts memory in `memory`.
+/// Builds the attributes of a DAG at the resolution that the arguments ask for, which must pass
+/// check_levels(). Uses metadata.grid and metadata.counts, and sets metadata.attributes. Throws
+/// what build_attributes() throws.
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const MeshWithAppearance& source, const SvdagView& dag,
                                       const SurfaceShading& shading, MemoryBudget& memory,

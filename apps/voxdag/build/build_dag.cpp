@@ -85,6 +85,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
 
   DagReport report;
   report.metadata.grid = choose_grid(mesh, std::nullopt, arguments);
+  arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
                             mesh.vertices.size(), mesh.triangles.size()};
   report.metadata.program = "voxdag " VOXDAG_VERSION;

@@ -22,9 +22,10 @@ bool have_same_cube(const Grid& a, const Grid& b) {
 }  // namespace
 
 Option add_look_option(const Command& command, std::string& file) {
-  return command.text("--look", file, "FILE",
-                      "An .esvo file or a coloured .vdag file of the same mesh: the voxels of a "
-                      "DAG get its colours and normals");
+  return command.text(
+      "--look", file, "FILE",
+      "The voxels of a DAG get the colours and normals of this file: an .esvo file, "
+      "or a .vdag file with attributes, of the same mesh");
 }
 
 std::optional<SceneInput> open_look(const std::string& file, const SceneInput& scene,

@@ -1,5 +1,5 @@
 #pragma once
-/// The option --look: a file whose colours and normals the hits at a DAG get.
+/// The option --look names a file: hits at a DAG get its colours and normals.
 #include <optional>
 #include <string>
 

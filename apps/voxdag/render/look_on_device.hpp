@@ -1,5 +1,5 @@
 #pragma once
-/// The colours and normals of a picture's voxels, where the picture is rendered.
+/// The colours and normals of a picture's voxels, in the memory of the device that renders it.
 #include <optional>
 
 #include "cli/device.hpp"
@@ -9,16 +9,17 @@
 
 namespace voxdag {
 
-/// Holds what it copied to a device.
+/// Owns the copy on the device. Refers to the file if there is no device.
 class LookOnDevice {
  public:
-  /// Takes the look of `file`, which is the file of the scene or that of --look (`is_own` is
-  /// false). Copies it to the device of `scene`, if there is one. Resets `scene` if the device of
-  /// --device auto has no room for both. An ESVO needs no look of its own.
+  /// Takes the colours and normals of `file`: the scene's file if `is_own`, otherwise that of
+  /// --look. Copies them to the device of `scene`, if there is one. If that device lacks the
+  /// memory, resets `scene` with --device auto, and throws Error otherwise. The view of an ESVO's
+  /// own file is empty, because rays at an ESVO find its colours themselves.
   LookOnDevice(const DeviceChoice& device, const SceneInput& file, bool is_own,
                std::optional<DeviceScene>& scene);
 
-  /// Returns a view for the scene's device, or for the host if there is none.
+  /// Returns a view for the scene's device; for the host if the scene has no device.
   const LookView& view() const { return view_; }
 
  private:

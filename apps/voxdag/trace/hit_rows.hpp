@@ -9,12 +9,12 @@
 
 namespace voxdag {
 
-/// Rows of a structured array without padding: t, voxel, face, hit; with a look also the normal and
-/// colour that it stores for the voxel. The normal and colour are looked up by voxel, so they
-/// do not depend on the device that cast the ray.
+/// Rows of a structured array without padding: t, voxel, face, hit, and the normal and the colour
+/// of the voxel if `look` stores them. Normals and colours are looked up by voxel, so they do not
+/// depend on the device that cast the ray.
 class HitRows {
  public:
-  /// The hits are at voxels of 2^levels. `look` may be empty.
+  /// The hits are in a grid of 2^levels voxels per side. `look` may be empty.
   HitRows(int levels, const LookView& look);
 
   /// Returns the dtype for NpyHeader.

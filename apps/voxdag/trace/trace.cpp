@@ -83,11 +83,10 @@ void add_trace_command(const Command& program, Session& session) {
             "float32 array of shape (N, 8): origin, t_min, direction, t_max, in world units")
       .required();
   command
-      .text(
-          "-o,--output", arguments->output, "HITS.npy",
-          "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
-          "the ray starts inside), hit; with stored normals and colours (of an ESVO, of a coloured "
-          "DAG, or of --look) also normal (world space) and color (sRGB, 0 to 255)")
+      .text("-o,--output", arguments->output, "HITS.npy",
+            "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
+            "the ray starts inside), hit; if the scene or --look stores normals or colours, also "
+            "normal (world space) or color (sRGB, 0 to 255)")
       .required();
   add_look_option(command, arguments->look);
   add_device_option(command, arguments->device);

@@ -1,5 +1,7 @@
 #include "voxdag/attributes/build_attributes.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -9,15 +11,7 @@
 namespace voxdag {
 namespace {
 
-/// Returns the bound on errors of packed normals, in steps of 8 bits. The rest of the angle is for
-/// the rounding to 8 bits.
-double normal_steps(double degrees) {
-  constexpr double kRounding = 0.866;  // half the diagonal of a step
-  const double chord = 2 * 127 * std::sin(std::min(degrees, 180.0) * std::numbers::pi / 360);
-  return std::max(chord - kRounding, 0.0) / std::numbers::sqrt3;
-}
-
-/// Compresses the values of cells as they come.
+/// Compresses the values of cells as soon as they come.
 class AttributeEncoder : public CellValueSink {
  public:
   AttributeEncoder(std::uint64_t cells, const AttributeOptions& options) {
@@ -26,32 +20,54 @@ class AttributeEncoder : public CellValueSink {
           cells, make_value_metric(kColorWeights, 255 * options.color_bound), options.memory);
     if (options.normals)
       normals = std::make_unique<ValueEncoder>(
-          cells, make_value_metric({1, 1, 1}, normal_steps(options.normal_bound_degrees)),
-          options.memory);
+          cells, make_normal_metric(options.normal_bound_degrees), options.memory);
   }
 
   void add(std::uint64_t first, std::span<const VoxelValue> values) override {
-    std::vector<Value8> packed(values.size());
-    const auto encode = [&](std::unique_ptr<ValueEncoder>& encoder, const auto& pack) {
-      if (!encoder) return;
-      for (std::size_t i = 0; i < values.size(); ++i) packed[i] = pack(values[i]);
-      encoder->add(first, packed);
-    };
-    encode(colors, [](const VoxelValue& v) { return Value8{v.color[0], v.color[1], v.color[2]}; });
-    encode(normals, [](const VoxelValue& v) { return pack_normal(v.normal); });
+    while (!values.empty()) {
+      const std::uint64_t left_in_page = kPageValues - first % kPageValues;
+      const auto part = values.first(std::min<std::size_t>(values.size(), left_in_page));
+      if (colors)
+        add_packed(*colors, first, part, [](const VoxelValue& v) {
+          return Value8{v.color[0], v.color[1], v.color[2]};
+        });
+      if (normals)
+        add_packed(*normals, first, part,
+                   [](const VoxelValue& v) { return pack_normal(v.normal); });
+      first += part.size();
+      values = values.subspan(part.size());
+    }
   }
 
   std::unique_ptr<ValueEncoder> colors, normals;
+
+ private:
+  /// Packs and adds values of one page.
+  template <class Pack>
+  static void add_packed(ValueEncoder& encoder, std::uint64_t first,
+                         std::span<const VoxelValue> values, const Pack& pack) {
+    std::array<Value8, kPageValues> packed;
+    std::transform(values.begin(), values.end(), packed.begin(), pack);
+    encoder.add(first, std::span(packed).first(values.size()));
+  }
 };
 
 }  // namespace
+
+ValueMetric make_normal_metric(double degrees) {
+  constexpr double kUnit = 127;                          // length of a normal, in steps of 8 bits
+  constexpr double kRounding = std::numbers::sqrt3 / 2;  // largest error of pack_normal()
+  // A vector this far from a normal of length kUnit is within the angle, even if it is shorter.
+  const double distance = kUnit * std::sin(std::min(degrees, 90.0) * std::numbers::pi / 180);
+  return make_value_metric({1, 1, 1}, std::max(distance - kRounding, 0.0) / std::numbers::sqrt3);
+}
 
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
                                Progress* progress) {
   DagAttributes result;
-  result.index = build_cell_index(dag, options.finest_level);
-  const MemoryReservation counted(options.memory, result.index.view().bytes());
+  result.index = build_cell_index(dag, options.finest_level, options.memory);
+  const MemoryReservation index_bytes(options.memory, result.index.view().bytes());
   AttributeEncoder encoder(result.index.cells, options);
   filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, options.memory, progress);
   const auto finish = [](std::unique_ptr<ValueEncoder>& values, ValuePages& pages,
@@ -62,6 +78,7 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
     values.reset();
   };
   finish(encoder.colors, result.colors, result.color_errors);
+  const MemoryReservation color_bytes(options.memory, result.colors.view().bytes());
   finish(encoder.normals, result.normals, result.normal_errors);
   return result;
 }

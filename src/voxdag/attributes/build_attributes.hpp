@@ -8,22 +8,26 @@
 
 namespace voxdag {
 
+/// Weights of red, green and blue in errors of colours.
+inline constexpr std::array<int, 3> kColorWeights{2, 4, 1};
+/// The smallest bound on errors of normals, in degrees: rounding a normal to 8 bits can turn it by
+/// almost this angle.
+inline constexpr double kLeastNormalBound = 0.4;
+
 struct AttributeOptions {
   bool colors = false, normals = false;  ///< At least one.
   int finest_level = 0;                  ///< m: cells of levels 0 to m get attributes.
-  /// The largest error of a stored colour, 0 to 1: the root of the mean of the squared differences
-  /// of the sRGB encoded channels, with the weights of `kColorWeights`. 0: lossless.
+  /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'
+  /// squared differences, sRGB encoded, with the weights kColorWeights. 0: lossless.
   double color_bound = 0.03;
-  /// The largest angle between a stored and a filtered normal, in degrees, at least
-  /// `kLeastNormalBound`.
+  /// The largest angle between a stored and a filtered normal, kLeastNormalBound to 180 degrees.
   double normal_bound_degrees = 4;
   MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
 
-/// Weights of red, green and blue in errors of colours.
-inline constexpr std::array<int, 3> kColorWeights{2, 4, 1};
-/// Rounding a normal to 8 bits can turn it by this angle.
-inline constexpr double kLeastNormalBound = 0.4;
+/// Returns a metric that keeps the angle between stored normals and unit normals, which
+/// pack_normal() rounds, within a bound of kLeastNormalBound to 180 degrees.
+ValueMetric make_normal_metric(double degrees);
 
 /// Attributes in memory. The view is valid while this object lives unchanged.
 struct DagAttributes {
@@ -34,17 +38,19 @@ struct DagAttributes {
   DagAttributesView view() const { return {index.view(), colors.view(), normals.view()}; }
 };
 
-/// Builds the attributes of the DAG of `mesh` in `grid`. Parameters and errors are those of
-/// filter_cells(). The result depends on mesh, grid and options alone.
+/// Builds the attributes of `dag`, the DAG of `mesh` in `grid`. `shading` is the shading of the
+/// mesh; null: grey. The result depends on mesh, shading, grid and options alone, not on the number
+/// of threads. The budget no longer counts the result when the function returns. Throws OverMemory
+/// and Cancelled.
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
                                Progress* progress = nullptr);
 
-/// Returns the number of cells of levels 0 to `level` (0 to L) of a DAG with these counts.
+/// Returns the number of cells of levels 0 to `level`, 0 to L, of a DAG with these counts.
 std::uint64_t count_cells(const SvdagCounts& counts, int level);
 
-/// Returns the finest level for which the attributes are expected to fit into `bytes`: a byte per
-/// cell for colours and one for normals, if they are wanted. 0 if none fits.
+/// Returns the finest level whose attributes are expected to fit into `bytes`; 0 if none fits.
+/// Expects one byte per cell for colours, and one for normals, where they are wanted.
 int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
                         std::uint64_t bytes);
 

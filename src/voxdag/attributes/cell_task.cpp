@@ -1,44 +1,43 @@
 #include "voxdag/attributes/cell_task.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 
 namespace voxdag {
-CellFilter::CellFilter(const SvdagView& dag, const CellIndexView& index,
-                       const TriangleSource& source, const SurfaceShading* shading,
-                       MemoryBudget* memory)
-    : dag_(dag), index_(index), source_(source), sampler_(shading), pieces_(memory) {
-  if (memory == nullptr || memory->limit() == 0) return;
-  const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
-  most_kept_bytes_ = memory->limit() / 16 / threads;
-}
+namespace {
 
-VoxelValue grey_value() { return {{206, 203, 198}, {0, 1, 0}}; }
-
+/// Sets the values of the cells without visible surface among `values` to `value`.
 void fill_unseen(std::span<VoxelValue> values, const VoxelValue& value) {
-  // Every value of visible surface has a normal.
+  // The value of visible surface always has a normal.
   for (VoxelValue& of_cell : values)
     if (of_cell.normal == Vec3f{}) of_cell = value;
 }
+
+}  // namespace
+
+CellFilter::CellFilter(const SvdagView& dag, const CellIndexView& index,
+                       const TriangleSource& source, const SurfaceShading* shading,
+                       MemoryBudget* memory)
+    : dag_(dag), index_(index), source_(source), sampler_(shading), pieces_(memory) {}
 
 SurfaceSum CellFilter::filter(const CellTask& task, std::vector<VoxelValue>& values) {
   const std::uint64_t cells = cells_in(dag_, index_, task.cell);
   first_ = task.cell.number;
   sums_.assign(cells, {});
-  values.assign(cells, unseen_value());
+  values.assign(cells, {});
   for (std::size_t begin = 0; begin < task.triangles.size(); begin += kMostLoaded) {
     const std::size_t count = std::min(kMostLoaded, task.triangles.size() - begin);
     load_pieces(pieces_, sampler_, source_, task.cell.level, task.place,
                 task.triangles.subspan(begin, count));
     add_pieces(task.cell, pieces_.root());
   }
-  if (pieces_.held_bytes() > most_kept_bytes_) pieces_.free_memory();
-  return join(task.cell, values);
+  pieces_.finish();
+  const SurfaceSum sum = join(task.cell, values);
+  sums_ = {};  // counted only until this task ends
+  return sum;
 }
 
-/// Adds the pieces in a cell to the sums of the finest cells in it.
+/// Adds the pieces of triangles in a cell to the sums of the finest cells in it.
 void CellFilter::add_pieces(const NumberedCell& cell, StackedCell part) {
   if (sampler_.shading() != nullptr)
     pieces_.remove_if(part, [this](const Cell& view, const TrianglePiece& piece) {
@@ -59,7 +58,7 @@ void CellFilter::add_pieces(const NumberedCell& cell, StackedCell part) {
   pieces_.end_split(split);
 }
 
-/// Sums the children of a cell, and sets the values of its subtree.
+/// Returns the sum over a cell, from the sums of its children. Sets the values of its subtree.
 SurfaceSum CellFilter::join(const NumberedCell& cell, std::vector<VoxelValue>& values) {
   SurfaceSum& sum = sums_[cell.number - first_];
   if (cell.level != index_.finest_level)

@@ -1,5 +1,5 @@
 #pragma once
-/// Receives the colours and normals of cells while they are made.
+/// An interface that receives the colours and normals of cells as soon as they are known.
 #include <cstdint>
 #include <span>
 
@@ -11,7 +11,7 @@ class CellValueSink {
  public:
   virtual ~CellValueSink() = default;
   /// Takes the values of the cells from number `first` on. Several threads call it at the same
-  /// time, with ranges in any order. Each cell comes once.
+  /// time, with ranges in any order. Every cell is in exactly one range.
   virtual void add(std::uint64_t first, std::span<const VoxelValue> values) = 0;
 };
 

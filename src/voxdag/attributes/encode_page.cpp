@@ -26,14 +26,14 @@ class PageWriter {
 /// The blocks of a page while they merge.
 class PageMerger {
  public:
-  PageMerger(const BlockFitter& fitter) : fitter_(fitter) {
+  explicit PageMerger(const BlockFitter& fitter) : fitter_(fitter) {
     for (int i = 0; i < kUnits; ++i)
       blocks_[static_cast<std::size_t>(i)] = fitter.fit(i * kBlockUnit, (i + 1) * kBlockUnit);
     count_ = kUnits;
     for (std::size_t i = 0; i + 1 < count_; ++i) join(i);
   }
 
-  /// Merges neighbours as long as that saves bits, those first that save most.
+  /// Merges the two neighbours that save most bits, until every merge would cost bits.
   void merge() {
     for (;;) {
       std::size_t best = count_;
@@ -88,7 +88,7 @@ EndPrecision choose_precision(const ValueMetric& metric) {
   for (int code = 0; code < 3; ++code) {
     int worst = 0;
     for (int c = 0; c < 3; ++c) {
-      // The values of neighbouring ends are up to one of these steps apart.
+      // The values of neighbouring ends differ by at most this step.
       const int step = (1 << (8 - EndPrecision{code}.channel_bits(c))) + 1;
       worst += metric.weights[static_cast<std::size_t>(c)] * (step / 2) * (step / 2);
     }
@@ -98,7 +98,7 @@ EndPrecision choose_precision(const ValueMetric& metric) {
 }
 
 EncodedPage encode_page(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-                        EndPrecision precision) {
+                        EndPrecision precision, int given) {
   const BlockFitter fitter(values, metric, precision);
   PageMerger merger(fitter);
   merger.merge();
@@ -107,7 +107,10 @@ EncodedPage encode_page(std::span<const Value8, kPageValues> values, const Value
   for (const FittedBlock& fitted : merger.blocks()) {
     writer.add(fitted.block.pack(), ValueBlock::kHeaderBits);
     fitter.write(
-        fitted, [&](std::uint64_t value, int bits) { writer.add(value, bits); }, page.errors);
+        fitted, [&](std::uint64_t value, int bits) { writer.add(value, bits); },
+        [&](int i, Value8 stored) {
+          if (i < given) page.errors.count(values[static_cast<std::size_t>(i)], stored);
+        });
   }
   return page;
 }

@@ -1,10 +1,10 @@
 #pragma once
 /// Compresses a page of values under an error bound.
 ///
-/// After D. Dolonius, E. Sintorn, V. Kämpe and U. Assarsson, "Compressing Color Data for Voxelized
-/// Surface Geometry", I3D 2017: values in depth-first order are split into blocks of any length,
-/// each with two ends and weights of as few bits as the error bound allows. Neighbouring blocks
-/// merge, those first that save most bits, as long as that saves bits.
+/// Source: D. Dolonius, E. Sintorn, V. Kämpe and U. Assarsson, "Compressing Color Data for
+/// Voxelized Surface Geometry", I3D 2017. Blocks of values in depth-first order have two ends, and
+/// weights of as few bits as the error bound allows. A page begins as blocks of 4 values. In each
+/// step, the two neighbours merge that save most bits, until every merge would cost bits.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -13,15 +13,14 @@
 
 namespace voxdag {
 
-/// The measure of errors: the square root of the weighted mean of the channels' squared
-/// differences.
+/// Measures errors and bounds them. The error of a value is the square root of the weighted mean of
+/// its channels' squared differences, in steps of 8 bits.
 struct ValueMetric {
   std::array<int, 3> weights{1, 1, 1};
-  /// The largest error of a value, in steps of 8 bits, squared, times the sum of the weights.
-  int bound = 0;
+  int bound = 0;  ///< The largest error(): 0 to 65025 times the sum of the weights.
 
   int sum() const { return weights[0] + weights[1] + weights[2]; }
-  /// Returns the squared error, times the sum of the weights.
+  /// Returns the square of the error, times the sum of the weights.
   int error(Value8 a, Value8 b) const {
     int sum = 0;
     for (int c = 0; c < 3; ++c) {
@@ -32,20 +31,23 @@ struct ValueMetric {
   }
 };
 
-/// Makes a metric with this bound, in steps of 8 bits.
+/// Makes a metric whose largest error is `bound`, 0 to 255.
 ValueMetric make_value_metric(std::array<int, 3> weights, double bound);
 
-/// Returns the coarsest precision of ends that keeps the bound.
+/// Returns the coarsest precision at which an end can stand for every value within the bound.
 EndPrecision choose_precision(const ValueMetric& metric);
 
-/// The most words that a page can take.
-inline constexpr int kMostPageWords = 105;
+/// The most words of a page: all its blocks have the least length and store each value by itself.
+inline constexpr int kMostPageWords =
+    kPageValues / kBlockUnit * ValueBlock{ValueBlock::kRaw, kBlockUnit}.bits(24) / 64;
+static_assert(kMostPageWords == 105);
 
-/// How much the stored values differ from the given ones.
+/// The differences between the given and the stored values.
 struct ValueErrors {
   std::uint64_t squared = 0;   ///< Sum of the squared differences of all channels.
-  std::uint64_t absolute = 0;  ///< Sum of the distances of the values, in 1/256 steps of 8 bits.
+  std::uint64_t absolute = 0;  ///< Sum of the distances, in 1/256 of a step of 8 bits.
 
+  /// Adds the difference of one value.
   void count(Value8 given, Value8 stored);
   ValueErrors& operator+=(const ValueErrors& other) {
     squared += other.squared;
@@ -54,15 +56,17 @@ struct ValueErrors {
   }
 };
 
-/// A compressed page: `bits` bits from the lowest bit of each word up; the rest is zero.
+/// A compressed page.
 struct EncodedPage {
-  std::array<std::uint64_t, kMostPageWords> words{};
+  std::array<std::uint64_t, kMostPageWords> words{};  ///< From bit `bits` on, all bits are zero.
   int bits = 0;
   ValueErrors errors;
 };
 
-/// Compresses the values. The error of each is at most the bound. Depends on the arguments alone.
+/// Compresses the values. The error of each is at most the bound. EncodedPage::errors has the
+/// differences of the first `given` values; the others only fill the page up. The result depends on
+/// the arguments alone.
 EncodedPage encode_page(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-                        EndPrecision precision);
+                        EndPrecision precision, int given = kPageValues);
 
 }  // namespace voxdag

@@ -3,6 +3,9 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <array>
+
 #include "voxdag/attributes/cell_task.hpp"
 #include "voxdag/attributes/top_cells.hpp"
 #include "voxdag/parallel/ordered_pipeline.hpp"
@@ -12,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-/// Filters tasks. Several threads may filter different tasks at the same time.
+/// Filters tasks. Thread-safe.
 class TaskFilter {
  public:
   TaskFilter(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
@@ -26,7 +29,8 @@ class TaskFilter {
           return CellFilter(dag, index, source, shading, memory);
         }) {}
 
-  /// Filters the task, keeps its sum in it and frees its triangles. Returns the number of cells.
+  /// Filters the task, stores its sum in it and frees its triangles. Gives the values to the sink,
+  /// unless the task has no visible surface. Returns the number of cells.
   std::uint64_t filter(NumberedTopCell& task) {
     const std::uint64_t cells = cells_in(dag_, index_, task.cell);
     const std::uint64_t bytes = cells * CellFilter::kBytesPerCell;
@@ -34,8 +38,7 @@ class TaskFilter {
     const MemoryReservation counted(memory_, bytes);
     std::vector<VoxelValue> values;
     task.sum = filters_.local().filter({task.cell, task.place, task.triangles}, values);
-    if (!(task.sum.area > 0)) fill_unseen(values, grey_value());
-    sink_.add(task.cell.number, values);
+    if (task.sum.area > 0) sink_.add(task.cell.number, values);
     task.triangles = TriangleList(memory_);
     return cells;
   }
@@ -49,16 +52,43 @@ class TaskFilter {
   tbb::enumerable_thread_specific<CellFilter> filters_;
 };
 
-/// Gives the values of the cells above the tasks to the sink. Children follow their parents in
-/// `cells`, in the order of their places.
-void finish_top_cells(NumberedTopCells& cells, CellValueSink& sink) {
-  for (std::size_t i = cells.size(); i-- > 0;) {
-    NumberedTopCell& cell = cells[i];
-    if (cell.is_task) continue;
+/// Returns the value of all cells of a mesh without visible surface.
+VoxelValue grey_value() {
+  SurfaceSum grey;
+  grey.add(kSurfaceGrey, {0, 1, 0}, 1);
+  return voxel_value(grey);
+}
+
+void add_copies(std::uint64_t first, std::uint64_t count, const VoxelValue& value,
+                CellValueSink& sink) {
+  std::array<VoxelValue, 256> copies;
+  copies.fill(value);
+  while (count > 0) {
+    const std::uint64_t part = std::min<std::uint64_t>(count, copies.size());
+    sink.add(first, std::span(copies).first(part));
+    first += part;
+    count -= part;
+  }
+}
+
+/// Gives the sink the values of the cells above the tasks, and of the cells in tasks without
+/// visible surface. All tasks must have their sums.
+void finish_top_cells(const SvdagView& dag, const CellIndexView& index, NumberedTopCells& cells,
+                      CellValueSink& sink) {
+  // Children follow their parents in `cells`.
+  for (std::size_t i = cells.size(); i-- > 0;)
+    for (std::size_t k = 0; k < cells[i].child_count; ++k)
+      cells[i].sum.add(cells[cells[i].first_child + k].sum);
+  cells[0].value = grey_value();
+  for (NumberedTopCell& cell : cells) {
+    const bool is_seen = cell.sum.area > 0;
+    if (is_seen) cell.value = voxel_value(cell.sum);
+    if (!cell.is_task) sink.add(cell.cell.number, {&cell.value, 1});
+    if (cell.is_task && !is_seen)
+      add_copies(cell.cell.number, cells_in(dag, index, cell.cell), cell.value, sink);
+    // A child without visible surface keeps this value.
     for (std::size_t k = 0; k < cell.child_count; ++k)
-      cell.sum.add(cells[cell.first_child + k].sum);
-    const VoxelValue value = cell.sum.area > 0 ? voxel_value(cell.sum) : grey_value();
-    sink.add(cell.cell.number, {&value, 1});
+      cells[cell.first_child + k].value = cell.value;
   }
 }
 
@@ -84,10 +114,10 @@ void filter_cells(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
       [&](std::uint64_t count) {
         done += count;
         if (progress != nullptr)
-          progress->report("colours", static_cast<double>(done) / static_cast<double>(index.cells),
-                           done);
+          progress->report("attributes",
+                           static_cast<double>(done) / static_cast<double>(index.cells), done);
       });
-  finish_top_cells(cells, sink);
+  finish_top_cells(dag, index, cells, sink);
 }
 
 }  // namespace voxdag

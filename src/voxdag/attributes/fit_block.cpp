@@ -7,7 +7,7 @@
 namespace voxdag {
 namespace {
 
-/// The nearest end's field of each value of 8 bits, for 5 to 8 bits.
+/// A table: the field of 5 to 8 bits that stands for the value nearest to each value of 8 bits.
 class NearestFields {
  public:
   NearestFields() {
@@ -37,10 +37,10 @@ std::uint8_t to_byte(float v) {
 
 }  // namespace
 
-/// Some values in a row, with their least and greatest channels and means.
+/// Consecutive values of a page.
 struct BlockFitter::Run {
   int begin, end;
-  Value8 lo, hi;
+  Value8 lo, hi;  // the smallest and the largest value of each channel
   float mean[3];
 
   int count() const { return end - begin; }
@@ -108,9 +108,10 @@ bool BlockFitter::fit_flat(const Run& run, FittedBlock& fitted) const {
   return true;
 }
 
-/// Improves `best` by `candidate`, whose ends are set, with the type of fewest weight bits that
-/// keeps the bound. The values are up to `off_line` from the line (squared), and extend over
-/// `range` along it.
+/// Replaces `best` by `candidate`, whose ends are set, if that keeps the bound in fewer bits. Takes
+/// the type, `first_type` to `last_type`, with the fewest bits of a weight. `off_line` is the
+/// largest squared distance of a value from the line, and `range` the extent of the values along
+/// it. Both scale each channel by the root of its weight.
 void BlockFitter::try_line(const Run& run, FittedBlock candidate, int first_type, int last_type,
                            float range, float off_line, FittedBlock& best) const {
   const float left = static_cast<float>(metric_.bound) - off_line;

@@ -1,5 +1,5 @@
 #pragma once
-/// Fits a block to a run of values: the block of fewest bits whose errors keep the bound.
+/// Fits a block to a run of values: few bits, and no error above the bound.
 #include <cstdint>
 #include <span>
 
@@ -11,7 +11,7 @@ namespace voxdag {
 struct FittedBlock {
   ValueBlock block;
   int begin = 0;
-  int bits = 0;              ///< Of the whole block.
+  int bits = 0;              ///< Size of the whole block.
   std::uint32_t e0 = 0;      ///< Packed end.
   std::uint32_t second = 0;  ///< Packed end, or the step.
 
@@ -24,30 +24,29 @@ class BlockFitter {
   BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
               EndPrecision precision);
 
-  /// Returns a block of the values `begin` to `end` - 1; both are multiples of kBlockUnit. Tries,
-  /// in this order, one value, a line along grey, a line along the principal axis, and every value
-  /// by itself.
+  /// Returns a block of the values `begin` to `end` - 1; both are multiples of kBlockUnit. Chooses
+  /// one value for all if that keeps the bound; otherwise the smallest of a line along grey, a line
+  /// along the principal axis, and every value by itself.
   FittedBlock fit(int begin, int end) const;
 
-  /// Calls add(value, bits) for the ends and weights of a block. Adds the differences to
-  /// `errors`.
-  template <class Add>
-  void write(const FittedBlock& fitted, const Add& add, ValueErrors& errors) const {
+  /// Calls add(number, bits) for each end, step and weight of a block, in the order of the file,
+  /// and is_stored(i, stored) for each value of the page that the block holds.
+  template <class Add, class IsStored>
+  void write(const FittedBlock& fitted, const Add& add, const IsStored& is_stored) const {
     const int end_bits = precision_.bits();
     const ValueBlock& block = fitted.block;
     if (block.type == ValueBlock::kRaw) {
       for (int i = fitted.begin; i < fitted.end(); ++i) {
         const std::uint32_t end = pack(values_[static_cast<std::size_t>(i)]);
         add(end, end_bits);
-        errors.count(values_[static_cast<std::size_t>(i)], precision_.unpack(end));
+        is_stored(i, precision_.unpack(end));
       }
       return;
     }
     add(fitted.e0, end_bits);
-    const Value8 e0 = precision_.unpack(fitted.e0);
     if (!block.is_line()) {
-      for (int i = fitted.begin; i < fitted.end(); ++i)
-        errors.count(values_[static_cast<std::size_t>(i)], e0);
+      const Value8 e0 = precision_.unpack(fitted.e0);
+      for (int i = fitted.begin; i < fitted.end(); ++i) is_stored(i, e0);
       return;
     }
     add(fitted.second, block.has_step() ? ValueBlock::kStepBits : end_bits);
@@ -55,7 +54,7 @@ class BlockFitter {
     for (int i = fitted.begin; i < fitted.end(); ++i) {
       const int k = line.nearest(values_[static_cast<std::size_t>(i)]);
       add(static_cast<std::uint64_t>(k), block.weight_bits());
-      errors.count(values_[static_cast<std::size_t>(i)], line.palette[k]);
+      is_stored(i, line.palette[k]);
     }
   }
 
@@ -63,9 +62,9 @@ class BlockFitter {
   /// The values between two ends.
   struct Line {
     Value8 palette[16];
-    int most = 1;         // the greatest weight
-    float along[3] = {};  // weight per step of each channel
-    float offset = 0;     // weight of zero, and one half for rounding
+    int most = 1;         // the largest weight
+    float along[3] = {};  // change of the weight per step of each channel
+    float offset = 0;     // the weight of the value (0, 0, 0), plus one half for rounding
 
     int nearest(Value8 value) const {
       const float k = along[0] * value[0] + along[1] * value[1] + along[2] * value[2] + offset;

@@ -3,33 +3,17 @@
 #include <algorithm>
 #include <bit>
 
+#include "voxdag/attributes/cell_task.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/pieces/split_triangles.hpp"
 
 namespace voxdag {
 namespace {
 
+/// The most cells in the subtree of a task.
 constexpr std::uint64_t kTaskCells = 1 << 16;
-constexpr std::size_t kTaskTriangles = 1 << 14;
-
-/// Returns whether the triangle's box meets the grid, as split_triangles() requires.
-bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
-  const std::int64_t side = grid.resolution() * kSubvoxels;
-  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
-  for (int axis = 0; axis < 3; ++axis)
-    if (hi[axis] < 0 || lo[axis] >= side) return false;
-  return true;
-}
-
-TriangleList triangles_of_grid(const TriangleSource& source, MemoryBudget* memory) {
-  TriangleList triangles(memory);
-  triangles.reserve(source.mesh.triangle_count());
-  for (std::size_t i = 0; i < source.mesh.triangle_count(); ++i)
-    if (!source.is_duplicate(i) && source.mesh.in_range(i) &&
-        box_meets_grid(source.mesh.triangle(i), source.grid))
-      triangles.push_back(static_cast<std::uint32_t>(i));
-  return triangles;
-}
+/// The most triangles of a task. Leaf blocks and finest cells are tasks with any number.
+constexpr std::size_t kTaskTriangles = CellFilter::kMostLoaded;
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The upper cells of a DAG with the triangles in them, down to cells that are filtered at once.
+/// The upper cells of a DAG with the triangles in them, down to the tasks: cells whose subtrees
+/// one thread filters in one step.
 #include <cstdint>
 #include <vector>
 
@@ -17,18 +18,19 @@ struct NumberedTopCell {
   bool is_task = false;                          ///< Its children are not among the cells.
   TriangleList triangles;                        ///< Those that meet it. Empty unless a task.
   SurfaceSum sum;                                ///< Of the surface in it; set later.
-  std::size_t first_child = 0, child_count = 0;  ///< Its children among the cells, in their order.
+  VoxelValue value;                              ///< Set later.
+  std::size_t first_child = 0, child_count = 0;  ///< Its children, which follow each other.
 };
 
 using NumberedTopCells = CountedVector<NumberedTopCell>;
 
-/// Lists the cells down to tasks, breadth first. Counts them in `memory`; null: no limit. The DAG
-/// must have voxels. Throws Cancelled and OverMemory.
+/// Lists the cells from the root down to the tasks, breadth first. Counts them in `memory`; null:
+/// no limit. The DAG must have voxels. Throws Cancelled and OverMemory.
 NumberedTopCells list_top_cells(const SvdagView& dag, const CellIndexView& index,
                                 const TriangleSource& source, MemoryBudget* memory,
                                 Progress* progress);
 
-/// Returns the tasks in the order of their numbers.
+/// Returns the indices of the tasks in `cells`, in the order of their cells' numbers.
 std::vector<std::size_t> tasks_in_order(const NumberedTopCells& cells);
 
 }  // namespace voxdag

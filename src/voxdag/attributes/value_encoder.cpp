@@ -9,6 +9,7 @@ ValueEncoder::ValueEncoder(std::uint64_t values, const ValueMetric& metric, Memo
       metric_(metric),
       precision_(choose_precision(metric)),
       memory_(memory),
+      open_(memory),
       places_((values + kPageValues - 1) / kPageValues, {}, memory) {}
 
 void ValueEncoder::add(std::uint64_t first, std::span<const Value8> values) {
@@ -25,7 +26,7 @@ void ValueEncoder::add(std::uint64_t first, std::span<const Value8> values) {
   }
 }
 
-/// Adds values of one page. Compresses it if it is complete.
+/// Adds values of one page. Compresses the page if it is complete.
 void ValueEncoder::add_part(std::uint64_t first, std::span<const Value8> values) {
   const std::uint64_t page = first / kPageValues, begin = page * kPageValues;
   const std::uint64_t whole = std::min<std::uint64_t>(kPageValues, values_ - begin);
@@ -42,9 +43,10 @@ void ValueEncoder::add_part(std::uint64_t first, std::span<const Value8> values)
   }
   std::fill(complete.values.begin() + static_cast<std::ptrdiff_t>(whole), complete.values.end(),
             complete.values[whole - 1]);
-  keep(page, encode_page(complete.values, metric_, precision_));
+  keep(page, encode_page(complete.values, metric_, precision_, static_cast<int>(whole)));
 }
 
+/// Stores a compressed page.
 void ValueEncoder::keep(std::uint64_t page, const EncodedPage& encoded) {
   const auto words = static_cast<std::size_t>((encoded.bits + 63) / 64);
   const std::lock_guard lock(mutex_);
@@ -66,13 +68,19 @@ ValuePages ValueEncoder::finish() {
   pages.values = values_;
   pages.precision = precision_;
   std::uint64_t bytes = 0;
+  for (const PagePlace& place : places_) bytes += place.bytes;
+  const std::uint64_t words = (bytes + 7) / 8;
+  const std::uint64_t groups = (places_.size() + kGroupPages - 1) / kGroupPages;
+  const MemoryReservation counted(memory_, 8 * groups + 2 * places_.size() + 8 * words);
+  pages.groups.reserve(groups);
+  pages.pages.reserve(places_.size());
+  std::uint64_t begin = 0;
   for (std::uint64_t page = 0; page < places_.size(); ++page) {
-    if (page % kGroupPages == 0) pages.groups.push_back(bytes);
-    pages.pages.push_back(static_cast<std::uint16_t>(bytes - pages.groups.back()));
-    bytes += places_[page].bytes;
+    if (page % kGroupPages == 0) pages.groups.push_back(begin);
+    pages.pages.push_back(static_cast<std::uint16_t>(begin - pages.groups.back()));
+    begin += places_[page].bytes;
   }
-  const MemoryReservation counted(memory_, bytes + 2 * pages.pages.size());
-  pages.words.assign((bytes + 7) / 8, 0);
+  pages.words.assign(words, 0);
   std::uint64_t at = 0;
   for (const PagePlace& place : places_) {
     const std::uint64_t* from = chunks_[place.chunk].data() + place.word;

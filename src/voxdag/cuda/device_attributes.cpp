@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kWhat = "the colours and normals";
 
-/// The values in the device's memory.
+/// Owns values in the device's memory.
 struct DevicePages {
   DeviceBuffer<std::uint64_t> groups, words;
   DeviceBuffer<std::uint16_t> pages;

@@ -7,11 +7,11 @@
 
 namespace voxdag {
 
-/// Copies share the device's memory; the last one frees it.
+/// Owns memory of the device. Copies share it; the last one frees it.
 class DeviceAttributes {
  public:
-  /// Copies the attributes of the DAG in `scene` to its device. Throws Error if the device does not
-  /// have enough free memory.
+  /// Copies `attributes`, those of the DAG in `scene`, to the scene's device. Throws Error if the
+  /// device does not have enough free memory.
   DeviceAttributes(const DeviceScene& scene, const DagAttributesView& attributes);
 
   /// Returns the DAG and its attributes in the device's memory.

@@ -11,20 +11,14 @@
 namespace voxdag {
 namespace {
 
-ErrorPlace chunk_place(std::uint32_t id) { return ErrorPlace::chunk(vdag_chunk_name(id)); }
-
 [[noreturn]] void fail(const std::string& reason) { throw Error("", "", reason); }
-
-const VdagChunk* find_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
-  const auto found = std::find_if(chunks.begin(), chunks.end(),
-                                  [id](const VdagChunk& chunk) { return chunk.id == id; });
-  return found == chunks.end() ? nullptr : &*found;
-}
 
 template <class Header>
 Header read_header(std::span<const std::byte> bytes) {
   Header header;
-  if (bytes.size() < sizeof header) fail("is shorter than its header");
+  if (bytes.size() < sizeof header)
+    fail("has " + std::to_string(bytes.size()) + " bytes, but its header needs " +
+         std::to_string(sizeof header));
   if (bytes.size() % 8 != 0) fail("length in bytes is not a multiple of 8");
   std::memcpy(&header, bytes.data(), sizeof header);
   return header;
@@ -40,7 +34,8 @@ CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag)
   const auto header = read_header<CellIndexHeader>(bytes);
   check_zeros(header.reserved, header.padding);
   if (header.finest_level > static_cast<std::uint32_t>(dag.levels))
-    fail("level " + std::to_string(header.finest_level) + " is finer than the voxels");
+    fail("its finest level, " + std::to_string(header.finest_level) +
+         ", is finer than the voxels, level " + std::to_string(dag.levels));
   CellIndexView index;
   index.words = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
   index.finest_level = static_cast<std::uint8_t>(header.finest_level);
@@ -63,32 +58,29 @@ CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag)
 ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells) {
   const auto header = read_header<ValuePagesHeader>(bytes);
   check_zeros(header.reserved, header.padding);
-  if (header.precision > 3) fail("unknown precision " + std::to_string(header.precision));
+  if (header.precision > 3)
+    fail("unknown precision " + std::to_string(header.precision) + ": 0 to 3 are allowed");
   if (header.values != cells)
-    fail("has " + std::to_string(header.values) + " values for " + std::to_string(cells) +
-         " cells");
+    fail("has " + std::to_string(header.values) + " values, but the chunk CIDX has " +
+         std::to_string(cells) + " cells");
   ValuePagesView view;
   view.values = header.values;
   view.word_count = header.words;
   view.precision = {static_cast<int>(header.precision)};
-  // Compares without overflow: all sizes are in words of the chunk.
+  // The difference cannot overflow, but the sum of both counts could.
   const std::uint64_t words = (bytes.size() - sizeof header) / 8;
   const std::uint64_t table_words = view.group_count() + (view.page_count() + 3) / 4;
   if (header.words > words || table_words != words - header.words)
-    fail("has " + std::to_string(words) + " words, but its header needs another number");
+    fail("has " + std::to_string(words) + " words, but its tables need " +
+         std::to_string(table_words) + " and its pages " + std::to_string(header.words));
   const auto* const first = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
   view.groups = first;
   view.words = first + view.group_count();
   view.pages = reinterpret_cast<const std::uint16_t*>(view.words + view.word_count);
   for (std::uint64_t page = view.page_count(); page % 4 != 0; ++page)
-    if (view.pages[page] != 0) fail("has padding that is not zero");
+    if (view.pages[page] != 0) fail("padding is not zero");
   validate_value_pages(view);
   return view;
-}
-
-template <class T>
-std::span<const std::byte> bytes_of(const T* values, std::uint64_t count) {
-  return std::as_bytes(std::span<const T>(values, count));
 }
 
 }  // namespace
@@ -99,8 +91,9 @@ AttributeChunks::AttributeChunks(const DagAttributesView& attributes) {
   index_.finest_level = index.finest_level;
   index_.cells = index.cells;
   std::copy(std::begin(index.width), std::end(index.width), std::begin(index_.width));
-  chunks_.push_back(
-      {kChunkCellIndex, {bytes_of(&index_, 1), bytes_of(index.words, index.word_count())}});
+  chunks_.push_back({kChunkCellIndex,
+                     {std::as_bytes(std::span(&index_, 1)),
+                      std::as_bytes(std::span(index.words, index.word_count()))}});
   if (attributes.has_colors()) add(kChunkColors, attributes.colors, colors_);
   if (attributes.has_normals()) add(kChunkNormals, attributes.normals, normals_);
 }
@@ -111,11 +104,12 @@ void AttributeChunks::add(std::uint32_t id, const ValuePagesView& pages, ValuePa
   header.values = pages.values;
   header.words = pages.word_count;
   const std::uint64_t padding = (4 - pages.page_count() % 4) % 4 * sizeof(std::uint16_t);
-  chunks_.push_back(
-      {id,
-       {bytes_of(&header, 1), bytes_of(pages.groups, pages.group_count()),
-        bytes_of(pages.words, pages.word_count), bytes_of(pages.pages, pages.page_count()),
-        std::span<const std::byte>(kZeros, padding)}});
+  chunks_.push_back({id,
+                     {std::as_bytes(std::span(&header, 1)),
+                      std::as_bytes(std::span(pages.groups, pages.group_count())),
+                      std::as_bytes(std::span(pages.words, pages.word_count)),
+                      std::as_bytes(std::span(pages.pages, pages.page_count())),
+                      std::span<const std::byte>(kZeros, padding)}});
 }
 
 DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
@@ -127,7 +121,7 @@ DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
     try {
       work(chunk->bytes);
     } catch (const Error& error) {
-      throw error.within(chunk_place(id));
+      throw error.within(ErrorPlace::chunk(vdag_chunk_name(id)));
     }
     return true;
   };

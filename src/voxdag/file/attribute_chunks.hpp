@@ -34,20 +34,20 @@ struct ValuePagesHeader {
 };
 static_assert(sizeof(ValuePagesHeader) == 64);
 
-/// A chunk as a list of parts that follow each other.
+/// The bytes of a chunk, in parts that follow each other.
 struct AttributeChunk {
   std::uint32_t id;
   std::vector<std::span<const std::byte>> parts;
 };
 
-/// The chunks of attributes, ready to be written. Refers to the attributes and owns the headers.
+/// The bytes of the chunks of attributes. Refers to the attributes and owns the headers.
 class AttributeChunks {
  public:
   explicit AttributeChunks(const DagAttributesView& attributes);
   AttributeChunks(const AttributeChunks&) = delete;
   AttributeChunks& operator=(const AttributeChunks&) = delete;
 
-  /// Returns no chunks if there are no attributes.
+  /// Returns the chunks in the order of the file; none if there are no attributes.
   const std::vector<AttributeChunk>& chunks() const { return chunks_; }
 
  private:
@@ -58,8 +58,9 @@ class AttributeChunks {
   std::vector<AttributeChunk> chunks_;
 };
 
-/// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none.
-/// Linear time. Throws Error, whose place names the chunk. The result is safe to read.
+/// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none. The
+/// result refers to the chunks and is safe to read. Linear time. Throws Error, whose place begins
+/// with the chunk.
 DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks, const SvdagView& dag);
 
 }  // namespace voxdag

@@ -21,7 +21,7 @@ class SceneFile {
   VoxelSet voxels() const {
     return std::visit([](const auto& file) { return VoxelSet(file.view()); }, file_);
   }
-  /// Returns a view of the DAG and the attributes of its cells; empty for a file without them.
+  /// Returns the DAG with its attributes; empty for an ESVO, and for a DAG without attributes.
   ColoredDagView colored_dag() const {
     const VdagFile* const dag = std::get_if<VdagFile>(&file_);
     return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};

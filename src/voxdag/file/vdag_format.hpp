@@ -66,7 +66,7 @@ inline constexpr std::uint32_t kChunkCompactStream =
 inline constexpr std::uint32_t kChunkEsvo = vdag_chunk_id("ESVO");  ///< u64 slots of all blocks.
 inline constexpr std::uint32_t kChunkEsvoBlocks =
     vdag_chunk_id("EBLK");  ///< EsvoBlockEntry of each block.
-// Not required: a reader without attributes can use the rest of the file.
+// These chunks are not required: a reader that ignores attributes can use the rest of the file.
 inline constexpr std::uint32_t kChunkCellIndex = vdag_chunk_id("CIDX");  ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkColors = vdag_chunk_id("COLR");     ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkNormals = vdag_chunk_id("NRML");    ///< attribute_chunks.hpp

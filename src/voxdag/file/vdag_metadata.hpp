@@ -10,22 +10,24 @@
 
 namespace voxdag {
 
-/// How the attributes of the DAG's cells were made. Members are 0 or empty without attributes.
+/// How the attributes of the DAG's cells were made. Without attributes, all members are 0 or empty.
 struct AttributesMetadata {
-  /// The bound that the encoder kept, and the errors that it left.
+  /// The bound that the encoder kept, and the differences between given and stored values.
   struct Values {
-    double bound = 0;          ///< Colours: 0 to 1; normals: degrees.
-    std::uint64_t errors = 0;  ///< Colours: sum of squared differences of all channels, in steps
-                               ///< of 8 bits; normals: sum of distances, in 1/256 steps of 8 bits.
+    double bound = 0;  ///< For colours from 0 to 1, for normals in degrees.
+    /// For colours, the sum of the squared differences of all channels, in steps of 8 bits. For
+    /// normals, the sum of the distances, in 1/256 of a step of 8 bits.
+    std::uint64_t errors = 0;
     friend bool operator==(const Values&, const Values&) = default;
   };
-  std::int64_t resolution = 0;  ///< M: cells a side at the finest level with attributes.
+  std::int64_t resolution = 0;  ///< M: cells per side at the finest level with attributes.
   std::optional<Values> colors, normals;
 
-  /// Returns the peak signal-to-noise ratio of the colours of `cells` cells, in dB; infinity if
-  /// they are exact.
+  /// Returns the peak signal-to-noise ratio of the colours of `cells` cells, in dB; infinity if all
+  /// are exact.
   double color_psnr_db(std::uint64_t cells) const;
-  /// Returns the mean angle by which the normals of `cells` cells differ, in degrees.
+  /// Returns the mean angle between given and stored normals of `cells` cells, in degrees: an
+  /// estimate from their distances, which is good for small angles.
   double normal_mean_degrees(std::uint64_t cells) const;
   friend bool operator==(const AttributesMetadata&, const AttributesMetadata&) = default;
 };

@@ -112,9 +112,10 @@ std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file) {
   return chunks;
 }
 
-bool has_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
-  return std::any_of(chunks.begin(), chunks.end(),
-                     [id](const VdagChunk& chunk) { return chunk.id == id; });
+const VdagChunk* find_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
+  const auto found = std::find_if(chunks.begin(), chunks.end(),
+                                  [id](const VdagChunk& chunk) { return chunk.id == id; });
+  return found == chunks.end() ? nullptr : &*found;
 }
 
 void check_vdag_checksums(const std::vector<VdagChunk>& chunks) {
@@ -124,9 +125,8 @@ void check_vdag_checksums(const std::vector<VdagChunk>& chunks) {
 
 std::span<const std::byte> chunk_bytes(const std::vector<VdagChunk>& chunks, std::uint32_t id,
                                        std::size_t multiple) {
-  const auto chunk = std::find_if(chunks.begin(), chunks.end(),
-                                  [id](const VdagChunk& other) { return other.id == id; });
-  if (chunk == chunks.end()) fail("chunk table", "chunk " + vdag_chunk_name(id) + " is missing");
+  const VdagChunk* const chunk = find_chunk(chunks, id);
+  if (chunk == nullptr) fail("chunk table", "chunk " + vdag_chunk_name(id) + " is missing");
   if (chunk->bytes.size() % multiple != 0)
     fail(chunk_place(id), "length in bytes is not a multiple of " + std::to_string(multiple));
   return chunk->bytes;

@@ -36,7 +36,12 @@ struct VdagContents {
 /// more.
 std::vector<VdagChunk> read_vdag_chunks(std::span<const std::byte> file);
 
-bool has_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id);
+/// Returns the chunk; null if the file has none with this id.
+const VdagChunk* find_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id);
+
+inline bool has_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id) {
+  return find_chunk(chunks, id) != nullptr;
+}
 
 /// Throws Error if the checksum of a chunk's bytes differs from the one in the table.
 void check_vdag_checksums(const std::vector<VdagChunk>& chunks);

@@ -37,6 +37,29 @@ void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted) {
 
 namespace {
 
+/// Throws Error if the metadata describes other attributes than those that the file stores. A DAG
+/// without voxels stores none.
+void compare_attributes(const AttributesMetadata& stated, const DagAttributesView& stored) {
+  const auto fail = [](const char* key, const std::string& reason) {
+    throw Error("", ErrorPlace::chunk("META") / key, reason);
+  };
+  const auto compare_values = [&](const char* key, const char* chunk, bool is_stated,
+                                  bool is_stored) {
+    if (is_stated && !is_stored)
+      fail(key, std::string("describes the chunk ") + chunk + ", which is missing");
+    if (is_stored && !is_stated)
+      fail(key, std::string("is missing, but the file has the chunk ") + chunk);
+  };
+  if (stated.resolution == 0 && !stored.is_empty())
+    fail("attributes", "is missing, but the file has attributes");
+  compare_values("attributes.color", "COLR", stated.colors.has_value(), stored.has_colors());
+  compare_values("attributes.normal", "NRML", stated.normals.has_value(), stored.has_normals());
+  const std::int64_t resolution = std::int64_t{1} << stored.index.finest_level;
+  if (!stored.is_empty() && stated.resolution != resolution)
+    fail("attributes.resolution", "is " + std::to_string(stated.resolution) +
+                                      ", but the chunk CIDX has " + std::to_string(resolution));
+}
+
 VerifyReport verify_esvo(std::span<const std::byte> file) {
   VerifyReport report;
   EsvoContents contents;
@@ -89,8 +112,10 @@ VerifyReport verify_vdag(const std::filesystem::path& path) {
             [&] { check_vdag_svdag(contents.view, check_minimal); });
   run_check(report, "counts", {kStructure, kMetadata},
             [&] { compare_counts(contents.metadata.counts, count_svdag(contents.view)); });
-  run_check(report, "attributes", {kStructure},
-            [&] { read_attribute_chunks(contents.chunks, contents.view); });
+  run_check(report, "attributes", {kStructure}, [&] {
+    const DagAttributesView stored = read_attribute_chunks(contents.chunks, contents.view);
+    if (!contents.view.is_empty()) compare_attributes(contents.metadata.attributes, stored);
+  });
   return report;
 }
 

@@ -17,8 +17,8 @@ VOXDAG_HD inline std::uint64_t read_bits(const std::uint64_t* words, std::uint64
   return width == 64 ? value : value & ((std::uint64_t{1} << width) - 1);
 }
 
-/// Sets the number of `width` bits, 0 to 64, that begins at bit `bit`. The bits must be zero, and
-/// `value` must fit.
+/// Sets the number of `width` bits, 0 to 64, that begins at bit `bit`, to `value`, which must fit.
+/// All these bits must be zero before.
 inline void write_bits(std::uint64_t* words, std::uint64_t bit, int width, std::uint64_t value) {
   if (width == 0) return;
   const std::uint64_t at = bit >> 6;

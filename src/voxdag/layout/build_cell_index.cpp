@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
 
-/// Returns the cells in the subtree of the child at `pointer` of a node of `level`, which has
-/// slots. The slots of the level below must be in `index`.
+/// Returns the number of cells in the subtree of a child. `pointer` is its pointer in a node of
+/// `level`, which has slots. The slots of the level below must be in `index`.
 std::uint64_t subtree_cells(const SvdagView& dag, const CellIndexView& index, int level,
                             std::uint32_t pointer) {
   const int finest = index.finest_level, below = level + 1;
@@ -21,8 +22,8 @@ std::uint64_t subtree_cells(const SvdagView& dag, const CellIndexView& index, in
   return cell_sum(dag, index, below, pointer + children);
 }
 
-/// Calls fn(word, sum) for each slot of a level in order: also for those of the masks, which are
-/// zero.
+/// Calls fn(word, sum) for each slot of a level in order, with the DAG's word beside it. The sum is
+/// 0 for the slot of a mask.
 template <class Fn>
 void for_each_sum(const SvdagView& dag, const CellIndexView& index, int level, const Fn& fn) {
   for (std::uint64_t at = dag.level_begin[level]; at < dag.level_begin[level + 1];) {
@@ -36,12 +37,14 @@ void for_each_sum(const SvdagView& dag, const CellIndexView& index, int level, c
   }
 }
 
+/// Returns the words that the slots of a level take.
 std::uint64_t level_words(const SvdagView& dag, int level, int width) {
   const std::uint64_t slots = dag.level_begin[level + 1] - dag.level_begin[level];
   return (slots * static_cast<std::uint64_t>(width) + 63) / 64;
 }
 
-/// Returns the bits of the largest sum of a level. The slots of the level below must be in `index`.
+/// Returns the number of bits of the largest sum of a level. The slots of the level below must be
+/// in `index`.
 int needed_width(const SvdagView& dag, const CellIndexView& index, int level) {
   std::uint64_t most = 0;
   for_each_sum(dag, index, level,
@@ -59,13 +62,15 @@ std::uint64_t count_cells(const SvdagView& dag, const CellIndexView& index) {
                                                    : 1 + children;
 }
 
-[[noreturn]] void fail(const std::string& reason) { throw Error("", "", reason); }
+[[noreturn]] void fail(ErrorPlace place, const std::string& reason) {
+  throw Error("", std::move(place), reason);
+}
 
 }  // namespace
 
-CellIndex build_cell_index(const SvdagView& dag, int finest_level) {
-  // From the lowest level up: the words of a level are inserted before those of the levels below.
-  std::vector<std::uint64_t> parts[kMaxLevels];
+CellIndex build_cell_index(const SvdagView& dag, int finest_level, MemoryBudget* memory) {
+  // The sums of a level need those of the level below, whose words come later.
+  std::vector<CountedVector<std::uint64_t>> parts(kMaxLevels, CountedVector<std::uint64_t>(memory));
   CellIndex index;
   index.finest_level = static_cast<std::uint8_t>(finest_level);
   CellIndexView view = index.view();
@@ -74,7 +79,7 @@ CellIndex build_cell_index(const SvdagView& dag, int finest_level) {
     if (dag.is_empty() || !has_cell_sums(dag, level, finest_level)) continue;
     view.words = below;
     const int width = needed_width(dag, view, level);
-    std::vector<std::uint64_t>& words = parts[level];
+    CountedVector<std::uint64_t>& words = parts[static_cast<std::size_t>(level)];
     words.assign(level_words(dag, level, width), 0);
     const std::uint64_t begin = dag.level_begin[level];
     for_each_sum(dag, view, level, [&](std::uint64_t word, std::uint64_t sum) {
@@ -82,12 +87,16 @@ CellIndex build_cell_index(const SvdagView& dag, int finest_level) {
     });
     index.width[static_cast<std::size_t>(level)] = view.width[level] =
         static_cast<std::uint8_t>(width);
-    below = words.data();  // view.begin stays 0: `words` is the level's own array
+    below = words.data();  // view.begin stays 0: each level has an array of its own
   }
+  std::uint64_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  const MemoryReservation counted(memory, 8 * count);
+  index.words.reserve(count);
   for (std::size_t level = 0; level < kMaxLevels; ++level) {
     index.begin[level] = index.words.size();
     index.words.insert(index.words.end(), parts[level].begin(), parts[level].end());
-    parts[level] = {};
+    parts[level] = CountedVector<std::uint64_t>(memory);
   }
   index.begin[kMaxLevels] = index.words.size();
   index.cells = count_cells(dag, index.view());
@@ -96,40 +105,44 @@ CellIndex build_cell_index(const SvdagView& dag, int finest_level) {
 
 void validate_cell_index(const SvdagView& dag, const CellIndexView& index) {
   if (index.finest_level > dag.levels)
-    fail("level " + std::to_string(index.finest_level) + " is finer than the voxels, level " +
-         std::to_string(dag.levels));
+    fail("", "its finest level, " + std::to_string(index.finest_level) +
+                 ", is finer than the voxels, level " + std::to_string(dag.levels));
   std::uint64_t words = 0;
   for (int level = 0; level < kMaxLevels; ++level) {
     const bool has_slots = !dag.is_empty() && has_cell_sums(dag, level, index.finest_level);
     const int width = index.width[level];
     if (width > 64 || (width != 0) != has_slots)
-      fail("level " + std::to_string(level) + " cannot have numbers of " + std::to_string(width) +
-           " bits");
-    if (index.begin[level] != words) fail("level " + std::to_string(level) + " begins elsewhere");
+      fail(ErrorPlace::level(level), "cannot have slots of " + std::to_string(width) + " bits");
+    if (index.begin[level] != words)
+      fail(ErrorPlace::level(level), "does not begin at word " + std::to_string(words));
     words += level_words(dag, level, width);
   }
   if (index.word_count() != words)
-    fail("has " + std::to_string(index.word_count()) + " words, but the widths need " +
-         std::to_string(words));
+    fail("", "has " + std::to_string(index.word_count()) +
+                 " words, but the widths of its slots need " + std::to_string(words));
   for (int level = dag.levels - 3; level >= 0; --level) {
     const int width = index.width[level];
     if (width == 0) continue;
-    if (needed_width(dag, index, level) != width)
-      fail("level " + std::to_string(level) + " has numbers of another width than the DAG needs");
+    const int needed = needed_width(dag, index, level);
+    if (needed != width)
+      fail(ErrorPlace::level(level), "has slots of " + std::to_string(width) +
+                                         " bits, but the DAG needs " + std::to_string(needed));
     for_each_sum(dag, index, level, [&](std::uint64_t word, std::uint64_t sum) {
-      if (cell_sum(dag, index, level, word) != sum)
-        throw Error("", ErrorPlace::level(level) / ErrorPlace::word(word),
-                    "the number of cells is not that of the DAG");
+      const std::uint64_t stored = cell_sum(dag, index, level, word);
+      if (stored != sum)
+        fail(
+            ErrorPlace::level(level) / ErrorPlace::word(word),
+            "the slot is " + std::to_string(stored) + ", but the DAG needs " + std::to_string(sum));
     });
     const std::uint64_t bits =
         (dag.level_begin[level + 1] - dag.level_begin[level]) * static_cast<std::uint64_t>(width);
     if (bits % 64 != 0 && index.words[index.begin[level + 1] - 1] >> (bits % 64) != 0)
-      fail("padding of level " + std::to_string(level) + " is not zero");
+      fail(ErrorPlace::level(level), "padding is not zero");
   }
   const std::uint64_t cells = count_cells(dag, index);
   if (cells != index.cells)
-    fail("states " + std::to_string(index.cells) + " cells, but the DAG has " +
-         std::to_string(cells));
+    fail("", "is for " + std::to_string(index.cells) + " cells, but the DAG has " +
+                 std::to_string(cells));
 }
 
 }  // namespace voxdag

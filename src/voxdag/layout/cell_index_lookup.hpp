@@ -1,24 +1,25 @@
 #pragma once
-/// Finds the numbers of cells.
+/// Finds the numbers of cells by their places.
 #include "voxdag/core/morton.hpp"
 #include "voxdag/layout/cell_index.hpp"
 
 namespace voxdag {
 
 /// Returns the distance from the number of the node at word `node` of `level` to the number of its
-/// child `child`, which must exist. Attributes must end below `level`.
+/// child `child`, which must exist. `level` must be coarser than the finest level with attributes.
 VOXDAG_HD inline std::uint64_t child_distance(const SvdagView& dag, const CellIndexView& index,
                                               int level, std::uint64_t node, int child) {
   const int before = popcount8(child_mask(dag.nodes + node) & ((1u << child) - 1u));
   if (before == 0) return 1;
-  // Children that are the finest cells have one cell each.
+  // Each child is a cell of the finest level: its subtree is one cell.
   if (!has_cell_sums(dag, level, index.finest_level)) return static_cast<std::uint64_t>(1 + before);
   return cell_sum(dag, index, level, node + static_cast<std::uint64_t>(before));
 }
 
-/// Sets `number` to the number of the cell `cell` of `level`, 0 to L, or of its ancestor of the
-/// finest level that has attributes. Returns false if the cell has no voxels or is outside the
-/// grid. One descent: O(level) time, which reads one slot per level and no sibling.
+/// Sets `number` to the number of the cell `cell` of `level`, 0 to L. If the level is finer than
+/// the finest with attributes, m, takes the number of the cell's ancestor of level m. Returns false
+/// if the cell has no voxels or is outside the grid. Time in O(level): one walk from the root reads
+/// one slot per level and no sibling.
 VOXDAG_HD inline bool find_cell_number(const SvdagView& dag, const CellIndexView& index, Vec3i cell,
                                        int level, std::uint64_t& number) {
   if (dag.is_empty() || (cell.x | cell.y | cell.z) >> level != 0) return false;

@@ -13,7 +13,7 @@ struct StoredLook {
   Vec3f normal{};  ///< World space, unit length.
 };
 
-/// A view for kernels and readers. Default: no colours, no normals.
+/// A view for kernels and readers: of an ESVO, of a DAG with attributes, or of nothing (default).
 struct LookView {
   EsvoView esvo;
   ColoredDagView dag;
@@ -31,8 +31,9 @@ struct LookView {
   }
 };
 
-/// Returns what a DAG stores for a cell of `level`, or for the ancestor of the finest level that it
-/// stores. The cell's grid may have more or fewer levels than the DAG's.
+/// Returns what a DAG stores for a cell of `level`, or for the cell's ancestor of the finest level
+/// with attributes if `level` is finer. The grid of the cell may have more or fewer levels than
+/// that of the DAG.
 VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
   StoredLook look;
   const DagAttributesView& attributes = colored.attributes;

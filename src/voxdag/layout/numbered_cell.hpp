@@ -7,22 +7,22 @@ namespace voxdag {
 /// A cell of the octree that a DAG represents.
 struct NumberedCell {
   int level = 0;
-  /// Level < L-2: the node's first word. Level L-2: the index of the leaf block.
+  /// At levels above L-2, the node's first word; at level L-2, the index of the leaf block.
   std::uint32_t at = 0;
   std::uint64_t number = 0;
-  /// The octant's eight voxels, at level L-1 only.
+  /// At level L-1, the bit mask of the octant's eight voxels.
   std::uint32_t octant = 0;
 };
 
-/// Returns the child mask of a cell of level 0 to L-1.
+/// Returns the child mask of a cell of a level from 0 to L-1.
 VOXDAG_HD inline std::uint32_t children_of(const SvdagView& dag, const NumberedCell& cell) {
   if (cell.level < dag.levels - 2) return child_mask(dag.nodes + cell.at);
   if (cell.level == dag.levels - 2) return leaf_block_child_mask(dag.leaf_blocks[cell.at]);
   return cell.octant;
 }
 
-/// Returns the child `child`, which must exist, of a cell above the finest level that has
-/// attributes.
+/// Returns the child `child`, which must exist, of a cell. The cell's level must be coarser than
+/// the finest level with attributes.
 VOXDAG_HD inline NumberedCell child_of(const SvdagView& dag, const CellIndexView& index,
                                        const NumberedCell& cell, int child) {
   NumberedCell result;
@@ -41,7 +41,7 @@ VOXDAG_HD inline NumberedCell child_of(const SvdagView& dag, const CellIndexView
   return result;
 }
 
-/// Returns the number of cells in the subtree of a cell of level 0 to m, itself included.
+/// Returns the number of cells in the subtree of a cell of a level from 0 to m, itself included.
 VOXDAG_HD inline std::uint64_t cells_in(const SvdagView& dag, const CellIndexView& index,
                                         const NumberedCell& cell) {
   if (cell.level == index.finest_level) return 1;

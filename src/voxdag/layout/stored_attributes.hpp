@@ -1,12 +1,11 @@
 #pragma once
-/// Reads the colours and normals of a DAG's cells.
+/// The colours and normals of a DAG's cells.
 #include "voxdag/layout/cell_index_lookup.hpp"
 #include "voxdag/layout/value_pages.hpp"
 
 namespace voxdag {
 
-/// The attributes of a DAG's cells: views of the chunks of a file. Values have the numbers of the
-/// cells.
+/// A view for kernels and readers. The value of a cell has the cell's number.
 struct DagAttributesView {
   CellIndexView index;
   ValuePagesView colors;   ///< sRGB encoded; empty: none.
@@ -25,7 +24,7 @@ struct ColoredDagView {
   VOXDAG_HD bool is_empty() const { return dag.is_empty() || attributes.is_empty(); }
 };
 
-/// Returns a unit normal as a value: 128 stands for 0, 1 for -1 and 255 for 1.
+/// Rounds a unit normal to a value: 128 stands for 0, 1 for -1 and 255 for 1.
 inline Value8 pack_normal(Vec3f normal) {
   Value8 value{};
   for (int c = 0; c < 3; ++c)
@@ -33,7 +32,7 @@ inline Value8 pack_normal(Vec3f normal) {
   return value;
 }
 
-/// Returns the normal of a value: unit length, or (0, 1, 0) for 128, 128, 128.
+/// Returns the normal of a value, in unit length; (0, 1, 0) for the value (128, 128, 128).
 VOXDAG_HD inline Vec3f unpack_normal(Value8 value) {
   const Vec3f v{static_cast<float>(value.x - 128), static_cast<float>(value.y - 128),
                 static_cast<float>(value.z - 128)};

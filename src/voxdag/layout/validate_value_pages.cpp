@@ -11,7 +11,7 @@ namespace {
   throw Error("", "page " + std::to_string(page), reason);
 }
 
-/// Returns the bit after the blocks of the page that begins at bit `at`.
+/// Returns the first bit after the page that begins at bit `at`.
 std::uint64_t page_end(const ValuePagesView& view, std::uint64_t page, std::uint64_t at) {
   const std::uint64_t end = view.word_count * 64;
   for (int values = 0; values < kPageValues;) {
@@ -33,17 +33,18 @@ void validate_value_pages(const ValuePagesView& view) {
   std::uint64_t at = 0;
   for (std::uint64_t page = 0; page < view.page_count(); ++page) {
     const std::uint64_t group = view.groups[page / kGroupPages];
-    // The first test keeps page_begin() from overflowing.
-    if (group > view.word_count * 8 || view.page_begin(page) != at)
+    // The first test keeps page_begin() from an overflow.
+    if (group > view.word_count * 8 || view.page_begin(page) != at ||
+        (page % kGroupPages == 0 && view.pages[page] != 0))
       fail(page, "does not begin where the page before it ends");
     const std::uint64_t end = page_end(view, page, at);
     at = (end + 7) / 8 * 8;
     if (read_bits(view.words, end, static_cast<int>(at - end)) != 0)
-      fail(page, "has padding that is not zero");
+      fail(page, "padding is not zero");
   }
   if ((at + 63) / 64 != view.word_count) throw Error("", "", "has words after the last page");
   if (at % 64 != 0 && view.words[at / 64] >> (at % 64) != 0)
-    throw Error("", "", "has padding that is not zero");
+    throw Error("", "", "padding is not zero");
 }
 
 }  // namespace voxdag

@@ -1,29 +1,29 @@
 #pragma once
-/// Colours or normals of cells, compressed: values of three channels of 8 bits, by number.
+/// Compressed colours or normals of cells: values of three channels of 8 bits, by number.
 ///
-/// A page holds 256 values with consecutive numbers as a sequence of blocks. A block of n values is
+/// A page holds 256 values with consecutive numbers, as a sequence of blocks. A block of n values:
 ///
 ///   header    9 bits: type in bits 0..2, n / 4 - 1 in bits 3..8
-///   ends      by type, see below
-///   weights   n times w bits
+///   ends      depend on the type
+///   weights   n weights of w bits
 ///
 ///   type      0      1, 2, 3             4             5, 6, 7
 ///   ends      e0     e0, step (6 bits)   n ends        e0, e1
 ///   w         0      1, 2, 3             0             2, 3, 4
 ///
-/// An end is a colour whose channels have the bits of the precision, first channel lowest. A
-/// channel of b bits becomes one of 8 bits by repeating its highest bits. In types 1 to 3, e1 is e0
-/// plus 4 (step + 1) in each channel, at most 255. The value of weight k is the mean of e0 and e1
-/// with weights m - k and k, m = 2^w - 1, rounded to the nearest integer, halves up. In type 4,
-/// each value is an end.
+/// An end is a value in the precision of the pages: each channel has 5 to 8 bits, and the first
+/// channel is in the lowest bits. Repeating the highest bits of a channel makes it 8 bits wide. In
+/// types 1 to 3, each channel of e1 is that of e0 plus 4 (step + 1), at most 255. In type 0 all
+/// values are e0; in type 4 each value is an end. In other types, a value of weight k is
+/// ((q - k) e0 + k e1) / q with q = 2^w - 1, rounded to the nearest integer, halves up.
 ///
-/// Pages begin at bytes; 64 pages are a group:
+/// Pages begin at bytes. A group is 64 pages.
 ///
-///   groups    64-bit: the byte of the group's first page
-///   pages     16-bit: the page's first byte, from that of its group
-///   words     64-bit: the pages, bits from the lowest bit of each word up
+///   groups    64-bit: the first byte of the group
+///   pages     16-bit: the first byte of the page, counted from that of its group
+///   words     64-bit: the pages, from the lowest bit of each word up
 ///
-/// The last page is filled up with copies of the last value.
+/// Copies of the last value fill the last page up.
 #include <cstdint>
 #include <vector>
 
@@ -39,7 +39,7 @@ inline constexpr int kBlockUnit = 4;  ///< Lengths of blocks are multiples of th
 /// A value: a colour (red, green, blue, sRGB encoded) or a normal (see stored_attributes.hpp).
 using Value8 = Vec3<std::uint8_t>;
 
-/// The header of a block.
+/// The header of a block, and the sizes of the block's parts.
 struct ValueBlock {
   enum Type : int { kFlat = 0, kRaw = 4 };
   static constexpr int kHeaderBits = 9, kStepBits = 6, kStepUnit = 4;
@@ -59,20 +59,20 @@ struct ValueBlock {
   VOXDAG_HD constexpr int weight_bits() const {
     return !is_line() ? 0 : type < 4 ? type : type - 3;
   }
-  /// Returns the bits of the ends, if an end has `end_bits`.
+  /// Returns the number of bits of the ends and the step. An end has `end_bits` bits.
   VOXDAG_HD constexpr int ends_bits(int end_bits) const {
     return type == kFlat  ? end_bits
            : type == kRaw ? length * end_bits
            : has_step()   ? end_bits + kStepBits
                           : 2 * end_bits;
   }
-  /// Returns the bits of the whole block.
+  /// Returns the number of bits of the whole block.
   VOXDAG_HD constexpr int bits(int end_bits) const {
     return kHeaderBits + ends_bits(end_bits) + weight_bits() * length;
   }
 };
 
-/// The bits of an end's channels.
+/// The numbers of bits of an end's channels.
 struct EndPrecision {
   int code = 0;  ///< 0: 5, 6, 5; 1: 6, 6, 6; 2: 7, 7, 7; 3: 8, 8, 8.
 
@@ -80,7 +80,7 @@ struct EndPrecision {
     return code > 0 ? code + 5 : channel == 1 ? 6 : 5;
   }
   VOXDAG_HD constexpr int bits() const { return code > 0 ? 3 * (code + 5) : 16; }
-  /// Returns the value of an end.
+  /// Returns the value that an end stands for.
   VOXDAG_HD constexpr Value8 unpack(std::uint64_t end) const {
     Value8 value{};
     for (int c = 0; c < 3; ++c) {
@@ -93,7 +93,7 @@ struct EndPrecision {
   }
 };
 
-/// Returns the value of weight `k` of `most` between two ends.
+/// Returns the value of weight `k`, 0 to `most`, between two ends.
 VOXDAG_HD constexpr Value8 mix_ends(Value8 e0, Value8 e1, int k, int most) {
   Value8 value{};
   for (int c = 0; c < 3; ++c)
@@ -126,7 +126,7 @@ struct ValuePagesView {
   VOXDAG_HD std::uint64_t group_count() const {
     return (page_count() + kGroupPages - 1) / kGroupPages;
   }
-  /// Returns the bytes of both tables and the pages.
+  /// Returns the bytes of both tables and of the pages.
   VOXDAG_HD std::uint64_t bytes() const {
     return group_count() * 8 + page_count() * 2 + word_count * 8;
   }
@@ -149,8 +149,8 @@ struct ValuePages {
   }
 };
 
-/// Returns the value with number `number` < view.values. Passes over half of the page's blocks on
-/// average.
+/// Returns the value with number `number`, less than view.values. Skips half of the page's blocks
+/// on average.
 VOXDAG_HD inline Value8 read_value(const ValuePagesView& view, std::uint64_t number) {
   std::uint64_t at = view.page_begin(number / kPageValues);
   int index = static_cast<int>(number % kPageValues);

@@ -15,8 +15,8 @@ struct ContourDirection {
   explicit ContourDirection(Vec3i n)
       : normal(n), length(std::sqrt(static_cast<float>(dot(n, n)))) {}
 
-  /// Returns the stored direction nearest to `direction` or to its opposite, whichever points up.
-  /// Returns none for zero.
+  /// Returns the stored direction nearest to `direction`, or its opposite if only that points up.
+  /// Returns a direction that does not exist() for zero.
   static ContourDirection nearest(Vec3d direction);
 
   bool exists() const { return length > 0; }

@@ -3,16 +3,10 @@
 #include <array>
 
 namespace voxdag {
-namespace {
-
-/// The colour of surfaces without a colour, in linear light.
-constexpr Vec3f kGrey{0.62f, 0.60f, 0.57f};
-
-}  // namespace
 
 std::optional<SurfaceSample> PieceSampler::constant_sample(const SurfaceTriangle& triangle) const {
   const auto own_normal = static_cast<Vec3f>(triangle.normal);
-  if (shading_ == nullptr) return SurfaceSample{kGrey, 1, own_normal};
+  if (shading_ == nullptr) return SurfaceSample{kSurfaceGrey, 1, own_normal};
   if (!shading_->has_one_color(triangle.source) ||
       !(triangle.is_displaced || shading_->has_one_normal(triangle.source)))
     return std::nullopt;

@@ -8,6 +8,9 @@
 
 namespace voxdag {
 
+/// The colour of surfaces without a colour, in linear light.
+inline constexpr Vec3f kSurfaceGrey{0.62f, 0.60f, 0.57f};
+
 /// The corners of a piece in the triangle's barycentric coordinates, as SurfaceShading takes them.
 /// Empty if the triangle has one colour and one normal.
 struct PieceCorners {

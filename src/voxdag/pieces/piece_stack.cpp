@@ -1,11 +1,20 @@
 #include "voxdag/pieces/piece_stack.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <bit>
 
 #include "voxdag/core/morton.hpp"
 
 namespace voxdag {
+
+PieceStack::PieceStack(MemoryBudget* budget)
+    : triangles_(budget), ids_(budget), pieces_(budget), classified_(budget) {
+  if (budget == nullptr || budget->limit() == 0) return;
+  const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  most_kept_bytes_ = budget->limit() / 16 / threads;
+}
 
 void PieceStack::start(int log2_size, Vec3i origin, std::size_t triangles) {
   log2_size_ = log2_size;
@@ -18,13 +27,18 @@ void PieceStack::start(int log2_size, Vec3i origin, std::size_t triangles) {
   pieces_.reserve(triangles);
 }
 
+/// Returns the bytes that the stack holds, also if it is empty.
 std::uint64_t PieceStack::held_bytes() const {
   return triangles_.capacity() * sizeof(SurfaceTriangle) + ids_.capacity() * sizeof(std::uint32_t) +
          pieces_.capacity() * sizeof(TrianglePiece) +
          classified_.capacity() * sizeof(ChildConditions);
 }
 
-void PieceStack::free_memory() {
+void PieceStack::finish() {
+  triangles_.clear();
+  ids_.clear();
+  pieces_.clear();
+  if (held_bytes() <= most_kept_bytes_) return;
   triangles_ = CountedVector<SurfaceTriangle>(triangles_.get_allocator());
   ids_ = CountedVector<std::uint32_t>(ids_.get_allocator());
   pieces_ = CountedVector<TrianglePiece>(pieces_.get_allocator());

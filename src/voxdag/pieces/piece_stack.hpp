@@ -28,8 +28,7 @@ struct StackedCell {
 class PieceStack {
  public:
   /// Counts its memory in `budget`; null: no limit. Functions that add throw OverMemory.
-  explicit PieceStack(MemoryBudget* budget = nullptr)
-      : triangles_(budget), ids_(budget), pieces_(budget), classified_(budget) {}
+  explicit PieceStack(MemoryBudget* budget = nullptr);
 
   /// The children that the pieces of a cell meet.
   struct Split {
@@ -44,10 +43,9 @@ class PieceStack {
   /// Removes all triangles and begins a cell of 2^log2_size voxels a side at `origin` in the grid,
   /// in voxels. `triangles` is the expected number of triangles.
   void start(int log2_size, Vec3i origin, std::size_t triangles);
-  /// Returns the bytes that it holds, also if it is empty.
-  std::uint64_t held_bytes() const;
-  /// Removes all triangles and frees the memory.
-  void free_memory();
+  /// Removes all triangles. Keeps the memory for the next cell, whose pages would fault anew
+  /// otherwise, unless it is much of the budget.
+  void finish();
   /// Adds a triangle, whose coordinates are relative to the cell's origin. The caller chooses `id`.
   void add(const SurfaceTriangle& triangle, std::uint32_t id);
 
@@ -84,10 +82,13 @@ class PieceStack {
   void pop(const StackedCell& child) { pieces_.resize(child.begin); }
 
  private:
+  std::uint64_t held_bytes() const;
   ChildConditions classify(const TrianglePiece& piece, int log2_size, Vec3i origin) const;
   void push_part(std::size_t of, const ChildConditions& classified, int child);
   void set_area(TrianglePiece& piece) const;
 
+  /// The most bytes that the stack of each thread may hold between two cells.
+  std::uint64_t most_kept_bytes_ = ~std::uint64_t{0};
   int log2_size_ = 0;
   Vec3i origin_{};
   CountedVector<SurfaceTriangle> triangles_;

@@ -12,6 +12,15 @@
 namespace voxdag {
 namespace {
 
+/// Returns whether the triangle's box meets the grid, as classify_children() requires.
+bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
+  const std::int64_t side = grid.resolution() * kSubvoxels;
+  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
+  for (int axis = 0; axis < 3; ++axis)
+    if (hi[axis] < 0 || lo[axis] >= side) return false;
+  return true;
+}
+
 class Splitter {
  public:
   Splitter(const TriangleSource& source, int level, Vec3i cell)
@@ -41,6 +50,23 @@ class Splitter {
 };
 
 }  // namespace
+
+TriangleList triangles_of_grid(const TriangleSource& source, MemoryBudget* memory) {
+  TriangleList triangles(memory);
+  triangles.reserve(source.mesh.triangle_count());
+  for (std::size_t i = 0; i < source.mesh.triangle_count(); ++i) {
+    if (source.is_duplicate(i)) continue;
+    // Displaced triangles are clipped after displacement. So the triangles themselves are listed,
+    // not the pieces from clipping.
+    const bool is_piece = i >= source.mesh.mesh_triangle_count();
+    const bool is_displaced = source.is_displaced(source.mesh.source(i));
+    if (is_displaced
+            ? !is_piece
+            : source.mesh.in_range(i) && box_meets_grid(source.mesh.triangle(i), source.grid))
+      triangles.push_back(static_cast<std::uint32_t>(i));
+  }
+  return triangles;
+}
 
 ChildTriangles split_triangles(const TriangleSource& source, int level, Vec3i cell,
                                std::span<const std::uint32_t> triangles, MemoryBudget* memory) {

@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-/// Adds a piece of the cell, whose mean appearance is `sample`, to the sum.
+/// Adds a piece of the cell to the sum. `sample` is the piece's mean appearance.
 void add_piece(SurfaceSum& sum, const Cell& cell, const TrianglePiece& piece,
                const SurfaceSample& sample);
 

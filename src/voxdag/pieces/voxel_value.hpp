@@ -1,5 +1,5 @@
 #pragma once
-/// The attributes of a voxel before they are compressed.
+/// The colour and the normal of a voxel before compression.
 #include <cstdint>
 
 #include "voxdag/core/vec.hpp"

@@ -35,9 +35,9 @@ struct RenderOptions {
   bool beams = true;
   Vec3f albedo{0.62f, 0.60f, 0.57f};
   Specular specular;  ///< Highlights of the sun and the lights.
-  /// The DAG's own attributes, or those of a DAG or an ESVO of the same mesh in a grid with the
-  /// same corner and side. Hits at a DAG get the colour and the normal that it stores for their
-  /// place. Must be in the memory of the device that renders. Empty: none.
+  /// Hits at a DAG get the colour and the normal that this view stores for their place: the DAG's
+  /// own attributes, or a DAG or an ESVO of the same mesh in a grid with the same corner and side.
+  /// Must be in the memory of the device that renders. Empty: hits have `albedo`.
   LookView look;
   /// Smooths voxels larger than pixels (post_filter.hpp), but not a source's points.
   FilterKind filter = FilterKind::kNone;

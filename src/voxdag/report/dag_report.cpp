@@ -53,7 +53,7 @@ Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& s
   };
   if (metadata.colors) {
     const double psnr = metadata.color_psnr_db(sizes.cells);
-    // Lossless colours have no PSNR.
+    // The PSNR of exact colours is infinite, which JSON cannot write.
     add("color", sizes.color_bytes, metadata.colors->bound)["psnr_db"] =
         std::isfinite(psnr) ? Json(psnr) : Json();
   }
@@ -63,16 +63,18 @@ Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& s
   return json;
 }
 
-/// Returns the attributes, a line each, or nothing without them.
+/// Returns lines that describe the attributes; an empty text if there are none.
 std::string attributes_table(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
   if (metadata.resolution == 0) return "";
   std::string text = fmt::format(
       "\n  {:<14}{} of {}³ and coarser, index {}\n", "cells", with_commas(sizes.cells),
       with_commas(static_cast<std::uint64_t>(metadata.resolution)), human_bytes(sizes.index_bytes));
   if (metadata.colors)
-    text += fmt::format("  {:<14}{}, {:.3f} bits/cell, PSNR {:.1f} dB\n", "colours",
+    text += fmt::format("  {:<14}{}, {:.3f} bits/cell, {}\n", "colours",
                         human_bytes(sizes.color_bytes), bits_per_cell(sizes.color_bytes, sizes),
-                        metadata.color_psnr_db(sizes.cells));
+                        metadata.colors->errors == 0
+                            ? "lossless"
+                            : fmt::format("PSNR {:.1f} dB", metadata.color_psnr_db(sizes.cells)));
   if (metadata.normals)
     text += fmt::format("  {:<14}{}, {:.3f} bits/cell, mean error {:.2f}°\n", "normals",
                         human_bytes(sizes.normal_bytes), bits_per_cell(sizes.normal_bytes, sizes),

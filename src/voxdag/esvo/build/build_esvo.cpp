@@ -46,7 +46,7 @@ class TaskBuilder {
     finished.cell = task;
     finished.voxel = SubtreeBuilder(options_.settings, appearance_, scratch.decider, scratch.pieces)
                          .build(cell.decision, cell.shape);
-    scratch.finish_cell();
+    scratch.pieces.finish();
     finished.voxel.count_tree(options_.memory);
     const EsvoTree& tree = finished.voxel.tree;
     finished.has_blocks = needs_blocks(tree);

@@ -26,33 +26,6 @@ constexpr int kLeastLog2 = 2;
 /// The log2 side, in voxels, of the cells in which displaced triangles are tessellated.
 constexpr int kDisplacedTaskLog2 = 4;
 
-/// Returns whether the triangle's box meets the grid, as classify_children() requires.
-bool box_meets_grid(const QuantizedTriangle& t, const Grid& grid) {
-  const std::int64_t side = grid.resolution() * kSubvoxels;
-  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
-  for (int axis = 0; axis < 3; ++axis)
-    if (hi[axis] < 0 || lo[axis] >= side) return false;
-  return true;
-}
-
-/// Lists the triangles that may meet the grid.
-TriangleList root_triangles(const TriangleSource& source, MemoryBudget* memory) {
-  TriangleList triangles(memory);
-  triangles.reserve(source.mesh.triangle_count());
-  for (std::size_t i = 0; i < source.mesh.triangle_count(); ++i) {
-    if (source.is_duplicate(i)) continue;
-    // Displaced triangles are clipped after displacement. So the triangles themselves are listed,
-    // not the pieces from clipping.
-    const bool is_piece = i >= source.mesh.mesh_triangle_count();
-    const bool is_displaced = source.is_displaced(source.mesh.source(i));
-    if (is_displaced
-            ? !is_piece
-            : source.mesh.in_range(i) && box_meets_grid(source.mesh.triangle(i), source.grid))
-      triangles.push_back(static_cast<std::uint32_t>(i));
-  }
-  return triangles;
-}
-
 class TopCellFinder {
  public:
   TopCellFinder(const TriangleSource& source, const EsvoSettings& settings,
@@ -67,7 +40,7 @@ class TopCellFinder {
         cells_(memory) {
     cells_.resize(1);
     cells_[0].shape = ConvexPolyhedron::cube();
-    cells_[0].triangles = root_triangles(source, memory);
+    cells_[0].triangles = triangles_of_grid(source, memory);
   }
 
   TopCells find(Progress* progress) {
@@ -141,7 +114,7 @@ class TopCellFinder {
     cell.is_task =
         cell.decision.is_leaf || log2_size(cell) <= kLeastLog2 || cell.weight < kTaskWeight;
     if (!cell.is_task) pieces.list_children(children);
-    scratch.finish_cell();
+    scratch.pieces.finish();
   }
 
   void add_children(std::size_t parent, ChildTriangles& children) {
