@@ -1,0 +1,3 @@
+import {VERSION} from '../constants.js';
+
+document.title = `voxdag ${VERSION}`;
