@@ -3,11 +3,13 @@
 import {LIGHT} from './constants.js';
 import {inlineScene} from './file/byte_source.js';
 import {SceneLoader} from './file/scene_loader.js';
+import {loadText} from './file/text_assets.js';
 import {Pacer} from './gpu/pacer.js';
 import {Picture} from './gpu/picture.js';
 import {Renderer, loadShaders} from './gpu/renderer.js';
 import {SceneTextures} from './gpu/scene_textures.js';
-import {DEFAULTS, mergeSettings} from './settings.js';
+import {directionThrough} from './hands/pose.js';
+import {DEFAULTS, mergeSettings, settingsFromJson} from './settings.js';
 import {SceneMemory} from './scene_memory.js';
 import {bounds, cast, contains} from './trace.js';
 import {defaultView} from './default_view.js';
@@ -37,6 +39,18 @@ export function createViewer(options) {
   return new CanvasViewer(options);
 }
 
+/**
+ * Returns the view that `voxdag` has chosen for the scene, if the page has one.
+ * @returns {Promise<import('./settings.js').Camera | null>}
+ */
+async function loadSuggestedView() {
+  try {
+    return settingsFromJson(JSON.parse(await loadText('view.json'))).camera;
+  } catch {
+    return null;
+  }
+}
+
 /** @implements {Viewer} */
 class CanvasViewer {
   /** @param {Parameters<typeof createViewer>[0]} options */
@@ -53,6 +67,8 @@ class CanvasViewer {
     this.settings = mergeSettings(DEFAULTS, settings ?? {});
     /** @type {SceneInfo | null} */
     this.info = null;
+    /** The view that the page suggests. @type {import('./settings.js').Camera | null} */
+    this.suggested = null;
     /** @type {SceneMemory | null} */
     this.memory = null;
     /** @type {SceneTextures | null} */
@@ -101,8 +117,10 @@ class CanvasViewer {
   async start(url, bytes) {
     this.gl = this.canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance'});
     if (this.gl === null) return this.fail('This browser shows no WebGL 2', 'Turn on hardware acceleration, or use a current version of Chrome, Edge, Firefox or Safari.', 'webgl');
-    this.shaders = await loadShaders();
+    const [shaders, suggested] = await Promise.all([loadShaders(), loadSuggestedView()]);
     if (this.isDestroyed) return;
+    this.shaders = shaders;
+    this.suggested = suggested;
     this.renderer = new Renderer(this.gl, this.shaders);
     this.renderer.warmUp();
     this.resize();
@@ -157,6 +175,7 @@ class CanvasViewer {
       this.stats.levelsLoaded = shown;
       if (message.type !== 'attributes' && this.info !== null) {
         this.info.bounds = bounds(this.memory.dag(), BOUNDS_LEVEL) ?? this.info.bounds;
+        if (this.suggested === null) this.info.view = defaultView(this.info.bounds, this.aspect());
         this.emit('level', {level: shown, levels: info.levels, bytes: this.stats.bytesLoaded});
       } else {
         this.emit('look', {});
@@ -176,7 +195,7 @@ class CanvasViewer {
     this.info = {
       name: info.source.name, levels: info.levels, resolution: info.resolution, origin: info.origin, voxelSize: info.voxelSize, bounds: box,
       voxels: info.voxels, dagNodesPerLevel: info.dagNodesPerLevel, fileBytes: info.fileBytes, hasColors: info.hasColors, hasNormals: info.hasNormals,
-      source: info.source, view: defaultView(box, this.canvas.width / Math.max(1, this.canvas.height)),
+      source: info.source, view: this.suggested ?? defaultView(box, this.aspect()),
     };
     this.stats.fileBytes = info.fileBytes;
     this.stats.bytesLoaded = bytes;
@@ -200,6 +219,10 @@ class CanvasViewer {
     this.touch(true);
   }
 
+  aspect() {
+    return this.canvas.width / Math.max(1, this.canvas.height);
+  }
+
   /** The camera that is in force. */
   camera() {
     return this.settings.camera ?? this.info?.view ?? {eye: /** @type {Vec3} */ ([0, 0, 1]), target: /** @type {Vec3} */ ([0, 0, 0]), up: /** @type {Vec3} */ ([0, 1, 0]), fov: 40};
@@ -208,7 +231,7 @@ class CanvasViewer {
   /** Shows the whole scene. */
   frame() {
     if (this.info === null) return;
-    this.set({camera: defaultView(this.info.bounds, this.canvas.width / Math.max(1, this.canvas.height), this.camera().up)}, 'frame');
+    this.set({camera: defaultView(this.info.bounds, this.aspect(), this.camera().up)}, 'frame');
   }
 
   // ---- rays on the CPU
@@ -224,14 +247,10 @@ class CanvasViewer {
   /** @param {number} x @param {number} y */
   async pick(x, y) {
     if (this.memory === null) return null;
-    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
-    const {eye, target, up, fov} = this.camera();
-    const {right, upward, forward} = cameraAxes(eye, target, up, fov, width / height);
-    const direction = /** @type {Vec3} */ (forward.map((f, a) => f + right[a] * ((2 * x) / width - 1) + upward[a] * (1 - (2 * y) / height)));
-    const size = Math.hypot(...direction);
-    const unit = /** @type {Vec3} */ (direction.map((d) => d / size));
+    const camera = this.camera();
+    const direction = directionThrough(camera, x, y, this.canvas.clientWidth, this.canvas.clientHeight);
     const dag = this.memory.dag();
-    return cast({...dag, shown: Math.min(dag.shown, this.settings.level ?? dag.shown)}, eye, unit);
+    return cast({...dag, shown: Math.min(dag.shown, this.settings.level ?? dag.shown)}, camera.eye, direction);
   }
 
   // ---- pictures
@@ -499,19 +518,4 @@ class CanvasViewer {
     this.handlers.clear();
     for (const wake of this.stillWaiters.splice(0)) wake();
   }
-}
-
-/** @param {Vec3} eye @param {Vec3} target @param {Vec3} up @param {number} fov @param {number} aspect */
-function cameraAxes(eye, target, up, fov, aspect) {
-  const forward = unit(target.map((t, a) => t - eye[a]));
-  const right = unit([forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2], forward[0] * up[1] - forward[1] * up[0]]);
-  const upward = [right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2], right[0] * forward[1] - right[1] * forward[0]];
-  const half = Math.tan((fov * Math.PI) / 360);
-  return {forward, right: right.map((x) => x * half * aspect), upward: upward.map((x) => x * half)};
-}
-
-/** @param {number[]} v */
-function unit(v) {
-  const size = Math.hypot(...v);
-  return v.map((x) => x / size);
 }

@@ -4,6 +4,9 @@
 import {CELL_INDEX, DAG, FILE, PAGES} from '../constants.js';
 import {loadText} from './text_assets.js';
 
+/** Codes of instances are this many times the binary logarithm of the number. */
+export const INSTANCE_STEPS = 4;
+
 const PARTS = ['source', 'container', 'levels', 'attributes', 'worker'];
 
 /**
@@ -41,7 +44,7 @@ export class SceneLoader {
   async open(from) {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
-    const constants = Object.entries({FILE, DAG, PAGES, CELL_INDEX}).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
+    const constants = Object.entries({FILE, DAG, PAGES, CELL_INDEX, INSTANCE_STEPS}).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
     const url = URL.createObjectURL(new Blob(["'use strict';\n", ...constants, ...texts], {type: 'text/javascript'}));
     this.worker = new Worker(url);
     URL.revokeObjectURL(url);

@@ -8,15 +8,16 @@ import {EXPOSURE} from '../constants.js';
  * @param {number} samples in each sum
  */
 export function automaticExposure(pixels, samples) {
+  const [red, green, blue] = EXPOSURE.luminance;
   const luminances = [];
   let sum = 0;
   for (let i = 0; i < pixels.length; i += 4) {
     if (pixels[i + 3] < 0.5 * samples) continue;
-    const luminance = (0.2126 * pixels[i] + 0.7152 * pixels[i + 1] + 0.0722 * pixels[i + 2]) / samples;
+    const luminance = (red * pixels[i] + green * pixels[i + 1] + blue * pixels[i + 2]) / samples;
     luminances.push(luminance);
     sum += Math.log(Math.max(luminance, EXPOSURE.least));
   }
-  if (luminances.length === 0) return EXPOSURE.withoutSurfaces;
+  if (luminances.length === 0) return EXPOSURE.ofNothing;
   luminances.sort((a, b) => a - b);
   const mean = Math.exp(sum / luminances.length);
   const white = Math.max(luminances[Math.min(luminances.length - 1, Math.floor(EXPOSURE.bright * luminances.length))], EXPOSURE.least);

@@ -4,12 +4,13 @@
 import {LIGHT} from '../constants.js';
 import {add, cross, dot, normalized, scale, sub} from '../math.js';
 
-/** @typedef {import('../settings.js').Settings} Settings */
+/** @typedef {import('../settings.js').Camera} Camera */
+/** @typedef {import('../settings.js').Settings & {camera: Camera}} Settings */
 /** @typedef {import('../math.js').Vec3} Vec3 */
 /** @typedef {{origin: Vec3, side: number}} Place where the grid is, in world units */
 
 /**
- * @param {Place} place @param {Settings['camera']} camera @param {number} width @param {number} height pixels
+ * @param {Place} place @param {Camera} camera @param {number} width @param {number} height pixels
  */
 export function cameraUniforms(place, camera, width, height) {
   const forward = normalized(sub(camera.target, camera.eye), [0, 0, -1]);
@@ -33,7 +34,7 @@ export function sunDirection(settings) {
   const upward = normalized(up, [0, 1, 0]);
   const right = normalized(cross(normalized(sub(target, eye), [0, 0, -1]), up), [1, 0, 0]);
   const back = cross(right, upward);
-  return normalized(add(add(scale(upward, 0.9), scale(right, -0.6)), scale(back, 0.25)));
+  return normalized(add(add(scale(right, LIGHT.defaultSun[0]), scale(upward, LIGHT.defaultSun[1])), scale(back, LIGHT.defaultSun[2])));
 }
 
 /** @param {Place} place @param {Settings} settings */

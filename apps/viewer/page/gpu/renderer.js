@@ -1,7 +1,8 @@
 // Renders pictures of a scene with WebGL2: samples are found (sample.glsl), lit and added up
 // (light.glsl), and shown (display.glsl).
 
-import {DAG, GLSL, LIGHT} from '../constants.js';
+import {DAG, GLSL, LIGHT, NORMAL, SAMPLES} from '../constants.js';
+import {INSTANCE_STEPS} from '../file/scene_loader.js';
 import {loadText} from '../file/text_assets.js';
 import {automaticExposure} from './exposure.js';
 import {cameraUniforms, lightUniforms, sectionUniforms} from './frame_uniforms.js';
@@ -65,7 +66,7 @@ export class Renderer {
         sample: ['dag', 'camera', ...(look ? ['look'] : []), 'uniforms', 'surface', 'sample'], light: ['dag', 'camera', 'light'],
         hits: ['dag', 'camera', 'hits'], display: ['display'], reduce: ['reduce'],
       }[name] ?? [];
-      const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n` +
+      const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
           `#define CUT_ALBEDO vec3(0.72, 0.27, 0.16)\n${SHOW.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
           (look ? '#define HAS_LOOK\n' : '');
       const fragment = head + parts.map((part) => (part === 'uniforms' ? 'uniform int u_coarser_fits;\n' : text(part))).join('\n');
@@ -81,8 +82,8 @@ export class Renderer {
     const {gl} = this;
     for (const texture of this.tables.textures) gl.deleteTexture(texture);
     const upload = (/** @type {number} */ format, /** @type {number} */ kind, /** @type {Float32Array} */ values, /** @type {number} */ count) => {
-      const texture = makeTexture(gl, format, count, 64);
-      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, count, 64, kind, gl.FLOAT, values);
+      const texture = makeTexture(gl, format, count, SAMPLES.sets);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, count, SAMPLES.sets, kind, gl.FLOAT, values);
       return texture;
     };
     this.tables = {light, hemisphere, textures: [
@@ -126,7 +127,7 @@ export class Renderer {
     sample.use();
     this.setCast(sample, shot, picture);
     sample.floats({u_cube_pixels: settings.cubes});
-    sample.ints({u_coarser_fits: shot.quick ? 0 : 2});
+    sample.ints({u_coarser_fits: shot.quick ? 0 : NORMAL.coarser});
     const sharing = scene.nodeInstances === null ? {} : {u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture};
     sample.textures({u_node_instances: scene.nodes.texture, u_leaf_instances: scene.nodes.texture, ...scene.walk(), ...sharing,
                      ...(look ? scene.lookTextures(sample, settings) : {})});

@@ -60,7 +60,11 @@ export class SceneTextures {
     return {u_nodes: this.nodes.texture, u_leaves: this.leaves.texture};
   }
 
-  /** Sets the uniforms and textures of look.glsl. @param {import('./gl_tools.js').Program} program @param {{colors: boolean, normals: boolean}} wanted */
+  /**
+   * Sets the uniforms of look.glsl and returns its textures.
+   * @param {import('./gl_tools.js').Program} program @param {{colors: boolean, normals: boolean}} wanted
+   * @returns {{[name: string]: WebGLTexture}}
+   */
   lookTextures(program, wanted) {
     const {gl, look, info} = this;
     if (look === null) return {};

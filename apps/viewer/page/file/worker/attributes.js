@@ -11,10 +11,10 @@ function parseCellIndex(bytes, levels) {
   const head = CELL_INDEX.headerBytes;
   if (bytes.length < head) throw brokenFile('Chunk CIDX ends inside its header.');
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
-  const finest = view.getUint32(0, true);
+  const finest = view.getUint32(CELL_INDEX.finestLevel, true);
   if (finest > levels) throw brokenFile(`Its attributes go down to level ${finest}, but the grid has only ${levels}.`);
-  const cells = readSize(view, 8, 'The number of cells in CIDX');
-  const width = Array.from(bytes.subarray(CELL_INDEX.widthOffset, CELL_INDEX.widthOffset + DAG.mostLevels));
+  const cells = readSize(view, CELL_INDEX.cells, 'The number of cells in CIDX');
+  const width = Array.from(bytes.subarray(CELL_INDEX.width, CELL_INDEX.width + DAG.mostLevels));
   return {finest, cells, width, words: asWords(bytes.slice(head))};
 }
 
@@ -23,9 +23,9 @@ function parseValues(bytes, id, cells) {
   const head = PAGES.headerBytes;
   if (bytes.length < head) throw brokenFile(`Chunk ${id} ends inside its header.`);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
-  const precision = view.getUint32(0, true);
-  const values = readSize(view, 8, `The number of values in ${id}`), wordCount = readSize(view, 16, `The number of words in ${id}`);
-  if (precision > 3) throw brokenFile(`Chunk ${id} has the unknown precision ${precision}.`);
+  const precision = view.getUint32(PAGES.precision, true);
+  const values = readSize(view, PAGES.values, `The number of values in ${id}`), wordCount = readSize(view, PAGES.words, `The number of words in ${id}`);
+  if (precision >= PAGES.channelBits.length) throw brokenFile(`Chunk ${id} has the unknown precision ${precision}.`);
   if (values !== cells) throw brokenFile(`Chunk ${id} has ${values} values for ${cells} cells.`);
   const pageCount = Math.ceil(values / PAGES.pageValues), groupCount = Math.ceil(pageCount / PAGES.groupPages);
   const wordsAt = head + 8 * groupCount, pagesAt = wordsAt + 8 * wordCount;

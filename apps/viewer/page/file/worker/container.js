@@ -24,11 +24,11 @@ async function readChunkTable(source, head) {
     if (head[i] !== byte) throw new SceneError('This is not a .vdag file', 'It does not begin like one.');
   });
   let view = new DataView(head.buffer, head.byteOffset, head.length);
-  const version = view.getUint32(8, true), count = view.getUint32(12, true);
+  const version = view.getUint32(FILE.header.version, true), count = view.getUint32(FILE.header.chunkCount, true);
   if (version !== FILE.version)
     throw new SceneError('This file is of another version', `It has version ${version} of the format; this page reads version ${FILE.version}.`);
   if (count > FILE.mostChunks) throw brokenFile(`Its header announces ${count} chunks; at most ${FILE.mostChunks} are possible.`);
-  const fileBytes = readSize(view, 16, 'The size in the header');
+  const fileBytes = readSize(view, FILE.header.fileBytes, 'The size in the header');
   if (fileBytes !== size) throw brokenFile(`It has ${size} bytes, but its header says ${fileBytes}: it was cut off or never finished.`);
   const tableEnd = FILE.headerBytes + FILE.chunkEntryBytes * count;
   if (tableEnd > size) throw brokenFile('It ends inside its chunk table.');
@@ -39,13 +39,13 @@ async function readChunkTable(source, head) {
   }
   /** @type {ChunkTable} */
   const chunks = new Map();
-  const known = new Set(FILE.ids);
+  const known = new Set(Object.keys(FILE.ids));
   let end = tableEnd;
   for (let i = 0; i < count; ++i) {
     const at = FILE.headerBytes + FILE.chunkEntryBytes * i;
-    const id = String.fromCharCode(...head.subarray(at, at + 4)).replace(/[^\x20-\x7e]/g, '?');
-    const isRequired = (view.getUint32(at + 4, true) & FILE.requiredFlag) !== 0;
-    const offset = readSize(view, at + 8, `The offset of chunk ${id}`), length = readSize(view, at + 16, `The length of chunk ${id}`);
+    const id = String.fromCharCode(...head.subarray(at + FILE.chunkEntry.id, at + FILE.chunkEntry.id + 4)).replace(/[^\x20-\x7e]/g, '?');
+    const isRequired = (view.getUint32(at + FILE.chunkEntry.flags, true) & FILE.requiredFlag) !== 0;
+    const offset = readSize(view, at + FILE.chunkEntry.offset, `The offset of chunk ${id}`), length = readSize(view, at + FILE.chunkEntry.length, `The length of chunk ${id}`);
     const expected = Math.ceil(end / FILE.alignment) * FILE.alignment;
     if (offset !== expected) throw brokenFile(`Chunk ${id} begins at byte ${offset}; it should begin at byte ${expected}.`);
     if (offset + length > size) throw brokenFile(`Chunk ${id} goes on behind the end of the file.`);

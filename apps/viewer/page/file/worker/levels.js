@@ -21,7 +21,7 @@ const MOST_COUNTED_WORDS = 1 << 25;
 function codeInstances(counts) {
   const codes = new Uint8Array(counts.length);
   for (let i = 0; i < counts.length; ++i)
-    if (counts[i] > 1) codes[i] = Math.min(255, Math.round(DAG.instanceSteps * Math.log2(counts[i])));
+    if (counts[i] > 1) codes[i] = Math.min(255, Math.round(INSTANCE_STEPS * Math.log2(counts[i])));
   return codes;
 }
 

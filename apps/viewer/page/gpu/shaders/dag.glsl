@@ -44,13 +44,13 @@ uint octantMask(uvec2 block, uint octant) {
 
 // A node is a word index (level < L-2), the index of a leaf block (L-2), or its child mask (L-1).
 uint childMask(uint node, int level) {
-  if (level < u_levels - 2) return nodeWord(node) & 0xFFu;
+  if (level < u_levels - DAG_LEAF_LEVELS) return nodeWord(node) & 0xFFu;
   if (level == u_levels - 1) return node;
   return octantsOf(leafBlock(node));
 }
 
 uint childOf(uint node, int level, uint index) {
-  if (level < u_levels - 2) {
+  if (level < u_levels - DAG_LEAF_LEVELS) {
     uint before = nodeWord(node) & ((1u << index) - 1u);
     return nodeWord(node + 1u + bitCount8(before));
   }
@@ -197,7 +197,7 @@ bool castRay(GridRay ray, float stop_start, float stop_per_t, out CellHit hit) {
   vec3 leave = (o - vec3(1.0)) * inv;
   if (min(min(leave.x, leave.y), leave.z) <= t) return false;
 
-  uint stack[MOST_LEVELS];
+  uint stack[DAG_MOST_LEVELS];
   uint node = 0u;
   uint mask = childMask(0u, 0);
   uvec3 corner = uvec3(0x3F800000u);

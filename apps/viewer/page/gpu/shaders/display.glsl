@@ -16,7 +16,7 @@ vec3 toneMapped(ivec2 at) {
   vec3 x = texelFetch(u_sum, at, 0).rgb / u_samples;
   if (u_exposure <= 0.0) return clamp(x, 0.0, 1.0);
   x *= u_exposure;
-  return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+  return clamp((x * (TONE_A * x + TONE_B)) / (x * (TONE_C * x + TONE_D) + TONE_E), 0.0, 1.0);
 }
 
 void main() {

@@ -36,8 +36,8 @@ PixelSamples pixelSamples(ivec2 pixel, uint purpose) {
   uint column = hashBits(uint(pixel.x));
   uint row = hashBits(column + uint(pixel.y));
   uint bits = hashBits(row + purpose * 0x9E3779B9u);
-  uint rotation = bits / uint(SAMPLE_SETS) % uint(SAMPLE_ROTATIONS);
-  return PixelSamples(int(bits % uint(SAMPLE_SETS)), texelFetch(u_rotations, ivec2(int(rotation), 0), 0).xy);
+  uint rotation = bits / uint(SAMPLES_SETS) % uint(SAMPLES_ROTATIONS);
+  return PixelSamples(int(bits % uint(SAMPLES_SETS)), texelFetch(u_rotations, ivec2(int(rotation), 0), 0).xy);
 }
 vec2 rotated(PixelSamples pixel, vec2 p) {
   return vec2(p.x * pixel.rotation.x - p.y * pixel.rotation.y, p.x * pixel.rotation.y + p.y * pixel.rotation.x);
@@ -59,15 +59,15 @@ vec3 skyRadiance(vec3 direction) {
   vec3 radiance = mix(u_zenith, u_horizon, haze * haze * haze * haze);
   float glow = max(dot(direction, u_sun), 0.0);
   glow *= glow;
-  radiance += u_sun_light * (0.10 * glow * glow * glow * glow);
-  float t = clamp((height - 0.03) / (-0.75 - 0.03), 0.0, 1.0);
-  return mix(radiance, u_ground * 1.3, t * t * (3.0 - 2.0 * t));
+  radiance += u_sun_light * (LIGHT_GLOW * glow * glow * glow * glow);
+  float t = clamp((height - LIGHT_GROUND_BEGINS) / (LIGHT_GROUND_IS_FULL - LIGHT_GROUND_BEGINS), 0.0, 1.0);
+  return mix(radiance, u_ground * LIGHT_GROUND_SEEN, t * t * (3.0 - 2.0 * t));
 }
 
 vec3 skyLight(vec3 normal, vec3 view, float open) {
-  vec3 light = mix(u_ground, mix(u_zenith, u_horizon, 0.7), 0.5 + 0.5 * dot(normal, u_sky_up));
-  if (u_sky_occluded) return light * (0.7 * open);
-  return light * max(0.40 + 0.35 * dot(normal, view) + 0.25 * dot(normal, u_fill), 0.0);
+  vec3 light = mix(u_ground, mix(u_zenith, u_horizon, LIGHT_HORIZON_IN_DOME), 0.5 + 0.5 * dot(normal, u_sky_up));
+  if (u_sky_occluded) return light * (LIGHT_OPEN * open);
+  return light * max(LIGHT_FILL + LIGHT_FILL_FACING * dot(normal, view) + LIGHT_FILL_ASIDE * dot(normal, u_fill), 0.0);
 }
 
 // Returns the part of the sun's light that arrives, times the cosine at the surface.

@@ -2,9 +2,9 @@
 // Numbers of cells and byte addresses fit into 32 bits (the loader takes care of it).
 
 uniform usampler2D u_slots;    // r: the words of CIDX, 32 bits each
-uniform int u_slot_width[MOST_LEVELS];
-uniform uint u_slot_begin[MOST_LEVELS];   // in words of 32 bits
-uniform uint u_level_begin[MOST_LEVELS];  // in words of NODE
+uniform int u_slot_width[DAG_MOST_LEVELS];
+uniform uint u_slot_begin[DAG_MOST_LEVELS];   // in words of 32 bits
+uniform uint u_level_begin[DAG_MOST_LEVELS];  // in words of NODE
 uniform int u_finest;          // m, the finest level with attributes; -1 without attributes
 
 uint slotWord(uint i) { return texelFetch(u_slots, texel(i), 0).x; }
@@ -46,7 +46,7 @@ uint cellNumber(ivec3 cell, int level) {
   uint at = 0u, sum = 0u;
   for (int l = 0; l < last; ++l) {
     uint child = childIndex(cell, level - 1 - l);
-    if (l < u_levels - 2) {
+    if (l < u_levels - DAG_LEAF_LEVELS) {
       uint before = bitCount8(nodeWord(at) & ((1u << child) - 1u));
       if (before == 0u)
         sum += 1u;
@@ -104,21 +104,21 @@ uvec3 unpackEnd(uint end, uint end_code) {
 
 // Returns the value with this number, as three integers of 8 bits. `pages` has the first byte of each page.
 uvec3 readValue(highp usampler2D words, highp usampler2D pages, uint end_code, uint number) {
-  uint begin = texelFetch(pages, texel(number / uint(PAGE_VALUES)), 0).x;
-  uint index = number % uint(PAGE_VALUES);
+  uint begin = texelFetch(pages, texel(number / uint(PAGES_PAGE_VALUES)), 0).x;
+  uint index = number % uint(PAGES_PAGE_VALUES);
   uint end_bits = end_code > 0u ? 3u * (end_code + 5u) : 16u;
   BitPlace place = BitPlace(begin >> 2u, (begin & 3u) * 8u);
   uint type = 0u;
-  for (int i = 0; i < PAGE_VALUES; ++i) {
-    uint header = bitsAt(words, place, uint(BLOCK_HEADER_BITS));
+  for (int i = 0; i < PAGES_PAGE_VALUES; ++i) {
+    uint header = bitsAt(words, place, uint(PAGES_HEADER_BITS));
     type = header & 7u;
-    uint len = uint(BLOCK_UNIT) * ((header >> 3u & 63u) + 1u);
-    skipBits(place, uint(BLOCK_HEADER_BITS));
+    uint len = uint(PAGES_BLOCK_UNIT) * ((header >> 3u & 63u) + 1u);
+    skipBits(place, uint(PAGES_HEADER_BITS));
     if (index < len) break;
     index -= len;
     uint weight = type == 0u || type == 4u ? 0u : type < 4u ? type : type - 3u;
     uint ends = type == 0u ? end_bits : type == 4u ? len * end_bits
-              : type < 4u ? end_bits + uint(BLOCK_STEP_BITS) : 2u * end_bits;
+              : type < 4u ? end_bits + uint(PAGES_STEP_BITS) : 2u * end_bits;
     skipBits(place, ends + weight * len);
   }
   if (type == 4u) skipBits(place, index * end_bits);
@@ -127,9 +127,9 @@ uvec3 readValue(highp usampler2D words, highp usampler2D pages, uint end_code, u
   skipBits(place, end_bits);
   uvec3 e1;
   if (type < 4u) {
-    uint step = bitsAt(words, place, uint(BLOCK_STEP_BITS));
-    e1 = min(e0 + uint(BLOCK_STEP_UNIT) * (step + 1u), uvec3(255u));
-    skipBits(place, uint(BLOCK_STEP_BITS));
+    uint step = bitsAt(words, place, uint(PAGES_STEP_BITS));
+    e1 = min(e0 + uint(PAGES_STEP_UNIT) * (step + 1u), uvec3(255u));
+    skipBits(place, uint(PAGES_STEP_BITS));
   } else {
     e1 = unpackEnd(bitsAt(words, place, end_bits), end_code);
     skipBits(place, end_bits);

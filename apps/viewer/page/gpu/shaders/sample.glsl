@@ -62,7 +62,7 @@ void main() {
         vec3 stored = vec3(ivec3(readValue(u_normal_words, u_normal_pages, uint(u_normal_bits), number)) - 128);
         stored = stored == vec3(0.0) ? vec3(0.0, 1.0, 0.0) : normalize(stored);
         float facing = dot(stored, view);
-        bool of_back = facing < -0.2 || (facing < 0.0 && dot(stored, entered) < -0.8);
+        bool of_back = facing < -NORMAL_LEANING || (facing < 0.0 && dot(stored, entered) < -NORMAL_OPPOSITE);
         normal = of_back ? -stored : stored;
       }
     }

@@ -20,7 +20,7 @@ bool descend(inout uint node, int from_level, int to_level, ivec3 cell) {
 
 // Returns the mask of the 4^3 cells two levels below the node.
 uvec2 cellMask(uint node, int level) {
-  if (level == u_levels - 2) return leafBlock(node);
+  if (level == u_levels - DAG_LEAF_LEVELS) return leafBlock(node);
   uint mask = childMask(node, level);
   uvec2 cells = uvec2(0u);
   for (uint i = 0u; i < 8u; ++i) {
@@ -48,7 +48,7 @@ void addCells(uint cells, int half_of_block, vec3 base, inout float weight, inou
     int i = int(floatBitsToUint(float(lowest)) >> 23u) - 127 + 32 * half_of_block;
     vec3 d = base + vec3(float((i & 1) | (i >> 2 & 2)), float((i >> 1 & 1) | (i >> 3 & 2)),
                          float((i >> 2 & 1) | (i >> 4 & 2)));
-    float fall = 1.0 - dot(d, d) * (1.0 / 20.25);
+    float fall = 1.0 - dot(d, d) * (1.0 / (NORMAL_RADIUS * NORMAL_RADIUS));
     if (fall <= 0.0) continue;
     float w = fall * fall;
     weight += w;
@@ -94,22 +94,22 @@ LayerFit fitLayer(int level, ivec3 cell, vec3 offset, vec3 front) {
   vec3 b = vec3(p.y * p.z - p.x * s.z, p.x * p.z - p.y * s.y, p.x * p.y - s.x * p.z);
   mat3 adjugate = mat3(a.x, b.x, b.y, b.x, a.y, b.z, b.y, b.z, a.z);
   vec3 normal = front;
-  for (int i = 0; i < 4; ++i) normal = normalize(adjugate * normal);
+  for (int i = 0; i < NORMAL_POWER; ++i) normal = normalize(adjugate * normal);
   return LayerFit(normal, dot(normal, covariance * normal), -dot(normal, mean));
 }
 
 vec3 surfaceNormal(int level, ivec3 cell, vec3 view, vec3 face) {
   LayerFit fine = fitLayer(level, cell, vec3(0.0), normalize(view + face));
   vec3 normal = fine.normal;
-  float edge = smoothStep(0.36, 0.50, fine.thickness);
+  float edge = smoothStep(NORMAL_PLANE, NORMAL_EDGE, fine.thickness);
   if ((dot(normal, view) < 0.0) != (dot(normal, face) < 0.0) && fine.outwards < 0.0) normal = -normal;
-  float outline = edge * smoothStep(0.25, 0.0, dot(normal, view));
+  float outline = edge * smoothStep(NORMAL_OUTLINE_COSINE, 0.0, dot(normal, view));
   normal = normalize(mix(normal, face, outline));
   for (int up = 1; up <= u_coarser_fits && level - up >= 2; ++up) {
     ivec3 at = cell >> up;
     vec3 offset = (vec3(cell - (at << up)) + 0.5) / float(1 << up) - 0.5;
     LayerFit fit = fitLayer(level - up, at, offset, normal);
-    float trust = smoothStep(0.30, 0.20, fit.thickness);
+    float trust = smoothStep(NORMAL_THICK, NORMAL_THIN, fit.thickness);
     if (trust <= 0.0) break;
     normal = normalize(mix(normal, fit.normal, trust));
   }
@@ -124,12 +124,12 @@ vec3 gridPoint(vec3 place) { return 1.0 + clamp(place, 0.0, 1.0); }
 
 bool isHidden(vec3 start, float cell_side, vec3 to_viewer) {
   CellHit hit;
-  return castRay(rayFromPoint(start, to_viewer, 0.0, 4.0 * cell_side), cell_side, 0.0, hit);
+  return castRay(rayFromPoint(start, to_viewer, 0.0, START_HIDDEN * cell_side), cell_side, 0.0, hit);
 }
 
 // Returns the point at which rays from the surface start. `place` is relative to the grid's corner.
 vec3 startPoint(vec3 place, vec3 face, float cell_side, vec3 direction, float depth) {
-  vec3 lifted = place + face * ((cubeHeight(face) + 0.25) * cell_side);
+  vec3 lifted = place + face * ((cubeHeight(face) + START_SLACK) * cell_side);
   vec3 to_viewer = -normalize(direction);
   float cell_depth = cell_side / length(direction);
   vec3 left = to_viewer;
