@@ -45,7 +45,7 @@ export function createViewer(options) {
  */
 async function loadSuggestedView() {
   try {
-    return settingsFromJson(JSON.parse(await loadText('view.json'))).camera;
+    return settingsFromJson(await loadText('view.json')).camera;
   } catch {
     return null;
   }
