@@ -10,6 +10,12 @@
 
 namespace voxdag {
 
+/// The longest occlusion ray by default, as a fraction of the grid's side.
+inline constexpr double kOcclusionDistance = 0.15;
+
+/// The direction towards the sun by default: right, up and back in the picture.
+inline constexpr Vec3d kDefaultSun{-0.6, 0.9, 0.25};
+
 struct RenderOptions {
   int width = 1920, height = 1080;  ///< Pixels; at least 1 each.
   ViewRequest view;                 ///< frame_scene finds the parts that are not set.
@@ -24,7 +30,7 @@ struct RenderOptions {
   float sky = 1;            ///< Factor on the light of the sky, and on the sky in the picture.
 
   int occlusion_samples = 64;  ///< Rays of ambient occlusion per pixel; 0: none.
-  /// Length of occlusion rays, in world units; 0 means 0.15 of the grid's side.
+  /// Length of occlusion rays, in world units; 0 means kOcclusionDistance of the grid's side.
   double occlusion_distance = 0;
   /// Occlusion rays end at cells that subtend this solid angle, in steradians; 0 means cells of the
   /// size of the surface's cell. The paper uses 0.07.

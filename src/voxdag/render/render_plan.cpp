@@ -12,8 +12,6 @@
 namespace voxdag {
 namespace {
 
-constexpr double kOcclusionDistance = 0.15;  // fraction of the grid's side
-
 void check(const RenderOptions& options) {
   constexpr int kMaxSide = 1 << 16, kMaxSamples = 1 << 16;
   if (options.width < 1 || options.height < 1 || options.width > kMaxSide ||
@@ -62,7 +60,8 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
   const Vec3d up = normalized(view.up);
   const Vec3d right = normalized(camera.right);
   const Vec3d back = cross(right, up);
-  const Vec3d sun = options.sun.value_or(up * 0.9 - right * 0.6 + back * 0.25);
+  const Vec3d sun =
+      options.sun.value_or(up * kDefaultSun.y + right * kDefaultSun.x + back * kDefaultSun.z);
   const double length2 = dot(sun, sun);
   if (!(length2 > 0 && length2 < HUGE_VAL))
     throw Error("the direction of the sun must be finite and not zero");

@@ -16,13 +16,12 @@ namespace voxdag {
 VOXDAG_HD inline Vec3f sky_light(const RenderSetup& setup, const ViewSample& sample, Vec3f view,
                                  float open) {
   const Vec3f light = sky_ambient(setup.sky, sample.normal);
-  // Far surfaces hide the sky in some of the directions without near surfaces.
-  constexpr float kSky = 0.7f;
-  if (setup.settings.occlusion_samples > 0) return light * (kSky * open);
+  if (setup.settings.occlusion_samples > 0) return light * (SkyShape::kOpen * open);
   // Without occlusion, shadows that only the sky lights would look flat. Soft light from the viewer
   // and from the viewer's right shows their shape.
   const float facing = dot(sample.normal, view), aside = dot(sample.normal, setup.sky.fill);
-  const float fill = 0.40f + 0.35f * facing + 0.25f * aside;
+  const float fill =
+      SkyShape::kFill + SkyShape::kFillFacing * facing + SkyShape::kFillAside * aside;
   return light * (fill > 0 ? fill : 0.0f);
 }
 

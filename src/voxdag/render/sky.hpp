@@ -16,6 +16,20 @@ struct Sky {
   Vec3f ground{0.43f, 0.41f, 0.39f};  ///< Radiance of the ground, below the horizon.
 };
 
+/// The shares and edges of sky_radiance(), sky_ambient() and sky_light().
+struct SkyShape {
+  static constexpr float kGlow = 0.10f;          ///< Part of the sun's light in the glow around it.
+  static constexpr float kGround = 1.3f;         ///< Brightness of the ground as it is seen.
+  static constexpr float kGroundBegins = 0.03f;  ///< Sines of the angle above the horizon between
+  static constexpr float kGroundIsFull = -0.75f;  ///< which sky becomes ground.
+  static constexpr float kHorizonInDome = 0.7f;   ///< Part of the horizon in the dome's mean light.
+  /// Part of the sky behind near surfaces: far surfaces hide the rest.
+  static constexpr float kOpen = 0.7f;
+  /// Without occlusion: the light of the sky on every surface, the part from the viewer, and the
+  /// part from the viewer's right.
+  static constexpr float kFill = 0.40f, kFillFacing = 0.35f, kFillAside = 0.25f;
+};
+
 VOXDAG_HD inline Vec3f mix(Vec3f a, Vec3f b, float t) { return a * (1 - t) + b * t; }
 
 /// Returns 0 below `low`, 1 above `high`, and a smooth curve in between.
@@ -34,14 +48,15 @@ VOXDAG_HD inline Vec3f sky_radiance(const Sky& sky, Vec3f direction) {
   Vec3f radiance = mix(sky.zenith, sky.horizon, haze2 * haze2);
   // The glow around the sun. The sun's disc is a light of its own.
   const float glow = towards_sun > 0 ? towards_sun * towards_sun : 0.0f;
-  radiance = radiance + sky.sun_light * (0.10f * glow * glow * glow * glow);
-  return mix(radiance, sky.ground * 1.3f, smooth_step(0.03f, -0.75f, height));
+  radiance = radiance + sky.sun_light * (SkyShape::kGlow * glow * glow * glow * glow);
+  return mix(radiance, sky.ground * SkyShape::kGround,
+             smooth_step(SkyShape::kGroundBegins, SkyShape::kGroundIsFull, height));
 }
 
 /// Returns the irradiance, divided by pi, from sky and ground on an unoccluded surface.
 VOXDAG_HD inline Vec3f sky_ambient(const Sky& sky, Vec3f normal) {
   const float height = dot(normal, sky.up);
-  const Vec3f dome = mix(sky.zenith, sky.horizon, 0.7f);
+  const Vec3f dome = mix(sky.zenith, sky.horizon, SkyShape::kHorizonInDome);
   return mix(sky.ground, dome, 0.5f + 0.5f * height);
 }
 

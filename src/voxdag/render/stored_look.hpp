@@ -5,16 +5,21 @@
 
 namespace voxdag {
 
+/// The cosines of is_of_back().
+struct BackRule {
+  static constexpr float kLeaning = 0.2f, kOpposite = 0.8f;
+};
+
 /// Returns whether the stored normal of a cube belongs to the side of the surface that the viewer
 /// does not see. `view` points to the viewer, `entered` is the normal of the cube's entered face;
 /// all have unit length.
 VOXDAG_HD inline bool is_of_back(Vec3f normal, Vec3f view, Vec3f entered) {
-  constexpr float kLeaning = 0.2f, kOpposite = 0.8f;  // cosines
   // Surfaces are visible from both sides. The entered face does not tell reliably which side is
   // seen. At outlines, where most cube faces are visible, the normal may point away from the viewer
   // a little. It may not point straight into the cube from the entered face.
   const float facing = dot(normal, view);
-  return facing < -kLeaning || (facing < 0 && dot(normal, entered) < -kOpposite);
+  return facing < -BackRule::kLeaning ||
+         (facing < 0 && dot(normal, entered) < -BackRule::kOpposite);
 }
 
 /// Sets the colour and the normal for shading of a sample at cell `cell` of `level` to those that

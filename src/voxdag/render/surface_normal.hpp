@@ -46,12 +46,22 @@ struct LayerFit {
   float outwards = 0;   ///< Distance of the cell from the layer's mean along the normal, in cells.
 };
 
+/// The numbers of fit_layer() and surface_normal(). The variance of planes is 0.1 to 0.2 near an
+/// axis and at most 0.34, that of right-angled edges is 0.5.
+struct LayerRule {
+  static constexpr float kRadius = 4.5f;  ///< Cells farther away do not count.
+  static constexpr int kPower = 4;        ///< Of the inverse of the covariance.
+  static constexpr float kThin = 0.20f, kThick = 0.30f, kPlane = 0.36f, kEdge = 0.50f;
+  static constexpr float kOutlineCosine = 0.25f;
+  static constexpr int kCoarser = 2;  ///< Coarser levels that refine the normal.
+};
+
 /// Fits the layer around a point of `cell` of `level` (2..L); `offset`, in cells, leads from the
 /// centre of the cell to the point. `front` points to the side from which the layer is seen.
 template <class Nodes>
 VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, Vec3f offset,
                                     Vec3f front) {
-  constexpr float kRadius2 = 4.5f * 4.5f;
+  constexpr float kRadius2 = LayerRule::kRadius * LayerRule::kRadius;
   // On each axis two blocks of 4³ cells cover at least 4 cells on both sides of the cell.
   const auto first = [](std::int32_t i) { return (i >> 2) - ((i & 3) < 2 ? 1 : 0); };
   const Vec3i block{first(cell.x), first(cell.y), first(cell.z)};
@@ -90,7 +100,7 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
   covariance.add_outer_product(mean, -1);
   const CovarianceMatrix inverse = covariance.adjugate();
   Vec3f normal = front;
-  for (int i = 0; i < 4; ++i) normal = normalized(inverse * normal);
+  for (int i = 0; i < LayerRule::kPower; ++i) normal = normalized(inverse * normal);
   return {normal, dot(normal, covariance * normal), -dot(normal, mean)};
 }
 
@@ -102,25 +112,21 @@ VOXDAG_HD inline LayerFit fit_layer(const Nodes& nodes, int level, Vec3i cell, V
 template <class Nodes>
 VOXDAG_HD inline Vec3f surface_normal(const Nodes& nodes, int level, Vec3i cell, Vec3f view,
                                       Vec3f face) {
-  // The variance of planes is 0.1 to 0.2 near an axis and at most 0.34, that of right-angled edges
-  // is 0.5.
-  constexpr float kThin = 0.20f, kThick = 0.30f, kPlane = 0.36f, kEdge = 0.50f;
-  constexpr float kOutlineCosine = 0.25f;
-  constexpr int kCoarser = 2;
+  using Rule = LayerRule;
   const Vec3f front = normalized(view + face);
   const LayerFit fine = fit_layer(nodes, level, cell, {}, front);
   Vec3f normal = fine.normal;
-  const float edge = smooth_step(kPlane, kEdge, fine.thickness);
+  const float edge = smooth_step(Rule::kPlane, Rule::kEdge, fine.thickness);
   if ((dot(normal, view) < 0) != (dot(normal, face) < 0) && fine.outwards < 0) normal = -normal;
-  const float outline = edge * smooth_step(kOutlineCosine, 0, dot(normal, view));
+  const float outline = edge * smooth_step(Rule::kOutlineCosine, 0, dot(normal, view));
   normal = normalized(mix(normal, face, outline));
-  for (int up = 1; up <= kCoarser && level - up >= 2; ++up) {
+  for (int up = 1; up <= Rule::kCoarser && level - up >= 2; ++up) {
     const Vec3i at{cell.x >> up, cell.y >> up, cell.z >> up};
     const float size = 1.0f / static_cast<float>(1 << up);
     const Vec3f half{0.5f, 0.5f, 0.5f};
     const Vec3f offset = (static_cast<Vec3f>(cell - at * (1 << up)) + half) * size - half;
     const LayerFit fit = fit_layer(nodes, level - up, at, offset, normal);
-    const float trust = smooth_step(kThick, kThin, fit.thickness);
+    const float trust = smooth_step(Rule::kThick, Rule::kThin, fit.thickness);
     if (trust <= 0) break;
     normal = normalized(mix(normal, fit.normal, trust));
   }

@@ -30,12 +30,20 @@ VOXDAG_HD inline float cube_height(Vec3f normal) {
   return std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
 }
 
+/// The numbers of is_hidden() and make_surface_point(); distances are in cells.
+struct StartRule {
+  static constexpr float kSlack =
+      0.25f;                           ///< Above the cells: normals are estimates, surfaces bend.
+  static constexpr float kHidden = 4;  ///< A cell this near in front of a point hides it.
+  static constexpr int kTries = 3, kFarthest = 9;  ///< Steps along the line of sight.
+};
+
 /// Returns whether a cell of the surface's own size lies at the point, or right in front of it as
 /// seen by the viewer. `to_viewer` has unit length.
 template <class Nodes>
 VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const SurfacePoint& point, Vec3f to_viewer) {
-  constexpr float kCells = 4;
-  const GridRay ray = make_grid_ray(point.start, to_viewer, 0, kCells * point.cell_side);
+  const GridRay ray =
+      make_grid_ray(point.start, to_viewer, 0, StartRule::kHidden * point.cell_side);
   CellHit cell;
   return cast(nodes, ray, StopBelowSize{point.cell_side, 0, 2}, cell);
 }
@@ -59,7 +67,6 @@ inline constexpr int kMostStartCasts = 13;
 template <class Nodes>
 VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const RenderSetup& setup,
                                                  const ViewSample& sample, Vec3d direction) {
-  constexpr float kSlack = 0.25f;  // cells: normals are estimates, surfaces bend
   SurfacePoint point;
   point.surface = make_grid_point(setup.grid, sample.point);
   point.normal = sample.normal;
@@ -67,9 +74,10 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   const double cell_size =
       static_cast<double>(sample.detail_size > 0 ? sample.detail_size : sample.cell_size);
   point.cell_side = static_cast<float>(cell_size / setup.side());
-  const double lift = sample.lift > 0
-                          ? static_cast<double>(sample.lift)
-                          : static_cast<double>(cube_height(sample.face) + kSlack) * cell_size;
+  const double lift =
+      sample.lift > 0
+          ? static_cast<double>(sample.lift)
+          : static_cast<double>(cube_height(sample.face) + StartRule::kSlack) * cell_size;
   const Vec3d lifted = sample.point + static_cast<Vec3d>(sample.face) * lift;
   const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
   const auto can_start_at = [&](Vec3d there) {
@@ -81,7 +89,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   // cell of another surface: the viewer sees the sample, but not the point. So the point is moved
   // along the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few
   // cells.
-  constexpr int kTries = 3, kFarthest = 9;  // Distances in cells.
+  constexpr int kTries = StartRule::kTries, kFarthest = StartRule::kFarthest;
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
   const auto cells_before = [&](int cells) {

@@ -1,0 +1,21 @@
+#pragma once
+/// The files of the page, which the build embeds into the program.
+#include <span>
+#include <string_view>
+
+namespace voxdag {
+
+struct PageFile {
+  std::string_view
+      path;  ///< From the page's folder: "app/app.js". The page itself is "index.html".
+  std::string_view type;  ///< Content-Type.
+  std::string_view bytes;
+};
+
+/// Returns the files, by path. They live as long as the program.
+std::span<const PageFile> page_files();
+
+/// Returns the file with this path, or null.
+const PageFile* find_page_file(std::string_view path);
+
+}  // namespace voxdag
