@@ -37,4 +37,21 @@ endif()
 
 if(VOXDAG_BUILD_APPS)
   find_package(CLI11 REQUIRED)
+  # Debian's cpp-httplib has no CMake package. Its library is built with TLS and compression, which
+  # its headers must know. Later versions have other functions for subclasses.
+  find_path(VOXDAG_HTTPLIB_INCLUDE httplib.h)
+  find_library(VOXDAG_HTTPLIB_LIBRARY cpp-httplib)
+  if(VOXDAG_HTTPLIB_INCLUDE AND VOXDAG_HTTPLIB_LIBRARY)
+    file(STRINGS ${VOXDAG_HTTPLIB_INCLUDE}/httplib.h httplib_version REGEX "define CPPHTTPLIB_VERSION \"0\\.11\\.")
+  endif()
+  if(httplib_version)
+    set(httplib_FOUND TRUE)
+    add_library(httplib::httplib INTERFACE IMPORTED)
+    target_include_directories(httplib::httplib INTERFACE ${VOXDAG_HTTPLIB_INCLUDE})
+    target_compile_definitions(httplib::httplib INTERFACE
+      CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)
+    target_link_libraries(httplib::httplib INTERFACE ${VOXDAG_HTTPLIB_LIBRARY})
+  else()
+    message(STATUS "voxdag: cpp-httplib 0.11 (libcpp-httplib-dev) not found: no `voxdag view`")
+  endif()
 endif()

@@ -9,7 +9,7 @@ voxdag_packages=(
   libtbb-dev libhwy-dev libpng-dev libjpeg-dev libopenexr-dev libfast-float-dev
   nlohmann-json3-dev libxxhash-dev libassimp-dev libembree-dev
   # the command line
-  libcli11-dev libfmt-dev
+  libcli11-dev libfmt-dev libcpp-httplib-dev zlib1g-dev
 )
 voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib

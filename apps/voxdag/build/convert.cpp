@@ -28,18 +28,6 @@ struct ConvertArguments {
   std::uint64_t memory_limit = 0;
 };
 
-/// Returns the metadata for a grid of fewer levels, whose DAG has these voxels.
-VdagMetadata coarser(VdagMetadata metadata, const SvdagView& dag) {
-  const double factor = static_cast<double>(std::int64_t{1} << (metadata.grid.levels - dag.levels));
-  metadata.grid.levels = dag.levels;
-  metadata.grid.voxel_size *= factor;
-  metadata.grid.quantization_scale /= factor;
-  metadata.counts = count_svdag(dag);
-  metadata.build["coarsened_from"] =
-      std::to_string(metadata.grid.resolution() * static_cast<std::int64_t>(factor));
-  return metadata;
-}
-
 void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
@@ -57,7 +45,7 @@ void convert(const ConvertArguments& arguments, Session& session) {
                               with_commas(std::uint64_t{1} << *arguments.levels)));
     coarse = coarsen(dag, *arguments.levels, &memory, &session.progress);
     dag = coarse.view();
-    metadata = coarser(metadata, dag);
+    metadata = coarser_metadata(metadata, dag);
   }
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
   const DagAttributesView attributes =

@@ -79,4 +79,15 @@ VdagMetadata parse_vdag_metadata(std::string_view text) {
   return metadata;
 }
 
+VdagMetadata coarser_metadata(VdagMetadata metadata, const SvdagView& dag) {
+  const double factor = static_cast<double>(std::int64_t{1} << (metadata.grid.levels - dag.levels));
+  metadata.grid.levels = dag.levels;
+  metadata.grid.voxel_size *= factor;
+  metadata.grid.quantization_scale /= factor;
+  metadata.counts = count_svdag(dag);
+  metadata.build["coarsened_from"] =
+      std::to_string(metadata.grid.resolution() * static_cast<std::int64_t>(factor));
+  return metadata;
+}
+
 }  // namespace voxdag

@@ -1,0 +1,54 @@
+#include "viewer/server/connection_threads.hpp"
+
+#include <system_error>
+#include <utility>
+
+namespace voxdag {
+namespace {
+
+thread_local bool refuses = false;
+
+}  // namespace
+
+bool ConnectionThreads::is_refused() { return refuses; }
+
+void ConnectionThreads::join_done() {
+  for (auto worker = workers_.begin(); worker != workers_.end();) {
+    if (!worker->is_done) {
+      ++worker;
+      continue;
+    }
+    worker->thread.join();
+    worker = workers_.erase(worker);
+  }
+}
+
+void ConnectionThreads::enqueue(std::function<void()> serve) {
+  join_done();
+  // A connection that was ended to make way may still be in the list for a moment.
+  bool fits = workers_.size() < most_ ||
+              (workers_.size() < 2 * most_ && connections_.end_longest_waiting());
+  if (fits) {
+    Worker& worker = workers_.emplace_back();
+    try {
+      worker.thread = std::thread([serve, &worker] {
+        serve();
+        worker.is_done = true;
+      });
+      return;
+    } catch (const std::system_error&) {  // The system has no more threads.
+      workers_.pop_back();
+    }
+  }
+  refuses = true;
+  serve();
+  refuses = false;
+}
+
+void ConnectionThreads::shutdown() {
+  connections_.end_all();
+  for (Worker& worker : workers_) worker.thread.join();
+  workers_.clear();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,61 @@
+#pragma once
+/// The bytes of a .vdag file that holds a DAG in the plain form, without a copy of the DAG.
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "voxdag/file/attribute_chunks.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/layout/svdag.hpp"
+
+namespace voxdag {
+
+/// A chunk to write, in parts that follow each other.
+struct VdagOutputChunk {
+  std::uint32_t id, flags;
+  std::vector<std::span<const std::byte>> parts;
+
+  std::uint64_t length() const;
+};
+
+/// The parts of a file with these chunks. Refers to the chunks' bytes and owns the rest.
+class VdagBytes {
+ public:
+  explicit VdagBytes(const std::vector<VdagOutputChunk>& chunks);
+  VdagBytes(const VdagBytes&) = delete;
+  VdagBytes& operator=(const VdagBytes&) = delete;
+
+  /// Returns the parts, which follow each other in the file.
+  const std::vector<std::span<const std::byte>>& parts() const { return parts_; }
+  /// Returns the size of the file.
+  std::uint64_t size() const { return size_; }
+
+ private:
+  std::vector<std::byte> head_;
+  std::vector<std::span<const std::byte>> parts_;
+  std::uint64_t size_ = 0;
+};
+
+/// The bytes of the file that write_vdag() writes for these arguments, which must outlive it.
+class PlainVdagBytes {
+ public:
+  /// Throws Error as write_vdag() does, without a file name. Reads the DAG once, for its checksums.
+  PlainVdagBytes(const SvdagView& view, const VdagMetadata& metadata,
+                 const DagAttributesView& attributes = {});
+
+  const std::vector<std::span<const std::byte>>& parts() const { return bytes_.parts(); }
+  std::uint64_t size() const { return bytes_.size(); }
+
+ private:
+  std::string json_;
+  std::uint64_t level_begin_[kMaxLevels + 1];
+  AttributeChunks attributes_;
+  VdagBytes bytes_;
+};
+
+/// Returns the JSON of META. Throws Error, without a file name, if a reader would refuse it.
+std::string checked_metadata_json(const VdagMetadata& metadata);
+
+}  // namespace voxdag
