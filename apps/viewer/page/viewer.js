@@ -11,6 +11,7 @@ import {SceneTextures} from './gpu/scene_textures.js';
 import {directionThrough} from './hands/pose.js';
 import {DEFAULTS, mergeSettings, settingsFromJson} from './settings.js';
 import {SceneMemory} from './scene_memory.js';
+import {castInSection} from './section_ray.js';
 import {bounds, cast, contains} from './trace.js';
 import {defaultView} from './default_view.js';
 
@@ -244,7 +245,9 @@ class CanvasViewer {
 
   /** @param {Vec3} origin @param {Vec3} direction @param {number} [most] */
   castNow(origin, direction, most = Infinity) {
-    return this.memory === null ? null : cast(this.memory.dag(), origin, direction, most);
+    const {memory} = this;
+    if (memory === null) return null;
+    return castInSection(this.settings.section, origin, direction, most, (from, along, end) => cast(memory.dag(), from, along, end));
   }
   /** @param {Vec3} point */
   contains(point) {
@@ -256,7 +259,8 @@ class CanvasViewer {
     const camera = this.camera();
     const direction = directionThrough(camera, x, y, this.canvas.clientWidth, this.canvas.clientHeight);
     const dag = this.memory.dag();
-    return cast({...dag, shown: Math.min(dag.shown, this.settings.level ?? dag.shown)}, camera.eye, direction);
+    const shown = {...dag, shown: Math.min(dag.shown, this.settings.level ?? dag.shown)};
+    return castInSection(this.settings.section, camera.eye, direction, Infinity, (from, along, end) => cast(shown, from, along, end));
   }
 
   // ---- pictures

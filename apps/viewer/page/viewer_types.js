@@ -7,7 +7,7 @@
  * @typedef {import('./settings.js').Camera} Camera
  *
  * @typedef {object} Hit  What a ray meets first.
- * @property {Vec3} voxel  Coordinates of the cell in cells of its level.
+ * @property {Vec3} voxel  The lowest voxel of the cell.
  * @property {number} level  Level of the cell; the root is 0.
  * @property {number} [face]  The face that the ray enters.
  * @property {Vec3} position  In world units.

@@ -1,11 +1,12 @@
 /** Hands: they move the camera of a viewer by pointer, keys and gamepad. */
 import { clamp } from '../math.js';
-import { DEFAULTS, MODES, sameCamera } from '../settings.js';
+import { MODES, sameCamera } from '../settings.js';
 import { Events, listeners } from './events.js';
 import { Pad } from './gamepad.js';
 import { Keys } from './keys.js';
 import { Navigator, NO_INPUT } from './navigator.js';
 import { Pointers } from './pointers.js';
+import { cameraOf, poseOf } from './pose.js';
 
 /**
  * @typedef {import('../viewer_types.js').Viewer} Viewer
@@ -42,27 +43,29 @@ export class Hands extends Events {
       if (this.navigator) this.navigator.reducedMotion = still.matches;
     });
     listen(window, 'gamepadconnected', () => this.wake());
+    // Until someone moves the camera, it is the home view, which becomes better with every level.
     this.onInfo = () => this.#meet();
     this.onSettings = (/** @type {Settings} */ settings, /** @type {string} */ by) => by === 'hands' || this.#follow(settings);
-    viewer.on('info', this.onInfo);
     viewer.on('settings', this.onSettings);
+    viewer.on('loaded', this.onLoaded);
+    for (const event of ['info', 'level', 'loaded']) viewer.on(event, this.onInfo);
     this.#meet();
   }
+  isLoaded = false;
+  onLoaded = () => { this.isLoaded = true; };
   /** @type {ReturnType<typeof listeners>} */
   #listeners;
 
-  /** Takes over the scene when its header is known, and its bounds as they become finer. */
+  /** Takes over the scene when its header is known, and follows the home view. */
   #meet() {
-    const { info } = this.viewer;
+    const { viewer } = this, { info, canvas } = viewer;
     if (!info) return;
-    if (this.navigator) {
-      Object.assign(this.navigator.scene, { bounds: info.bounds, voxelSize: info.voxelSize, home: info.view });
-      return;
-    }
-    const { canvas } = this.viewer;
+    if (this.navigator) return this.#follow(viewer.get());
     this.navigator = new Navigator({
-      bounds: info.bounds, voxelSize: info.voxelSize, home: info.view,
-      cast: (origin, direction, distance) => this.viewer.castNow(origin, direction, distance),
+      get bounds() { return (viewer.info ?? info).bounds; },
+      get home() { return (viewer.info ?? info).view; },
+      voxelSize: info.voxelSize,
+      cast: (origin, direction, distance) => viewer.castNow(origin, direction, distance),
     });
     this.navigator.reducedMotion = this.reducedMotion;
     this.#resize();
@@ -86,7 +89,9 @@ export class Hands extends Events {
   #follow(settings) {
     const { navigator } = this;
     if (!navigator) return;
-    const mode = settings.mode ?? DEFAULTS.mode;
+    // Nobody falls through levels that are still on their way.
+    const waits = settings.mode === 'walk' && this.viewer.info && this.viewer.statistics().levelsLoaded < this.viewer.info.levels && !this.isLoaded;
+    const mode = waits ? 'fly' : settings.mode;
     const camera = settings.camera ?? navigator.scene.home;
     if (!sameCamera(camera, this.lastCamera)) {
       navigator.setCamera(camera);
@@ -126,7 +131,11 @@ export class Hands extends Events {
       this.#show(navigator.camera);
     } else if (this.moved) {
       this.moved = false;
-      this.#show(navigator.settle());
+      const { home } = navigator.scene;
+      if (sameCamera(navigator.camera, cameraOf(poseOf(home)))) {
+        this.lastCamera = home;
+        this.viewer.set({ camera: null }, 'hands');  // the home view is in no link
+      } else this.#show(navigator.settle());
       this.emit('rest');
     }
     if (!moving && !pad) return;
@@ -199,7 +208,8 @@ export class Hands extends Events {
   destroy() {
     this.#listeners.end();
     cancelAnimationFrame(this.frameRequest);
-    this.viewer.off('info', this.onInfo);
+    for (const event of ['info', 'level', 'loaded']) this.viewer.off(event, this.onInfo);
     this.viewer.off('settings', this.onSettings);
+    this.viewer.off('loaded', this.onLoaded);
   }
 }

@@ -1,5 +1,6 @@
 /** The panel "Camera path": records views as keys, plays them, and saves the file of `render --path`. */
 import { cameraAt, completeKeys, pathToJson, withKey, withoutKey } from '../hands/camera_path.js';
+import { roundCamera } from '../hands/pose.js';
 import { button, group } from './controls.js';
 import { download, h, say } from './dom.js';
 
@@ -11,7 +12,7 @@ import { download, h, say } from './dom.js';
 /** @param {Ui} ui */
 export function filmPanel(ui) {
   const { viewer, hands } = ui;
-  const camera = () => viewer.get().camera ?? ui.home();
+  const camera = () => roundCamera(viewer.get().camera ?? ui.home());
   const seconds = h('input', { type: 'number', min: 0.1, max: 600, step: 0.1, value: 2, id: 'seconds-per-key', inputmode: 'decimal' });
   /** Milliseconds of the page at which the film began; 0: it does not play. */
   let began = 0;
@@ -53,19 +54,18 @@ export function filmPanel(ui) {
   });
   const clear = button('Clear', () => { stop(); viewer.set({ path: [] }, 'ui'); });
   const list = h('ol', { class: 'list keys' });
-  const playing = h('div', { class: 'buttons' }, player, clock);
-  const files = h('div', { class: 'buttons' }, save, clear);
+  const acts = h('div', { class: 'buttons' }, player, save, clear, clock);
   let shown = '';
   return {
     element: h('div', {},
       group('', add, h('div', { class: 'row' }, h('label', { for: seconds.id }, 'Seconds to the next key'), seconds)),
-      list, playing, files,
-      h('p', { class: 'hint' }, 'Renders a film in full quality: ', h('code', {}, 'voxdag render scene.vdag --path scene.path.json -o frame_%04d.png'))),
+      list, acts,
+      h('p', { class: 'hint' }, 'The saved path renders as a film in full quality:'), ui.command('voxdag render scene.vdag --path scene.path.json -o frame_%04d.png')),
     refresh(/** @type {Settings} */ { path }) {
       say(player.lastChild ?? player, began ? 'Stop' : 'Play');
       clock.hidden = !began;
-      playing.hidden = path.length < 2;
-      files.hidden = path.length === 0;
+      acts.hidden = path.length === 0;
+      player.disabled = path.length < 2;
       const state = JSON.stringify(path);
       if (state === shown) return;
       shown = state;

@@ -2,7 +2,7 @@
 import { DEFAULTS, settingsToHash } from '../settings.js';
 import { isTyping } from '../hands/keys.js';
 import { button, segments } from './controls.js';
-import { h } from './dom.js';
+import { copy, h } from './dom.js';
 import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
@@ -49,6 +49,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {() => Camera} home
  * @property {() => string} name  Of the scene, for files.
  * @property {() => string} hash
+ * @property {(line: string) => HTMLElement} command  A line for a terminal, to copy.
  * @property {(tool: Tool) => {readonly active: boolean, toggle: () => void, stop: () => void}} tool
  */
 
@@ -104,6 +105,8 @@ export function createInterface(viewer, hands, container) {
     },
     home: () => viewer.info?.view ?? ANY_CAMERA,
     name: () => (viewer.info?.name ?? 'scene').replace(/^.*\//, '').replace(/\.\w+$/, '').replace(/[^\w.-]+/g, '_') || 'scene',
+    command: (line) => h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
+      button('Copy this command', async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying'), { icon: 'copy', bare: true })),
     hash: () => settingsToHash(viewer.get(), viewer.info?.view ?? null),
     tool: (made) => ({
       get active() { return tool === made; },

@@ -1,5 +1,6 @@
 /** The panel "Notes": texts at points of the scene; each remembers the camera that shows it. */
 import { addScaled, distance, normalized, roundTo3, stepBelow, sub } from '../math.js';
+import { roundCamera } from '../hands/pose.js';
 import { button, group } from './controls.js';
 import { h, say, svg, update } from './dom.js';
 import { place } from './overlay.js';
@@ -59,7 +60,7 @@ export function notesPanel(ui) {
     name: 'note',
     hint: () => 'Click the place of the note',
     click(hit) {
-      const camera = viewer.get().camera ?? ui.home(), { annotations } = viewer.get();
+      const camera = roundCamera(viewer.get().camera ?? ui.home()), { annotations } = viewer.get();
       // A little towards the viewer, so that the marker is not in the surface.
       const out = addScaled(hit.position, normalized(sub(camera.eye, hit.position)), (viewer.info?.voxelSize ?? 0) * 0.5);
       const note = { text: `Note ${annotations.length + 1}`, point: roundTo3(out, stepBelow(viewer.info?.voxelSize ?? 1, 0.01)), camera };
@@ -81,7 +82,7 @@ export function notesPanel(ui) {
       h('span', { class: 'stack' },
         button(`Fly to note ${i + 1}`, () => go(i), { icon: 'fly', bare: true }),
         button(`Let note ${i + 1} remember this view`, () => {
-          change(i, { camera: viewer.get().camera ?? ui.home() });
+          change(i, { camera: roundCamera(viewer.get().camera ?? ui.home()) });
           ui.toast('The note remembers this view');
         }, { icon: 'camera', bare: true }),
         button(`Delete note ${i + 1}`, () => viewer.set({ annotations: viewer.get().annotations.filter((_, k) => k !== i) }, 'ui'), { icon: 'trash', bare: true })));

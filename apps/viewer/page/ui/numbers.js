@@ -11,7 +11,7 @@ export function bytesText(bytes) {
 
 /** @param {number} count */
 export const countText = (count) =>
-  !Number.isFinite(count) ? '–' : count < 1e6 ? Math.round(count).toLocaleString('en').replaceAll(',', '\u202f')
+  !Number.isFinite(count) ? '–' : count < 1e4 ? String(Math.round(count)) : count < 1e6 ? Math.round(count).toLocaleString('en').replaceAll(',', '\u202f')
     : count < 1e9 ? `${(count / 1e6).toPrecision(4)} million` : `${(count / 1e9).toPrecision(4)} billion`;
 
 /**

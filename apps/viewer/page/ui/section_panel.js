@@ -209,12 +209,12 @@ export function sectionPanel(ui) {
     label: 'Position', min: 0, max: 1, get: (s) => (s.section.plane ? offsetOf(s.section.plane) : 0), text,
     set: (value) => { const { plane } = viewer.get().section; if (plane) movePlane(plane, value - offsetOf(plane)); },
   });
-  const axes = h('div', { class: 'grid' }, ...[0, 1, 2].map((axis) => button(`Across ${AXES[axis]}`, () => {
+  const axes = h('div', { class: 'grid' }, ...[0, 1, 2].map((axis) => button(`⟂ ${AXES[axis]}`, () => {
     const { plane } = viewer.get().section, normal = /** @type {Vec3} */ ([0, 0, 0]);
     const { eye, target } = viewer.get().camera ?? ui.home();
     normal[axis] = Math.sign(eye[axis] - target[axis]) || 1;
     if (plane) setPlane({ point: plane.point, normal });
-  })), button('Flip', () => {
+  }, { title: `Across the ${AXES[axis]} axis` })), button('Flip', () => {
     const { plane } = viewer.get().section;
     if (plane) setPlane({ point: plane.point, normal: scale(plane.normal, -1) });
   }));

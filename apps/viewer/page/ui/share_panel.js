@@ -16,13 +16,13 @@ const LONGEST_FILE = 16 << 20;
 /** @param {Ui} ui */
 export function sharePanel(ui) {
   const { viewer } = ui;
-  let size = 'window', samples = '0';
+  let size = 'window', samples = '16';
   const sizes = choice({
     label: 'Size', options: [['window', 'as shown'], ['1280x720', '1280 × 720'], ['1920x1080', '1920 × 1080'], ['2560x1440', '2560 × 1440'], ['3840x2160', '3840 × 2160']],
     get: () => size, set: (value) => { size = value; },
   });
   const qualities = choice({
-    label: 'Samples per pixel', options: [['0', 'as settings say'], ['1', '1'], ['4', '4'], ['16', '16']],
+    label: 'Quality', options: [['4', '4 samples'], ['16', '16 samples'], ['64', '64 samples']],
     get: () => samples, set: (value) => { samples = value; },
   });
   const screenshot = async () => {
@@ -30,7 +30,7 @@ export function sharePanel(ui) {
     picture.disabled = true;
     ui.toast('Rendering the picture…');
     try {
-      const blob = await viewer.capture({ width, height, ...(samples === '0' ? {} : { samples: Number(samples) }) });
+      const blob = await viewer.capture({ width, height, samples: Number(samples) });
       download(`${ui.name()}.png`, blob);
       ui.toast('Saved as PNG');
     } catch (error) {
@@ -75,14 +75,13 @@ export function sharePanel(ui) {
   const chooser = h('input', { type: 'file', accept: '.json,application/json', class: 'offscreen', tabindex: -1, 'aria-label': 'File of settings', on: {
     change: () => { if (chooser.files?.[0]) load(chooser.files[0]); chooser.value = ''; } } });
   const picture = button('Save picture', screenshot, { icon: 'camera', primary: true, title: 'Key P', keys: 'P' });
-  const command = 'voxdag render scene.vdag --view scene.settings.json -o still.png';
   return {
     element: h('div', {},
       group('Link', button('Copy link', link, { icon: 'link' }), h('p', { class: 'hint' }, 'The address of this page always holds the view, the light, the section, measures and notes.')),
       group('Picture', sizes.element, qualities.element, picture),
       group('Settings', h('div', { class: 'buttons' }, button('Save', save), button('Load…', () => chooser.click())), chooser,
         h('p', { class: 'hint' }, 'Or drop a file on the picture. A still in full quality from saved settings:'),
-        h('div', { class: 'command' }, h('code', {}, command), button('Copy the command', async () => { if (await copy(command)) ui.toast('Command copied'); }, { icon: 'link', bare: true })))),
+        ui.command('voxdag render scene.vdag --view scene.settings.json -o still.png'))),
     refresh(/** @type {Settings} */ settings) {
       sizes.refresh(settings);
       qualities.refresh(settings);

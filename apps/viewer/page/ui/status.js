@@ -34,8 +34,9 @@ export class Status {
     /** @type {HTMLElement | null} */
     this.failure = null;
     viewer.on('info', () => this.#loading());
-    viewer.on('level', () => this.#loading());
-    viewer.on('still', () => this.#loading());
+    for (const event of ['progress', 'level', 'still']) viewer.on(event, () => this.#loading());
+    viewer.on('loaded', () => { this.isLoaded = true; this.#loading(); });
+    viewer.on('note', (text) => this.toast(text, true));
     viewer.on('error', (error) => this.fail(error));
     viewer.on('lost', () => this.fail({
       title: 'The graphics were interrupted', text: 'The browser has taken the graphics away, perhaps because memory was short. The picture comes back when they do.', isLost: true }));
@@ -43,6 +44,7 @@ export class Status {
     this.lost = false;
     this.#loading();
   }
+  isLoaded = false;
 
   #loading() {
     const { info } = this.viewer;
@@ -52,7 +54,7 @@ export class Status {
     }
     document.getElementById('start')?.remove();
     const s = this.viewer.statistics(), total = s.fileBytes || info.fileBytes;
-    const done = s.levelsLoaded >= info.levels;
+    const done = this.isLoaded || (s.levelsLoaded >= info.levels && s.bytesLoaded >= total);
     say(this.name, info.name || 'Scene');
     document.title = `${info.name || 'Scene'} – voxdag`;
     say(this.detail, done ? `${countText(info.resolution)}³ · ${countText(info.voxels)} voxels`
