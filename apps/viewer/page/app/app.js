@@ -21,7 +21,7 @@ function showFailure(error) {
 
 try {
   const { settings, problems } = settingsFromHash(location.hash);
-  const viewer = createViewer({ container, url: 'scene.vdag', settings });
+  const viewer = createViewer({ container, settings });
   const hands = new Hands(viewer);
   const { ui } = createInterface(viewer, hands, container);
   keepLink(ui);
