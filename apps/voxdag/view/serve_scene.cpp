@@ -1,0 +1,67 @@
+#include "view/serve_scene.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+#include <thread>
+
+#include "viewer/server/page_server.hpp"
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+bool is_set(const char* variable) {
+  const char* const value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
+/// Opens the address with the program that the desktop has for it. Does not wait for it, and says
+/// nothing if there is none: the address is on stdout.
+void open_in_browser(const std::string& url) {
+  if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) return;
+  posix_spawn_file_actions_t files;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&files);
+  posix_spawnattr_init(&attributes);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
+  // A session of its own: Ctrl-C does not end the browser.
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  std::string program = "xdg-open", argument = url;
+  char* const arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t process = 0;
+  posix_spawnp(&process, program.c_str(), &files, &attributes, arguments, environ);
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+}
+
+}  // namespace
+
+bool has_page_server() { return true; }
+
+void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session) {
+  ServerOptions options;
+  options.address = arguments.address;
+  options.port = arguments.port;
+  PageServer server(scene, options);
+  server.start();
+  session.bar.clear();
+  fmt::print("{}\n", server.url());
+  if (std::fflush(stdout) != 0)
+    throw Error("standard output", "", std::system_category().message(errno));
+  if (!session.quiet) print_line("Ctrl-C ends the server");
+  if (arguments.open) open_in_browser(server.url());
+  while (!session.progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  server.stop();
+  session.progress.throw_if_cancelled();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,23 @@
+#pragma once
+/// Serves the page and a scene until the user ends the program.
+#include <string>
+
+#include "cli/session.hpp"
+#include "viewer/scene/scene_bytes.hpp"
+
+namespace voxdag {
+
+struct ServeArguments {
+  std::string address = "127.0.0.1";
+  int port = 0;      ///< 0: any free port.
+  bool open = true;  ///< Open the page in the browser if there is a display.
+};
+
+/// Returns whether this program has the server.
+bool has_page_server();
+
+/// Prints the page's address as one line on stdout, and serves it. Throws Error if it cannot
+/// listen, and Cancelled when a signal ends it.
+void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session);
+
+}  // namespace voxdag

@@ -1,0 +1,45 @@
+/// `voxdag view`: shows a DAG in the browser.
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
+#include "view/serve_scene.hpp"
+#include "view/shown_scene.hpp"
+
+namespace voxdag {
+namespace {
+
+struct ViewArguments {
+  ShownSceneArguments scene;
+  ServeArguments serve;
+};
+
+void view(const ViewArguments& arguments, Session& session) {
+  const ShownScene scene = ShownScene::open(session.subject, arguments.scene, session);
+  serve_scene(scene.bytes(), arguments.serve, session);
+}
+
+}  // namespace
+
+void add_view_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  const Command command =
+      program.add("view", "Show a DAG in the browser", "voxdag view scene.vdag");
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  command.number("--port", arguments->serve.port, NumberRange::whole(0, 65535), "N",
+                 "Port of the server; 0: any free one");
+  command.text("--listen", arguments->serve.address, "ADDRESS",
+               "Address of the server (default: 127.0.0.1, for this machine only). On others, "
+               "everyone who reaches it can read the scene");
+  command.off_switch("--no-open", arguments->serve.open,
+                     "Print the page's address only, and open no browser");
+  command.parsed("--memory", arguments->scene.memory_limit, parse_memory, "LIMIT",
+                 "Maximum memory to decode a compact DAG, including the program (default: three "
+                 "quarters of the available memory)");
+  add_quiet_option(command, session);
+  command.when_parsed([arguments, &session] {
+    session.work = [arguments, &session] { view(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag
