@@ -27,7 +27,7 @@ export function launch(name) {
  * Opens a page. `page.complaints` collects errors of scripts, of the console and of the security policy.
  * @param {import('puppeteer-core').Browser} browser @param {string} url @param {{width?: number, height?: number, ready?: string}} [options]
  */
-export async function open(browser, url, {width = 320, height = 180, ready = 'window.viewer'} = {}) {
+export async function open(browser, url, {width = 320, height = 180, ready = 'window.voxdag?.viewer'} = {}) {
   const page = await browser.newPage();
   await page.setViewport({width, height});
   /** @type {string[]} */
@@ -48,5 +48,5 @@ export function assertNoComplaints(page) {
 
 /** Waits until the picture is finished. @param {import('puppeteer-core').Page} page */
 export async function still(page) {
-  await page.evaluate(() => /** @type {any} */ (window).viewer.whenStill());
+  await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.whenStill());
 }

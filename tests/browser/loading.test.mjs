@@ -23,7 +23,7 @@ for (const browserName of browsers)
       const slow = await proxy(server.url, {bytesPerSecond: 2_000_000});
       const page = await open(browser, slow.url);
       const levels = await page.evaluate(() => new Promise((resolve) => {
-        const {viewer} = /** @type {any} */ (window);
+        const {viewer} = /** @type {any} */ (window).voxdag;
         /** @type {any[]} */
         const seen = [];
         viewer.on('level', (/** @type {any} */ e) => seen.push({...e, at: performance.now()}));
@@ -74,7 +74,7 @@ for (const browserName of browsers)
         const shot = path.join(folder, `site-${browserName}.png`);
         await page.screenshot({path: shot});
         assert.ok(spread(readPng(shot)) > 5, `${url} is not blank`);
-        assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.statistics().levelsLoaded), 7);
+        assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.statistics().levelsLoaded), 7);
         assertNoComplaints(page);
         await page.close();
       }
@@ -132,7 +132,7 @@ for (const browserName of browsers)
       assert.ok(canvas);
       await canvas.screenshot({path: before});
       await page.evaluate(() => new Promise((resolve) => {
-        const {viewer} = /** @type {any} */ (window);
+        const {viewer} = /** @type {any} */ (window).voxdag;
         const extension = viewer.canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
         viewer.on('restored', resolve);
         viewer.on('lost', () => setTimeout(() => extension.restoreContext(), 50));
@@ -152,7 +152,7 @@ for (const browserName of browsers)
       const page = await open(browser, server.url, {width: 200, height: 300});
       await still(page);
       await page.setViewport({width: 330, height: 140});
-      await page.waitForFunction(() => /** @type {any} */ (window).viewer.canvas.width === 330, {timeout: 10_000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.canvas.width === 330, {timeout: 10_000});
       await still(page);
       assertNoComplaints(page);
       await page.close();

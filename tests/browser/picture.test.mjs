@@ -54,7 +54,7 @@ for (const browserName of browsers)
         for (const {eye, target} of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
           const camera = {eye, target, up: [0.02, 1, 0.03], fov: 60};
           const cells = await page.evaluate((camera, width, height) => {
-            const {viewer} = /** @type {any} */ (window);
+            const {viewer} = /** @type {any} */ (window).voxdag;
             viewer.set({camera, lod: 0});
             return Array.from(viewer.hits(width, height));
           }, camera, WIDTH, HEIGHT);
@@ -76,7 +76,7 @@ for (const browserName of browsers)
             voxdag('render', file, '-q', '--size', `${WIDTH}x${HEIGHT}`, '--spp', '16', '--fov', '60', '--up', '0,1,0',
                    '--eye', eye.join(','), '--target', target.join(','), '-o', picture);
             const png = await page.evaluate(async (camera, width, height) => {
-              const {viewer} = /** @type {any} */ (window);
+              const {viewer} = /** @type {any} */ (window).voxdag;
               viewer.set({camera, lod: 1, sun: {direction: null}});
               const blob = await viewer.capture({width, height, samples: 16});
               return Array.from(new Uint8Array(await blob.arrayBuffer()));

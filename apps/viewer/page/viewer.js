@@ -52,6 +52,11 @@ async function loadSuggestedView() {
   }
 }
 
+/** Returns the scale of the next finer picture. @param {number} scale */
+function finerScale(scale) {
+  return scale < 0.4 ? 2 * scale : 1;
+}
+
 /** @implements {Viewer} */
 class CanvasViewer {
   /** @param {Parameters<typeof createViewer>[0]} options */
@@ -96,6 +101,7 @@ class CanvasViewer {
     this.version = 0;      // counts changes of the picture
     this.quickVersion = -1;
     this.fullVersion = -1;
+    this.fullScale = 1;    // of the picture that is being refined; doubles until it is 1
     this.isStill = false;
     this.isLoaded = false;
     this.isLost = false;
@@ -286,6 +292,7 @@ class CanvasViewer {
     if (width === this.canvas.width && height === this.canvas.height) return;
     this.canvas.width = width;
     this.canvas.height = height;
+    this.redraw();
     this.touch(true);
     this.emit('resize', {width, height});
   }
@@ -360,31 +367,37 @@ class CanvasViewer {
     }
   }
 
-  /** Renders a part of the full picture. @param {number} begin */
+  /**
+   * Renders a part of the refined picture: first pictures of twice the quick one's pixels and so on,
+   * then all samples of the full one.
+   * @param {number} begin
+   */
   refine(begin) {
     const renderer = /** @type {Renderer} */ (this.renderer);
-    const {width, height} = this.canvas;
     if (this.isStill) return;
-    const full = (this.full = this.sized(this.full, width, height));
     if (this.fullVersion !== this.version) {
-      full.reset();
       this.fullVersion = this.version;
+      this.fullScale = finerScale((this.quick?.width ?? 1) / this.canvas.width);
+      this.full?.reset();
     }
+    const width = Math.max(1, Math.round(this.canvas.width * this.fullScale)), height = Math.max(1, Math.round(this.canvas.height * this.fullScale));
+    const full = (this.full = this.sized(this.full, width, height));
     const shot = this.shot(false);
-    const wanted = this.wantedSamples();
+    const wanted = this.fullScale < 1 ? 1 : this.wantedSamples();
     const rows = Math.min(this.pacer.rows(width, height), height - full.rows);
     renderer.render(full, shot, rows);
     if (full.rows === 0) {
       if (full.samples === 1) this.adapt(full, begin, true);
-      if (full.samples >= wanted) {
+      if (full.samples >= wanted && this.fullScale === 1) {
         this.exposure = this.settings.exposure > 0 ? this.settings.exposure : renderer.exposureOf(full);
         this.isStill = true;
       }
       this.show(full);
-      this.count(full, shot, 1);
+      this.count(full, shot, this.fullScale);
+      if (this.fullScale < 1) this.fullScale = finerScale(this.fullScale);
     }
-    this.stats.samples = full.samples;
-    this.stats.samplesWanted = wanted;
+    this.stats.samples = this.fullScale === 1 && full.width === this.canvas.width ? full.samples : 0;
+    this.stats.samplesWanted = this.wantedSamples();
     this.send(false, rows * width, begin);
   }
 

@@ -19,8 +19,8 @@ const SHADERS = ['quad.vert', 'dag', 'camera', 'look', 'surface', 'sample', 'lig
 const SHOW = ['light', 'level', 'steps', 'sharing', 'normal', 'depth', 'occlusion'];
 const EXPOSURE_SIZE = [256, 144], MOST_STEPS = 16384;
 
-/** The value that each view of the structure shows brightest; the sharing's is that of the scene. */
-const BRIGHTEST_STEPS = 160;
+/** The steps that are shown brightest, and how many levels differ in colour. */
+const BRIGHTEST_STEPS = 160, SHOWN_LEVELS = 7;
 
 /** Loads the texts of all shaders. @returns {Promise<Map<string, string>>} */
 export async function loadShaders() {
@@ -140,8 +140,8 @@ export class Renderer {
     light.use();
     this.setCast(light, shot, picture);
     light.floats(lightUniforms(shot.place, settings));
-    const brightest = {level: shot.scene?.info.levels ?? 1, steps: BRIGHTEST_STEPS, sharing: Math.log2(Math.max(2, shot.mostInstances))};
-    light.floats({u_most: brightest[/** @type {'level'} */ (settings.show)] ?? 1, u_view_distance: this.viewDistance(shot)});
+    const [least, most] = this.shownRange(shot);
+    light.floats({u_least: least, u_most: most, u_view_distance: this.viewDistance(shot)});
     light.ints({
       u_first: picture.samples === 0, u_index: picture.samples, u_light_samples: rays.light, u_occlusion_samples: rays.occlusion,
       u_light_first: settings.sun.angle > 0 ? picture.samples * rays.light : 0,
@@ -159,6 +159,14 @@ export class Renderer {
     picture.current = 1 - picture.current;
     picture.rows = 0;
     ++picture.samples;
+  }
+
+  /** Returns the values that are shown darkest and brightest. @param {Shot} shot @returns {[number, number]} */
+  shownRange({settings, scene, mostInstances}) {
+    const levels = scene?.info.levels ?? 2;
+    if (settings.show === 'level') return [Math.max(0, levels - SHOWN_LEVELS), levels];
+    if (settings.show === 'sharing') return [0, Math.log2(Math.max(2, mostInstances))];
+    return [0, BRIGHTEST_STEPS];
   }
 
   /** @param {Shot} shot */

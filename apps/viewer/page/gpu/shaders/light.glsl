@@ -5,7 +5,7 @@ uniform sampler2D u_start, u_normal, u_face;  // of sample.glsl
 uniform sampler2D u_sum;                      // the sum of the samples before this one
 uniform bool u_first;
 uniform int u_show;
-uniform float u_most;                         // the value that is shown brightest
+uniform float u_least, u_most;                // the values that are shown darkest and brightest
 uniform float u_view_distance;                // grid sides
 uniform int u_index;                          // of the view sample in its pixel
 uniform int u_light_samples, u_occlusion_samples;  // rays per view sample
@@ -121,7 +121,7 @@ vec3 shown(vec4 normal, float value, vec3 view, float open) {
   if (u_show == SHOW_DEPTH) return vec3(0.08 + 0.92 / (1.0 + normal.w / u_view_distance));
   if (u_show == SHOW_STEPS) return heat(value / u_most);
   float facing = 0.55 + 0.45 * max(dot(normal.xyz, view), 0.0);
-  return heat(0.1 + 0.85 * value / u_most) * facing;
+  return heat(0.12 + 0.8 * (value - u_least) / (u_most - u_least)) * facing;
 }
 
 void main() {
