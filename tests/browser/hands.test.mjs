@@ -19,16 +19,16 @@ const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 /** The camera that is in force. @param {Page} page @returns {Promise<{eye: number[], target: number[], up: number[], fov: number}>} */
 const camera = (page) => page.evaluate(() => {
-  const {viewer} = /** @type {any} */ (window);
+  const {viewer} = /** @type {any} */ (window).voxdag;
   return viewer.get().camera ?? viewer.info.view;
 });
 /** @param {Page} page */
-const settings = (page) => page.evaluate(() => /** @type {any} */ (window).viewer.get());
+const settings = (page) => page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.get());
 /** The point of the scene under a pixel. @param {Page} page @param {number} x @param {number} y */
-const pick = (page, x, y) => page.evaluate((x, y) => /** @type {any} */ (window).viewer.pick(x, y), x, y);
+const pick = (page, x, y) => page.evaluate((x, y) => /** @type {any} */ (window).voxdag.viewer.pick(x, y), x, y);
 /** Where a point is in the picture. @param {Page} page @param {number[]} point */
 const project = (page, point) => page.evaluate(async (point) => {
-  const {viewer} = /** @type {any} */ (window), {project} = await import(new URL('hands/pose.js', document.baseURI).href);
+  const {viewer} = /** @type {any} */ (window).voxdag, {project} = await import(new URL('hands/pose.js', document.baseURI).href);
   return project(viewer.get().camera ?? viewer.info.view, point, viewer.canvas.clientWidth, viewer.canvas.clientHeight);
 }, point);
 
@@ -36,7 +36,7 @@ const project = (page, point) => page.evaluate(async (point) => {
 async function rest(page) {
   await pause(50);
   await page.waitForFunction(() => {
-    const {hands} = /** @type {any} */ (window);
+    const {hands} = /** @type {any} */ (window).voxdag;
     return !hands.moved && !hands.navigator.flight && hands.frameRequest === 0;
   }, {timeout: 30_000});
 }
@@ -74,8 +74,8 @@ for (const browserName of browsers)
     });
     /** @param {string} [hash] @param {{width?: number, height?: number}} [size] @returns {Promise<Page>} */
     const load = async (hash = QUICK, size = SIZE) => {
-      const page = await open(browser, server.url + hash, {...size, ready: 'window.viewer?.info && window.hands?.navigator'});
-      await page.waitForFunction(() => /** @type {any} */ (window).hands.isLoaded, {timeout: 60_000});
+      const page = await open(browser, server.url + hash, {...size, ready: 'window.voxdag?.viewer?.info && window.voxdag.hands.navigator'});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.hands.isLoaded, {timeout: 60_000});
       return /** @type {any} */ (page);
     };
 
@@ -131,7 +131,7 @@ for (const browserName of browsers)
 
       await page.keyboard.press('g');
       await rest(page);
-      const stood = await camera(page), {low} = await page.evaluate(() => /** @type {any} */ (window).viewer.info.bounds);
+      const stood = await camera(page), {low} = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.bounds);
       await page.keyboard.down('a');
       await pause(400);
       await page.keyboard.up('a');
@@ -155,7 +155,7 @@ for (const browserName of browsers)
       await drag(page, [400, 300], [330, 350]);
       await rest(page);
       await page.evaluate(() => {
-        const {viewer} = /** @type {any} */ (window), {low, high} = viewer.info.bounds;
+        const {viewer} = /** @type {any} */ (window).voxdag, {low, high} = viewer.info.bounds;
         viewer.set({
           sun: {direction: [0.3, 0.8, -0.5], angle: 1.5}, level: 6, show: 'light', sky: 0.8,
           section: {box: {low, high: high.map((/** @type {number} */ x, /** @type {number} */ i) => low[i] + (x - low[i]) * 0.7)}},
@@ -170,7 +170,7 @@ for (const browserName of browsers)
       assert.deepEqual(await settings(other), wanted, 'nothing moves by itself');
       // A link pasted into the address of an open page.
       await other.evaluate(() => { location.hash = '#mode=fly&eye=1,2,3&target=0,0,0&up=0,1,0&fov=50'; });
-      await other.waitForFunction(() => /** @type {any} */ (window).viewer.get().mode === 'fly', {timeout: 5000});
+      await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly', {timeout: 5000});
       assert.deepEqual(await camera(other), {eye: [1, 2, 3], target: [0, 0, 0], up: [0, 1, 0], fov: 50});
       assertNoComplaints(other);
       await other.close();
@@ -184,9 +184,9 @@ for (const browserName of browsers)
       await page.mouse.click(300, 320);
       await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point', {timeout: 5000});
       await page.mouse.click(450, 330);
-      await page.waitForFunction(() => /** @type {any} */ (window).viewer.get().measures.length === 1, {timeout: 5000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1, {timeout: 5000});
       const [measure] = (await settings(page)).measures;
-      const voxel = await page.evaluate(() => /** @type {any} */ (window).viewer.info.voxelSize);
+      const voxel = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxelSize);
       assert.ok(apart(measure.from, a.position) < 0.01 * voxel && apart(measure.to, b.position) < 0.01 * voxel);
       const text = await page.$eval('.measure .label', (label) => Number(label.textContent));
       assert.ok(Math.abs(text - apart(measure.from, measure.to)) < 0.1 * voxel, 'the label says the distance');
@@ -239,7 +239,7 @@ for (const browserName of browsers)
       const page = await load();
       await page.keyboard.press('n');
       await page.mouse.click(400, 330);
-      await page.waitForFunction(() => /** @type {any} */ (window).viewer.get().annotations.length === 1, {timeout: 5000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1, {timeout: 5000});
       await page.keyboard.type('The gate');
       assert.equal((await settings(page)).annotations[0].text, 'The gate');
       await page.keyboard.press('Escape');
@@ -252,7 +252,7 @@ for (const browserName of browsers)
       await page.click('.marker');
       await rest(page);
       assert.ok(apart((await camera(page)).eye, annotations[0].camera.eye) < 1e-3 * apart(annotations[0].camera.eye, annotations[0].camera.target), 'the marker flies to the view of the note');
-      await page.evaluate(() => /** @type {any} */ (window).ui.open('film'));
+      await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('film'));
       await page.$$eval('button', (all) => all.find((one) => one.textContent === 'Play')?.click());
       await pause(2600);
       await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), {timeout: 5000});
@@ -263,13 +263,13 @@ for (const browserName of browsers)
 
     it('loads settings from a file, and names the key that is wrong', async () => {
       const page = await load();
-      await page.evaluate(() => /** @type {any} */ (window).ui.open('share'));
+      await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('share'));
       const good = path.join(folder, 'good.json'), bad = path.join(folder, 'bad.json');
       fs.writeFileSync(good, '{"version": 1, "sky": 0.5, "camera": {"eye": [3, 2, 1], "target": [0, 0, 0]}}');
       fs.writeFileSync(bad, '{"version": 1, "sky": "blue"}');
       const input = /** @type {import('puppeteer-core').ElementHandle<HTMLInputElement>} */ (await page.$('input[type=file]'));
       await input.uploadFile(good);
-      await page.waitForFunction(() => /** @type {any} */ (window).viewer.get().sky === 0.5, {timeout: 5000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5, {timeout: 5000});
       assert.deepEqual((await camera(page)).eye, [3, 2, 1]);
       await input.uploadFile(bad);
       await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''), {timeout: 5000});

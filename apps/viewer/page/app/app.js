@@ -17,7 +17,7 @@ try {
   for (const problem of problems) console.warn(problem);
   if (problems.length) ui.toast(capitalized(problems[0]), true);
   // For tests and for the console.
-  Object.assign(window, { viewer, hands, ui });
+  Object.assign(window, { voxdag: { viewer, hands, ui } });
 } catch (error) {
   console.error(error);
   document.getElementById('start')?.remove();
