@@ -6,18 +6,7 @@ import { capitalized, keepLink } from '../ui/link.js';
 import { failureCard, tryAgain } from '../ui/status.js';
 import { createViewer } from '../viewer.js';
 
-const container = /** @type {HTMLElement} */ (document.getElementById('viewer'));
-
-/** @param {unknown} error */
-function showFailure(error) {
-  document.getElementById('start')?.remove();
-  const message = error instanceof Error ? error.message : String(error);
-  const noGraphics = !document.createElement('canvas').getContext('webgl2');
-  container.append(noGraphics
-    ? failureCard('This browser has no WebGL 2', 'The viewer draws with WebGL 2. Switch on hardware acceleration in the settings of the browser, update the browser or the graphics driver, or open the page in another browser.', [tryAgain()])
-    : failureCard('The viewer cannot start', message, [tryAgain()]));
-  container.classList.add('failed');
-}
+const container = /** @type {HTMLElement} */ (document.getElementById('container'));
 
 try {
   const { settings, problems } = settingsFromHash(location.hash);
@@ -31,5 +20,6 @@ try {
   Object.assign(window, { voxdag: { viewer, hands, ui } });
 } catch (error) {
   console.error(error);
-  showFailure(error);
+  document.getElementById('start')?.remove();
+  container.append(failureCard('The viewer cannot start', error instanceof Error ? error.message : String(error), [tryAgain()]));
 }
