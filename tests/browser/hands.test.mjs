@@ -225,7 +225,7 @@ for (const browserName of browsers)
       const cut = (await settings(page)).section.box;
       assert.ok(cut.high[1] < box.high[1], 'the top face follows the pointer');
       assert.deepEqual([cut.low, cut.high[0], cut.high[2]], [box.low, box.high[0], box.high[2]]);
-      await page.focus('[aria-label="Box, low x"]');
+      await page.$eval('[aria-label="Box, low x"]', (handle) => /** @type {SVGElement} */ (handle).focus());
       await page.keyboard.press('ArrowRight');
       assert.ok((await settings(page)).section.box.low[0] > box.low[0], 'keys move a handle');
       // Rays do not meet what is cut away.
@@ -249,7 +249,7 @@ for (const browserName of browsers)
       await page.keyboard.press('k');
       const {path: keys, annotations} = await settings(page);
       assert.deepEqual(keys.map((/** @type {any} */ key) => key.time), [0, 2]);
-      await page.click('.marker');
+      await page.click('.marker .disc');
       await rest(page);
       assert.ok(apart((await camera(page)).eye, annotations[0].camera.eye) < 1e-3 * apart(annotations[0].camera.eye, annotations[0].camera.target), 'the marker flies to the view of the note');
       await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('film'));
