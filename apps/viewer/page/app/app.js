@@ -1,3 +1,25 @@
-import {VERSION} from '../constants.js';
+/** The page's program: a viewer of the scene beside the page, with hands and interface. */
+import { Hands } from '../hands/hands.js';
+import { settingsFromHash } from '../settings.js';
+import { createInterface } from '../ui/interface.js';
+import { capitalized, keepLink } from '../ui/link.js';
+import { failureCard, tryAgain } from '../ui/status.js';
+import { createViewer } from '../viewer.js';
 
-document.title = `voxdag ${VERSION}`;
+const container = /** @type {HTMLElement} */ (document.getElementById('container'));
+
+try {
+  const { settings, problems } = settingsFromHash(location.hash);
+  const viewer = createViewer({ container, settings });
+  const hands = new Hands(viewer);
+  const { ui } = createInterface(viewer, hands, container);
+  keepLink(ui);
+  for (const problem of problems) console.warn(problem);
+  if (problems.length) ui.toast(capitalized(problems[0]), true);
+  // For tests and for the console.
+  Object.assign(window, { voxdag: { viewer, hands, ui } });
+} catch (error) {
+  console.error(error);
+  document.getElementById('start')?.remove();
+  container.append(failureCard('The viewer cannot start', error instanceof Error ? error.message : String(error), [tryAgain()]));
+}

@@ -1,0 +1,67 @@
+// Loads a scene through a worker. The worker reads the file root first, checks every level, and
+// sends it.
+
+import {CELL_INDEX, DAG, FILE, PAGES} from '../constants.js';
+import {loadText} from './text_assets.js';
+
+/** Codes of instances are this many times the binary logarithm of the number. */
+export const INSTANCE_STEPS = 4;
+
+const PARTS = ['source', 'container', 'levels', 'attributes', 'worker'];
+
+/**
+ * What a file holds. `levelBegin` are the first words of the levels in NODE.
+ * @typedef {{
+ *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
+ *   dagNodesPerLevel: number[], svoNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
+ *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean, attributeBytes: number,
+ *   source: {name: string, vertices: number, triangles: number}, program: string}} FileInfo
+ */
+/** @typedef {{precision: number, begins: Uint32Array, words: Uint32Array}} ValuePages */
+/** @typedef {{index: {finest: number, cells: number, width: number[], words: Uint32Array}, colors: ValuePages | null, normals: ValuePages | null}} Attributes */
+/**
+ * The messages of the worker.
+ * @typedef {{type: 'info', info: FileInfo, bytes: number}
+ *   | {type: 'progress', bytes: number}
+ *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
+ *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
+ *   | ({type: 'attributes'} & Attributes)
+ *   | {type: 'note', text: string} | {type: 'loaded'} | {type: 'done', requests: number}
+ *   | {type: 'error', title: string, text: string}} LoaderMessage
+ */
+
+/** A scene that is being loaded. */
+export class SceneLoader {
+  /** @param {(message: LoaderMessage) => void} onMessage */
+  constructor(onMessage) {
+    this.onMessage = onMessage;
+    /** @type {Worker | null} */
+    this.worker = null;
+    this.closed = false;
+  }
+
+  /** Opens a file: at an address, or its bytes. @param {{url?: string, bytes?: ArrayBuffer}} from */
+  async open(from) {
+    const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
+    if (this.closed) return;
+    const constants = Object.entries({FILE, DAG, PAGES, CELL_INDEX, INSTANCE_STEPS}).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
+    const url = URL.createObjectURL(new Blob(["'use strict';\n", ...constants, ...texts], {type: 'text/javascript'}));
+    this.worker = new Worker(url);
+    URL.revokeObjectURL(url);
+    this.worker.onmessage = (event) => this.onMessage(event.data);
+    this.worker.onerror = (event) => this.onMessage({type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.'});
+    if (from.bytes !== undefined) this.worker.postMessage({type: 'open', bytes: from.bytes}, [from.bytes]);
+    else this.worker.postMessage({type: 'open', url: new URL(from.url ?? '', document.baseURI).href});
+  }
+
+  /** Loads cells down to level `shown`, and then attributes. @param {{shown: number, colors: boolean, normals: boolean}} wanted */
+  load(wanted) {
+    this.worker?.postMessage({type: 'load', ...wanted});
+  }
+
+  close() {
+    this.closed = true;
+    this.worker?.terminate();
+    this.worker = null;
+  }
+}

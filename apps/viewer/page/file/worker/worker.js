@@ -1,0 +1,121 @@
+// The worker that loads a scene: root first, each level checked before it is sent. Part of the
+// worker's script: see scene_loader.js, which also lists the messages.
+
+const HEAD_BYTES = 1 << 16, SLICE_BYTES = 1 << 22;
+
+/** @type {MemorySource | ServerSource} */
+let source;
+/** @type {ChunkTable} */
+let chunks;
+/** @type {Awaited<ReturnType<typeof readSceneInfo>>} */
+let info;
+/** @type {Uint8Array} */
+let head;
+let bytesLoaded = 0;
+
+/** @param {any} message @param {ArrayBuffer[]} [transfer] */
+function send(message, transfer) {
+  /** @type {any} */ (self).postMessage(message, transfer ?? []);
+}
+
+/** Reads bytes in slices and reports each. @param {number} offset @param {number} length @returns {Promise<Uint8Array>} */
+async function readSlices(offset, length) {
+  const bytes = new Uint8Array(length);
+  let done = 0;
+  if (offset < head.length) {
+    done = Math.min(length, head.length - offset);
+    bytes.set(head.subarray(offset, offset + done));
+  }
+  while (done < length) {
+    const size = Math.min(SLICE_BYTES, length - done);
+    await source.read(bytes.subarray(done, done + size), offset + done);
+    done += size;
+    bytesLoaded += size;
+    send({type: 'progress', bytes: bytesLoaded});
+  }
+  return bytes;
+}
+
+/** @param {string} id @returns {Chunk} */
+function chunk(id) {
+  return /** @type {Chunk} */ (chunks.get(id));
+}
+
+/** Loads the levels of cells up to `shown`. @param {number} shown */
+async function loadLevels(shown) {
+  const {levels, levelBegin} = info;
+  if (info.isEmpty) return;
+  /** @type {UpperLevel | null} */
+  let above = null;
+  let most = 1;
+  // A request for several small levels at once: their bytes follow each other.
+  let ready = new Uint8Array(0), readyBegin = 0;
+  for (let level = 0; level < Math.min(shown, levels - 2); ++level) {
+    const begin = 4 * levelBegin[level], end = 4 * levelBegin[level + 1];
+    if (end > readyBegin + ready.length) {
+      let last = level + 1;
+      while (last < Math.min(shown, levels - 2) && 4 * levelBegin[last + 1] - begin <= SLICE_BYTES / 8) ++last;
+      readyBegin = begin;
+      ready = await readSlices(chunk('NODE').offset + begin, 4 * levelBegin[last] - begin);
+    }
+    const words = asWords(ready.slice(begin - readyBegin, end - readyBegin));
+    above = checkLevel(level, levelBegin[level], words, above);
+    if (above.instances !== null) most = above.instances.reduce((a, b) => Math.max(a, b), most);
+    const copy = words.slice(), codes = above.instances === null ? null : codeInstances(above.instances);
+    send({type: 'level', level, shown: level + 1, words: copy, codes, mostInstances: most}, codes === null ? [copy.buffer] : [copy.buffer, codes.buffer]);
+  }
+  if (shown < levels - 1) return;
+  const {offset, length} = chunk('LEAF');
+  const halves = asWords(await readSlices(offset, length));
+  const instances = checkLeaves(levels - 2, halves, above);
+  if (instances !== null) most = instances.reduce((a, b) => Math.max(a, b), most);
+  const codes = instances === null ? null : codeInstances(instances);
+  send({type: 'leaves', shown: Math.min(shown, levels), halves, codes, mostInstances: most}, codes === null ? [halves.buffer] : [halves.buffer, codes.buffer]);
+}
+
+/** @param {{colors: boolean, normals: boolean}} wanted */
+async function loadAttributes(wanted) {
+  if (info.isEmpty || (!wanted.colors && !wanted.normals)) return;
+  const index = parseCellIndex(await readSlices(chunk('CIDX').offset, chunk('CIDX').length), info.levels);
+  if (index.cells >= 2 ** 32) {
+    send({type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.'});
+    return;
+  }
+  /** @type {{[id: string]: ReturnType<typeof parseValues> | null}} */
+  const values = {COLR: null, NRML: null};
+  for (const [id, isWanted] of [['COLR', wanted.colors], ['NRML', wanted.normals]])
+    if (isWanted) values[String(id)] = parseValues(await readSlices(chunk(String(id)).offset, chunk(String(id)).length), String(id), index.cells);
+  const {COLR: colors, NRML: normals} = values;
+  send({type: 'attributes', index, colors, normals},
+       [index.words.buffer, ...[colors, normals].flatMap((v) => (v === null ? [] : [v.begins.buffer, v.words.buffer]))]);
+}
+
+/** @param {any} request */
+async function handle(request) {
+  if (request.type === 'open') {
+    if (request.bytes !== undefined) {
+      source = new MemorySource(request.bytes);
+      head = source.bytes.subarray(0, Math.min(HEAD_BYTES, source.size));
+    } else {
+      source = new ServerSource(request.url);
+      head = await source.open(HEAD_BYTES);
+    }
+    bytesLoaded = head.length;
+    chunks = await readChunkTable(source, head);
+    info = await readSceneInfo(source, head, chunks);
+    send({type: 'info', info, bytes: bytesLoaded});
+  } else if (request.type === 'load') {
+    await loadLevels(request.shown);
+    send({type: 'loaded'});
+    await loadAttributes(request);
+    send({type: 'done', requests: source instanceof ServerSource ? source.requests : 0});
+  }
+}
+
+self.onmessage = (event) => {
+  handle(event.data).catch((error) => {
+    const known = error instanceof SceneError;
+    const text = error instanceof RangeError ? 'There is not enough memory for it.' : String(error?.message ?? error);
+    send({type: 'error', title: known ? error.title : 'The scene cannot be shown', text});
+  });
+};

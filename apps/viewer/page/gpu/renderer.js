@@ -1,0 +1,246 @@
+// Renders pictures of a scene with WebGL2: samples are found (sample.glsl), lit and added up
+// (light.glsl), and shown (display.glsl).
+
+import {DAG, GLSL, LIGHT, NORMAL, SAMPLES} from '../constants.js';
+import {INSTANCE_STEPS} from '../file/scene_loader.js';
+import {loadText} from '../file/text_assets.js';
+import {automaticExposure} from './exposure.js';
+import {cameraUniforms, lightUniforms, sectionUniforms} from './frame_uniforms.js';
+import {Program, drawAll, makeTarget, makeTexture} from './gl_tools.js';
+import {texelBits} from './long_texture.js';
+import {discSamples, hemisphereSamples, rotations, samplePlace} from './sample_tables.js';
+
+/** @typedef {import('./picture.js').Picture} Picture */
+/** @typedef {import('./scene_textures.js').SceneTextures} SceneTextures */
+/** @typedef {import('../settings.js').Settings & {camera: import('../settings.js').Camera}} Settings */
+/** @typedef {{origin: import('../math.js').Vec3, side: number}} Place */
+
+const SHADERS = ['quad.vert', 'dag', 'camera', 'look', 'surface', 'sample', 'light', 'display', 'hits', 'reduce'];
+const SHOW = ['light', 'level', 'steps', 'sharing', 'normal', 'depth', 'occlusion'];
+const EXPOSURE_SIZE = [256, 144], MOST_STEPS = 16384;
+
+/** The steps that are shown brightest, and how many levels differ in colour. */
+const BRIGHTEST_STEPS = 160, SHOWN_LEVELS = 7;
+
+/** Loads the texts of all shaders. @returns {Promise<Map<string, string>>} */
+export async function loadShaders() {
+  const texts = await Promise.all(SHADERS.map((name) => loadText(`gpu/shaders/${name}.glsl`)));
+  return new Map(SHADERS.map((name, i) => [name, texts[i]]));
+}
+
+/**
+ * What a picture shows, besides its size.
+ * @typedef {{settings: Settings, place: Place, scene: SceneTextures | null, shown: number, mostInstances: number,
+ *   samples: number, quick: boolean}} Shot
+ */
+
+export class Renderer {
+  /** @param {WebGL2RenderingContext} gl @param {Map<string, string>} shaders */
+  constructor(gl, shaders) {
+    this.gl = gl;
+    this.shaders = shaders;
+    if (gl.getExtension('EXT_color_buffer_float') === null) throw new Error('the graphics card cannot draw into textures of floats');
+    /** @type {Map<string, Program>} */
+    this.programs = new Map();
+    this.tables = {light: 0, hemisphere: 0, textures: /** @type {WebGLTexture[]} */ ([])};
+    this.vertices = gl.createVertexArray();
+    this.small = makeTexture(gl, gl.RGBA32F, EXPOSURE_SIZE[0], EXPOSURE_SIZE[1]);
+    this.smallTarget = makeTarget(gl, [this.small]);
+    const circle = rotations();
+    this.circle = makeTexture(gl, gl.RG32F, circle.length / 2, 1);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, circle.length / 2, 1, gl.RG, gl.FLOAT, circle);
+  }
+
+  /** Begins to compile the programs of the usual picture. */
+  warmUp() {
+    for (const name of ['sample', 'light', 'display', 'reduce']) this.program(name);
+  }
+
+  /** @param {string} name @param {boolean} [look] */
+  program(name, look = false) {
+    const key = look ? `${name} with colours` : name;
+    let program = this.programs.get(key);
+    if (program === undefined) {
+      const text = (/** @type {string} */ part) => this.shaders.get(part) ?? '';
+      const parts = {
+        sample: ['dag', 'camera', ...(look ? ['look'] : []), 'uniforms', 'surface', 'sample'], light: ['dag', 'camera', 'light'],
+        hits: ['dag', 'camera', 'hits'], display: ['display'], reduce: ['reduce'],
+      }[name] ?? [];
+      const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
+          `#define CUT_ALBEDO vec3(0.72, 0.27, 0.16)\n${SHOW.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
+          (look ? '#define HAS_LOOK\n' : '');
+      const fragment = head + parts.map((part) => (part === 'uniforms' ? 'uniform int u_coarser_fits;\n' : text(part))).join('\n');
+      program = new Program(this.gl, `#version 300 es\n${text('quad.vert')}`, fragment, key);
+      this.programs.set(key, program);
+    }
+    return program;
+  }
+
+  /** Makes tables of at least these numbers of samples per set. @param {number} light @param {number} hemisphere */
+  prepareTables(light, hemisphere) {
+    if (light <= this.tables.light && hemisphere <= this.tables.hemisphere) return;
+    const {gl} = this;
+    for (const texture of this.tables.textures) gl.deleteTexture(texture);
+    const upload = (/** @type {number} */ format, /** @type {number} */ kind, /** @type {Float32Array} */ values, /** @type {number} */ count) => {
+      const texture = makeTexture(gl, format, count, SAMPLES.sets);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, count, SAMPLES.sets, kind, gl.FLOAT, values);
+      return texture;
+    };
+    this.tables = {light, hemisphere, textures: [
+      upload(gl.RG32F, gl.RG, discSamples(light), light), upload(gl.RGBA32F, gl.RGBA, hemisphereSamples(hemisphere), hemisphere)]};
+  }
+
+  /** Returns the rays per view sample of the sun and of occlusion. @param {Shot} shot */
+  raysPerSample({settings, samples}) {
+    return {
+      light: settings.sun.angle > 0 ? Math.ceil(LIGHT.shadowSamples / samples) : 1,
+      occlusion: Math.ceil(settings.occlusion.samples / samples),
+    };
+  }
+
+  /** Sets what all casts need. @param {Program} program @param {Shot} shot @param {Picture} picture */
+  setCast(program, shot, picture) {
+    const {settings, place} = shot;
+    program.floats(cameraUniforms(place, settings.camera, picture.width, picture.height));
+    program.floats(sectionUniforms(place, settings.section));
+    program.floats({u_sample: samplePlace(picture.samples), u_lod: settings.lod});
+    program.ints({u_levels: shot.scene?.info.levels ?? 2, u_shown: Math.min(shot.shown, settings.level ?? DAG.mostLevels), u_show: SHOW.indexOf(settings.show)});
+  }
+
+  /**
+   * Renders rows of the next sample of a picture, from the top; completes the sample with the last row.
+   * @param {Picture} picture @param {Shot} shot @param {number} rows
+   */
+  render(picture, shot, rows) {
+    const {gl} = this;
+    const {scene, settings} = shot;
+    if (scene === null || shot.shown < 1) return;
+    const end = Math.min(picture.rows + rows, picture.height);
+    const y = picture.height - end;
+    gl.bindVertexArray(this.vertices);
+    gl.viewport(0, 0, picture.width, picture.height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, y, picture.width, end - picture.rows);
+
+    const look = scene.look !== null && (settings.colors || settings.normals);
+    const sample = this.program('sample', look);
+    sample.use();
+    this.setCast(sample, shot, picture);
+    sample.floats({u_cube_pixels: settings.cubes});
+    sample.ints({u_coarser_fits: shot.quick ? 0 : NORMAL.coarser});
+    const sharing = scene.nodeInstances === null ? {} : {u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture};
+    sample.textures({u_node_instances: scene.nodes.texture, u_leaf_instances: scene.nodes.texture, ...scene.walk(), ...sharing,
+                     ...(look ? scene.lookTextures(sample, settings) : {})});
+    gl.bindFramebuffer(gl.FRAMEBUFFER, picture.viewTarget);
+    drawAll(gl);
+
+    const rays = this.raysPerSample(shot);
+    this.prepareTables(rays.light * shot.samples, Math.max(1, rays.occlusion * shot.samples));
+    const light = this.program('light');
+    light.use();
+    this.setCast(light, shot, picture);
+    light.floats(lightUniforms(shot.place, settings));
+    const [least, most] = this.shownRange(shot);
+    light.floats({u_least: least, u_most: most, u_view_distance: this.viewDistance(shot)});
+    light.ints({
+      u_first: picture.samples === 0, u_index: picture.samples, u_light_samples: rays.light, u_occlusion_samples: rays.occlusion,
+      u_light_first: settings.sun.angle > 0 ? picture.samples * rays.light : 0,
+      u_shadows: settings.shadows, u_sky_occluded: rays.occlusion > 0,
+    });
+    light.textures({...scene.walk(), u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2], u_sum: picture.sums[picture.current],
+                    u_disc: this.tables.textures[0], u_hemisphere: this.tables.textures[1], u_rotations: this.circle});
+    gl.bindFramebuffer(gl.FRAMEBUFFER, picture.sumTargets[1 - picture.current]);
+    drawAll(gl);
+    gl.disable(gl.SCISSOR_TEST);
+
+    picture.rows = end;
+    picture.isDisplay = settings.show !== 'light';
+    if (end < picture.height) return;
+    picture.current = 1 - picture.current;
+    picture.rows = 0;
+    ++picture.samples;
+  }
+
+  /** Returns the values that are shown darkest and brightest. @param {Shot} shot @returns {[number, number]} */
+  shownRange({settings, scene, mostInstances}) {
+    const levels = scene?.info.levels ?? 2;
+    if (settings.show === 'level') return [Math.max(0, levels - SHOWN_LEVELS), levels];
+    if (settings.show === 'sharing') return [0, Math.log2(Math.max(2, mostInstances))];
+    return [0, BRIGHTEST_STEPS];
+  }
+
+  /** @param {Shot} shot */
+  viewDistance({settings, place}) {
+    const {eye, target} = settings.camera;
+    return Math.hypot(eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]) / place.side;
+  }
+
+  /** Returns the mean of a channel-wise small copy of a texture of floats. @param {WebGLTexture} texture @param {Picture} picture @returns {Float32Array} */
+  smallCopy(texture, picture) {
+    const {gl} = this;
+    const width = Math.min(EXPOSURE_SIZE[0], picture.width), height = Math.min(EXPOSURE_SIZE[1], picture.height);
+    const reduce = this.program('reduce');
+    reduce.use();
+    reduce.floats({u_from: [picture.width, picture.height], u_to: [width, height]});
+    reduce.textures({u_picture: texture});
+    gl.bindVertexArray(this.vertices);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.smallTarget);
+    gl.viewport(0, 0, width, height);
+    drawAll(gl);
+    const pixels = new Float32Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
+    return pixels;
+  }
+
+  /** Returns the exposure that suits a picture with at least one sample. @param {Picture} picture */
+  exposureOf(picture) {
+    return automaticExposure(this.smallCopy(picture.sums[picture.current], picture), picture.samples);
+  }
+
+  /** Returns the mean steps of the last sample's view rays. @param {Picture} picture */
+  stepsOf(picture) {
+    const pixels = this.smallCopy(picture.views[2], picture);
+    let sum = 0;
+    for (let i = 3; i < pixels.length; i += 4) sum += pixels[i];
+    return sum / (pixels.length / 4);
+  }
+
+  /**
+   * Shows a picture with at least one sample in a framebuffer: null is the canvas.
+   * @param {Picture} picture @param {number} exposure @param {WebGLFramebuffer | null} target @param {number} width @param {number} height
+   */
+  display(picture, exposure, target, width, height) {
+    const {gl} = this;
+    const display = this.program('display');
+    display.use();
+    display.floats({u_samples: picture.samples, u_canvas: [width, height], u_picture: [picture.width, picture.height],
+                    u_exposure: picture.isDisplay ? 0 : exposure});
+    display.textures({u_sum: picture.sums[picture.current]});
+    gl.bindVertexArray(this.vertices);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(0, 0, width, height);
+    drawAll(gl);
+  }
+
+  /**
+   * Returns the cells that the pixels' first rays hit, as hits.glsl writes them, rows from the bottom.
+   * @param {Shot} shot @param {number} width @param {number} height @returns {Uint32Array}
+   */
+  hits(shot, width, height) {
+    const {gl} = this;
+    const texture = makeTexture(gl, gl.RGBA32UI, width, height), target = makeTarget(gl, [texture]);
+    const program = this.program('hits');
+    program.use();
+    this.setCast(program, shot, /** @type {any} */ ({width, height, samples: 0}));
+    program.textures(/** @type {SceneTextures} */ (shot.scene).walk());
+    gl.bindVertexArray(this.vertices);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(0, 0, width, height);
+    drawAll(gl);
+    const cells = new Uint32Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, cells);
+    gl.deleteFramebuffer(target);
+    gl.deleteTexture(texture);
+    return cells;
+  }
+}

@@ -1,0 +1,95 @@
+// The scene in textures of the graphics card.
+
+import {DAG} from '../constants.js';
+import {LongTexture, mostTexels} from './long_texture.js';
+
+/** @typedef {import('../file/scene_loader.js').FileInfo} FileInfo */
+/** @typedef {import('../file/scene_loader.js').Attributes} Attributes */
+
+/** Returns the finest level of cells that the card can hold. @param {WebGL2RenderingContext} gl @param {FileInfo} info */
+export function finestLevelThatFits(gl, info) {
+  const most = mostTexels(gl);
+  if (info.words <= most && info.leafBlocks <= most) return info.levels;
+  let level = info.levels - 2;
+  while (level > 1 && info.levelBegin[level] > most) --level;
+  return level;
+}
+
+export class SceneTextures {
+  /** @param {WebGL2RenderingContext} gl @param {FileInfo} info @param {number} finest the finest level that will be loaded */
+  constructor(gl, info, finest) {
+    this.gl = gl;
+    this.info = info;
+    const words = finest >= info.levels - 1 ? info.words : info.levelBegin[Math.min(finest, info.levels - 2)];
+    this.nodeCount = words;
+    this.leafCount = finest >= info.levels - 1 ? info.leafBlocks : 0;
+    this.nodes = new LongTexture(gl, 'R32UI', words);
+    this.leaves = new LongTexture(gl, 'RG32UI', this.leafCount);
+    /** @type {LongTexture | null} */
+    this.nodeInstances = null;
+    /** @type {LongTexture | null} */
+    this.leafInstances = null;
+    /** @type {{index: Attributes['index'], colorBits: number, normalBits: number, slots: LongTexture, values: (LongTexture | null)[]} | null} */
+    this.look = null;
+  }
+
+  /** @param {Attributes} attributes */
+  setLook({index, colors, normals}) {
+    const {gl} = this;
+    const upload = (/** @type {Uint32Array} */ values) => {
+      const texture = new LongTexture(gl, 'R32UI', values.length + 1);
+      texture.set(0, values);
+      return texture;
+    };
+    this.look = {
+      index, colorBits: colors?.precision ?? -1, normalBits: normals?.precision ?? -1, slots: upload(index.words),
+      values: [colors, normals].flatMap((v) => (v === null ? [null, null] : [upload(v.words), upload(v.begins)])),
+    };
+  }
+
+  /** Uploads how many cells each node stands for. @param {Uint8Array} nodes @param {Uint8Array} leaves */
+  setInstances(nodes, leaves) {
+    this.nodeInstances ??= new LongTexture(this.gl, 'R8UI', this.nodeCount);
+    this.leafInstances ??= new LongTexture(this.gl, 'R8UI', this.leafCount);
+    this.nodeInstances.set(0, nodes.subarray(0, this.nodeCount));
+    this.leafInstances.set(0, leaves.subarray(0, this.leafCount));
+  }
+
+  /** The textures that every cast reads. */
+  walk() {
+    return {u_nodes: this.nodes.texture, u_leaves: this.leaves.texture};
+  }
+
+  /**
+   * Sets the uniforms of look.glsl and returns its textures.
+   * @param {import('./gl_tools.js').Program} program @param {{colors: boolean, normals: boolean}} wanted
+   * @returns {{[name: string]: WebGLTexture}}
+   */
+  lookTextures(program, wanted) {
+    const {gl, look, info} = this;
+    if (look === null) return {};
+    const begin = [];
+    let at = 0;
+    for (let l = 0; l < DAG.mostLevels; ++l) {
+      begin.push(at);
+      const slots = l < info.levels - 2 ? info.levelBegin[l + 1] - info.levelBegin[l] : 0;
+      at += 2 * Math.ceil((slots * look.index.width[l]) / 64);
+    }
+    const levelBegin = Array.from({length: DAG.mostLevels}, (_, l) => info.levelBegin[l] ?? 0);
+    gl.uniform1iv(program.place('u_slot_width'), look.index.width);
+    gl.uniform1uiv(program.place('u_slot_begin'), begin);
+    gl.uniform1uiv(program.place('u_level_begin'), levelBegin);
+    program.ints({u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1});
+    const [colorWords, colorPages, normalWords, normalPages] = look.values.map((v) => (v ?? look.slots).texture);
+    return {u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages};
+  }
+
+  bytes() {
+    const all = [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
+    return all.reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
+  }
+
+  delete() {
+    for (const texture of [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots, ...(this.look?.values ?? [])]) texture?.delete();
+  }
+}

@@ -1,0 +1,85 @@
+// The view sample of each pixel: what its primary ray hits, ready to be lit. The port of
+// render/voxel_view_samples.hpp.
+
+uniform float u_cube_pixels;
+uniform int u_show;            // SHOW_*
+uniform usampler2D u_node_instances, u_leaf_instances;
+uniform int u_color_bits, u_normal_bits;  // precision of the stored values; -1: none
+uniform usampler2D u_color_words, u_color_pages, u_normal_words, u_normal_pages;
+
+layout(location = 0) out vec4 out_start;   // where rays start, grid coordinates; w: the cell's side, 0 without a hit
+layout(location = 1) out vec4 out_normal;  // shading normal; w: depth in grid sides
+layout(location = 2) out vec4 out_face;    // xy: octahedral normal of the face; z: colour code; w: the value to show
+
+vec2 packUnit(vec3 n) {
+  n /= abs(n.x) + abs(n.y) + abs(n.z);
+  vec2 turned = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+  return n.z < 0.0 ? turned : n.xy;
+}
+
+void main() {
+  vec3 direction = pixelDirection(pixelOfFragment());
+  GridRay ray = rayFromEye(u_eye, direction);
+  float scale = u_lod * u_pixel_size;
+  CellHit hit;
+  bool is_hit = castRay(ray, scale * ray.t_start, scale * ray.t_scale, hit);
+  float steps = float(g_steps);
+  out_start = vec4(0.0);
+  out_normal = vec4(0.0, 0.0, 0.0, -1.0);
+  out_face = vec4(0.0, 0.0, -1.0, steps);
+  if (!is_hit) return;
+
+  float depth = ray.t_start + hit.t * ray.t_scale;
+  float cell_side = uintBitsToFloat(uint(127 - hit.level) << 23u);
+  vec3 view = -normalize(direction);
+  vec3 place = u_eye + direction * depth;
+  bool is_cut = ray.cut != 0 && hit.t == ray.t_min;
+  vec3 normal, face, start;
+  float color = -1.0;
+  if (is_cut) {
+    normal = ray.cut == 4 ? u_section_plane.xyz : vec3(0.0);
+    if (ray.cut < 4) normal[ray.cut - 1] = direction[ray.cut - 1] > 0.0 ? -1.0 : 1.0;
+    face = normal;
+    start = gridPoint(place);
+    color = -2.0;
+  } else {
+    int side = enteredFace(ray, hit);
+    vec3 entered = side < 0 ? view : faceNormal(side);
+    ivec3 cell = cellOf(ray, hit);
+    float cell_pixels = cell_side / (u_pixel_size * depth);
+    float cube = smoothStep(u_cube_pixels * 0.5, u_cube_pixels, cell_pixels);
+    normal = entered;
+    if (cube < 1.0 && hit.level >= 2) normal = normalize(mix(surfaceNormal(hit.level, cell, view, entered), entered, cube));
+    face = normal;
+#ifdef HAS_LOOK
+    if (u_finest >= 0) {
+      uint number = cellNumber(cell, hit.level);
+      if (u_color_bits >= 0) {
+        uvec3 rgb = readValue(u_color_words, u_color_pages, uint(u_color_bits), number);
+        color = float(rgb.x | rgb.y << 8u | rgb.z << 16u);
+      }
+      if (u_normal_bits >= 0) {
+        vec3 stored = vec3(ivec3(readValue(u_normal_words, u_normal_pages, uint(u_normal_bits), number)) - 128);
+        stored = stored == vec3(0.0) ? vec3(0.0, 1.0, 0.0) : normalize(stored);
+        float facing = dot(stored, view);
+        bool of_back = facing < -NORMAL_LEANING || (facing < 0.0 && dot(stored, entered) < -NORMAL_OPPOSITE);
+        normal = of_back ? -stored : stored;
+      }
+    }
+#endif
+    float below = cubeHeight(face) - dot(face, entered);
+    if (below > 0.0) place += face * (below * cell_side);
+    start = u_show == SHOW_LIGHT || u_show == SHOW_OCCLUSION ? startPoint(place, face, cell_side, direction, depth)
+                                                             : gridPoint(place);
+  }
+  float value = steps;
+  if (u_show == SHOW_LEVEL) value = float(hit.level);
+  if (u_show == SHOW_SHARING) {
+    uint code = hit.level >= u_levels - 1 ? texelFetch(u_leaf_instances, texel(hit.node), 0).x
+                                          : texelFetch(u_node_instances, texel(hit.node), 0).x;
+    value = float(code) / float(INSTANCE_STEPS);
+  }
+  out_start = vec4(start, cell_side);
+  out_normal = vec4(normal, depth);
+  out_face = vec4(packUnit(face), color, value);
+}

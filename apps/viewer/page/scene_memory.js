@@ -1,0 +1,61 @@
+// The levels of a scene that have arrived, in memory: for rays on the CPU, and to fill textures
+// again after the graphics card has lost them.
+
+import {finestLevelThatFits} from './gpu/scene_textures.js';
+
+/** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
+/** @typedef {import('./file/scene_loader.js').LoaderMessage} LoaderMessage */
+/** @typedef {import('./gpu/scene_textures.js').SceneTextures} SceneTextures */
+
+export class SceneMemory {
+  /** @param {WebGL2RenderingContext} gl @param {FileInfo} info */
+  constructor(gl, info) {
+    this.info = info;
+    this.finest = finestLevelThatFits(gl, info);
+    const isWhole = this.finest >= info.levels - 1;
+    this.nodes = new Uint32Array(isWhole ? info.words : info.levelBegin[Math.min(this.finest, info.levels - 2)]);
+    this.leaves = new Uint32Array(isWhole ? 2 * info.leafBlocks : 0);
+    this.nodeInstances = new Uint8Array(this.nodes.length);
+    this.leafInstances = new Uint8Array(this.leaves.length / 2);
+    this.shown = 0;
+    this.mostInstances = 1;
+    /** @type {import('./file/scene_loader.js').Attributes | null} */
+    this.attributes = null;
+  }
+
+  /** The DAG for rays on the CPU. @returns {import('./trace.js').Dag} */
+  dag() {
+    const {levels, origin, voxelSize} = this.info;
+    return {levels, shown: this.shown, origin, voxelSize, nodes: this.nodes, leaves: this.leaves};
+  }
+
+  /** Takes a level or the attributes from the loader, and uploads them. @param {LoaderMessage} message @param {SceneTextures} textures */
+  add(message, textures) {
+    if (message.type === 'level') {
+      const begin = this.info.levelBegin[message.level];
+      this.nodes.set(message.words, begin);
+      if (message.codes !== null) this.nodeInstances.set(message.codes, begin);
+      textures.nodes.set(begin, message.words);
+    } else if (message.type === 'leaves') {
+      this.leaves.set(message.halves);
+      if (message.codes !== null) this.leafInstances.set(message.codes);
+      textures.leaves.set(0, message.halves);
+    } else if (message.type === 'attributes') {
+      this.attributes = message;
+      textures.setLook(message);
+      return;
+    } else {
+      return;
+    }
+    this.shown = message.shown;
+    this.mostInstances = Math.max(this.mostInstances, message.mostInstances);
+    if (textures.nodeInstances !== null) textures.setInstances(this.nodeInstances, this.leafInstances);
+  }
+
+  /** Fills new textures. @param {SceneTextures} textures */
+  restore(textures) {
+    textures.nodes.set(0, this.nodes);
+    textures.leaves.set(0, this.leaves);
+    if (this.attributes !== null) textures.setLook(this.attributes);
+  }
+}

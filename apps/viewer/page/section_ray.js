@@ -1,0 +1,41 @@
+/** The part of a ray that a section leaves visible. */
+import { addScaled, dot, sub } from './math.js';
+
+/** @typedef {import('./math.js').Vec3} Vec3 */
+
+/**
+ * Returns where a ray enters and leaves what the section keeps, in units of the direction; null if it
+ * passes by.
+ * @param {import('./settings.js').Settings['section']} section @param {Vec3} origin @param {Vec3} direction
+ * @param {number} most  The end of the ray.
+ * @returns {[number, number] | null}
+ */
+export function partInSection({ box, plane }, origin, direction, most) {
+  let near = 0, far = most;
+  // What is kept lies below each face: height + t * rise <= 0.
+  const below = (/** @type {number} */ height, /** @type {number} */ rise) => {
+    if (rise > 0) far = Math.min(far, -height / rise);
+    else if (rise < 0) near = Math.max(near, -height / rise);
+    else if (height > 0) far = -Infinity;
+  };
+  for (let axis = 0; box && axis < 3; ++axis) {
+    below(box.low[axis] - origin[axis], -direction[axis]);
+    below(origin[axis] - box.high[axis], direction[axis]);
+  }
+  if (plane) below(dot(plane.normal, sub(origin, plane.point)), dot(plane.normal, direction));
+  return near <= far ? [near, far] : null;
+}
+
+/**
+ * Casts a ray at what the section keeps.
+ * @template {{distance: number}} H
+ * @param {import('./settings.js').Settings['section']} section @param {Vec3} origin @param {Vec3} direction
+ * @param {number} most @param {(origin: Vec3, direction: Vec3, most: number) => H | null} cast
+ * @returns {H | null}
+ */
+export function castInSection(section, origin, direction, most, cast) {
+  const part = partInSection(section, origin, direction, most);
+  if (!part) return null;
+  const [near, far] = part, hit = cast(near > 0 ? addScaled(origin, direction, near) : origin, direction, far - near);
+  return hit && { ...hit, distance: hit.distance + near };
+}

@@ -1,0 +1,407 @@
+/**
+ * The settings of a view: their defaults, checks, and their forms as JSON and as a URL's hash.
+ * docs/viewer.md lists them. `voxdag render --view` reads the JSON.
+ */
+import { cross, length, normalized, sub } from './math.js';
+
+/**
+ * @typedef {import('./math.js').Vec3} Vec3
+ * @typedef {{eye: Vec3, target: Vec3, up: Vec3, fov: number}} Camera  World units; vertical degrees.
+ * @typedef {{low: Vec3, high: Vec3}} Box
+ * @typedef {{point: Vec3, normal: Vec3}} Plane
+ * @typedef {{from: Vec3, to: Vec3}} Measure
+ * @typedef {{text: string, point: Vec3, camera: Camera}} Annotation
+ * @typedef {{time: number, eye: Vec3, target: Vec3, up?: Vec3, fov?: number}} PathKey  Seconds.
+ * @typedef {'light' | 'level' | 'steps' | 'sharing' | 'normal' | 'depth' | 'occlusion'} Show
+ * @typedef {'orbit' | 'fly' | 'walk'} Mode
+ *
+ * @typedef {object} Settings
+ * @property {1} version
+ * @property {Camera | null} camera  Null: the view that the scene suggests.
+ * @property {{direction: Vec3 | null, angle: number, on: boolean}} sun  Null: see sunDirection().
+ * @property {number} sky  Factor on the light of the sky.
+ * @property {number} exposure  Factor before tone mapping; 0: automatic.
+ * @property {boolean} shadows
+ * @property {{samples: number, distance: number, cone: number}} occlusion
+ * @property {number} lod  Pixels.
+ * @property {number} cubes  Pixels.
+ * @property {number | null} level  Finest level shown; null: all.
+ * @property {boolean} colors
+ * @property {boolean} normals
+ * @property {Show} show
+ * @property {{box: Box | null, plane: Plane | null}} section
+ * @property {Mode} mode
+ * @property {Measure[]} measures
+ * @property {Annotation[]} annotations
+ * @property {PathKey[]} path
+ *
+ * @typedef {{[K in keyof Settings]?: Settings[K] extends any[] | null ? Settings[K]
+ *   : Settings[K] extends object | null ? Partial<NonNullable<Settings[K]>> | Extract<Settings[K], null>
+ *   : Settings[K]}} PartialSettings
+ */
+
+/** @type {readonly Show[]} */
+export const SHOWS = ['light', 'level', 'steps', 'sharing', 'normal', 'depth', 'occlusion'];
+/** @type {readonly Mode[]} */
+export const MODES = ['orbit', 'fly', 'walk'];
+
+/** @type {Settings} */
+export const DEFAULTS = {
+  version: 1,
+  camera: null,
+  sun: { direction: null, angle: 0.53, on: true },
+  sky: 1,
+  exposure: 0,
+  shadows: true,
+  occlusion: { samples: 64, distance: 0, cone: 0 },
+  lod: 1,
+  cubes: 24,
+  level: null,
+  colors: true,
+  normals: true,
+  show: 'light',
+  section: { box: null, plane: null },
+  mode: 'orbit',
+  measures: [],
+  annotations: [],
+  path: [],
+};
+
+/** Settings that are wrong. The message names the key and what is allowed. */
+export class SettingsError extends Error {}
+
+/**
+ * A check returns the value to store, or throws SettingsError with the key. `before` is the value
+ * that is in force; `ignored` collects keys that no one knows.
+ * @typedef {(value: any, key: string, before: any, ignored: string[]) => any} Check
+ */
+
+/** @param {string} key @param {string} what @returns {never} */
+function refuse(key, what) {
+  throw new SettingsError(`"${key}" ${what}`);
+}
+
+/** @param {number} least @param {number} most @returns {Check} */
+const number = (least, most) => (value, key) => {
+  if (typeof value !== 'number' || !Number.isFinite(value)) refuse(key, 'is not a number');
+  if (value < least || value > most) refuse(key, `is ${value}; allowed are ${least} to ${most}`);
+  return value;
+};
+
+/** @param {number} least @param {number} most @returns {Check} */
+const integer = (least, most) => (value, key) => {
+  if (!Number.isInteger(value)) refuse(key, 'is not a whole number');
+  return number(least, most)(value, key, null, []);
+};
+
+/** @type {Check} */
+const boolean = (value, key) =>
+  typeof value === 'boolean' ? value : refuse(key, 'is not true or false');
+
+/** @param {number} most  Characters. @returns {Check} */
+const text = (most) => (value, key) => {
+  if (typeof value !== 'string') refuse(key, 'is not a text');
+  return value.length > most ? refuse(key, `has more than ${most} characters`) : value;
+};
+
+/** @type {Check} */
+const vector = (value, key) => {
+  const limit = 1e30;  // so that squares of lengths are finite
+  if (!Array.isArray(value) || value.length !== 3 || !value.every(Number.isFinite))
+    refuse(key, 'is not an array of three numbers');
+  if (value.some((x) => Math.abs(x) > limit)) refuse(key, 'is too large');
+  return [value[0], value[1], value[2]];
+};
+
+/** @type {Check} */
+const direction = (value, key) => {
+  const v = vector(value, key, null, []);
+  return length(v) > 0 ? v : refuse(key, 'is zero; it must be a direction');
+};
+
+/** @param {readonly string[]} names @returns {Check} */
+const oneOf = (names) => (value, key) =>
+  names.includes(value) ? value : refuse(key, `is not one of ${names.join(', ')}`);
+
+/** @param {Check} check @returns {Check} */
+const orNull = (check) => (value, key, before, ignored) =>
+  value === null ? null : check(value, key, before, ignored);
+
+/** @param {Check} check @param {number} most @returns {Check} */
+const list = (check, most) => (value, key, _, ignored) => {
+  if (!Array.isArray(value)) refuse(key, 'is not an array');
+  if (value.length > most) refuse(key, `has more than ${most} elements`);
+  return value.map((element, i) => check(element, `${key}[${i}]`, null, ignored));
+};
+
+/**
+ * An object. Fields that the value lacks keep the value before, or the default.
+ * @param {{[key: string]: Check}} fields
+ * @param {{[key: string]: any}} [defaults]  Of fields that may be missing if there is none before.
+ * @param {(value: any, key: string) => any} [finish]  Checks the whole object.
+ * @returns {Check}
+ */
+const record = (fields, defaults = {}, finish = (value) => value) => (value, key, before, ignored) => {
+  if (typeof value !== 'object' || value === null || Array.isArray(value))
+    refuse(key || 'settings', 'is not an object');
+  const prefix = key ? key + '.' : '';
+  /** @type {{[key: string]: any}} */
+  const result = { ...defaults, ...before };
+  for (const [name, part] of Object.entries(value)) {
+    if (part === undefined) continue;
+    if (Object.hasOwn(fields, name))
+      result[name] = fields[name](part, prefix + name, result[name], ignored);
+    else ignored.push(prefix + name);
+  }
+  for (const name of Object.keys(fields))
+    if (!(name in result) && !(name in defaults)) refuse(prefix + name, 'is missing');
+  return finish(result, key);
+};
+
+/** An object whose fields are all replaced. @type {typeof record} */
+const whole = (fields, defaults, finish) => (value, key, _, ignored) =>
+  record(fields, defaults, finish)(value, key, null, ignored);
+
+/** The field of view: below the least, pixels no longer have distinct directions. */
+const LEAST_FOV = 1e-6, MOST_FOV = 179;
+
+/** @param {Camera} camera @param {string} key */
+function checkView(camera, key) {
+  const forward = sub(camera.target, camera.eye);
+  if (!(length(forward) > 0)) refuse(key, 'has eye and target at one point');
+  if (!(length(cross(normalized(forward), normalized(camera.up))) > 1e-6))
+    refuse(key + '.up', 'points along the view');
+  return camera;
+}
+
+const cameraFields = { eye: vector, target: vector, up: direction, fov: number(LEAST_FOV, MOST_FOV) };
+const cameraDefaults = { up: [0, 1, 0], fov: 40 };
+
+/** @param {Box} box @param {string} key */
+const checkBox = (box, key) =>
+  box.low.every((x, i) => x <= box.high[i]) ? box : refuse(key, 'has a low corner above its high corner');
+
+const pathKey = whole(
+  { time: number(-1e9, 1e9), eye: vector, target: vector, up: direction, fov: number(LEAST_FOV, MOST_FOV) },
+  { up: undefined, fov: undefined },
+  (key, name) => {
+    for (const optional of ['up', 'fov']) if (key[optional] === undefined) delete key[optional];
+    return length(sub(key.target, key.eye)) > 0 ? key : refuse(name, 'has eye and target at one point');
+  });
+
+/** @type {Check} */
+const path = (value, key, _, ignored) => {
+  const keys = list(pathKey, 10000)(value, key, null, ignored);
+  for (let i = 1; i < keys.length; ++i)
+    if (!(keys[i].time > keys[i - 1].time))
+      refuse(`${key}[${i}].time`, 'is not greater than the time of the key before');
+  return keys;
+};
+
+/** @type {Check} */
+const settingsCheck = record({
+  version: (value) => (value === 1 ? 1 : refuse('version', `is ${value}; this viewer reads version 1`)),
+  camera: orNull(record(cameraFields, cameraDefaults, checkView)),
+  sun: record({ direction: orNull(direction), angle: number(0, 89), on: boolean }),
+  sky: number(0, 1000),
+  exposure: number(0, 1e6),
+  shadows: boolean,
+  occlusion: record({ samples: integer(0, 4096), distance: number(0, 1e30), cone: number(0, 12.6) }),
+  lod: number(0, 1000),
+  cubes: number(0, 1e6),
+  level: orNull(integer(0, 32)),
+  colors: boolean,
+  normals: boolean,
+  show: oneOf(SHOWS),
+  section: record({
+    box: orNull(whole({ low: vector, high: vector }, {}, checkBox)),
+    plane: orNull(whole({ point: vector, normal: direction })),
+  }),
+  mode: oneOf(MODES),
+  measures: list(whole({ from: vector, to: vector }), 10000),
+  annotations: list(
+    whole({ text: text(2000), point: vector, camera: whole(cameraFields, cameraDefaults, checkView) }), 10000),
+  path,
+});
+
+/**
+ * Returns `settings` with the values of `changes`. Objects are merged key by key; lists, boxes and
+ * planes are replaced. Throws SettingsError for values that are wrong. Appends keys that are
+ * unknown to `ignored`.
+ * @param {Settings} settings @param {PartialSettings} changes @param {string[]} [ignored]
+ * @returns {Settings}
+ */
+export function mergeSettings(settings, changes, ignored = []) {
+  return settingsCheck(changes, '', settings, ignored);
+}
+
+/**
+ * Returns the settings of a JSON text; keys that are missing have their defaults.
+ * @param {string} json @param {string[]} [ignored] @returns {Settings}
+ */
+export function settingsFromJson(json, ignored = []) {
+  let value;
+  try {
+    value = JSON.parse(json);
+  } catch (error) {
+    throw new SettingsError(`not JSON: ${/** @type {Error} */ (error).message}`);
+  }
+  return mergeSettings(DEFAULTS, value, ignored);
+}
+
+/** @param {Settings} settings */
+export function settingsToJson(settings) {
+  // Arrays of numbers on one line each.
+  return JSON.stringify(settings, null, 2).replace(/\[\s+(-?[\d.e+-]+(?:,\s+-?[\d.e+-]+)*)\s+\]/g,
+    (_, numbers) => '[' + numbers.replace(/\s+/g, ' ') + ']') + '\n';
+}
+
+/** @param {Camera | null} a @param {Camera | null} b */
+export const sameCamera = (a, b) => a === b || JSON.stringify(a) === JSON.stringify(b);
+
+// The hash: key=value pairs; vectors are numbers with commas, parts of a value have semicolons.
+// Numbers are written as the shortest text that gives the same double, so a link is exact.
+
+/** @param {Vec3[]} vectors */
+const words = (...vectors) => vectors.map((v) => v.join(',')).join(';');
+
+/**
+ * Returns the hash for settings, without '#': only what differs from the defaults. A camera that is
+ * `home` is left out.
+ * @param {Settings} settings @param {Camera | null} [home] @returns {string}
+ */
+export function settingsToHash(settings, home = null) {
+  /** @type {string[]} */
+  const parts = [];
+  /** @param {string} key @param {string | number} value */
+  const put = (key, value) => parts.push(`${key}=${value}`);
+  /** @param {string} key @param {string | number | boolean | null} value @param {any} usual */
+  const differ = (key, value, usual) => {
+    if (value !== usual) put(key, value === true ? 'on' : value === false ? 'off' : String(value));
+  };
+  const { camera, sun, occlusion, section } = settings, usual = DEFAULTS;
+  if (camera && !sameCamera(camera, home)) {
+    put('eye', words(camera.eye));
+    put('target', words(camera.target));
+    put('up', words(camera.up));
+    put('fov', camera.fov);
+  }
+  differ('mode', settings.mode, usual.mode);
+  differ('show', settings.show, usual.show);
+  differ('level', settings.level, usual.level);
+  differ('colors', settings.colors, usual.colors);
+  differ('normals', settings.normals, usual.normals);
+  if (sun.direction) put('sun', words(sun.direction));
+  differ('sunlight', sun.on, usual.sun.on);
+  differ('angle', sun.angle, usual.sun.angle);
+  differ('sky', settings.sky, usual.sky);
+  differ('exposure', settings.exposure, usual.exposure);
+  differ('shadows', settings.shadows, usual.shadows);
+  differ('ao', occlusion.samples, usual.occlusion.samples);
+  differ('aodistance', occlusion.distance, usual.occlusion.distance);
+  differ('aocone', occlusion.cone, usual.occlusion.cone);
+  differ('lod', settings.lod, usual.lod);
+  differ('cubes', settings.cubes, usual.cubes);
+  if (section.box) put('box', words(section.box.low, section.box.high));
+  if (section.plane) put('plane', words(section.plane.point, section.plane.normal));
+  for (const { from, to } of settings.measures) put('measure', words(from, to));
+  for (const note of settings.annotations) {
+    const { eye, target, up, fov } = note.camera;
+    put('note', `${words(note.point, eye, target, up)};${fov};${encodeURIComponent(note.text)}`);
+  }
+  for (const { time, eye, target, up, fov } of settings.path)
+    put('key', `${time};${words(eye, target)}${up ? ';' + words(up) : ''}${fov === undefined ? '' : ';' + fov}`);
+  return parts.join('&');
+}
+
+/** @param {string} value */
+const toNumber = (value) => (value.trim() === '' ? NaN : Number(value));
+/** @param {string} value */
+const toVector = (value) => /** @type {any} */ (value.split(',').map(toNumber));
+/** @param {string} value */
+const toSwitch = (value) => (value === 'on' ? true : value === 'off' ? false : value);
+
+/** @type {{[key: string]: (value: string, all: any) => any}} */
+const hashReaders = {
+  eye: (v) => ({ camera: { eye: toVector(v) } }),
+  target: (v) => ({ camera: { target: toVector(v) } }),
+  up: (v) => ({ camera: { up: toVector(v) } }),
+  fov: (v) => ({ camera: { fov: toNumber(v) } }),
+  mode: (v) => ({ mode: v }),
+  show: (v) => ({ show: v }),
+  level: (v) => ({ level: toNumber(v) }),
+  colors: (v) => ({ colors: toSwitch(v) }),
+  normals: (v) => ({ normals: toSwitch(v) }),
+  sun: (v) => ({ sun: { direction: toVector(v) } }),
+  sunlight: (v) => ({ sun: { on: toSwitch(v) } }),
+  angle: (v) => ({ sun: { angle: toNumber(v) } }),
+  sky: (v) => ({ sky: toNumber(v) }),
+  exposure: (v) => ({ exposure: toNumber(v) }),
+  shadows: (v) => ({ shadows: toSwitch(v) }),
+  ao: (v) => ({ occlusion: { samples: toNumber(v) } }),
+  aodistance: (v) => ({ occlusion: { distance: toNumber(v) } }),
+  aocone: (v) => ({ occlusion: { cone: toNumber(v) } }),
+  lod: (v) => ({ lod: toNumber(v) }),
+  cubes: (v) => ({ cubes: toNumber(v) }),
+  box: (v) => {
+    const [low, high] = v.split(';').map(toVector);
+    return { section: { box: { low, high } } };
+  },
+  plane: (v) => {
+    const [point, normal] = v.split(';').map(toVector);
+    return { section: { plane: { point, normal } } };
+  },
+  measure: (v, all) => {
+    const [from, to] = v.split(';').map(toVector);
+    return { measures: [...all.measures, { from, to }] };
+  },
+  note: (v, all) => {
+    const [point, eye, target, up, fov, text = ''] = v.split(';');
+    const camera = { eye: toVector(eye), target: toVector(target ?? ''), up: toVector(up ?? ''), fov: toNumber(fov ?? '') };
+    return { annotations: [...all.annotations, { text: decodeURIComponent(text), point: toVector(point), camera }] };
+  },
+  key: (v, all) => {
+    const [time, eye, target, ...more] = v.split(';');
+    const up = more.find((part) => part.includes(',')), fov = more.find((part) => !part.includes(','));
+    /** @type {any} */
+    const key = { time: toNumber(time), eye: toVector(eye ?? ''), target: toVector(target ?? '') };
+    if (up !== undefined) key.up = toVector(up);
+    if (fov !== undefined) key.fov = toNumber(fov);
+    return { path: [...all.path, key] };
+  },
+};
+
+/**
+ * Reads a hash, with or without '#', on top of `base`. A pair that is wrong is left out and
+ * described in `problems`; the camera counts as one pair.
+ * @param {string} hash @param {Settings} [base]
+ * @returns {{settings: Settings, problems: string[]}}
+ */
+export function settingsFromHash(hash, base = DEFAULTS) {
+  let settings = base;
+  /** @type {string[]} */
+  const problems = [];
+  /** @param {string} key @param {() => any} changes */
+  const apply = (key, changes) => {
+    try {
+      settings = mergeSettings(settings, changes());
+    } catch (error) {
+      const reason = error instanceof SettingsError ? error.message : 'is not encoded as a link';
+      problems.push(`the link's "${key}" is left out: ${reason}`);
+    }
+  };
+  /** @type {any} */
+  let camera = null;
+  for (const pair of hash.replace(/^#/, '').split('&')) {
+    if (pair === '') continue;
+    const at = pair.indexOf('='), key = at < 0 ? pair : pair.slice(0, at), value = at < 0 ? '' : pair.slice(at + 1);
+    if (!Object.hasOwn(hashReaders, key)) {
+      problems.push(`the link's "${key.slice(0, 40)}" is unknown`);
+      continue;
+    }
+    if (['eye', 'target', 'up', 'fov'].includes(key)) camera = { ...camera, ...hashReaders[key](value, settings).camera };
+    else apply(key, () => hashReaders[key](value, settings));
+  }
+  if (camera) apply('eye', () => ({ camera }));
+  return { settings, problems };
+}

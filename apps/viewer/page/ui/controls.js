@@ -1,0 +1,122 @@
+/**
+ * Controls of the panels. Each is { element, refresh }: `get` reads the settings, `set` changes
+ * them, and `refresh` shows settings that someone else has changed.
+ */
+import { clamp } from '../math.js';
+import { h, say } from './dom.js';
+import { icon } from './icons.js';
+
+/**
+ * @typedef {import('../settings.js').Settings} Settings
+ * @typedef {{element: HTMLElement, refresh: (settings: Settings) => void}} Control
+ */
+
+let ids = 0;
+const newId = () => `c${++ids}`;
+
+/**
+ * A number on a slider. `to` and `from` map the value to the slider's position, from `min` to `max`.
+ * @param {{label: string, min: number, max: number, step?: number | 'any', get: (settings: Settings) => number,
+ *   set: (value: number) => void, text?: (value: number) => string, to?: (value: number) => number,
+ *   from?: (position: number) => number, hint?: string}} options
+ * @returns {Control & {limits: (min: number, max: number, step?: number | 'any') => void}}
+ */
+export function slider({ label, min, max, step = 'any', get, set, text = (x) => String(+x.toPrecision(4)), to = (x) => x, from = (x) => x, hint }) {
+  const id = newId();
+  const output = h('output', { for: id });
+  const input = h('input', { type: 'range', id, min, max, step, on: { input: () => { show(from(Number(input.value))); set(from(Number(input.value))); } } });
+  const show = (/** @type {number} */ value) => {
+    say(output, text(value));
+    input.setAttribute('aria-valuetext', text(value));
+    const low = Number(input.min), high = Number(input.max);
+    input.style.setProperty('--part', `${100 * clamp((to(value) - low) / (high - low || 1), 0, 1)}%`);
+  };
+  return {
+    element: h('div', { class: 'row slider' }, h('label', { for: id, title: hint }, label), output, input),
+    refresh(settings) {
+      const value = get(settings), position = String(to(value));
+      if (document.activeElement !== input || Math.abs(Number(input.value) - to(value)) > 1e-6 * Math.abs(to(value))) input.value = position;
+      show(value);
+    },
+    limits(low, high, by = 'any') {
+      Object.assign(input, { min: String(low), max: String(high), step: String(by) });
+    },
+  };
+}
+
+/** A slider whose position is a logarithm, with zero at its left end. @param {number} least */
+export const logarithmic = (least) => ({
+  to: (/** @type {number} */ x) => Math.log2(Math.max(x, least)),
+  from: (/** @type {number} */ x) => (x <= Math.log2(least) ? 0 : +(2 ** x).toPrecision(3)),
+});
+
+/**
+ * @param {{label: string, get: (settings: Settings) => boolean, set: (on: boolean) => void, hint?: string}} options
+ * @returns {Control & {input: HTMLInputElement}}
+ */
+export function toggle({ label, get, set, hint }) {
+  const input = h('input', { type: 'checkbox', role: 'switch', on: { change: () => set(input.checked) } });
+  return {
+    element: h('label', { class: 'row toggle', title: hint }, h('span', {}, label), input),
+    refresh(settings) { input.checked = get(settings); },
+    input,
+  };
+}
+
+/**
+ * One of several, in a list that opens.
+ * @template {string} T
+ * @param {{label: string, options: [T, string][], get: (settings: Settings) => T, set: (value: T) => void}} options
+ * @returns {Control}
+ */
+export function choice({ label, options, get, set }) {
+  const id = newId();
+  const select = h('select', { id, on: { change: () => set(/** @type {T} */ (select.value)) } },
+    ...options.map(([value, name]) => h('option', { value }, name)));
+  return {
+    element: h('div', { class: 'row choice' }, h('label', { for: id }, label), select),
+    refresh(settings) { select.value = get(settings); },
+  };
+}
+
+/**
+ * One of a few, side by side.
+ * @template {string} T
+ * @param {{label: string, options: [T, string, string?][], get: (settings: Settings) => T, set: (value: T) => void,
+ *   bare?: boolean}} options  Values, names and icons; `bare`: only icons.
+ * @returns {Control}
+ */
+export function segments({ label, options, get, set, bare }) {
+  const name = newId();
+  const inputs = options.map(([value]) =>
+    h('input', { type: 'radio', name, value, class: 'offscreen', on: { change: () => set(value) } }));
+  return {
+    element: h('div', { class: 'segments', role: 'radiogroup', 'aria-label': label },
+      ...options.map(([, text, image], i) =>
+        h('label', { title: bare ? text : null }, inputs[i], image && icon(image), h('span', { class: bare ? 'offscreen' : null }, text)))),
+    refresh(settings) {
+      const value = get(settings);
+      for (const input of inputs) input.checked = input.value === value;
+    },
+  };
+}
+
+/**
+ * @param {string} label @param {() => void} act
+ * @param {{icon?: string, bare?: boolean, primary?: boolean, title?: string, keys?: string}} [options]
+ */
+export function button(label, act, { icon: image, bare, primary, title, keys } = {}) {
+  return h('button', {
+    type: 'button', class: primary ? 'primary' : bare ? 'bare' : null, title: title ?? (bare ? label : null),
+    'aria-label': bare ? label : null, 'aria-keyshortcuts': keys, on: { click: act },
+  }, image && icon(image), !bare && label);
+}
+
+/** @param {string} title @param {...import('./dom.js').Child} children */
+export const group = (title, ...children) =>
+  h('section', { class: 'group' }, title && h('h3', {}, title), ...children);
+
+/** Controls that are shown and refreshed together. @param {Control[]} controls */
+export const refreshAll = (controls) => (/** @type {Settings} */ settings) => {
+  for (const control of controls) control.refresh(settings);
+};

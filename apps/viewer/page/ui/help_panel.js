@@ -1,0 +1,51 @@
+/** The panel "Help": every key and gesture. */
+import { group } from './controls.js';
+import { h } from './dom.js';
+
+/** @type {[string, [string, string][]][]} */
+export const HELP = [
+  ['Mouse and touch', [
+    ['Drag · one finger', 'turn; look around when flying or walking'],
+    ['Right drag · Shift drag · two fingers', 'move sideways'],
+    ['Wheel · pinch', 'zoom to the pointer; speed when flying'],
+    ['Three fingers', 'fly'],
+    ['Double click', 'turn around that point'],
+  ]],
+  ['Move', [
+    ['W A S D', 'forward, left, back, right'],
+    ['Q E', 'down, up'],
+    ['Arrows', 'turn'],
+    ['+ −', 'closer, farther'],
+    ['Shift', 'faster'],
+    ['Space', 'jump, when walking'],
+    ['L', 'look around without a button; Escape ends it'],
+  ]],
+  ['Views', [
+    ['F', 'frame the whole scene'],
+    ['R', 'reset the view'],
+    ['1 … 7', 'home, front, right, back, left, top, bottom'],
+    ['O V G', 'orbit, fly, walk'],
+  ]],
+  ['Tools', [
+    ['B', 'section plane'],
+    ['M', 'measure'],
+    ['N', 'note'],
+    ['C', 'copy voxel and position under the pointer'],
+    ['K', 'add a key to the camera path'],
+    ['P', 'save a picture'],
+    ['I', 'statistics'],
+    ['H', 'this help'],
+    ['Escape', 'end a tool, close a panel'],
+  ]],
+];
+
+export function helpPanel() {
+  return {
+    element: h('div', { class: 'help' }, ...HELP.map(([title, rows]) =>
+      group(title, h('dl', {}, ...rows.map(([keys, act]) =>
+        h('div', {}, h('dt', {}, ...(/^(.|Shift|Space|Escape|Arrows|[A-Z](?: [A-Z])+|\+ −|1 … 7)$/.test(keys)
+          ? (/^[A-Z+](?: .)+$/.test(keys) ? keys.split(' ') : [keys]).map((key) => h('kbd', {}, key)) : [keys])), h('dd', {}, act)))))),
+    h('p', { class: 'hint' }, 'A gamepad works too: sticks move and turn, triggers zoom, Y frames, X changes the mode, B goes home.')),
+    refresh() {},
+  };
+}

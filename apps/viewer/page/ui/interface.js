@@ -1,0 +1,265 @@
+/** The interface around the picture: toolbar, panels, tools, read-out, shortcuts, messages. */
+import { DEFAULTS, settingsToHash } from '../settings.js';
+import { isTyping } from '../hands/keys.js';
+import { button, segments } from './controls.js';
+import { copy, h } from './dom.js';
+import { filmPanel } from './film_panel.js';
+import { helpPanel } from './help_panel.js';
+import { icon } from './icons.js';
+import { lightPanel } from './light_panel.js';
+import { measurePanel } from './measure_panel.js';
+import { notesPanel } from './notes_panel.js';
+import { Overlay } from './overlay.js';
+import { Readout } from './readout.js';
+import { sectionPanel } from './section_panel.js';
+import { sharePanel } from './share_panel.js';
+import { statisticsPanel } from './statistics_panel.js';
+import { Status } from './status.js';
+import { SIDES, viewPanel } from './view_panel.js';
+
+/**
+ * @typedef {import('../viewer_types.js').Viewer} Viewer
+ * @typedef {import('../viewer_types.js').Hit} Hit
+ * @typedef {import('../settings.js').Settings} Settings
+ * @typedef {import('../settings.js').Camera} Camera
+ * @typedef {import('../hands/hands.js').Hands} Hands
+ *
+ * @typedef {object} Panel
+ * @property {HTMLElement} element
+ * @property {(settings: Settings) => void} refresh
+ * @property {boolean} [everyFrame]  Refresh it when a frame was drawn.
+ * @property {boolean} [followsCamera]  Refresh it when the camera has moved.
+ *
+ * @typedef {object} Tool  What a click on the picture does.
+ * @property {string} name
+ * @property {() => string} hint
+ * @property {(hit: Hit) => void} click
+ * @property {(hit: Hit | null) => void} [hover]
+ * @property {() => void} [end]
+ *
+ * @typedef {object} Ui  What panels may use.
+ * @property {Viewer} viewer
+ * @property {Hands} hands
+ * @property {Overlay} overlay
+ * @property {(text: string, isError?: boolean) => void} toast
+ * @property {(text: string) => void} announce  For screen readers only.
+ * @property {(name: string) => void} open
+ * @property {() => void} refresh
+ * @property {() => void} reset
+ * @property {() => Camera} home
+ * @property {() => string} name  Of the scene, for files.
+ * @property {() => string} hash
+ * @property {(line: string) => HTMLElement} command  A line for a terminal, to copy.
+ * @property {(tool: Tool) => {readonly active: boolean, toggle: () => void, stop: () => void}} tool
+ */
+
+/** @type {[string, string, string?][]} */
+const PANELS = [
+  ['view', 'View'], ['light', 'Light'], ['section', 'Section', 'B'], ['measure', 'Measure', 'M'], ['notes', 'Notes', 'N'],
+  ['film', 'Camera path', 'K'], ['share', 'Save and share'], ['statistics', 'Statistics', 'I'], ['help', 'Help', 'H'],
+];
+
+/** @type {Camera} */
+const ANY_CAMERA = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
+/** Milliseconds between refreshes of numbers that change with every frame. */
+const NUMBERS_MS = 250;
+
+/**
+ * Adds the interface to a container that holds the viewer's canvas.
+ * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container
+ */
+export function createInterface(viewer, hands, container) {
+  const status = new Status(viewer, container);
+  const overlay = new Overlay(viewer, container);
+  const { canvas } = viewer;
+  canvas.tabIndex = 0;
+  canvas.setAttribute('role', 'application');
+  canvas.setAttribute('aria-label', 'Picture of the scene. Arrow keys turn, W A S D move, H lists all keys.');
+  /** @type {Tool | null} */
+  let tool = null;
+  let opened = '';
+
+  const endTool = () => {
+    const ended = tool;
+    tool = null;
+    ended?.end?.();
+    showTool();
+  };
+  const showTool = () => {
+    canvas.classList.toggle('picking', tool !== null);
+    status.hint(tool ? tool.hint() : '');
+    refresh();
+  };
+
+  /** @type {Ui} */
+  const ui = {
+    viewer, hands, overlay,
+    toast: (text, isError) => status.toast(text, isError),
+    announce: (text) => status.announce(text),
+    open: (name) => { if (opened !== name) toggle(name); },
+    refresh: () => refresh(),
+    reset() {
+      endTool();
+      viewer.set({ ...structuredClone(DEFAULTS), camera: ui.home(), annotations: viewer.get().annotations, measures: viewer.get().measures, path: viewer.get().path }, 'ui');
+      ui.toast('Settings reset; measures, notes and the camera path stay');
+    },
+    home: () => viewer.info?.view ?? ANY_CAMERA,
+    name: () => (viewer.info?.name ?? 'scene').replace(/^.*\//, '').replace(/\.\w+$/, '').replace(/[^\w.-]+/g, '_') || 'scene',
+    command: (line) => h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
+      button('Copy this command', async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying'), { icon: 'copy', bare: true })),
+    hash: () => settingsToHash(viewer.get(), viewer.info?.view ?? null),
+    tool: (made) => ({
+      get active() { return tool === made; },
+      toggle() {
+        if (tool === made) return endTool();
+        endTool();
+        tool = made;
+        showTool();
+      },
+      stop() { if (tool === made) endTool(); },
+    }),
+  };
+
+  const section = sectionPanel(ui), measure = measurePanel(ui), notes = notesPanel(ui), film = filmPanel(ui), share = sharePanel(ui);
+  /** @type {{[name: string]: Panel}} */
+  const panels = {
+    view: viewPanel(ui), light: lightPanel(ui), section, measure, notes, film, share, statistics: statisticsPanel(ui), help: helpPanel(),
+  };
+  const readout = new Readout(ui, container);
+
+  // Toolbar and panel.
+  const title = h('h2', { id: 'panel-title' });
+  const body = h('div', { class: 'panel-body' });
+  const panel = h('aside', { class: 'panel', id: 'panel', hidden: true, 'aria-labelledby': 'panel-title' },
+    h('header', {}, title, button('Close', () => toggle(opened), { icon: 'close', bare: true })), body);
+  /** @type {Map<string, HTMLButtonElement>} */
+  const openers = new Map();
+  const toolbar = h('nav', { class: 'toolbar', 'aria-label': 'Panels' }, ...PANELS.map(([name, label, key]) => {
+    const opener = h('button', {
+      type: 'button', title: key ? `${label} (${key})` : label, 'aria-label': label, 'aria-expanded': 'false', 'aria-controls': 'panel',
+      on: { click: () => toggle(name) },
+    }, icon(name));
+    openers.set(name, opener);
+    return opener;
+  }));
+
+  /** Opens a panel, or closes it. @param {string} name */
+  function toggle(name) {
+    opened = opened === name ? '' : name;
+    for (const [other, opener] of openers) opener.setAttribute('aria-expanded', String(other === opened));
+    panel.hidden = opened === '';
+    container.classList.toggle('has-panel', opened !== '');
+    if (opened === '') return body.replaceChildren();
+    title.textContent = PANELS.find(([other]) => other === opened)?.[1] ?? '';
+    body.replaceChildren(panels[opened].element);
+    body.scrollTop = 0;
+    refresh();
+  }
+
+  const modes = segments({
+    label: 'Move', bare: true, options: [['orbit', 'Orbit (O)', 'orbit'], ['fly', 'Fly (V)', 'fly'], ['walk', 'Walk (G)', 'walk']],
+    get: (s) => s.mode, set: (mode) => viewer.set({ mode }, 'ui'),
+  });
+  const bar = h('div', { class: 'modes' }, modes.element,
+    button('Home (R)', () => home(), { icon: 'home', bare: true }), button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
+  container.append(bar, toolbar, panel);
+
+  const home = () => {
+    if (viewer.get().mode !== 'orbit') viewer.set({ mode: 'orbit' }, 'ui');
+    hands.view('home');
+  };
+  function refresh() {
+    const settings = viewer.get();
+    modes.refresh(settings);
+    if (opened) panels[opened].refresh(settings);
+  }
+
+  // Clicks on the picture.
+  const use = async (/** @type {number} */ x, /** @type {number} */ y) => {
+    const mine = tool, hit = await viewer.pick(x, y);
+    if (!mine || tool !== mine) return;
+    if (!hit) return ui.toast('There is no surface at this place');
+    mine.click(hit);
+    if (tool === mine) showTool();
+  };
+  hands.on('click', (x, y) => { if (tool) use(x, y); else readout.look(x, y, true); });
+  hands.on('double', async (x, y) => {
+    if (tool) return use(x, y);
+    const hit = await viewer.pick(x, y);
+    if (hit) hands.focus(hit.position);
+  });
+  hands.on('hover', (x, y, down) => {
+    if (!down) readout.look(x, y);
+  });
+  hands.on('leave', () => readout.clear());
+  hands.on('gesture', () => readout.clear());
+  readout.onHit = (hit) => tool?.hover?.(hit);
+
+  // Keys.
+  /** @type {{[key: string]: () => void}} */
+  const shortcuts = {
+    f: () => hands.frame(), r: home, h: () => toggle('help'), '?': () => toggle('help'), i: () => toggle('statistics'),
+    c: () => readout.copy(), k: () => film.record(), p: () => share.screenshot(), l: () => hands.lockPointer(),
+    b: () => { section.toggle(); ui.open('section'); },
+    m: () => { ui.open('measure'); measure.tool.toggle(); }, n: () => { ui.open('notes'); notes.tool.toggle(); },
+    o: () => viewer.set({ mode: 'orbit' }, 'ui'), v: () => viewer.set({ mode: 'fly' }, 'ui'), g: () => viewer.set({ mode: 'walk' }, 'ui'),
+  };
+  SIDES.forEach(([name], i) => { shortcuts[String(i + 1)] = () => hands.view(name); });
+  const onKey = (/** @type {KeyboardEvent} */ event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.repeat || event.defaultPrevented) return;
+    if (event.key === 'Escape') {
+      const typing = document.activeElement instanceof HTMLElement && panel.contains(document.activeElement);
+      if (tool) endTool();
+      else if (opened) {
+        const opener = openers.get(opened);
+        toggle(opened);
+        if (typing) opener?.focus();
+      }
+      return;
+    }
+    const act = shortcuts[event.key.toLowerCase()];
+    if (!act || isTyping(event)) return;
+    event.preventDefault();
+    act();
+  };
+  window.addEventListener('keydown', onKey);
+
+  // Files dropped on the page.
+  container.addEventListener('dragover', (event) => {
+    if (![...(event.dataTransfer?.items ?? [])].some((item) => item.kind === 'file')) return;
+    event.preventDefault();
+    container.classList.add('dropping');
+  });
+  container.addEventListener('dragleave', (event) => {
+    if (!container.contains(/** @type {Node | null} */ (event.relatedTarget))) container.classList.remove('dropping');
+  });
+  container.addEventListener('drop', (event) => {
+    event.preventDefault();
+    container.classList.remove('dropping');
+    const file = event.dataTransfer?.files[0];
+    if (file) share.load(file);
+  });
+
+  // What the viewer reports.
+  viewer.on('settings', (settings, by) => {
+    overlay.redraw();
+    if (by !== 'hands' && by !== 'film') refresh();
+    else if (opened && panels[opened].followsCamera) panels[opened].refresh(settings);
+  });
+  viewer.on('info', () => {
+    overlay.redraw();
+    refresh();
+  });
+  let numbersAt = 0;
+  viewer.on('frame', () => {
+    const now = performance.now();
+    if (!opened || !panels[opened].everyFrame || now - numbersAt < NUMBERS_MS) return;
+    numbersAt = now;
+    panels[opened].refresh(viewer.get());
+  });
+  for (const event of ['level', 'still']) viewer.on(event, () => { if (opened && panels[opened].everyFrame) refresh(); });
+  hands.on('rest', () => { if (opened === 'view') refresh(); });
+  refresh();
+  overlay.redraw();
+  return { ui, status, toggle, destroy: () => window.removeEventListener('keydown', onKey) };
+}

@@ -1,0 +1,41 @@
+/** Keeps the address of the page in step with the settings. */
+import { DEFAULTS, settingsFromHash } from '../settings.js';
+
+/**
+ * @typedef {import('./interface.js').Ui} Ui
+ * @typedef {import('../settings.js').Settings} Settings
+ */
+
+/** Milliseconds without a change before the address follows: browsers limit such changes. */
+const PAUSE_MS = 400;
+
+/** @param {Ui} ui */
+export function keepLink(ui) {
+  const { viewer } = ui;
+  let timer = 0, written = location.hash.replace(/^#/, '');
+  const write = () => {
+    const hash = ui.hash();
+    if (hash === written) return;
+    written = hash;
+    try {
+      history.replaceState(history.state, '', location.pathname + location.search + (hash ? '#' + hash : ''));
+    } catch {
+      // Pages without an address, as in a frame of a document, cannot have one.
+    }
+  };
+  viewer.on('settings', () => {
+    clearTimeout(timer);
+    if (viewer.info) timer = setTimeout(write, PAUSE_MS);
+  });
+  window.addEventListener('hashchange', () => {
+    const hash = location.hash.replace(/^#/, '');
+    if (hash === written) return;
+    written = hash;
+    const { settings, problems } = settingsFromHash(hash, DEFAULTS);
+    viewer.set({ ...settings, camera: settings.camera ?? ui.home() }, 'link');
+    if (problems.length) ui.toast(capitalized(problems[0]), true);
+  });
+}
+
+/** @param {string} text */
+export const capitalized = (text) => text.charAt(0).toUpperCase() + text.slice(1);

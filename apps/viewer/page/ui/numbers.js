@@ -1,0 +1,25 @@
+/** Numbers as people read them. */
+
+/** @param {number} bytes */
+export function bytesText(bytes) {
+  if (!Number.isFinite(bytes)) return '–';
+  const units = ['bytes', 'KB', 'MB', 'GB', 'TB'];
+  let unit = 0;
+  for (; bytes >= 1000 && unit < 4; ++unit) bytes /= 1000;
+  return `${unit === 0 || bytes >= 100 ? Math.round(bytes) : bytes.toPrecision(3)} ${units[unit]}`;
+}
+
+/** @param {number} count */
+export const countText = (count) =>
+  !Number.isFinite(count) ? '–' : count < 1e4 ? String(Math.round(count)) : count < 1e6 ? Math.round(count).toLocaleString('en').replaceAll(',', '\u202f')
+    : count < 1e9 ? `${(count / 1e6).toPrecision(4)} million` : `${(count / 1e9).toPrecision(4)} billion`;
+
+/**
+ * Returns a length or coordinate with the decimals that `step`, a voxel's size, deserves.
+ * @param {number} x @param {number} step
+ */
+export function lengthText(x, step) {
+  const decimals = Math.max(0, Math.min(12, 1 - Math.floor(Math.log10(step))));
+  const text = Math.abs(x) < 1e9 && (Math.abs(x) >= 1e-6 || x === 0) ? x.toFixed(decimals) : x.toPrecision(7);
+  return text.replace('-', '\u2212');
+}

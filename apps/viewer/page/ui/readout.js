@@ -1,0 +1,74 @@
+/** The corner that says what is under the pointer. */
+import { copy, h, say } from './dom.js';
+import { lengthText } from './numbers.js';
+
+/**
+ * @typedef {import('./interface.js').Ui} Ui
+ * @typedef {import('../viewer_types.js').Hit} Hit
+ */
+
+export class Readout {
+  /** @param {Ui} ui @param {HTMLElement} container */
+  constructor(ui, container) {
+    this.ui = ui;
+    this.voxel = h('span', { class: 'voxel' });
+    this.position = h('span', { class: 'position' });
+    this.element = h('div', { class: 'readout', hidden: true, title: 'C copies this' }, this.voxel, this.position);
+    container.append(this.element);
+    /** @type {Hit | null} */
+    this.hit = null;
+    /** @type {{x: number, y: number} | null} */
+    this.wanted = null;
+    this.busy = false;
+    /** @type {(hit: Hit | null) => void} */
+    this.onHit = () => {};
+  }
+
+  /** Picks at a pixel, one pick at a time: the last pixel counts. @param {number} x @param {number} y @param {boolean} [tapped] */
+  async look(x, y, tapped = false) {
+    this.wanted = { x, y };
+    if (this.busy) return;
+    this.busy = true;
+    try {
+      while (this.wanted) {
+        const at = this.wanted;
+        this.wanted = null;
+        const hit = await this.ui.viewer.pick(at.x, at.y);
+        this.#show(hit);
+        this.onHit(hit);
+      }
+      if (tapped && this.hit) this.ui.announce(this.#words(this.hit).join(', '));
+    } finally {
+      this.busy = false;
+    }
+  }
+
+  clear() {
+    this.wanted = null;
+    this.#show(null);
+  }
+
+  /** @param {Hit} hit */
+  #words(hit) {
+    const { info } = this.ui.viewer, step = (info?.voxelSize ?? 1) * 0.1;
+    const level = info && hit.level < info.levels ? ` · level ${hit.level}` : '';
+    return [`voxel ${hit.voxel.join(' ')}${level}`, hit.position.map((x) => lengthText(x, step)).join('  ')];
+  }
+
+  /** @param {Hit | null} hit */
+  #show(hit) {
+    this.hit = hit;
+    this.element.hidden = !hit;
+    if (!hit) return;
+    const [voxel, position] = this.#words(hit);
+    say(this.voxel, voxel);
+    say(this.position, position);
+  }
+
+  async copy() {
+    const { hit } = this;
+    if (!hit) return this.ui.toast('Nothing is under the pointer');
+    const text = `voxel ${hit.voxel.join(' ')} level ${hit.level} position ${hit.position.join(' ')}`;
+    this.ui.toast((await copy(text)) ? 'Voxel and position copied' : 'The browser did not allow copying');
+  }
+}

@@ -1,0 +1,99 @@
+/** The panel "View": how one moves, what is shown and how finely. */
+import { button, choice, group, refreshAll, segments, slider, toggle } from './controls.js';
+import { h } from './dom.js';
+
+/**
+ * @typedef {import('./interface.js').Ui} Ui
+ * @typedef {import('../math.js').Vec3} Vec3
+ * @typedef {import('../settings.js').Settings} Settings
+ */
+
+/** @type {[import('../settings.js').Show, string][]} */
+const SHOWS = [
+  ['light', 'Light'], ['level', 'Levels'], ['steps', 'Steps per ray'], ['sharing', 'Sharing of nodes'], ['normal', 'Normals'],
+  ['depth', 'Depth'], ['occlusion', 'Ambient occlusion'],
+];
+/** @type {{[show: string]: string}} */
+const MEANINGS = {
+  level: 'The level of the cell that each ray ends at.',
+  steps: 'How many cells each ray visits: the brighter, the more.',
+  sharing: 'How many places of the scene use the node that a ray ends in: the brighter, the more.',
+  normal: 'The direction of the surface, as a colour.',
+  depth: 'The distance along the view.',
+  occlusion: 'The part of the light of the sky that arrives.',
+};
+/** @type {[string, string][]} */
+export const SIDES = [['home', 'Home'], ['front', 'Front'], ['right', 'Right'], ['back', 'Back'], ['left', 'Left'], ['top', 'Top'], ['bottom', 'Bottom']];
+/** @type {{[name: string]: Vec3}} */
+const AXES = { '+x': [1, 0, 0], '+y': [0, 1, 0], '+z': [0, 0, 1], '-x': [-1, 0, 0], '-y': [0, -1, 0], '-z': [0, 0, -1] };
+
+/** @param {Ui} ui */
+export function viewPanel(ui) {
+  const { viewer, hands } = ui;
+  const mode = segments({
+    label: 'Move', options: [['orbit', 'Orbit', 'orbit'], ['fly', 'Fly', 'fly'], ['walk', 'Walk', 'walk']],
+    get: (s) => s.mode, set: (value) => viewer.set({ mode: value }, 'ui'),
+  });
+  const meaning = h('p', { class: 'hint' });
+  const show = choice({ label: 'Show', options: SHOWS, get: (s) => s.show, set: (value) => viewer.set({ show: value }, 'ui') });
+  const levels = () => viewer.info?.levels ?? 1;
+  const level = slider({
+    label: 'Finest level', min: 0, max: 1, step: 1, get: (s) => Math.min(s.level ?? levels(), levels()),
+    set: (value) => viewer.set({ level: value >= levels() ? null : value }, 'ui'),
+    text: (value) => (value >= levels() ? 'all' : `${value} (${(2 ** value).toLocaleString('en')}³)`),
+  });
+  const colors = toggle({ label: 'Colours', get: (s) => s.colors, set: (on) => viewer.set({ colors: on }, 'ui') });
+  const normals = toggle({ label: 'Stored normals', get: (s) => s.normals, set: (on) => viewer.set({ normals: on }, 'ui') });
+  const lod = slider({
+    label: 'Level of detail', min: 0, max: 8, step: 0.25, get: (s) => s.lod, set: (value) => viewer.set({ lod: value }, 'ui'),
+    text: (x) => (x ? `${x} px` : 'off'), hint: 'Rays end at cells smaller than this',
+  });
+  const cubes = slider({
+    label: 'Cubes from', min: 0, max: 100, step: 1, get: (s) => s.cubes, set: (value) => viewer.set({ cubes: value }, 'ui'),
+    text: (x) => (x ? `${x} px` : 'always'), hint: 'Voxels of at least this size look like cubes, smaller ones smooth',
+  });
+  const camera = (/** @type {Settings} */ s) => s.camera ?? viewer.info?.view ?? { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
+  const change = (/** @type {Partial<import('../settings.js').Camera>} */ part) => {
+    const settings = viewer.get();
+    if (viewer.info) viewer.set({ camera: { ...camera(settings), ...part } }, 'ui');
+  };
+  const fov = slider({
+    label: 'Field of view', min: 10, max: 110, step: 1, get: (s) => camera(s).fov, set: (value) => change({ fov: value }),
+    text: (x) => `${+x.toFixed(1)}°`,
+  });
+  const axisOf = (/** @type {Settings} */ s) =>
+    Object.keys(AXES).find((name) => AXES[name].every((x, i) => Math.abs(x - camera(s).up[i]) < 1e-6)) ?? 'own';
+  const up = choice({
+    label: 'Up', options: [...Object.keys(AXES).map((name) => /** @type {[string, string]} */ ([name, name.replace('-', '\u2212')])), ['own', 'other']],
+    get: axisOf, set: (name) => {
+      const { eye, target } = camera(viewer.get()), axis = AXES[name];
+      if (!axis) return;
+      // A view along the new axis has no horizon: the eye moves aside.
+      const line = eye.map((x, i) => x - target[i]), along = line.reduce((sum, x, i) => sum + x * axis[i], 0);
+      const size = Math.hypot(...line), aside = Math.hypot(...line.map((x, i) => x - axis[i] * along));
+      const moved = aside > 1e-2 * size ? eye : /** @type {Vec3} */ (eye.map((x, i) => x + size * 0.5 * AXES[name[1] === 'x' ? '+z' : '+x'][i]));
+      change({ eye: moved, up: axis });
+    },
+  });
+  const lock = button('Look around with the mouse', () => hands.lockPointer(), { title: 'Hides the pointer until Escape (key L)' });
+  const refresh = refreshAll([mode, show, level, colors, normals, lod, cubes, fov, up]);
+  return {
+    element: h('div', {},
+      group('', mode.element, lock),
+      group('Views', h('div', { class: 'grid' }, ...SIDES.map(([name, label], i) =>
+        button(label, () => hands.view(name), { title: `${label} (key ${i + 1})` })),
+      button('Frame', () => hands.frame(), { title: 'Show the whole scene (key F)' })), fov.element, up.element),
+      group('Picture', show.element, meaning, level.element, colors.element, normals.element, lod.element, cubes.element),
+      group('', button('Reset all settings', () => ui.reset()))),
+    refresh(/** @type {Settings} */ settings) {
+      const { info } = viewer;
+      level.limits(0, levels(), 1);
+      colors.element.hidden = !info?.hasColors;
+      normals.element.hidden = !info?.hasNormals;
+      meaning.textContent = MEANINGS[settings.show] ?? '';
+      meaning.hidden = settings.show === 'light';
+      lock.hidden = settings.mode === 'orbit' || matchMedia('(pointer: coarse)').matches;
+      refresh(settings);
+    },
+  };
+}

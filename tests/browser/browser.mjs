@@ -1,0 +1,52 @@
+// Starts browsers, and opens pages whose complaints are failures.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import puppeteer from 'puppeteer-core';
+
+const CHROMIUM = '/usr/bin/chromium', FIREFOX = '/usr/bin/firefox-esr';
+
+/** The browsers that are installed. */
+export const browsers = [['chromium', CHROMIUM], ['firefox', FIREFOX]].filter(([, path]) => fs.existsSync(path)).map(([name]) => name);
+
+/** @param {string} name chromium or firefox */
+export function launch(name) {
+  if (name === 'firefox')
+    return puppeteer.launch({
+      browser: 'firefox', executablePath: FIREFOX, headless: true, protocolTimeout: 300_000,
+      extraPrefsFirefox: {'webgl.force-enabled': true, 'webgl.disable-fail-if-major-performance-caveat': true, 'network.proxy.type': 0,
+                          'security.sandbox.content.level': 0, 'gfx.webrender.software': true},
+    });
+  return puppeteer.launch({
+    executablePath: CHROMIUM, headless: true, protocolTimeout: 300_000,
+    args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+           '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+}
+
+/**
+ * Opens a page. `page.complaints` collects errors of scripts, of the console and of the security policy.
+ * @param {import('puppeteer-core').Browser} browser @param {string} url @param {{width?: number, height?: number, ready?: string}} [options]
+ */
+export async function open(browser, url, {width = 320, height = 180, ready = 'window.voxdag?.viewer'} = {}) {
+  const page = await browser.newPage();
+  await page.setViewport({width, height});
+  /** @type {string[]} */
+  const complaints = [];
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error') complaints.push(message.text());
+  });
+  await page.goto(url);
+  if (ready !== '') await page.waitForFunction(ready, {timeout: 60_000});
+  return Object.assign(page, {complaints});
+}
+
+/** @param {{complaints: string[]}} page */
+export function assertNoComplaints(page) {
+  assert.deepEqual(page.complaints, []);
+}
+
+/** Waits until the picture is finished. @param {import('puppeteer-core').Page} page */
+export async function still(page) {
+  await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.whenStill());
+}

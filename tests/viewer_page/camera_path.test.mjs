@@ -1,0 +1,61 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { cameraAt, completeKeys, pathToJson, withKey, withoutKey } from '../../apps/viewer/page/hands/camera_path.js';
+import { DEFAULTS, mergeSettings } from '../../apps/viewer/page/settings.js';
+
+const FIRST = { eye: [0, 0, 9], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
+const KEYS = [
+  { time: 0, eye: [0, 1, 5], target: [0, 0, 0], up: [0, 1, 0], fov: 40 },
+  { time: 1.5, eye: [4, 2, 3], target: [0.5, 0.25, 0], fov: 50 },
+  { time: 2, eye: [4, 2, 3], target: [0.5, 0.5, -1], up: [0.1, 1, 0], fov: 30 },
+  { time: 5, eye: [-3, 0.5, -6], target: [0, 0, 1], up: [0, 1, 0] },
+];
+/** Time, eye, target, up and fov of these keys by CameraPath::at() of film/camera_path.cpp. */
+const OF_CPP = [
+  [0.20, [0.670295348236, 1.16757383706, 4.66485232588], [0.0633486142109, 0.0306660366244, 0.00403308192412], [0, 1, 0], 41.4874074074],
+  [0.75, [3.08593749843, 1.77148437461, 3.45703125078], [0.221339475443, 0.103130803485, 0.0301557369477], [0, 1, 0], 46.25],
+  [1.40, [3.99941187644, 1.99985296911, 3.00029406178], [0.462607037238, 0.224392856662, 0.0276426478277], [0, 1, 0], 49.9140740741],
+  [1.70, [4, 2, 3], [0.569801509045, 0.371842213986, -0.372624880093], [0.0352, 1, 0], 42.96],
+  [2.50, [3.96461621729, 1.99241776085, 2.95450656508], [0.407514192995, 0.437913055474, -0.751652221896], [0.0949074074074, 1, 0], 30],
+  [3.90, [0.946036423562, 1.34557923362, -0.926524598278], [0.163095287324, 0.175772383848, 0.296910464608], [0.0451814814815, 1, 0], 30],
+  [4.99, [-2.97651111457, 0.505033332591, -5.96980000445], [0.00166497943989, 0.00166730591443, 0.993330776342], [0.000334440740741, 1, 0], 30],
+];
+
+test('a path is that of `voxdag render --path`', () => {
+  const keys = completeKeys(KEYS, FIRST);
+  for (const [time, ...expected] of OF_CPP) {
+    const { eye, target, up, fov } = cameraAt(keys, time);
+    [...eye, ...target, ...up, fov].forEach((x, i) =>
+      assert.ok(Math.abs(x - expected.flat()[i]) < 1e-9, `at ${time}: ${x}, not ${expected.flat()[i]}`));
+  }
+});
+
+test('a path passes through its keys and stays at its ends', () => {
+  const keys = completeKeys(KEYS, FIRST);
+  for (const { time, eye } of keys)
+    cameraAt(keys, time).eye.forEach((x, i) => assert.ok(Math.abs(x - eye[i]) < 1e-12));
+  assert.deepEqual(cameraAt(keys, -5).eye, keys[0].eye);
+  assert.deepEqual(cameraAt(keys, 50).eye, keys[3].eye);
+  assert.deepEqual(cameraAt(keys.slice(0, 1), 3).target, keys[0].target);
+});
+
+test('recorded keys leave out what does not change, and mean what was recorded', () => {
+  const cameras = [FIRST, { ...FIRST, eye: [1, 0, 9] }, { ...FIRST, fov: 50 }, { ...FIRST, fov: 50, up: [1, 0, 0] }];
+  let keys = [];
+  for (const camera of cameras) keys = withKey(keys, camera, 2.5);
+  assert.deepEqual(keys.map((key) => Object.keys(key).join()),
+    ['time,eye,target,up,fov', 'time,eye,target', 'time,eye,target,fov', 'time,eye,target,up']);
+  assert.deepEqual(completeKeys(keys, FIRST), cameras.map((camera, i) => ({ time: i * 2.5, ...camera })));
+  assert.deepEqual(mergeSettings(DEFAULTS, { path: keys }).path, keys);
+  for (let i = 0; i < 4; ++i) {
+    const rest = completeKeys(withoutKey(keys, i), FIRST);
+    assert.deepEqual(rest, completeKeys(keys, FIRST).filter((_, k) => k !== i));
+  }
+});
+
+test('a path file has one line per key and only keys that `render --path` reads', () => {
+  const text = pathToJson(KEYS, [0, 1, 0.5]);
+  assert.deepEqual(JSON.parse(text), { sun: [0, 1, 0.5], keys: KEYS });
+  assert.equal(text.split('\n').length, KEYS.length + 6);
+});
