@@ -163,11 +163,38 @@ TEST_F(AttributesCommand, ConvertKeepsThemOrRefuses) {
   };
   ASSERT_EQ(convert({}).status, 0);
   EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(colored));
-  expect_failure(convert({"--compact"}), 1, "use --drop-attributes");
   expect_failure(convert({"--levels", "5"}), 1, "use --drop-attributes");
   ASSERT_EQ(convert({"--drop-attributes"}).status, 0);
   EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(grey));
   EXPECT_EQ(convert({"--compact", "--drop-attributes"}).status, 0);
+}
+
+TEST_F(AttributesCommand, TheCompactFormKeepsThem) {
+  const std::string plain = build("a.vdag", {"--color", "--normal"}), small = dir_ / "b.vdag";
+  ASSERT_EQ(run_voxdag({"convert", plain, "--compact", "-o", small}).status, 0);
+  EXPECT_EQ(read_text(build("c.vdag", {"--color", "--normal", "--compact"})), read_text(small));
+  ASSERT_EQ(run_voxdag({"convert", small, "--plain", "-o", dir_ / "d.vdag"}).status, 0);
+  EXPECT_EQ(read_text(dir_ / "d.vdag"), read_text(plain));
+  EXPECT_EQ(run_voxdag({"verify", small}).status, 0);
+  EXPECT_NE(run_voxdag({"info", small}).out.find("cell numbers"), std::string::npos);
+  const auto info = [](const std::string& file) {
+    return nlohmann::json::parse(run_voxdag({"info", file, "--json"}).out);
+  };
+  EXPECT_EQ(info(small).at("attributes"), info(plain).at("attributes"));
+  EXPECT_GT(info(small).at("bytes").at("compact"), 0);
+  write_rays(VdagFile(plain).grid());
+  EXPECT_EQ(trace(small), trace(plain));
+  const std::string grey = build("e.vdag", {});
+  EXPECT_EQ(trace(grey, {"--look", small}), trace(plain));
+}
+
+TEST_F(AttributesCommand, DamagedColoursOfACompactFileAreRefusedByPlace) {
+  const std::string dag = build("a.vdag", {"--color", "--compact"});
+  std::string bytes = read_text(dag);
+  bytes[bytes.size() - 65] ^= 1;
+  write_text(dag, bytes);
+  expect_failure(run_voxdag({"info", dag}), 1, "chunk COLR: checksum is wrong");
+  expect_failure(run_voxdag({"verify", dag, "--quiet"}), 1, "chunk COLR: checksum is wrong");
 }
 
 TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
@@ -179,7 +206,6 @@ TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
   expect_failure(run_voxdag({"build", dir_ / "waves.obj", "--voxel-size", "1", "-o",
                              dir_ / "a.vdag", "--color", "--attribute-resolution", "1024"}),
                  1, "1024 is more than the grid's resolution, ");
-  expect_failure(run_build("a.vdag", {"--color", "--compact"}), 2, "only the plain form");
   expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
   EXPECT_EQ(dir_.count(), 1);
 }

@@ -122,9 +122,10 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   progress.throw_if_cancelled();
   report.attributes = sizes_of(attributes.view());
   if (arguments.compact) {
+    const MemoryReservation attribute_bytes(&memory, attributes.bytes());
     const CompactSvdag compact = encode_svdag(view, {.memory = &memory}, &progress);
     seconds.compact = watch.lap();
-    write_vdag(arguments.output, compact, report.metadata);
+    write_vdag(arguments.output, compact, report.metadata, attributes.view());
     report.compact = bytes_of(compact.view(), compact_head(compact).size());
   } else {
     write_vdag(arguments.output, view, report.metadata, attributes.view());

@@ -14,6 +14,7 @@
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -40,6 +41,16 @@ VdagMetadata coarser(VdagMetadata metadata, const SvdagView& dag) {
   return metadata;
 }
 
+/// Throws Error unless the metadata of the file describes its attributes.
+void check_metadata(const VdagMetadata& metadata, const DagAttributesView& attributes,
+                    const std::string& file) {
+  try {
+    compare_attributes(metadata.attributes, attributes);
+  } catch (const Error& error) {
+    throw error.in_file(file);
+  }
+}
+
 void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
@@ -62,14 +73,16 @@ void convert(const ConvertArguments& arguments, Session& session) {
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
   const DagAttributesView attributes =
       arguments.drop_attributes ? DagAttributesView{} : file.attributes();
-  if (!attributes.is_empty() && (compact || is_coarser))
+  if (!attributes.is_empty() && is_coarser)
     throw Error(session.subject, "",
-                "has colours or normals, which the compact form and a coarser grid cannot keep: "
-                "use --drop-attributes");
-  if (attributes.is_empty()) metadata.attributes = {};
+                "has colours or normals, which a coarser grid cannot keep: use --drop-attributes");
+  if (attributes.is_empty())
+    metadata.attributes = {};
+  else
+    check_metadata(metadata, attributes, session.subject);
   if (compact) {
     write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
-               metadata);
+               metadata, attributes);
   } else {
     write_vdag(arguments.output, dag, metadata, attributes);
   }

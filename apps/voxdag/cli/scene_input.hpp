@@ -1,9 +1,11 @@
 #pragma once
 /// Opens the scene of a command: a DAG in either form, or an ESVO.
 #include <filesystem>
+#include <optional>
 #include <variant>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/layout/voxel_set.hpp"
@@ -25,10 +27,23 @@ class DagInput {
   const Grid& grid() const { return metadata_.grid; }
   std::uint64_t file_bytes() const { return file_bytes_; }
   /// Returns whether the file has the compact form.
-  bool is_compact() const { return std::holds_alternative<Svdag>(dag_); }
+  bool is_compact() const { return std::holds_alternative<Decoded>(dag_); }
 
  private:
-  std::variant<VdagFile, Svdag> dag_;
+  /// What a compact file holds.
+  struct Decoded {
+    std::optional<CompactFile> file;  ///< The attributes point into it. None: no attributes.
+    Svdag dag;
+    CellIndex index;  ///< The numbers of the cells with attributes.
+    ValuePagesView colors, normals;
+
+    SvdagView view() const { return dag.view(); }
+    DagAttributesView attributes() const { return {index.view(), colors, normals}; }
+  };
+  static Decoded decode(const std::filesystem::path& path, Progress* progress,
+                        MemoryBudget* memory);
+
+  std::variant<VdagFile, Decoded> dag_;
   VdagMetadata metadata_;
   std::uint64_t file_bytes_ = 0;
   MemoryReservation memory_;

@@ -36,6 +36,9 @@ struct DagAttributes {
   ValueErrors color_errors, normal_errors;
 
   DagAttributesView view() const { return {index.view(), colors.view(), normals.view()}; }
+  std::uint64_t bytes() const {
+    return index.view().bytes() + colors.view().bytes() + normals.view().bytes();
+  }
 };
 
 /// Builds the attributes of `dag`, the DAG of `mesh` in `grid`. `shading` is the shading of the

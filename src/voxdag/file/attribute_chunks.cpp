@@ -83,17 +83,34 @@ ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells)
   return view;
 }
 
+/// Calls work(bytes) for the chunk, if the file has it, and returns whether it has. Errors name the
+/// chunk.
+template <class Work>
+bool read_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id, const Work& work) {
+  const VdagChunk* const chunk = find_chunk(chunks, id);
+  if (chunk == nullptr) return false;
+  try {
+    work(chunk->bytes);
+  } catch (const Error& error) {
+    throw error.within(ErrorPlace::chunk(vdag_chunk_name(id)));
+  }
+  return true;
+}
+
 }  // namespace
 
-AttributeChunks::AttributeChunks(const DagAttributesView& attributes) {
+AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_cells) {
   if (attributes.is_empty()) return;
-  const CellIndexView& index = attributes.index;
-  index_.finest_level = index.finest_level;
-  index_.cells = index.cells;
-  std::copy(std::begin(index.width), std::end(index.width), std::begin(index_.width));
-  chunks_.push_back({kChunkCellIndex,
-                     {std::as_bytes(std::span(&index_, 1)),
-                      std::as_bytes(std::span(index.words, index.word_count()))}});
+  if (of_cells == Index::kStored) {
+    const CellIndexView& index = attributes.index;
+    index_.finest_level = index.finest_level;
+    index_.cells = index.cells;
+    std::copy(std::begin(index.width), std::end(index.width), std::begin(index_.width));
+    chunks_.push_back({kChunkCellIndex,
+                       0,
+                       {std::as_bytes(std::span(&index_, 1)),
+                        std::as_bytes(std::span(index.words, index.word_count()))}});
+  }
   if (attributes.has_colors()) add(kChunkColors, attributes.colors, colors_);
   if (attributes.has_normals()) add(kChunkNormals, attributes.normals, normals_);
 }
@@ -105,6 +122,7 @@ void AttributeChunks::add(std::uint32_t id, const ValuePagesView& pages, ValuePa
   header.words = pages.word_count;
   const std::uint64_t padding = (4 - pages.page_count() % 4) % 4 * sizeof(std::uint16_t);
   chunks_.push_back({id,
+                     0,
                      {std::as_bytes(std::span(&header, 1)),
                       std::as_bytes(std::span(pages.groups, pages.group_count())),
                       std::as_bytes(std::span(pages.words, pages.word_count)),
@@ -112,31 +130,35 @@ void AttributeChunks::add(std::uint32_t id, const ValuePagesView& pages, ValuePa
                       std::span<const std::byte>(kZeros, padding)}});
 }
 
-DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
-                                        const SvdagView& dag) {
+bool has_attribute_values(const std::vector<VdagChunk>& chunks) {
+  return has_chunk(chunks, kChunkColors) || has_chunk(chunks, kChunkNormals);
+}
+
+DagAttributesView read_attribute_values(const std::vector<VdagChunk>& chunks,
+                                        const CellIndexView& index) {
   DagAttributesView attributes;
-  const auto read = [&](std::uint32_t id, const auto& work) {
-    const VdagChunk* const chunk = find_chunk(chunks, id);
-    if (chunk == nullptr) return false;
-    try {
-      work(chunk->bytes);
-    } catch (const Error& error) {
-      throw error.within(ErrorPlace::chunk(vdag_chunk_name(id)));
-    }
-    return true;
-  };
-  const bool has_index = read(kChunkCellIndex, [&](std::span<const std::byte> bytes) {
-    attributes.index = read_index(bytes, dag);
-  });
+  attributes.index = index;
   const auto read_values = [&](std::uint32_t id, ValuePagesView& view) {
-    read(id, [&](std::span<const std::byte> bytes) {
-      if (!has_index) fail("needs the chunk CIDX, which is missing");
-      view = read_pages(bytes, attributes.index.cells);
-    });
+    read_chunk(chunks, id,
+               [&](std::span<const std::byte> bytes) { view = read_pages(bytes, index.cells); });
   };
   read_values(kChunkColors, attributes.colors);
   read_values(kChunkNormals, attributes.normals);
   return attributes;
+}
+
+DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
+                                        const SvdagView& dag) {
+  CellIndexView index;
+  const bool has_index = read_chunk(chunks, kChunkCellIndex, [&](std::span<const std::byte> bytes) {
+    index = read_index(bytes, dag);
+  });
+  if (!has_index)
+    for (const std::uint32_t id : {kChunkColors, kChunkNormals})
+      read_chunk(chunks, id, [](std::span<const std::byte>) {
+        fail("needs the chunk CIDX, which is missing");
+      });
+  return read_attribute_values(chunks, index);
 }
 
 }  // namespace voxdag

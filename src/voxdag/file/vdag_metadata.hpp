@@ -1,5 +1,6 @@
 #pragma once
 /// The metadata of a DAG in a .vdag file: the JSON of its META chunk.
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct AttributesMetadata {
   };
   std::int64_t resolution = 0;  ///< M: cells per side at the finest level with attributes.
   std::optional<Values> colors, normals;
+
+  /// Returns m, the finest level with attributes; there must be some.
+  int level() const { return std::countr_zero(static_cast<std::uint64_t>(resolution)); }
 
   /// Returns the peak signal-to-noise ratio of the colours of `cells` cells, in dB; infinity if all
   /// are exact.

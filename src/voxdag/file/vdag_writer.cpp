@@ -8,29 +8,15 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
+#include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/checksum.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
 
 namespace voxdag {
 namespace {
-
-struct OutputChunk {
-  std::uint32_t id, flags;
-  std::vector<std::span<const std::byte>> parts;
-
-  std::uint64_t length() const {
-    std::uint64_t sum = 0;
-    for (const auto& part : parts) sum += part.size();
-    return sum;
-  }
-  std::uint64_t checksum() const {
-    Xxh3Stream stream;
-    for (const auto& part : parts) stream.add(part);
-    return stream.digest();
-  }
-};
 
 template <class T>
 std::span<const std::byte> bytes_of(const T* values, std::size_t count) {
@@ -96,20 +82,28 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
       required(kChunkLevels, bytes_of(view.level_begin, static_cast<std::size_t>(view.levels - 1))),
       required(kChunkNodes, bytes_of(view.nodes, view.node_words())),
       required(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count))};
-  const AttributeChunks attribute_chunks(attributes);
-  for (const AttributeChunk& chunk : attribute_chunks.chunks())
-    chunks.push_back({chunk.id, 0, chunk.parts});
+  const AttributeChunks attribute_chunks(attributes, AttributeChunks::Index::kStored);
+  chunks.insert(chunks.end(), attribute_chunks.chunks().begin(), attribute_chunks.chunks().end());
   write_chunks(path, chunks);
 }
 
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
-                const VdagMetadata& metadata) {
+                const VdagMetadata& metadata, const DagAttributesView& attributes) {
   assert(metadata.grid.levels == compact.levels);
   const std::string json = checked_json(path, metadata);
+  // A reader numbers the cells down to the level that the metadata has.
+  if (!attributes.is_empty()) try {
+      compare_attributes(metadata.attributes, attributes);
+    } catch (const Error& error) {
+      throw error.in_file(path.string());
+    }
   const std::vector<std::byte> head = compact_head(compact);
-  write_chunks(path, {required(kChunkMeta, bytes_of(json.data(), json.size())),
-                      required(kChunkCompactHead, head),
-                      required(kChunkCompactStream, std::as_bytes(compact.words()))});
+  std::vector<OutputChunk> chunks = {required(kChunkMeta, bytes_of(json.data(), json.size())),
+                                     required(kChunkCompactHead, head),
+                                     required(kChunkCompactStream, std::as_bytes(compact.words()))};
+  const AttributeChunks attribute_chunks(attributes, AttributeChunks::Index::kLeftOut);
+  chunks.insert(chunks.end(), attribute_chunks.chunks().begin(), attribute_chunks.chunks().end());
+  write_chunks(path, chunks);
 }
 
 }  // namespace voxdag

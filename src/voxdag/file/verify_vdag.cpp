@@ -35,10 +35,6 @@ void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted) {
   compare_levels("dag_nodes_per_level", stated.dag_nodes_per_level, counted.dag_nodes_per_level);
 }
 
-namespace {
-
-/// Throws Error if the metadata describes other attributes than those that the file stores. A DAG
-/// without voxels stores none.
 void compare_attributes(const AttributesMetadata& stated, const DagAttributesView& stored) {
   const auto fail = [](const char* key, const std::string& reason) {
     throw Error("", ErrorPlace::chunk("META") / key, reason);
@@ -59,6 +55,8 @@ void compare_attributes(const AttributesMetadata& stated, const DagAttributesVie
     fail("attributes.resolution", "is " + std::to_string(stated.resolution) +
                                       ", but the chunk CIDX has " + std::to_string(resolution));
 }
+
+namespace {
 
 VerifyReport verify_esvo(std::span<const std::byte> file) {
   VerifyReport report;

@@ -179,11 +179,20 @@ std::string dag_table(const DagReport& report) {
                 fmt::format("{:.3f}", quotient(static_cast<double>(bytes),
                                                static_cast<double>(report.svdag_bytes()))));
   };
-  compact_row("all", report.svdag_bytes(), compact.total());
+  compact_row("geometry", report.svdag_bytes(), compact.total());
   compact_row("nodes", 0, compact.nodes);
   compact_row("units", 0, compact.units);
   compact_row("shared bricks", 0, compact.shared_bricks);
   compact_row("head", 0, compact.head);
+  const AttributeSizes& sizes = report.attributes;
+  const auto attribute_row = [&](const char* name, std::uint64_t plain, std::uint64_t bytes) {
+    if (plain > 0) text += row(name, human_bytes(plain), human_bytes(bytes), "");
+  };
+  attribute_row("cell numbers", sizes.index_bytes, 0);
+  attribute_row("colours", sizes.color_bytes, sizes.color_bytes);
+  attribute_row("normals", sizes.normal_bytes, sizes.normal_bytes);
+  const std::uint64_t values = sizes.color_bytes + sizes.normal_bytes;
+  attribute_row("all", report.svdag_bytes() + sizes.index_bytes + values, compact.total() + values);
   text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)),
               fmt::format("{:.3f}", bits_per_voxel(compact.total(), counts)), "");
   return text;
