@@ -197,6 +197,28 @@ TEST_F(AttributesCommand, DamagedColoursOfACompactFileAreRefusedByPlace) {
   expect_failure(run_voxdag({"verify", dag, "--quiet"}), 1, "chunk COLR: checksum is wrong");
 }
 
+TEST_F(AttributesCommand, ExportWritesThem) {
+  const std::string plain = build("a.vdag", {"--color", "--normal"}), grey = build("b.vdag", {}),
+                    small = build("c.vdag", {"--color", "--normal", "--compact"});
+  const auto exported = [&](const std::string& file, const std::string& to,
+                            std::vector<std::string> options = {}) {
+    options.insert(options.begin(), {"export", file, "--quiet", "-o", dir_ / to});
+    const ProcessResult result = run_voxdag(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(dir_ / to);
+  };
+  for (const char* to : {"v.npy", "v.ply"}) {
+    const std::string colored = exported(plain, to), plainly = exported(grey, to);
+    EXPECT_GT(colored.size(), 1.9 * static_cast<double>(plainly.size()));
+    EXPECT_EQ(exported(small, to), colored);
+    EXPECT_EQ(exported(plain, to, {"--grey"}), plainly);
+    EXPECT_EQ(exported(grey, to, {"--look", small}), colored);
+  }
+  EXPECT_NE(exported(plain, "f.ply", {"--faces"}).find("property uchar red"), std::string::npos);
+  expect_failure(run_voxdag({"export", plain, "--grey", "-o", dir_ / "v.raw"}), 2,
+                 "cannot hold colours");
+}
+
 TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
   expect_failure(run_build("a.vdag", {"--attribute-resolution", "32"}), 2, "without --color");
   expect_failure(run_build("a.vdag", {"--normal", "--color-bound", "0.1"}), 2, "without --color");

@@ -31,20 +31,26 @@ struct LookView {
   }
 };
 
-/// Returns what a DAG stores for a cell of `level`, or for the cell's ancestor of the finest level
-/// with attributes if `level` is finer. The grid of the cell may have more or fewer levels than
-/// that of the DAG.
-VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
-  StoredLook look;
-  const DagAttributesView& attributes = colored.attributes;
+/// Sets `number` to the number of a cell of `level`, or of its ancestor of the finest level with
+/// attributes if `level` is finer. The grid of the cell may have more or fewer levels than that of
+/// the DAG. Returns false if the DAG has no attributes there.
+VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int level,
+                                  std::uint64_t& number) {
   const int finer = level - colored.dag.levels;
   if (finer > 0) {
     cell = {cell.x >> finer, cell.y >> finer, cell.z >> finer};
     level = colored.dag.levels;
   }
+  return !colored.is_empty() &&
+         find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
+}
+
+/// Returns what a DAG stores for the cell of find_number().
+VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
+  StoredLook look;
+  const DagAttributesView& attributes = colored.attributes;
   std::uint64_t number = 0;
-  if (colored.is_empty() || !find_cell_number(colored.dag, attributes.index, cell, level, number))
-    return look;
+  if (!find_number(colored, cell, level, number)) return look;
   look.has_color = attributes.has_colors();
   if (look.has_color) {
     const Value8 color = read_value(attributes.colors, number);
