@@ -35,6 +35,9 @@ void read_attributes(const CompactContents& contents, const SvdagView& dag) {
   for (std::uint64_t i = 0; i < std::min<std::uint64_t>(index.cells, 5000); ++i) {
     if (attributes.has_colors()) read_value(attributes.colors, i);
     if (attributes.has_normals()) read_value(attributes.normals, index.cells - 1 - i);
+    if (attributes.has_materials() &&
+        read_material(attributes.materials, index.cells - 1 - i) >= attributes.materials.materials)
+      std::abort();
   }
 }
 
@@ -79,6 +82,7 @@ std::string seed_file(std::mt19937& rng) {
     attributes = colors.view().attributes;
     metadata.attributes.resolution = std::int64_t{1} << finest;
     metadata.attributes.colors = metadata.attributes.normals = {0.5, 3};
+    metadata.attributes.materials.emplace(kNumberMaterials, "name");
   }
   write_vdag(dir / "file.vdag", encode_svdag(dag.view()), metadata, attributes);
   return read_text(dir / "file.vdag");

@@ -30,6 +30,7 @@ std::string colored_file(int finest) {
   metadata.attributes.resolution = std::int64_t{1} << finest;
   metadata.attributes.colors = {0.25, 1234};
   metadata.attributes.normals = {3.5, 99};
+  metadata.attributes.materials.emplace(kNumberMaterials, "name");
   const TempDir dir;
   const NumberColors colors(dag.view(), finest);
   write_vdag(dir / "file.vdag", encode_svdag(dag.view()), metadata, colors.view().attributes);
@@ -47,6 +48,7 @@ void read_all(const std::string& bytes) {
   for (std::uint64_t i = 0; i < index.cells; ++i) {
     if (attributes.has_colors()) read_value(attributes.colors, i);
     if (attributes.has_normals()) read_value(attributes.normals, i);
+    if (attributes.has_materials()) read_material(attributes.materials, i);
   }
 }
 
@@ -70,7 +72,7 @@ TEST(CompactFile, GivesBackWhatWasWritten) {
     }
 }
 
-TEST(CompactFile, TheColoursOfAllCellsAreThoseThatWereWritten) {
+TEST(CompactFile, TheAttributesOfAllCellsAreThoseThatWereWritten) {
   const Svdag dag = brute_svdag(6, random_voxels(6, 40, 3));
   for (int finest = 0; finest <= 6; ++finest) {
     const AlignedBytes bytes(colored_file(finest));
@@ -81,6 +83,7 @@ TEST(CompactFile, TheColoursOfAllCellsAreThoseThatWereWritten) {
     for (std::uint64_t i = 0; i < index.cells; ++i) {
       ASSERT_EQ(read_value(attributes.colors, i), color_of_number(i));
       ASSERT_EQ(read_value(attributes.normals, i), color_of_number(i));
+      ASSERT_EQ(read_material(attributes.materials, i), material_of_number(i));
     }
   }
 }

@@ -174,13 +174,14 @@ struct Ply {
     const std::size_t end = bytes.find("end_header\n") + 11;
     std::istringstream header(bytes.substr(0, end));
     std::size_t vertex_count = 0, face_count = 0;
-    bool is_double = false, has_normals = false, has_colors = false;
+    bool is_double = false, has_normals = false, has_colors = false, has_materials = false;
     for (std::string line; std::getline(header, line);) {
       if (line.starts_with("element vertex ")) vertex_count = std::stoull(line.substr(15));
       if (line.starts_with("element face ")) face_count = std::stoull(line.substr(13));
       if (line == "property double x") is_double = true;
       if (line == "property float nx") has_normals = true;
       if (line == "property uchar red") has_colors = true;
+      if (line == "property ushort material") has_materials = true;
     }
     std::size_t at = end;
     const auto take = [&]<class T>(T& value) {
@@ -197,6 +198,7 @@ struct Ply {
       vertices.push_back(large);
       if (has_normals) take(normals.emplace_back());
       if (has_colors) take(colors.emplace_back());
+      if (has_materials) take(materials.emplace_back());
     }
     for (std::size_t i = 0; i < face_count; ++i) {
       unsigned char corners;
@@ -210,6 +212,7 @@ struct Ply {
   std::vector<Vec3d> vertices;
   std::vector<Vec3f> normals;
   std::vector<Value8> colors;
+  std::vector<std::uint16_t> materials;
   std::vector<std::array<std::uint32_t, 4>> faces;
   bool has_doubles = false;
 };
@@ -295,7 +298,7 @@ TEST(ExportPly, ALoneVoxelHasEightSharedCorners) {
   EXPECT_EQ(ply.faces.size(), 6u);
 }
 
-/// A scene whose cells have colours and normals that tell their numbers.
+/// A scene whose cells have attributes that tell their numbers.
 struct ColoredScene : Scene {
   explicit ColoredScene(int finest_level)
       : Scene(6, 900), finest(finest_level), attributes(dag.view(), finest_level) {
@@ -312,9 +315,11 @@ struct ColoredScene : Scene {
     const int shift = 3 * (grid.levels - level);
     return code >> shift << shift;
   }
-  Value8 value(Vec3i voxel) const {
-    return color_of_number(numbers.at({first_code(morton_encode(voxel), finest), finest}));
+  /// Returns the number of the voxel, or of the cell of the finest level that holds it.
+  std::uint64_t number(Vec3i voxel) const {
+    return numbers.at({first_code(morton_encode(voxel), finest), finest});
   }
+  Value8 value(Vec3i voxel) const { return color_of_number(number(voxel)); }
 
   int finest;
   NumberColors attributes;
@@ -322,7 +327,7 @@ struct ColoredScene : Scene {
   ExportOptions options;
 };
 
-TEST(ExportPly, PointsHaveTheColoursAndNormalsOfTheirCells) {
+TEST(ExportPly, PointsHaveTheAttributesOfTheirCells) {
   for (const int finest : {6, 5, 3, 0}) {
     const TempDir dir;
     const ColoredScene scene(finest);
@@ -333,11 +338,12 @@ TEST(ExportPly, PointsHaveTheColoursAndNormalsOfTheirCells) {
       const Vec3i voxel((ply.vertices[i] - scene.grid.origin) * 4.0);
       ASSERT_EQ(ply.colors.at(i), scene.value(voxel));
       ASSERT_EQ(ply.normals.at(i), unpack_normal(scene.value(voxel)));
+      ASSERT_EQ(ply.materials.at(i), material_of_number(scene.number(voxel)));
     }
   }
 }
 
-TEST(ExportPly, FacesHaveTheColourOfTheirVoxel) {
+TEST(ExportPly, FacesHaveTheAttributesOfTheirVoxel) {
   const TempDir dir;
   const ColoredScene scene(6);
   export_ply_faces(dir / "grey.ply", scene.view(), scene.grid);
@@ -351,17 +357,19 @@ TEST(ExportPly, FacesHaveTheColourOfTheirVoxel) {
     for (const std::uint32_t corner : face) {
       ASSERT_EQ(ply.colors.at(corner), scene.value(Vec3i(inside)));
       ASSERT_EQ(ply.normals.at(corner), unpack_normal(scene.value(Vec3i(inside))));
+      ASSERT_EQ(ply.materials.at(corner), material_of_number(scene.number(Vec3i(inside))));
     }
   }
 }
 
-TEST(ExportNpy, CoordinatesComeWithColoursAndNormals) {
+TEST(ExportNpy, CoordinatesComeWithAttributes) {
   const TempDir dir;
   const ColoredScene scene(6);
   export_npy_coordinates(dir / "v.npy", scene.view(), scene.grid, scene.options);
   const std::string dtype =
-      "[('voxel', '<i4', (3,)), ('normal', '<f4', (3,)), ('color', '|u1', (3,))]";
-  constexpr std::size_t kBytes = 27;
+      "[('voxel', '<i4', (3,)), ('normal', '<f4', (3,)), ('color', '|u1', (3,)), "
+      "('material', '<u2')]";
+  constexpr std::size_t kBytes = 29;
   NpyReader reader(dir / "v.npy", dtype, {}, kBytes);
   ASSERT_EQ(reader.rows(), scene.set.size());
   std::string row(kBytes, '\0');
@@ -370,6 +378,7 @@ TEST(ExportNpy, CoordinatesComeWithColoursAndNormals) {
     ASSERT_TRUE(scene.has(voxel.x, voxel.y, voxel.z));
     ASSERT_EQ(peek<Vec3f>(row, 12), unpack_normal(scene.value(voxel)));
     ASSERT_EQ(peek<Value8>(row, 24), scene.value(voxel));
+    ASSERT_EQ(peek<std::uint16_t>(row, 27), material_of_number(scene.number(voxel)));
   }
   EXPECT_EQ(placement_of(dir / "v.npy")["array"]["dtype"], dtype);
 }

@@ -1,5 +1,6 @@
 #include "cli/scene_input.hpp"
 
+#include "voxdag/attributes/material_colors.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
@@ -26,9 +27,7 @@ DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* 
       const MemoryReservation dag_bytes(memory, decoded.view().bytes());
       decoded.index =
           build_cell_index(decoded.view(), contents.metadata.attributes.level(), memory);
-      const DagAttributesView attributes = contents.attributes(decoded.index.view());
-      decoded.colors = attributes.colors;
-      decoded.normals = attributes.normals;
+      decoded.values = contents.attributes(decoded.index.view());
     }
   } catch (const Cancelled&) {
     throw;
@@ -66,7 +65,23 @@ SvdagView DagInput::view() const {
 }
 
 DagAttributesView DagInput::attributes() const {
-  return std::visit([](const auto& dag) -> DagAttributesView { return dag.attributes(); }, dag_);
+  DagAttributesView view =
+      std::visit([](const auto& dag) -> DagAttributesView { return dag.attributes(); }, dag_);
+  if (material_colors_) view.colors = material_colors_->view();
+  return view;
+}
+
+namespace {
+
+[[noreturn]] void fail_without_materials(const std::filesystem::path& path) {
+  throw Error(path.string(), "", "has no material ids: voxdag build --material-ids stores them");
+}
+
+}  // namespace
+
+void DagInput::show_materials(const std::filesystem::path& path, Progress* progress) {
+  if (!attributes().has_materials()) fail_without_materials(path);
+  material_colors_ = material_colors(attributes().materials, progress);
 }
 
 SceneInput::SceneInput(const std::filesystem::path& path, Progress* progress)
@@ -79,6 +94,12 @@ VoxelSet SceneInput::voxels() const {
 ColoredDagView SceneInput::colored_dag() const {
   const DagInput* const dag = std::get_if<DagInput>(&scene_);
   return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
+}
+
+void SceneInput::show_materials(const std::filesystem::path& path, Progress* progress) {
+  DagInput* const dag = std::get_if<DagInput>(&scene_);
+  if (dag == nullptr) fail_without_materials(path);
+  dag->show_materials(path, progress);
 }
 
 const SceneMetadata& SceneInput::metadata() const {

@@ -57,11 +57,13 @@ void add_export_command(const Command& program, Session& session) {
     return arguments->output.ends_with(".ply") ||
            (arguments->output.ends_with(".npy") && !arguments->options.window);
   };
-  constexpr const char* kCarriesNone = "on an output that cannot hold colours and normals";
+  constexpr const char* kCarriesNone =
+      "on an output that cannot hold colours, normals and materials";
   const Option look = add_look_option(command, arguments->look).only_if(carries_look, kCarriesNone);
   command
-      .flag("--grey", arguments->grey,
-            "Leave out colours and normals: an .npy file is a plain array of coordinates")
+      .flag(
+          "--grey", arguments->grey,
+          "Leave out colours, normals and materials: an .npy file is a plain array of coordinates")
       .only_if(carries_look, kCarriesNone)
       .not_with(look);
   add_quiet_option(command, session);

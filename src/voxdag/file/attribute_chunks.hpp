@@ -8,6 +8,10 @@
 /// COLR and NRML, the values of cells:
 ///   0    ValuePagesHeader  64 bytes
 ///   64   ValuePagesView::groups, ::words, ::pages
+///
+/// MTID, the materials of cells:
+///   0    MaterialIdsHeader  64 bytes
+///   64   MaterialIdsView::groups, ::words, ::pages
 #include <span>
 #include <vector>
 
@@ -35,6 +39,15 @@ struct ValuePagesHeader {
 };
 static_assert(sizeof(ValuePagesHeader) == 64);
 
+struct MaterialIdsHeader {
+  std::uint32_t materials;
+  std::uint32_t reserved;  ///< Zero.
+  std::uint64_t values;
+  std::uint64_t words;
+  std::uint64_t padding[5];  ///< Zero.
+};
+static_assert(sizeof(MaterialIdsHeader) == 64);
+
 /// The bytes of the chunks of attributes. Refers to the attributes and owns the headers.
 class AttributeChunks {
  public:
@@ -49,14 +62,16 @@ class AttributeChunks {
   const std::vector<OutputChunk>& chunks() const { return chunks_; }
 
  private:
-  void add(std::uint32_t id, const ValuePagesView& pages, ValuePagesHeader& header);
+  template <class View, class Header>
+  void add(std::uint32_t id, const View& pages, Header& header);
 
   CellIndexHeader index_{};
   ValuePagesHeader colors_{}, normals_{};
+  MaterialIdsHeader materials_{};
   std::vector<OutputChunk> chunks_;
 };
 
-/// Returns whether the file has values of cells: one of the chunks COLR and NRML.
+/// Returns whether the file has values of cells: one of the chunks COLR, NRML and MTID.
 bool has_attribute_values(const std::vector<VdagChunk>& chunks);
 
 /// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none. The

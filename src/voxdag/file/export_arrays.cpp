@@ -25,6 +25,7 @@ struct CoordinateRows {
     dtype = "[('voxel', '<i4', (3,))";
     if (look.has_normals()) add(", ('normal', '<f4', (3,))", sizeof(Vec3f));
     if (look.has_colors()) add(", ('color', '|u1', (3,))", sizeof(Value8));
+    if (look.has_materials()) add(", ('material', '<u2')", sizeof(std::uint16_t));
     dtype += "]";
     layout.dtype = dtype;
     shape = {};
@@ -123,6 +124,7 @@ void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& v
       const VoxelLook of_voxel = look.read(voxel, voxels.levels());
       if (look.has_normals()) append(rows, of_voxel.normal);
       if (look.has_colors()) append(rows, of_voxel.color);
+      if (look.has_materials()) append(rows, of_voxel.material);
     }
     if (rows.size() < kRowsAtOnce * row.bytes) return;
     writer.write_bytes(rows.data(), rows.size());

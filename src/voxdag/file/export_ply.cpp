@@ -34,7 +34,7 @@ bool float_suffices(const Grid& grid) {
 class PlyFile {
  public:
   struct Content {
-    bool faces = false, normals = false, colors = false;
+    bool faces = false, normals = false, colors = false, materials = false;
   };
 
   PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content)
@@ -55,6 +55,7 @@ class PlyFile {
     }
     if (content_.normals) file_.write(&look.normal, sizeof look.normal);
     if (content_.colors) file_.write(&look.color, sizeof look.color);
+    if (content_.materials) file_.write(&look.material, sizeof look.material);
     ++vertices_;
   }
 
@@ -91,6 +92,7 @@ class PlyFile {
     if (content_.colors)
       for (const char* channel : {"red", "green", "blue"})
         text += std::string("property uchar ") + channel + "\n";
+    if (content_.materials) text += "property ushort material\n";
     if (content_.faces)
       text +=
           "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
@@ -104,6 +106,10 @@ class PlyFile {
   std::size_t header_bytes_ = 0;
   std::uint64_t vertices_ = 0, faces_ = 0;
 };
+
+PlyFile::Content content_of(const LookReader& look, bool faces) {
+  return {faces, look.has_normals(), look.has_colors(), look.has_materials()};
+}
 
 constexpr int kCorners = 5 * 5 * 5;  ///< Corners of the voxels of a leaf block.
 
@@ -199,9 +205,10 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
   const Box3i window = export_window(path, voxels, options);
   LookReader look(options.look);
   const std::uint64_t vertex_bytes = sizeof(Vec3f) + (look.has_normals() ? sizeof(Vec3f) : 0) +
-                                     (look.has_colors() ? sizeof(Value8) : 0);
+                                     (look.has_colors() ? sizeof(Value8) : 0) +
+                                     (look.has_materials() ? sizeof(std::uint16_t) : 0);
   const std::uint64_t count = count_for_export(path, voxels, window, vertex_bytes, options);
-  PlyFile file(path, grid, {.normals = look.has_normals(), .colors = look.has_colors()});
+  PlyFile file(path, grid, content_of(look, false));
   export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
@@ -219,8 +226,7 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
   const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   LookReader look(options.look);
   const bool by_voxel = !look.is_empty();
-  PlyFile file(path, grid,
-               {.faces = true, .normals = look.has_normals(), .colors = look.has_colors()});
+  PlyFile file(path, grid, content_of(look, true));
   // In PLY all vertices come before all faces. So two walks compute the same surfaces.
   const auto for_each_surface = [&](const auto& fn) {
     export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {

@@ -58,6 +58,11 @@ void write_chunks(const std::filesystem::path& path, const std::vector<OutputChu
 /// Returns the JSON of META. Throws Error for the path if a reader would refuse it.
 std::string checked_json(const std::filesystem::path& path, const VdagMetadata& metadata) {
   std::string json = vdag_metadata_json(metadata);
+  if (json.size() > kVdagMostMetadataBytes)
+    throw Error(path.string(), ErrorPlace::chunk("META"),
+                "would have " + std::to_string(json.size()) + " bytes, more than the limit of " +
+                    std::to_string(kVdagMostMetadataBytes) +
+                    (metadata.attributes.materials ? ": the materials have too long names" : ""));
   try {
     parse_vdag_metadata(json);
   } catch (const Error& error) {

@@ -50,6 +50,12 @@ void compare_attributes(const AttributesMetadata& stated, const DagAttributesVie
     fail("attributes", "is missing, but the file has attributes");
   compare_values("attributes.color", "COLR", stated.colors.has_value(), stored.has_colors());
   compare_values("attributes.normal", "NRML", stated.normals.has_value(), stored.has_normals());
+  compare_values("attributes.material", "MTID", stated.materials.has_value(),
+                 stored.has_materials());
+  if (stored.has_materials() && stated.materials->size() != stored.materials.materials)
+    fail("attributes.material.names",
+         "has " + std::to_string(stated.materials->size()) + " names, but the chunk MTID has " +
+             std::to_string(stored.materials.materials) + " materials");
   const std::int64_t resolution = std::int64_t{1} << stored.index.finest_level;
   if (!stored.is_empty() && stated.resolution != resolution)
     fail("attributes.resolution", "is " + std::to_string(stated.resolution) +

@@ -29,6 +29,7 @@ struct LookView {
   VOXDAG_HD bool has_normals() const {
     return has_stored(esvo, EsvoAttachmentKind::kNormals) || dag.attributes.has_normals();
   }
+  VOXDAG_HD bool has_materials() const { return dag.attributes.has_materials(); }
 };
 
 /// Sets `number` to the number of a cell of `level`, or of its ancestor of the finest level with
@@ -45,7 +46,16 @@ VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int
          find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
 }
 
-/// Returns what a DAG stores for the cell of find_number().
+/// Returns the material of the cell of find_number(); kMostMaterials if there is none. `colored`
+/// must have materials.
+VOXDAG_HD inline std::uint32_t material_at(const ColoredDagView& colored, Vec3i cell, int level) {
+  std::uint64_t number = 0;
+  return find_number(colored, cell, level, number)
+             ? read_material(colored.attributes.materials, number)
+             : kMostMaterials;
+}
+
+/// Returns the colour and the normal that a DAG stores for the cell of find_number().
 VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
   StoredLook look;
   const DagAttributesView& attributes = colored.attributes;

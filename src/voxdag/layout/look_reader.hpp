@@ -1,18 +1,19 @@
 #pragma once
-/// Reads the colours and normals of many voxels, one after the other.
+/// Reads the colours, normals and materials of many voxels, one after the other.
 #include "voxdag/layout/look.hpp"
 #include "voxdag/layout/page_reader.hpp"
 
 namespace voxdag {
 
-/// The colour and the normal of a voxel, in the form of files for other programs.
+/// The colour, the normal and the material of a voxel, in the form of files for other programs.
 struct VoxelLook {
-  Vec3f normal{};  ///< World space, unit length; zero: none.
-  Value8 color{};  ///< sRGB encoded; black: none.
+  Vec3f normal{};                           ///< World space, unit length; zero: none.
+  Value8 color{};                           ///< sRGB encoded; black: none.
+  std::uint16_t material = kMostMaterials;  ///< kMostMaterials: none.
 };
 
-/// Reads what look_at() reads, faster if the voxels come in Morton order. Each thread needs its
-/// own. Refers to the bytes of the look.
+/// Reads what look_at() and material_at() read, faster if the voxels come in Morton order. Each
+/// thread needs its own. Refers to the bytes of the look.
 class LookReader {
  public:
   explicit LookReader(const LookView& look)
@@ -20,13 +21,15 @@ class LookReader {
         colors_(look.dag.attributes.colors),
         normals_(look.dag.attributes.normals),
         has_colors_(look.has_colors()),
-        has_normals_(look.has_normals()) {}
+        has_normals_(look.has_normals()),
+        has_materials_(look.has_materials()) {}
 
   bool has_colors() const { return has_colors_; }
   bool has_normals() const { return has_normals_; }
-  bool is_empty() const { return !has_colors_ && !has_normals_; }
+  bool has_materials() const { return has_materials_; }
+  bool is_empty() const { return !has_colors_ && !has_normals_ && !has_materials_; }
 
-  /// Returns the colour and the normal of the cell `cell` of `level`.
+  /// Returns what is stored for the cell `cell` of `level`.
   VoxelLook read(Vec3i cell, int level) {
     VoxelLook result;
     if (!look_.esvo.is_empty()) {
@@ -40,13 +43,16 @@ class LookReader {
     if (!find_number(look_.dag, cell, level, number)) return result;
     if (has_normals_) result.normal = unpack_normal(normals_.value(number));
     if (has_colors_) result.color = colors_.value(number);
+    if (has_materials_)
+      result.material =
+          static_cast<std::uint16_t>(read_material(look_.dag.attributes.materials, number));
     return result;
   }
 
  private:
   LookView look_;
   PageReader colors_, normals_;
-  bool has_colors_, has_normals_;
+  bool has_colors_, has_normals_, has_materials_;
 };
 
 }  // namespace voxdag
