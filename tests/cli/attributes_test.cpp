@@ -279,9 +279,9 @@ TEST_F(AttributesCommand, MaterialsAreStoredShownAndChecked) {
             std::string::npos);
 
   // The materials lie side by side in x.
-  const Grid grid = VdagFile(dag).grid();
   std::vector<std::array<float, 8>> rays;
-  for (int x = 0; x < 20; ++x) rays.push_back({x + 0.5f, 100, 9.3f, 0, 0, -1, 0, 1000});
+  for (int x = 0; x < 20; ++x)
+    rays.push_back({static_cast<float>(x) + 0.5f, 100, 9.3f, 0, 0, -1, 0, 1000});
   rays.push_back({-5, 100, 9, 0, 0, -1, 0, 1000});  // misses
   write_text(dir_ / "rays.npy", rays_npy(rays));
   run({"trace", small, "--rays", dir_ / "rays.npy", "-o", dir_ / "hits.npy"});
