@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "support/clipped_polygon.hpp"
 #include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/dag/build_svdag.hpp"
@@ -55,20 +56,6 @@ struct ColoredMesh {
   }
 };
 
-using Polygon = std::vector<Vec3d>;
-
-/// Returns the part of a polygon with sign * (p[axis] - at) >= 0.
-Polygon clipped(const Polygon& polygon, int axis, double at, double sign) {
-  Polygon result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    const double da = sign * (a[axis] - at), db = sign * (b[axis] - at);
-    if (da >= 0) result.push_back(a);
-    if ((da < 0) != (db < 0)) result.push_back(a + (b - a) * (da / (da - db)));
-  }
-  return result;
-}
-
 /// The mean colour of the surface in a box of the grid, by clipping every triangle to it: for
 /// corner colours, the mean over a polygon is the colour at its centroid.
 struct BruteMean {
@@ -82,11 +69,7 @@ struct BruteMean {
         corners[k] = of.grid.to_grid(Vec3d(of.mesh.vertices[of.mesh.triangles[t][k]]));
         colors[k] = Vec3d(of.appearance.colors[3 * t + k].color());
       }
-      Polygon polygon(corners, corners + 3);
-      for (int axis = 0; axis < 3; ++axis) {
-        polygon = clipped(polygon, axis, lo[axis], 1);
-        polygon = clipped(polygon, axis, hi[axis], -1);
-      }
+      const Polygon polygon = clipped(Polygon(corners, corners + 3), lo, hi);
       const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
       for (std::size_t i = 2; i < polygon.size(); ++i) {
         const Vec3d n = cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);

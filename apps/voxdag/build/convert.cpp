@@ -10,10 +10,12 @@
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
+#include "voxdag/attributes/coarsen_attributes.hpp"
 #include "voxdag/compact/coarsen.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -27,6 +29,22 @@ struct ConvertArguments {
   std::optional<int> levels;
   std::uint64_t memory_limit = 0;
 };
+
+/// Throws Error unless the metadata of the file describes its attributes.
+void check_metadata(const VdagMetadata& metadata, const DagAttributesView& attributes,
+                    const std::string& file) {
+  try {
+    compare_attributes(metadata.attributes, attributes);
+  } catch (const Error& error) {
+    throw error.in_file(file);
+  }
+}
+
+/// Removes the errors of the values, which are not known for some of the cells alone.
+void forget_errors(AttributesMetadata& attributes) {
+  if (attributes.colors) attributes.colors->errors.reset();
+  if (attributes.normals) attributes.normals->errors.reset();
+}
 
 void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
@@ -48,16 +66,24 @@ void convert(const ConvertArguments& arguments, Session& session) {
     metadata = coarser_metadata(metadata, dag);
   }
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
-  const DagAttributesView attributes =
+  DagAttributesView attributes =
       arguments.drop_attributes ? DagAttributesView{} : file.attributes();
-  if (!attributes.is_empty() && (compact || is_coarser))
-    throw Error(session.subject, "",
-                "has colours or normals, which the compact form and a coarser grid cannot keep: "
-                "use --drop-attributes");
-  if (attributes.is_empty()) metadata.attributes = {};
+  if (attributes.is_empty())
+    metadata.attributes = {};
+  else
+    check_metadata(file.metadata(), attributes, session.subject);
+  DagAttributes coarse_attributes;
+  if (!attributes.is_empty() && is_coarser) {
+    coarse_attributes =
+        coarsen_attributes({file.view(), attributes}, dag, &memory, &session.progress);
+    if (attributes.index.finest_level > dag.levels) forget_errors(metadata.attributes);
+    attributes = coarse_attributes.view();
+    metadata.attributes.resolution = std::int64_t{1} << attributes.index.finest_level;
+  }
+  const MemoryReservation attribute_bytes(&memory, coarse_attributes.bytes());
   if (compact) {
     write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
-               metadata);
+               metadata, attributes);
   } else {
     write_vdag(arguments.output, dag, metadata, attributes);
   }
@@ -87,7 +113,7 @@ void add_convert_command(const Command& program, Session& session) {
       "--levels", arguments->levels, NumberRange::whole(kMinLevels, kMaxLevels), "L",
       "Write a coarser grid, of 2^L voxels a side: a voxel is set if one in it was");
   command.flag("--drop-attributes", arguments->drop_attributes,
-               "Leave out the colours and normals");
+               "Leave out colours, normals and material ids");
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "
                  "memory)");

@@ -19,10 +19,14 @@ namespace voxdag {
 namespace {
 
 void render_loaded(const RenderArguments& arguments, Session& session) {
-  const SceneInput file(session.subject, &session.progress);
+  SceneInput file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
-  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  if (arguments.materials && look)
+    look->show_materials(arguments.look, &session.progress);
+  else if (arguments.materials)
+    file.show_materials(session.subject, &session.progress);
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   const LookOnDevice look_on_device(arguments.device, look ? *look : file, !look, device_scene);
   options.look = look_on_device.view();

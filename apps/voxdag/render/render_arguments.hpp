@@ -33,6 +33,7 @@ struct PathArguments {
 struct RenderArguments {
   std::string output, depth, normal;
   std::string look;                 ///< The ESVO with the look of a DAG's voxels; empty: none.
+  bool materials = false;           ///< Show each material in a colour of its own.
   std::vector<PicturePass> passes;  ///< Values of --pass.
   ImageSize size{1920, 1080};
   RenderOptions options;

@@ -213,6 +213,12 @@ void add_render_options(const Command& command, Session& session, RenderArgument
                    "or steps64 to a .exr or .png file; repeatable");
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
   add_look_option(command, arguments.look).only_if(shows_voxels, "with --mesh");
+  command
+      .flag("--materials", arguments.materials,
+            "Show each material in a colour of its own, if the file or --look has material ids")
+      .only_if(shows_voxels, "with --mesh")
+      .only_if([&arguments] { return arguments.stream_memory == 0; },
+               "with --memory: ESVOs have no material ids");
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);

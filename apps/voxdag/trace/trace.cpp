@@ -85,8 +85,9 @@ void add_trace_command(const Command& program, Session& session) {
   command
       .text("-o,--output", arguments->output, "HITS.npy",
             "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
-            "the ray starts inside), hit; if the scene or --look stores normals or colours, also "
-            "normal (world space) or color (sRGB, 0 to 255)")
+            "the ray starts inside), hit; if the scene or --look stores normals, colours or "
+            "materials, also normal (world space), color (sRGB, 0 to 255) or material (65535: "
+            "none)")
       .required();
   add_look_option(command, arguments->look);
   add_device_option(command, arguments->device);
