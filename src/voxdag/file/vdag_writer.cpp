@@ -71,6 +71,16 @@ std::string checked_json(const std::filesystem::path& path, const VdagMetadata& 
   return json;
 }
 
+/// Throws Error for the path unless the metadata describes these attributes.
+void check_attributes_metadata(const std::filesystem::path& path, const VdagMetadata& metadata,
+                               const DagAttributesView& attributes) {
+  try {
+    compare_attributes(metadata.attributes, attributes);
+  } catch (const Error& error) {
+    throw error.in_file(path.string());
+  }
+}
+
 /// Returns a required chunk.
 OutputChunk required(std::uint32_t id, std::span<const std::byte> bytes) {
   return {id, kVdagChunkRequired, {bytes}};
@@ -97,11 +107,7 @@ void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
   assert(metadata.grid.levels == compact.levels);
   const std::string json = checked_json(path, metadata);
   // A reader numbers the cells down to the level that the metadata has.
-  if (!attributes.is_empty()) try {
-      compare_attributes(metadata.attributes, attributes);
-    } catch (const Error& error) {
-      throw error.in_file(path.string());
-    }
+  if (!attributes.is_empty()) check_attributes_metadata(path, metadata, attributes);
   const std::vector<std::byte> head = compact_head(compact);
   std::vector<OutputChunk> chunks = {required(kChunkMeta, bytes_of(json.data(), json.size())),
                                      required(kChunkCompactHead, head),
