@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/brute_svdag.hpp"
 #include "support/number_colors.hpp"
 #include "voxdag/compact/coarsen.hpp"
@@ -41,6 +43,27 @@ TEST(CoarsenAttributes, EveryCellKeepsItsValues) {
   }
 }
 
+TEST(CoarsenAttributes, BoundsLimitTheChange) {
+  const Svdag dag = brute_svdag(6, random_voxels(6, 3000, 4)), coarse = coarsen(dag.view(), 5);
+  const NumberColors colors(dag.view(), 6);
+  const ColoredDagView fine = colors.view();
+  const CoarsenBounds bounds{0.1, 10};
+  const DagAttributes attributes = coarsen_attributes(fine, coarse.view(), bounds);
+  EXPECT_LT(attributes.colors.words.size(),
+            coarsen_attributes(fine, coarse.view()).colors.words.size());
+  for (std::uint64_t code = 0; code < std::uint64_t{1} << 15; ++code) {
+    const Vec3i cell = morton_decode(code);
+    std::uint64_t before = 0, after = 0;
+    if (!find_number(fine, cell, 5, before)) continue;
+    ASSERT_TRUE(find_number({coarse.view(), attributes.view()}, cell, 5, after));
+    const Value8 a = color_of_number(before), b = read_value(attributes.colors.view(), after);
+    double sum = 0;
+    for (int c = 0; c < 3; ++c)
+      sum += kColorWeights[static_cast<std::size_t>(c)] * std::pow(a[c] - b[c], 2);
+    ASSERT_LE(std::sqrt(sum / 7), 255 * 0.1 + 1e-9);
+  }
+}
+
 TEST(CoarsenAttributes, MissingKindsStayMissing) {
   const Svdag dag = brute_svdag(6, random_voxels(6, 100, 4)), coarse = coarsen(dag.view(), 3);
   const NumberColors colors(dag.view(), 6);
@@ -57,11 +80,11 @@ TEST(CoarsenAttributes, MemoryIsCountedAndReleased) {
   const Svdag dag = brute_svdag(7, random_voxels(7, 20000, 4)), coarse = coarsen(dag.view(), 6);
   const NumberColors colors(dag.view(), 7);
   MemoryBudget budget(std::uint64_t{1} << 30);
-  coarsen_attributes(colors.view(), coarse.view(), &budget);
+  coarsen_attributes(colors.view(), coarse.view(), {}, &budget);
   EXPECT_GT(budget.peak(), 100'000u);
   EXPECT_EQ(budget.used(), 0u);
   MemoryBudget small(10'000);
-  EXPECT_THROW(coarsen_attributes(colors.view(), coarse.view(), &small), OverMemory);
+  EXPECT_THROW(coarsen_attributes(colors.view(), coarse.view(), {}, &small), OverMemory);
   EXPECT_EQ(small.used(), 0u);
 }
 

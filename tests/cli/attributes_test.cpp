@@ -231,6 +231,15 @@ TEST_F(AttributesCommand, ACoarserGridKeepsTheColoursOfItsCells) {
   EXPECT_EQ(attributes(coarse).at("color").at("bound"), 0.03);
   EXPECT_FALSE(attributes(coarse).at("color").contains("psnr_db"));
   EXPECT_FALSE(attributes(coarse).at("normal").contains("mean_degrees"));
+  ASSERT_EQ(run_voxdag({"convert", fine, "--levels", "4", "--color-bound", "0.02", "--normal-bound",
+                        "3", "-o", same})
+                .status,
+            0);
+  EXPECT_EQ(attributes(same).at("color").at("bound"), 0.05);
+  EXPECT_EQ(attributes(same).at("normal").at("bound"), 7);
+  EXPECT_LT(attributes(same).at("color").at("bytes"), attributes(coarse).at("color").at("bytes"));
+  expect_failure(run_voxdag({"convert", fine, "--color-bound", "0.1", "-o", same}), 2,
+                 "without --levels");
   // Attributes that are as coarse as the coarse grid keep their bytes and errors.
   const std::string coarsely = build("d.vdag", {"--color", "--attribute-resolution", "16"});
   ASSERT_EQ(run_voxdag({"convert", coarsely, "--levels", "4", "--compact", "-o", same}).status, 0);

@@ -1,6 +1,7 @@
 /// `voxdag convert`: writes a DAG in its other form, or with fewer levels.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -27,6 +28,7 @@ struct ConvertArguments {
   bool compact = false, plain = false;
   bool drop_attributes = false;
   std::optional<int> levels;
+  CoarsenBounds bounds;
   std::uint64_t memory_limit = 0;
 };
 
@@ -40,10 +42,14 @@ void check_metadata(const VdagMetadata& metadata, const DagAttributesView& attri
   }
 }
 
-/// Removes the errors of the values, which are not known for some of the cells alone.
-void forget_errors(AttributesMetadata& attributes) {
-  if (attributes.colors) attributes.colors->errors.reset();
-  if (attributes.normals) attributes.normals->errors.reset();
+/// Describes values that were encoded again within these bounds. The errors of some of the cells
+/// alone are not known.
+void encode_again(AttributesMetadata& attributes, const CoarsenBounds& bounds) {
+  if (attributes.colors)
+    attributes.colors = {std::min(attributes.colors->bound + bounds.color_bound, 1.0), {}};
+  if (attributes.normals)
+    attributes.normals = {std::min(attributes.normals->bound + bounds.normal_bound_degrees, 180.0),
+                          {}};
 }
 
 void convert(const ConvertArguments& arguments, Session& session) {
@@ -74,9 +80,10 @@ void convert(const ConvertArguments& arguments, Session& session) {
     check_metadata(file.metadata(), attributes, session.subject);
   DagAttributes coarse_attributes;
   if (!attributes.is_empty() && is_coarser) {
-    coarse_attributes =
-        coarsen_attributes({file.view(), attributes}, dag, &memory, &session.progress);
-    if (attributes.index.finest_level > dag.levels) forget_errors(metadata.attributes);
+    coarse_attributes = coarsen_attributes({file.view(), attributes}, dag, arguments.bounds,
+                                           &memory, &session.progress);
+    if (attributes.index.finest_level > dag.levels)
+      encode_again(metadata.attributes, arguments.bounds);
     attributes = coarse_attributes.view();
     metadata.attributes.resolution = std::int64_t{1} << attributes.index.finest_level;
   }
@@ -112,6 +119,17 @@ void add_convert_command(const Command& program, Session& session) {
   command.optional_number<int>(
       "--levels", arguments->levels, NumberRange::whole(kMinLevels, kMaxLevels), "L",
       "Write a coarser grid, of 2^L voxels a side: a voxel is set if one in it was");
+  const auto has_levels = [arguments] { return arguments->levels.has_value(); };
+  command
+      .number("--color-bound", arguments->bounds.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
+              "With --levels: how far a colour may change when the coarser colours are encoded "
+              "again, in the units of build (0: not at all)")
+      .only_if(has_levels, "without --levels");
+  command
+      .number("--normal-bound", arguments->bounds.normal_bound_degrees, NumberRange::from(0, 180),
+              "DEGREES",
+              "With --levels: how far a normal may turn when it is encoded again (0: not at all)")
+      .only_if(has_levels, "without --levels");
   command.flag("--drop-attributes", arguments->drop_attributes,
                "Leave out colours, normals and material ids");
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",

@@ -13,6 +13,10 @@ std::variant<DagInput, EsvoFile> open(const std::filesystem::path& path, Progres
   return DagInput(path, progress);
 }
 
+[[noreturn]] void fail_without_materials(const std::filesystem::path& path) {
+  throw Error(path.string(), "", "has no material ids: voxdag build --material-ids stores them");
+}
+
 }  // namespace
 
 DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* progress,
@@ -27,7 +31,7 @@ DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* 
       const MemoryReservation dag_bytes(memory, decoded.view().bytes());
       decoded.index =
           build_cell_index(decoded.view(), contents.metadata.attributes.level(), memory);
-      decoded.values = contents.attributes(decoded.index.view());
+      decoded.stored = contents.attributes(decoded.index.view());
     }
   } catch (const Cancelled&) {
     throw;
@@ -70,14 +74,6 @@ DagAttributesView DagInput::attributes() const {
   if (material_colors_) view.colors = material_colors_->view();
   return view;
 }
-
-namespace {
-
-[[noreturn]] void fail_without_materials(const std::filesystem::path& path) {
-  throw Error(path.string(), "", "has no material ids: voxdag build --material-ids stores them");
-}
-
-}  // namespace
 
 void DagInput::show_materials(const std::filesystem::path& path, Progress* progress) {
   if (!attributes().has_materials()) fail_without_materials(path);

@@ -21,7 +21,7 @@ class DagInput {
   DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
 
   SvdagView view() const;
-  /// Returns the colours and normals of the DAG's cells; empty if the file has none.
+  /// Returns the attributes of the DAG's cells; empty if the file has none.
   DagAttributesView attributes() const;
   const VdagMetadata& metadata() const { return metadata_; }
   const Grid& grid() const { return metadata_.grid; }
@@ -37,14 +37,10 @@ class DagInput {
     std::optional<CompactFile> file;  ///< The attributes point into it. None: no attributes.
     Svdag dag;
     CellIndex index;           ///< The numbers of the cells with attributes.
-    DagAttributesView values;  ///< Its index is not set.
+    DagAttributesView stored;  ///< Of `file` and `index`; stays valid when they are moved.
 
     SvdagView view() const { return dag.view(); }
-    DagAttributesView attributes() const {
-      DagAttributesView view = values;
-      view.index = index.view();
-      return view;
-    }
+    const DagAttributesView& attributes() const { return stored; }
   };
   static Decoded decode(const std::filesystem::path& path, Progress* progress,
                         MemoryBudget* memory);

@@ -2,6 +2,7 @@
 /// mesh.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -124,6 +125,14 @@ std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, cons
   return checks;
 }
 
+/// Returns the mesh with materials that say nothing.
+MeshWithAppearance without_appearance(Mesh mesh) {
+  MeshWithAppearance source;
+  source.appearance.materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
+  source.mesh = std::move(mesh);
+  return source;
+}
+
 /// Compares a DAG with the mesh.
 std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
@@ -133,7 +142,7 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& s
   if (file.attributes().has_colors() || file.attributes().has_normals())
     source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
   else
-    source.mesh = read_mesh_file(arguments.mesh, arguments.access, session);
+    source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
   std::vector<VerifyCheck> checks = {cover_check(arguments, file, source.mesh, session)};
   // The voxels of another mesh have other colours.
   if (checks[0].result != Result::kPassed) return checks;

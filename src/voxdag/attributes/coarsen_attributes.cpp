@@ -38,11 +38,21 @@ MaterialIds copy_of(const MaterialIdsView& view, MemoryBudget* memory) {
   return ids;
 }
 
-/// Encodes values without loss, from lists of the numbers that they have in the fine grid.
+ValueMetric color_metric(const CoarsenBounds& bounds) {
+  return make_value_metric(kColorWeights, 255 * bounds.color_bound);
+}
+
+ValueMetric normal_metric(const CoarsenBounds& bounds) {
+  return make_normal_metric(bounds.normal_bound_degrees);
+}
+
+/// Encodes values again, from lists of the numbers that they have in the fine grid.
 class ValueCopier {
  public:
-  ValueCopier(const ValuePagesView& fine, std::uint64_t cells, MemoryBudget* memory) : fine_(fine) {
-    if (!fine.is_empty()) encoder_.emplace(cells, make_value_metric({1, 1, 1}, 0), memory);
+  ValueCopier(const ValuePagesView& fine, std::uint64_t cells, const ValueMetric& metric,
+              MemoryBudget* memory)
+      : fine_(fine) {
+    if (!fine.is_empty()) encoder_.emplace(cells, metric, memory);
   }
 
   /// Adds the values with these numbers. `first`, a multiple of kPageValues, is the new number of
@@ -65,14 +75,14 @@ class ValueCopier {
 /// Walks the cells of the fine grid down to the finest level of the coarse one.
 class Coarsener {
  public:
-  Coarsener(const ColoredDagView& fine, const CellIndex& index, MemoryBudget* memory,
-            Progress* progress)
+  Coarsener(const ColoredDagView& fine, const CellIndex& index, const CoarsenBounds& bounds,
+            MemoryBudget* memory, Progress* progress)
       : fine_(fine),
         index_(index),
         memory_(memory),
         progress_(progress),
-        colors_(fine.attributes.colors, index.cells, memory),
-        normals_(fine.attributes.normals, index.cells, memory) {
+        colors_(fine.attributes.colors, index.cells, color_metric(bounds), memory),
+        normals_(fine.attributes.normals, index.cells, normal_metric(bounds), memory) {
     if (fine.attributes.has_materials())
       materials_.emplace(fine.attributes.materials.materials, memory);
     numbers_.reserve(kAtOnce);
@@ -131,7 +141,8 @@ class Coarsener {
 }  // namespace
 
 DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& coarse,
-                                 MemoryBudget* memory, Progress* progress) {
+                                 const CoarsenBounds& bounds, MemoryBudget* memory,
+                                 Progress* progress) {
   DagAttributes result;
   if (fine.is_empty()) return result;
   const int finest = fine.attributes.index.finest_level;
@@ -145,7 +156,7 @@ DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& co
       result.materials = copy_of(fine.attributes.materials, memory);
     return result;
   }
-  Coarsener(fine, result.index, memory, progress).fill(result);
+  Coarsener(fine, result.index, bounds, memory, progress).fill(result);
   return result;
 }
 
