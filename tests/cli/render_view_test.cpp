@@ -40,10 +40,10 @@ TEST_F(RenderView, GivesThePictureOfTheOptions) {
   EXPECT_EQ(with_settings(std::string("{") + kCamera +
                           R"(, "sun": {"direction": [1, 2, 3], "angle": 4}, "sky": 0.5,
                           "exposure": 2, "occlusion": {"samples": 8, "distance": 0.2, "cone": 0.1},
-                          "lod": 0})"),
+                          "lod": 0, "cubes": 3})"),
             picture(with_camera({"--sun", "1,2,3", "--sun-angle", "4", "--sky", "0.5", "--exposure",
                                  "2", "--ao", "8", "--ao-distance", "0.2", "--ao-cone", "0.1",
-                                 "--lod", "0"})));
+                                 "--lod", "0", "--cubes", "3"})));
   EXPECT_EQ(with_settings(std::string("{") + kCamera + R"(, "sun": {"on": false}})"),
             picture(with_camera({"--no-sun"})));
   EXPECT_EQ(with_settings(std::string("{") + kCamera + R"(, "shadows": false})"),

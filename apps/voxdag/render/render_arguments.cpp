@@ -108,7 +108,7 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   take("--ao-distance", options.occlusion_distance, saved.occlusion_distance);
   take("--ao-cone", options.occlusion_cone, saved.occlusion_cone);
   take("--lod", options.lod_pixels, saved.lod_pixels);
-  options.cube_pixels = saved.cube_pixels;
+  take("--cubes", options.cube_pixels, saved.cube_pixels);
   view.colors = settings.colors;
   view.normals = settings.normals;
   std::vector<std::string> warnings;

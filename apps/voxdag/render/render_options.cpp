@@ -168,6 +168,12 @@ Option add_mesh_options(const Command& command, MeshArguments& mesh) {
 
 void add_filter_options(const Command& command, RenderArguments& arguments) {
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
+  arguments.view.winners.push_back(
+      command
+          .number("--cubes", arguments.options.cube_pixels, NumberRange::from(0, 1e6), "PIXELS",
+                  "Show voxels as cubes if they are larger in the picture, and as smooth surfaces "
+                  "below half of that; 0: always cubes")
+          .only_if(shows_voxels, "with --mesh"));
   const Option filter = command
                             .flag("--filter", arguments.filter,
                                   "Smooth voxels that are larger than pixels (default for an ESVO)")
