@@ -47,7 +47,7 @@ void open_in_browser(const std::string& url) {
 
 }  // namespace
 
-bool has_page_server() { return true; }
+void require_page_server() {}
 
 void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session) {
   ServerOptions options;
