@@ -168,7 +168,7 @@ for (const browserName of browsers)
       });
       await page.waitForFunction(() => location.hash.includes('note='), {timeout: 20_000});
       const hash = await page.evaluate(() => location.hash), wanted = await settings(page);
-      const other = await load(hash);
+      const other = await load(hash, {width: 240, height: 160});
       assert.deepEqual(await settings(other), wanted);
       await still(other);
       assert.deepEqual(await settings(other), wanted, 'nothing moves by itself');

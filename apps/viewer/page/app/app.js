@@ -1,6 +1,6 @@
 /** The page's program: a viewer of the scene beside the page, with hands and interface. */
 import { Hands } from '../hands/hands.js';
-import { settingsFromHash } from '../settings.js';
+import { settingsFromHash } from '../settings_link.js';
 import { createInterface } from '../ui/interface.js';
 import { capitalized, keepLink } from '../ui/link.js';
 import { failureCard, tryAgain } from '../ui/status.js';

@@ -1,5 +1,6 @@
 /** The interface around the picture: toolbar, panels, tools, read-out, shortcuts, messages. */
-import { DEFAULTS, settingsToHash } from '../settings.js';
+import { DEFAULTS } from '../settings.js';
+import { settingsToHash } from '../settings_link.js';
 import { isTyping } from '../hands/keys.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';

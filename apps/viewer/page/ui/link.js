@@ -1,5 +1,6 @@
 /** Keeps the address of the page in step with the settings. */
-import { DEFAULTS, settingsFromHash } from '../settings.js';
+import { DEFAULTS } from '../settings.js';
+import { settingsFromHash } from '../settings_link.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui

@@ -190,8 +190,8 @@ export function sectionPanel(ui) {
     const x = center.x + dot(n, right) * ARROW, y = center.y - dot(n, up) * ARROW;
     place(tip, { x, y });
     update(shaft, { x1: center.x, y1: center.y, x2: x, y2: y });
-    update(middle, { 'aria-valuetext': text(dot(n, plane.point)) });
-    update(tip, { 'aria-valuetext': plane.normal.map((v) => v.toFixed(2)).join(', ') });
+    update(middle, { 'aria-valuenow': String(dot(n, plane.point)), 'aria-valuetext': text(dot(n, plane.point)) });
+    update(tip, { 'aria-valuenow': String(Math.round(anglesOf(compassOf(projection.camera.up), n).yaw / RADIANS)), 'aria-valuetext': plane.normal.map((v) => v.toFixed(2)).join(', ') });
   }, planeGroup);
 
   // The panel.
