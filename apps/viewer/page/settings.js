@@ -68,7 +68,13 @@ export const DEFAULTS = {
 };
 
 /** Settings that are wrong. The message names the key and what is allowed. */
-export class SettingsError extends Error {}
+export class SettingsError extends Error {
+  /** @param {string} reason @param {string} [key]  Of the value that is wrong, if it is one value. */
+  constructor(reason, key) {
+    super(key === undefined ? reason : `"${key}" ${reason}`);
+    this.reason = reason;
+  }
+}
 
 /**
  * A check returns the value to store, or throws SettingsError with the key. `before` is the value
@@ -78,7 +84,7 @@ export class SettingsError extends Error {}
 
 /** @param {string} key @param {string} what @returns {never} */
 function refuse(key, what) {
-  throw new SettingsError(`"${key}" ${what}`);
+  throw new SettingsError(what, key);
 }
 
 /** @param {number} least @param {number} most @returns {Check} */

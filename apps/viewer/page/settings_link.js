@@ -135,8 +135,8 @@ export function settingsFromHash(hash, base = DEFAULTS) {
     try {
       settings = mergeSettings(settings, changes());
     } catch (error) {
-      const reason = error instanceof SettingsError ? error.message : 'is not encoded as a link';
-      problems.push(`the link's "${key}" is left out: ${reason}`);
+      const reason = error instanceof SettingsError ? error.reason : 'is not encoded as a link';
+      problems.push(`the link's "${key}" is left out: it ${reason}`);
     }
   };
   /** @type {any} */

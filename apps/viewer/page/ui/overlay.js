@@ -94,7 +94,7 @@ export class Overlay {
   /** @param {import('../viewer_types.js').Viewer} viewer @param {HTMLElement} container */
   constructor(viewer, container) {
     this.viewer = viewer;
-    this.element = svg('svg', { class: 'overlay', 'aria-label': 'Drawing over the picture' });
+    this.element = svg('svg', { class: 'overlay', 'aria-label': 'Drawing over the picture', hidden: true });
     container.append(this.element);
     /** @type {((projection: Projection, settings: Settings) => void)[]} */
     this.layers = [];
@@ -124,6 +124,7 @@ export class Overlay {
   }
   draw() {
     const { projection } = this;
+    show(this.element, projection !== null);
     if (!projection) return;
     update(this.element, { viewBox: `0 0 ${projection.width} ${projection.height}` });
     for (const draw of this.layers) draw(projection, this.viewer.get());

@@ -42,6 +42,13 @@ export class Status {
       title: 'The graphics were interrupted', text: 'The browser has taken the graphics away, perhaps because memory was short. The picture comes back when they do.', isLost: true }));
     viewer.on('restored', () => { if (this.lost) this.#mend(); });
     this.lost = false;
+    // A canvas without a picture is black.
+    container.classList.add('waiting');
+    const first = () => {
+      viewer.off('frame', first);
+      container.classList.remove('waiting');
+    };
+    viewer.on('frame', first);
     this.#loading();
   }
   isLoaded = false;
