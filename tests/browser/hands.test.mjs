@@ -118,6 +118,40 @@ for (const browserName of browsers)
       await page.close();
     });
 
+    it('follows one, two and three fingers', async () => {
+      const page = await load(), start = await camera(page), size = apart(start.eye, start.target);
+      /** Moves fingers from one place to another. @param {number[][]} from @param {number[][]} to @param {number} [hold] milliseconds */
+      const touch = async (from, to, hold = 0) => {
+        const fingers = [];
+        for (const [x, y] of from) fingers.push(await page.touchscreen.touchStart(x, y));
+        for (let i = 1; i <= 4; ++i)
+          for (const [k, finger] of fingers.entries()) await finger.move(...between(from[k], to[k], i / 4));
+        await pause(hold);
+        for (const finger of fingers) await finger.end();
+        await rest(page);
+      };
+      /** @param {number[]} a @param {number[]} b @param {number} t @returns {[number, number]} */
+      const between = (a, b, t) => [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t];
+
+      await touch([[300, 300]], [[380, 310]]);
+      const turned = await camera(page);
+      assert.ok(apart(turned.target, start.target) < 1e-3 * size && apart(turned.eye, start.eye) > 0.1 * size, 'one finger turns');
+
+      const middle = (await pick(page, 400, 330)).position;
+      await touch([[380, 330], [420, 330]], [[340, 330], [460, 330]]);
+      const closer = await camera(page);
+      assert.ok(apart(closer.eye, middle) < 0.6 * apart(turned.eye, middle), 'two fingers zoom');
+      const seen = await project(page, middle);
+      assert.ok(Math.hypot(seen.x - 400, seen.y - 330) < 15, 'about the point between them');
+
+      await touch([[350, 300], [400, 300], [450, 300]], [[350, 240], [400, 240], [450, 240]], 300);
+      const flown = await camera(page), way = flown.eye.map((x, i) => x - closer.eye[i]);
+      const forward = closer.target.map((x, i) => x - closer.eye[i]);
+      assert.ok(way.reduce((sum, x, i) => sum + x * forward[i], 0) > 0.5 * Math.hypot(...way) * Math.hypot(...forward), 'three fingers fly');
+      assertNoComplaints(page);
+      await page.close();
+    });
+
     it('flies and walks by keys, and shows the sides', async () => {
       const page = await load(), start = await camera(page);
       await page.keyboard.press('v');
