@@ -102,12 +102,26 @@ bool Process::wait_until_it_writes(const std::filesystem::path& folder) const {
   }
 }
 
+bool Process::has_ended() const {
+  siginfo_t state{};
+  waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT);
+  return state.si_pid != 0;
+}
+
 bool Process::wait_until_it_warns(const std::string& text) const {
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
-    siginfo_t state{};
-    waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT);
+    const bool is_last = has_ended();
     if (text_of(err_).find(text) != std::string::npos) return true;
-    if (state.si_pid != 0) return false;
+    if (is_last) return false;
+  }
+}
+
+std::string Process::wait_for_line() const {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    const bool is_last = has_ended();
+    const std::string text = text_of(out_);
+    const std::size_t end = text.find('\n');
+    if (end != std::string::npos || is_last) return text.substr(0, end);
   }
 }
 

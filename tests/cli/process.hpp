@@ -31,11 +31,15 @@ class Process {
   bool wait_until_it_writes(const std::filesystem::path& folder) const;
   /// Waits until the program has written `text` to stderr. Returns false if it has ended without.
   bool wait_until_it_warns(const std::string& text) const;
+  /// Waits until the program has written a line to stdout, or has ended. Returns the line.
+  std::string wait_for_line() const;
   /// Waits until the program has mapped the file into its memory, or has ended.
   void wait_until_it_maps(const std::filesystem::path& file) const;
   ProcessResult wait();
 
  private:
+  bool has_ended() const;
+
   pid_t pid_ = -1;
   int out_ = -1, err_ = -1;  ///< Temporary files without a name.
 };

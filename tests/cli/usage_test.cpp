@@ -5,8 +5,9 @@
 namespace voxdag {
 namespace {
 
-const std::vector<std::string> kCommands = {"build", "convert", "info",  "verify", "render",
-                                            "trace", "export",  "scene", "bench",  "completion"};
+const std::vector<std::string> kCommands = {"build", "convert", "info",      "verify",
+                                            "view",  "render",  "trace",     "export",
+                                            "scene", "bench",   "completion"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});

@@ -89,7 +89,7 @@ bool ClientStream::wait_until(Event event, Clock::time_point deadline) const {
   constexpr milliseconds kStep{100};  // the time after which a stop is noticed
   for (;;) {
     if (is_stopping_) return false;
-    const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (left.count() <= 0) return false;
     pollfd wanted{socket_, static_cast<short>(event == kRead ? POLLIN : POLLOUT), 0};
     const int ready = poll(&wanted, 1, static_cast<int>(std::min(left, kStep).count()));

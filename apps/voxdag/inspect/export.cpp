@@ -1,12 +1,15 @@
-/// `voxdag export`: writes the voxels in the formats of other programs.
+/// `voxdag export`: writes the voxels in the formats of other programs, or as a page of the viewer.
 #include "voxdag/file/export.hpp"
 
+#include <filesystem>
 #include <memory>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
+#include "view/export_page.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
@@ -15,9 +18,23 @@ struct ExportArguments {
   std::string output;
   ExportOptions options;
   bool faces = false;
+  ShownSceneArguments page;
+
+  bool is_page() const { return is_page_output(output); }
 };
 
+/// Throws Error before the file is read, unless export_voxels() knows the extension.
+void check_extension(const std::string& output) {
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (extension != ".npy" && extension != ".ply" && extension != ".raw")
+    throw Error(output, "",
+                "cannot export to '" + extension +
+                    "': the extension must be .npy, .ply, .raw or .html; a folder ends in /");
+}
+
 void export_file(ExportArguments& arguments, Session& session) {
+  if (arguments.is_page()) return export_page(arguments.output, arguments.page, session);
+  check_extension(arguments.output);
   const SceneInput file(session.subject, &session.progress);
   const VoxelSet voxels = file.voxels();
   arguments.options.progress = [&session](double fraction, std::uint64_t done) {
@@ -28,30 +45,58 @@ void export_file(ExportArguments& arguments, Session& session) {
                 arguments.faces ? PlyContent::kFaces : PlyContent::kPoints, arguments.options);
 }
 
+void add_page_options(const Command& command, ExportArguments& arguments) {
+  const auto is_page = [&arguments] { return arguments.is_page(); };
+  const std::string why_not = "on an output that is neither .html nor a folder";
+  command
+      .optional_number<int>("--levels", arguments.page.levels,
+                            NumberRange::whole(kMinLevels, kMaxLevels), "L",
+                            "With a page: show a coarser grid, of 2^L voxels a side")
+      .only_if(is_page, why_not);
+  command
+      .flag("--drop-attributes", arguments.page.drop_attributes,
+            "With a page: leave out the colours and normals")
+      .only_if(is_page, why_not);
+  command
+      .parsed("--memory", arguments.page.memory_limit, parse_memory, "LIMIT",
+              "With a page: maximum memory, including the program (default: three quarters of the "
+              "available memory)")
+      .only_if(is_page, why_not);
+}
+
+void check_outputs(const ExportArguments& arguments, const Session& session) {
+  if (arguments.is_page()) return check_page_output(arguments.output, session);
+  check_distinct({{"--output", arguments.output}, {"--output", arguments.output + ".json"}},
+                 session);
+}
+
 }  // namespace
 
 void add_export_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ExportArguments>();
-  const Command command = program.add("export", "Write the voxels as .npy, .ply or .raw",
-                                      "voxdag export scene.vdag -o voxels.npy");
+  const Command command = program.add(
+      "export", "Write the voxels as .npy, .ply or .raw, or as a page that shows them",
+      "voxdag export scene.vdag -o voxels.npy\n  voxdag export scene.vdag -o scene.html");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
       .text("-o,--output", arguments->output, "OUT",
             ".npy: coordinates, or a dense array with --window; .ply: points, or with --faces the "
-            "outer faces of the voxels; .raw: a dense array")
+            "outer faces of the voxels; .raw: a dense array; .html: a page in one file that shows "
+            "a DAG, also offline; FOLDER/: the page and the scene, for any web server")
       .required();
-  command.parsed(
-      "--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
-      "Export only the voxels from the first corner (included) to the second (excluded)");
+  command
+      .parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
+              "Export only the voxels from the first corner (included) to the second (excluded)")
+      .only_if([arguments] { return !arguments->is_page(); }, "on a page");
   command
       .flag("--faces", arguments->faces,
             "With .ply: write the outer faces of the voxels, not points")
       .only_if([arguments] { return arguments->output.ends_with(".ply"); },
                "on an output that does not end in .ply");
+  add_page_options(command, *arguments);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
-    check_distinct({{"--output", arguments->output}, {"--output", arguments->output + ".json"}},
-                   session);
+    check_outputs(*arguments, session);
     session.work = [arguments, &session] { export_file(*arguments, session); };
   });
 }

@@ -1,0 +1,108 @@
+#include "viewer/site/export_site.hpp"
+
+#include <fcntl.h>
+#include <stdio.h>
+
+#include <cerrno>
+#include <set>
+#include <system_error>
+
+#include "viewer/embedded/page_files.hpp"
+#include "viewer/site/scene_pieces.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/io/temporary_file.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kSceneName[] = "scene.vdag";
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what,
+                       const std::error_code& error) {
+  throw Error(path.string(), "", what + ": " + error.message());
+}
+
+/// Throws Error if a folder has anything but the files of a page.
+void check_replaceable(const fs::path& folder) {
+  std::set<fs::path> ours = {kSceneName};
+  for (const PageFile& file : page_files())
+    for (fs::path path = file.path; !path.empty(); path = path.parent_path()) ours.insert(path);
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
+       at.increment(error)) {
+    const fs::path path = at->path().lexically_relative(folder);
+    if (!ours.contains(path) || at->is_symlink())
+      throw Error(folder.string(), "",
+                  "has " + path.string() + ", which is no file of the page: name a new folder");
+  }
+  if (error) fail(folder, "cannot read", error);
+}
+
+/// A folder that is removed with its files, unless take_name() gives it its name.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const fs::path& target)
+      : target_(target), path_(temporary_name(target)) {
+    std::error_code error;
+    if (!fs::create_directory(path_, error)) fail(target_, "cannot create", error);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+
+  const fs::path& path() const { return path_; }
+
+  /// Gives the folder its name. A folder that has the name is then removed.
+  void take_name() const {
+    std::error_code error;
+    if (fs::exists(target_, error)) {
+      // Both names stay taken at all times. The destructor removes the old folder.
+      if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
+        fail(target_, "cannot replace", std::error_code(errno, std::system_category()));
+      return;
+    }
+    fs::rename(path_, target_, error);
+    if (error) fail(target_, "cannot create", error);
+  }
+
+ private:
+  fs::path target_, path_;
+};
+
+void write_scene(const fs::path& path, const SceneBytes& scene, Progress* progress) {
+  AtomicFile file(path);
+  for_each_piece(scene, progress, [&](std::span<const std::byte> piece) { file.write(piece); });
+  file.commit();
+}
+
+}  // namespace
+
+std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Progress* progress) {
+  const fs::path target = folder.has_filename() ? folder : folder.parent_path();
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(target, error);
+  if (fs::exists(status)) {
+    if (!fs::is_directory(status)) throw Error(target.string(), "", "exists and is no folder");
+    check_replaceable(target);
+  }
+  const TemporaryFolder site(target);
+  std::uint64_t bytes = scene.size();
+  for (const PageFile& file : page_files()) {
+    const fs::path path = site.path() / file.path;
+    fs::create_directories(path.parent_path(), error);
+    if (error) fail(target, "cannot create", error);
+    write_whole_file(path, file.bytes);
+    bytes += file.bytes.size();
+  }
+  write_scene(site.path() / kSceneName, scene, progress);
+  site.take_name();
+  return bytes;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,175 @@
+#include "viewer/site/single_page.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "viewer/site/base64.hpp"
+#include "viewer/site/module_imports.hpp"
+#include "voxdag/core/error.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::string_view kPolicy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
+    "'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; "
+    "worker-src blob:; connect-src data: blob:; base-uri 'none'; form-action 'none'\">\n";
+
+const PageFile& file_at(std::span<const PageFile> files, std::string_view path,
+                        std::string_view user) {
+  const auto found = std::find_if(files.begin(), files.end(),
+                                  [&](const PageFile& file) { return file.path == path; });
+  if (found == files.end())
+    throw Error(std::string(user), "", "refers to " + std::string(path) + ", which the page lacks");
+  return *found;
+}
+
+std::string data_url(const PageFile& file, std::string_view bytes) {
+  const std::string_view type = file.type.substr(0, file.type.find(';'));
+  return "data:" + std::string(type) + ";base64," + base64(bytes);
+}
+
+/// Returns the paths of a module and of all that it imports.
+std::set<std::string> reachable_modules(std::span<const PageFile> files, const std::string& entry) {
+  std::set<std::string> paths = {entry};
+  std::vector<std::string> left = {entry};
+  while (!left.empty()) {
+    const std::string path = left.back();
+    left.pop_back();
+    for (const ModuleImport& import : module_imports(path, file_at(files, path, path).bytes)) {
+      file_at(files, import.path, path);
+      if (paths.insert(import.path).second) left.push_back(import.path);
+    }
+  }
+  return paths;
+}
+
+/// A start tag of the page.
+struct Tag {
+  std::size_t begin, end;  ///< In the text; `end` is behind its ">".
+  std::string_view text;
+
+  /// Returns the value of an attribute in double quotation marks; empty if it has none.
+  std::string_view attribute(std::string_view name) const {
+    const std::string start = std::string(" ").append(name).append("=\"");
+    const std::size_t at = text.find(start);
+    if (at == text.npos) return {};
+    const std::size_t value = at + start.size();
+    return text.substr(value, text.find('"', value) - value);
+  }
+};
+
+/// Returns the first <script>, <link> or <img> that begins at `from` or later and refers to a file.
+Tag next_reference(std::string_view html, std::size_t from) {
+  for (std::size_t begin = html.find('<', from); begin != html.npos;
+       begin = html.find('<', begin + 1)) {
+    const std::string_view rest = html.substr(begin);
+    if (rest.starts_with("<!--")) {
+      begin = std::min(html.find("-->", begin), html.size() - 1);
+      continue;
+    }
+    if (!rest.starts_with("<script ") && !rest.starts_with("<link ") && !rest.starts_with("<img "))
+      continue;
+    const Tag tag{begin, html.find('>', begin) + 1, rest.substr(0, rest.find('>') + 1)};
+    if (!tag.attribute("src").empty() || !tag.attribute("href").empty()) return tag;
+  }
+  return {html.size(), html.size(), {}};
+}
+
+class PageBuilder {
+ public:
+  explicit PageBuilder(std::span<const PageFile> files) : files_(files) {}
+
+  SinglePage make() {
+    const std::string_view html = find("index.html").bytes;
+    std::size_t at = 0;
+    for (Tag tag = next_reference(html, 0); tag.begin < html.size();
+         tag = next_reference(html, at)) {
+      text_.append(html.substr(at, tag.begin - at));
+      at = tag.end;
+      if (tag.text.starts_with("<script ")) {
+        add_module(tag);
+        at = html.find("</script>", at);
+        if (at == html.npos) throw Error("index.html", "", "has a script without an end");
+        at += std::string_view("</script>").size();
+      } else {
+        add_link(tag);
+      }
+    }
+    text_.append(html.substr(at));
+    if (page_.before.empty()) throw Error("index.html", "", "has no module");
+    page_.after = std::move(text_);
+    add_policy();
+    return page_;
+  }
+
+ private:
+  const PageFile& find(std::string_view path) const { return file_at(files_, path, "index.html"); }
+
+  /// Adds the module with all that it imports, the other files, and the place of the scene.
+  void add_module(const Tag& tag) {
+    const std::string entry(tag.attribute("src"));
+    if (tag.attribute("type") != "module" || !page_.before.empty())
+      throw Error("index.html", "", "must have one script with src=, a module");
+    const std::set<std::string> modules = reachable_modules(files_, entry);
+    for (const PageFile& file : files_)
+      if (is_text(file) && !modules.contains(std::string(file.path)))
+        text_.append("<script type=\"text/plain\" data-path=\"")
+            .append(file.path)
+            .append("\">")
+            .append(file.bytes)
+            .append("</script>\n");
+    text_ += "<script type=\"importmap\">{\"imports\": {";
+    for (const std::string& path : modules) {
+      const PageFile& module = find(path);
+      text_.append(path == *modules.begin() ? "\n" : ",\n")
+          .append("\"voxdag/")
+          .append(path)
+          .append("\": \"")
+          .append(data_url(module, with_bare_imports(path, module.bytes)))
+          .append("\"");
+    }
+    text_ += "}}</script>\n<script type=\"text/plain\" id=\"scene\">";
+    page_.before = std::move(text_);
+    text_ = "</script>\n<script type=\"module\">import 'voxdag/" + entry + "';</script>";
+  }
+
+  void add_link(const Tag& tag) {
+    const bool is_link = tag.text.starts_with("<link ");
+    const std::string_view target = tag.attribute(is_link ? "href" : "src");
+    const PageFile& file = find(target);
+    if (is_link && tag.attribute("rel") == "stylesheet") {
+      text_.append("<style>\n").append(file.bytes).append("</style>");
+      return;
+    }
+    if (!file.type.starts_with("image/"))
+      throw Error("index.html", "",
+                  "refers to " + std::string(target) + ", which is no module, style or picture");
+    std::string element(tag.text);
+    element.replace(static_cast<std::size_t>(target.data() - tag.text.data()), target.size(),
+                    data_url(file, file.bytes));
+    text_ += element;
+  }
+
+  static bool is_text(const PageFile& file) {
+    return file.path.ends_with(".js") || file.path.ends_with(".glsl");
+  }
+
+  /// Adds the policy behind <head>, or behind the declaration of the characters.
+  void add_policy() {
+    std::size_t at = page_.before.find("<meta charset");
+    at = page_.before.find('>', at == std::string::npos ? page_.before.find("<head") : at);
+    if (at == std::string::npos) throw Error("index.html", "", "has no <head>");
+    page_.before.insert(at + 1, "\n" + std::string(kPolicy));
+  }
+
+  std::span<const PageFile> files_;
+  SinglePage page_;
+  std::string text_;
+};
+
+}  // namespace
+
+SinglePage make_single_page(std::span<const PageFile> files) { return PageBuilder(files).make(); }
+
+}  // namespace voxdag

@@ -1,0 +1,55 @@
+#include "view/export_page.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "cli/output_files.hpp"
+#include "viewer/site/export_site.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_single_file(const std::string& output) { return output.ends_with(".html"); }
+
+}  // namespace
+
+bool is_page_output(const std::string& output) {
+  std::error_code unknown;
+  return is_single_file(output) || output.ends_with("/") || fs::is_directory(output, unknown);
+}
+
+void check_page_output(const std::string& output, const Session& session) {
+  check_distinct({{"--output", output}}, session);
+  std::error_code unknown;
+  const fs::path input = fs::weakly_canonical(session.subject, unknown);
+  const fs::path folder = fs::weakly_canonical(output, unknown);
+  const fs::path inside =
+      input.lexically_relative(folder.has_filename() ? folder : folder.parent_path());
+  if (!is_single_file(output) && !inside.empty() && *inside.begin() != "..")
+    throw UsageError("--output",
+                     fmt::format("is the folder of {}, an input file", session.subject));
+}
+
+void export_page(const std::string& output, const ShownSceneArguments& arguments,
+                 Session& session) {
+  const ShownScene scene = ShownScene::read(session.subject, arguments, session);
+  const std::uint64_t bytes = is_single_file(output)
+                                  ? export_single_page(output, scene.bytes(), &session.progress)
+                                  : export_site(output, scene.bytes(), &session.progress);
+  session.bar.clear();
+  if (!session.quiet)
+    fmt::print("{}: {} (the scene: {})\n", output, human_bytes(bytes),
+               human_bytes(scene.bytes().size()));
+  if (is_single_file(output) && bytes > kHandyPageBytes)
+    print_warnings(
+        {fmt::format("{}: {} are slow to open and to send: --levels makes it smaller, or "
+                     "export to a folder",
+                     output, human_bytes(bytes))},
+        session);
+}
+
+}  // namespace voxdag

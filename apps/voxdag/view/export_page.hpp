@@ -1,0 +1,20 @@
+#pragma once
+/// `voxdag export` to a page of the viewer: a folder or one .html file.
+#include <string>
+
+#include "cli/session.hpp"
+#include "view/shown_scene.hpp"
+
+namespace voxdag {
+
+/// Returns whether `output` names a page: it ends in ".html" or "/", or is a folder.
+bool is_page_output(const std::string& output);
+
+/// Throws UsageError if the page would replace the folder of an input.
+void check_page_output(const std::string& output, const Session& session);
+
+/// Writes the page with the scene of session.subject. Prints the size, and a warning if it is
+/// large.
+void export_page(const std::string& output, const ShownSceneArguments& arguments, Session& session);
+
+}  // namespace voxdag
