@@ -120,7 +120,7 @@ export class Hands extends Events {
     this.frameRequest = 0;
     const { navigator } = this;
     if (!navigator) return;
-    const time = this.lastTime ? clamp((now - this.lastTime) / 1000, 0, 0.1) : 1 / 60;
+    const time = this.lastTime ? clamp((now - this.lastTime) / 1000, 0, 0.25) : 1 / 60;
     const pad = this.pad.connected;
     this.#resize();
     const input = this.#input(pad);
