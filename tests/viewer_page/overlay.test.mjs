@@ -3,7 +3,7 @@ import { test } from 'node:test';
 
 import { bytesText, countText, lengthText } from '../../apps/viewer/page/ui/numbers.js';
 import { EDGES, Projection, cornerOf, cutPolygon, pathOf } from '../../apps/viewer/page/ui/overlay.js';
-import { ballVector, withFace } from '../../apps/viewer/page/ui/section_panel.js';
+import { axisVector, ballVector, rangeAlong, withFace } from '../../apps/viewer/page/ui/section_handles.js';
 import { sunAngles, sunDirection, sunFromAngles } from '../../apps/viewer/page/ui/sun.js';
 import { randomNumbers } from './random.mjs';
 
@@ -74,6 +74,13 @@ test('a face of the box never passes the opposite face', () => {
   assert.deepEqual(withFace(box, 5, -5, 0.1), { low: [0, 0, 0], high: [1, 1, 0.1] });
   assert.deepEqual(withFace(box, 3, 0.5, 0.1), { low: [0, 0, 0], high: [1, 0.5, 1] });
   assert.deepEqual(box, { low: [0, 0, 0], high: [1, 1, 1] });
+});
+
+test('a plane moves between the lowest and the highest corner of the box', () => {
+  const box = { low: [-1, 2, -3], high: [4, 5, 6] };
+  assert.deepEqual(rangeAlong(box, axisVector(2)), [-3, 6]);
+  const unit = [0.6, -0.8, 0], [low, high] = rangeAlong(box, unit);
+  assert.ok(Math.abs(low - (-0.6 - 4)) < 1e-12 && Math.abs(high - (2.4 - 1.6)) < 1e-12);
 });
 
 test('the ball under the ring has unit vectors', () => {
