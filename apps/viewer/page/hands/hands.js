@@ -90,8 +90,8 @@ export class Hands extends Events {
     const { navigator } = this;
     if (!navigator) return;
     // Nobody falls through levels that are still on their way.
-    const waits = settings.mode === 'walk' && this.viewer.info && this.viewer.statistics().levelsLoaded < this.viewer.info.levels && !this.isLoaded;
-    const mode = waits ? 'fly' : settings.mode;
+    const isComplete = this.isLoaded || this.viewer.statistics().levelsLoaded >= (this.viewer.info?.levels ?? 0);
+    const mode = settings.mode === 'walk' && !isComplete ? 'fly' : settings.mode;
     const camera = settings.camera ?? navigator.scene.home;
     if (!sameCamera(camera, this.lastCamera)) {
       navigator.setCamera(camera);

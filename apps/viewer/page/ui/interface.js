@@ -101,13 +101,17 @@ export function createInterface(viewer, hands, container) {
     refresh: () => refresh(),
     reset() {
       endTool();
-      viewer.set({ ...structuredClone(DEFAULTS), camera: ui.home(), annotations: viewer.get().annotations, measures: viewer.get().measures, path: viewer.get().path }, 'ui');
+      const { annotations, measures, path } = viewer.get();
+      viewer.set({ ...structuredClone(DEFAULTS), annotations, measures, path }, 'ui');
       ui.toast('Settings reset; measures, notes and the camera path stay');
     },
     home: () => viewer.info?.view ?? ANY_CAMERA,
     name: () => (viewer.info?.name ?? 'scene').replace(/^.*\//, '').replace(/\.\w+$/, '').replace(/[^\w.-]+/g, '_') || 'scene',
-    command: (line) => h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
-      button('Copy this command', async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying'), { icon: 'copy', bare: true })),
+    command(line) {
+      const act = async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying');
+      return h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
+        button('Copy this command', act, { icon: 'copy', bare: true }));
+    },
     hash: () => settingsToHash(viewer.get(), viewer.info?.view ?? null),
     tool: (made) => ({
       get active() { return tool === made; },
@@ -162,7 +166,8 @@ export function createInterface(viewer, hands, container) {
     get: (s) => s.mode, set: (mode) => viewer.set({ mode }, 'ui'),
   });
   const bar = h('div', { class: 'modes' }, modes.element,
-    button('Home (R)', () => home(), { icon: 'home', bare: true }), button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
+    button('Home (R)', () => home(), { icon: 'home', bare: true }),
+    button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
   container.append(bar, toolbar, panel);
 
   const home = () => {

@@ -173,7 +173,10 @@ export function makeHandle(element, { label, start, drag, key }) {
   for (const [type, handler] of Object.entries(handlers)) element.addEventListener(type, /** @type {any} */ (handler));
 }
 
-/** Returns the corners of a box's face or edges by bits: bit 0 is high x, and so on. @param {{low: Vec3, high: Vec3}} box @param {number} bits @returns {Vec3} */
+/**
+ * Returns a corner of a box: bit 0 is set for high x, bit 1 for high y, bit 2 for high z.
+ * @param {{low: Vec3, high: Vec3}} box @param {number} bits @returns {Vec3}
+ */
 export const cornerOf = (box, bits) => [
   (bits & 1 ? box.high : box.low)[0], (bits & 2 ? box.high : box.low)[1], (bits & 4 ? box.high : box.low)[2]];
 
