@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { bytesText, countText, lengthText } from '../../apps/viewer/page/ui/numbers.js';
 import { EDGES, Projection, cornerOf, cutPolygon, pathOf } from '../../apps/viewer/page/ui/overlay.js';
 import { axisVector, ballVector, rangeAlong, withFace } from '../../apps/viewer/page/ui/section_handles.js';
-import { sunAngles, sunDirection, sunFromAngles } from '../../apps/viewer/page/ui/sun.js';
+import { skyAngles, sunDirection, skyDirection } from '../../apps/viewer/page/ui/sun.js';
 import { randomNumbers } from './random.mjs';
 
 const camera = { eye: [6, 4, 9], target: [0, 1, 0], up: [0, 1, 0], fov: 45 };
@@ -91,7 +91,7 @@ test('the ball under the ring has unit vectors', () => {
 test('the sun has angles with any up axis, and is over the left shoulder without a direction', () => {
   for (const up of [[0, 1, 0], [0, 0, 1], [1, 0, 0], [0, 0, -1]])
     for (const [azimuth, elevation] of [[0, 0], [30, 45], [200, -10], [359, 80]]) {
-      const found = sunAngles(sunFromAngles(azimuth, elevation, up), up);
+      const found = skyAngles(skyDirection(azimuth, elevation, up), up);
       assert.ok(Math.abs(((found.azimuth - azimuth + 540) % 360) - 180) < 0.01 && Math.abs(found.elevation - elevation) < 0.01);
     }
   // The formula of render/render_plan.cpp for a camera that looks along -z.

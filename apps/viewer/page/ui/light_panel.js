@@ -3,7 +3,8 @@ import { RADIANS } from '../math.js';
 import { anglesOf, compassOf, lensOf } from '../hands/pose.js';
 import { group, logarithmic, refreshAll, slider, toggle } from './controls.js';
 import { h } from './dom.js';
-import { sunAngles, sunDirection, sunFromAngles } from './sun.js';
+import { degrees } from './numbers.js';
+import { skyAngles, skyDirection, sunDirection } from './sun.js';
 import { sunDome } from './sun_dome.js';
 
 /**
@@ -12,17 +13,14 @@ import { sunDome } from './sun_dome.js';
  * @typedef {import('../settings.js').PartialSettings} PartialSettings
  */
 
-/** @param {number} x */
-const degrees = (x) => `${Math.round(x)}°`.replace('-', '\u2212');
-
 /** @param {Ui} ui */
 export function lightPanel(ui) {
   const { viewer } = ui;
   const set = (/** @type {PartialSettings} */ settings) => viewer.set(settings, 'ui');
   const camera = () => viewer.get().camera ?? ui.home();
-  const angles = () => sunAngles(sunDirection(viewer.get().sun.direction, camera()), camera().up);
+  const angles = () => skyAngles(sunDirection(viewer.get().sun.direction, camera()), camera().up);
   const aim = (/** @type {number} */ azimuth, /** @type {number} */ elevation) =>
-    set({ sun: { direction: sunFromAngles(azimuth, elevation, camera().up) } });
+    set({ sun: { direction: skyDirection(azimuth, elevation, camera().up) } });
   /** The azimuth in which the viewer looks: up in the picture, if that is straight down. */
   const heading = () => {
     const { forward, up } = lensOf(camera(), 1), compass = compassOf(camera().up);

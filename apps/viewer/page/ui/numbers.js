@@ -26,3 +26,6 @@ export function lengthText(x, step) {
   const text = Math.abs(x) < 1e9 && (Math.abs(x) >= 1e-6 || x === 0) ? x.toFixed(decimals) : x.toPrecision(7);
   return text.replace('-', '\u2212');
 }
+
+/** @param {number} x */
+export const degrees = (x) => `${Math.round(x)}°`.replace('-', '\u2212');

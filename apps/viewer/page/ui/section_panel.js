@@ -5,6 +5,8 @@
 import { addScaled, dot, length, normalized, scale, sub } from '../math.js';
 import { button, group, refreshAll, slider, toggle } from './controls.js';
 import { h } from './dom.js';
+import { degrees } from './numbers.js';
+import { skyAngles, skyDirection } from './sun.js';
 import { AXES, axisVector, faceValue, middleOf, rangeAlong, sectionHandles, withFace } from './section_handles.js';
 
 /**
@@ -49,6 +51,21 @@ export function sectionPanel(ui) {
       if (plane) movePlane(plane, value - offsetOf(plane));
     },
   });
+  /** The direction of the arrow, as angles. */
+  const arrow = () => skyAngles(section().plane?.normal ?? [0, 1, 0], camera().up);
+  const aim = (/** @type {number} */ azimuth, /** @type {number} */ elevation) => {
+    const { plane } = section();
+    if (plane) setPlane({ point: plane.point, normal: skyDirection(azimuth, elevation, camera().up) });
+  };
+  const azimuth = slider({
+    label: 'Azimuth of the arrow', min: 0, max: 360, step: 1, text: degrees,
+    get: () => arrow().azimuth, set: (value) => aim(value, arrow().elevation),
+  });
+  const elevation = slider({
+    label: 'Its elevation', min: -90, max: 90, step: 1, text: degrees,
+    // Straight up, the azimuth would be lost.
+    get: () => arrow().elevation, set: (value) => aim(arrow().azimuth, Math.max(-89.99, Math.min(value, 89.99))),
+  });
   const across = (/** @type {number} */ axis) => button(`⟂ ${AXES[axis]}`, () => {
     const { plane } = section(), { eye, target } = camera();
     if (plane) setPlane({ point: plane.point, normal: axisVector(axis, Math.sign(eye[axis] - target[axis]) || 1) });
@@ -60,7 +77,7 @@ export function sectionPanel(ui) {
 
   const boxPart = h('div', {}, ...sides.map((side) => side.element),
     h('div', { class: 'buttons' }, button('Whole scene', () => setBox(wholeBox()))));
-  const planePart = h('div', {}, offset.element, h('div', { class: 'grid' }, across(0), across(1), across(2), flip));
+  const planePart = h('div', {}, offset.element, azimuth.element, elevation.element, h('div', { class: 'grid' }, across(0), across(1), across(2), flip));
   const refresh = refreshAll([boxOn, planeOn]);
   return {
     element: h('div', {}, group('', boxOn.element, boxPart), group('', planeOn.element, planePart), h('p', { class: 'hint' },
@@ -75,7 +92,7 @@ export function sectionPanel(ui) {
       if (!plane) return;
       const [least, most] = rangeAlong({ low, high }, normalized(plane.normal));
       offset.limits(least, most);
-      offset.refresh(settings);
+      refreshAll([offset, azimuth, elevation])(settings);
     },
     /** Switches the plane on or off. */
     toggle: () => setPlane(section().plane ? null : firstPlane()),
