@@ -7,10 +7,11 @@ import { failureCard, tryAgain } from '../ui/status.js';
 import { createViewer } from '../viewer.js';
 
 const container = /** @type {HTMLElement} */ (document.getElementById('container'));
+const picture = /** @type {HTMLElement} */ (document.getElementById('picture'));
 
 try {
   const { settings, problems } = settingsFromHash(location.hash);
-  const viewer = createViewer({ container, settings });
+  const viewer = createViewer({ container: picture, settings });
   const hands = new Hands(viewer);
   const { ui } = createInterface(viewer, hands, container);
   keepLink(ui);

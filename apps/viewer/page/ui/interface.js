@@ -66,13 +66,13 @@ const ANY_CAMERA = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 }
 const NUMBERS_MS = 250;
 
 /**
- * Adds the interface to a container that holds the viewer's canvas.
+ * Adds the interface to a container, in which an element holds just the viewer's canvas.
  * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container
  */
 export function createInterface(viewer, hands, container) {
   const status = new Status(viewer, container);
-  const overlay = new Overlay(viewer, container);
   const { canvas } = viewer;
+  const overlay = new Overlay(viewer, canvas.parentElement ?? container);
   canvas.tabIndex = 0;
   canvas.setAttribute('role', 'application');
   canvas.setAttribute('aria-label', 'Picture of the scene. Arrow keys turn, W A S D move, H lists all keys.');
