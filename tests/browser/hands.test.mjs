@@ -49,8 +49,12 @@ async function drag(page, from, to, options = {}) {
   await page.mouse.up(options);
 }
 
+/** Waits until the drawing over the picture shows the settings. @param {Page} page */
+const drawn = (page) => page.waitForFunction(() => /** @type {any} */ (window).voxdag.ui.overlay.request === 0, {timeout: 30_000});
+
 /** The middle of an element, in pixels. @param {Page} page @param {string} selector */
 async function middle(page, selector) {
+  await drawn(page);
   const box = await page.$eval(selector, (element) => {
     const {x, y, width, height} = element.getBoundingClientRect();
     return [x + width / 2, y + height / 2];
@@ -114,6 +118,40 @@ for (const browserName of browsers)
       await page.close();
     });
 
+    it('follows one, two and three fingers', async () => {
+      const page = await load(), start = await camera(page), size = apart(start.eye, start.target);
+      /** Moves fingers from one place to another. @param {number[][]} from @param {number[][]} to @param {number} [hold] milliseconds */
+      const touch = async (from, to, hold = 0) => {
+        const fingers = [];
+        for (const [x, y] of from) fingers.push(await page.touchscreen.touchStart(x, y));
+        for (let i = 1; i <= 4; ++i)
+          for (const [k, finger] of fingers.entries()) await finger.move(...between(from[k], to[k], i / 4));
+        await pause(hold);
+        for (const finger of fingers) await finger.end();
+        await rest(page);
+      };
+      /** @param {number[]} a @param {number[]} b @param {number} t @returns {[number, number]} */
+      const between = (a, b, t) => [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t];
+
+      await touch([[300, 300]], [[380, 310]]);
+      const turned = await camera(page);
+      assert.ok(apart(turned.target, start.target) < 1e-3 * size && apart(turned.eye, start.eye) > 0.1 * size, 'one finger turns');
+
+      const middle = (await pick(page, 400, 330)).position;
+      await touch([[380, 330], [420, 330]], [[340, 330], [460, 330]]);
+      const closer = await camera(page);
+      assert.ok(apart(closer.eye, middle) < 0.6 * apart(turned.eye, middle), 'two fingers zoom');
+      const seen = await project(page, middle);
+      assert.ok(Math.hypot(seen.x - 400, seen.y - 330) < 15, 'about the point between them');
+
+      await touch([[350, 300], [400, 300], [450, 300]], [[350, 240], [400, 240], [450, 240]], 300);
+      const flown = await camera(page), way = flown.eye.map((x, i) => x - closer.eye[i]);
+      const forward = closer.target.map((x, i) => x - closer.eye[i]);
+      assert.ok(way.reduce((sum, x, i) => sum + x * forward[i], 0) > 0.5 * Math.hypot(...way) * Math.hypot(...forward), 'three fingers fly');
+      assertNoComplaints(page);
+      await page.close();
+    });
+
     it('flies and walks by keys, and shows the sides', async () => {
       const page = await load(), start = await camera(page);
       await page.keyboard.press('v');
@@ -162,15 +200,15 @@ for (const browserName of browsers)
           measures: [{from: low, to: high}], annotations: [{text: 'gate & wall', point: low, camera: viewer.get().camera}],
         });
       });
-      await page.waitForFunction(() => location.hash.includes('note='), {timeout: 5000});
+      await page.waitForFunction(() => location.hash.includes('note='), {timeout: 20_000});
       const hash = await page.evaluate(() => location.hash), wanted = await settings(page);
-      const other = await load(hash);
+      const other = await load(hash, {width: 240, height: 160});
       assert.deepEqual(await settings(other), wanted);
       await still(other);
       assert.deepEqual(await settings(other), wanted, 'nothing moves by itself');
       // A link pasted into the address of an open page.
       await other.evaluate(() => { location.hash = '#mode=fly&eye=1,2,3&target=0,0,0&up=0,1,0&fov=50'; });
-      await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly', {timeout: 5000});
+      await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly', {timeout: 20_000});
       assert.deepEqual(await camera(other), {eye: [1, 2, 3], target: [0, 0, 0], up: [0, 1, 0], fov: 50});
       assertNoComplaints(other);
       await other.close();
@@ -182,12 +220,13 @@ for (const browserName of browsers)
       await page.keyboard.press('m');
       const [a, b] = [await pick(page, 300, 320), await pick(page, 450, 330)];
       await page.mouse.click(300, 320);
-      await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point', {timeout: 5000});
+      await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point', {timeout: 20_000});
       await page.mouse.click(450, 330);
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1, {timeout: 5000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1, {timeout: 20_000});
       const [measure] = (await settings(page)).measures;
       const voxel = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxelSize);
       assert.ok(apart(measure.from, a.position) < 0.01 * voxel && apart(measure.to, b.position) < 0.01 * voxel);
+      await drawn(page);
       const text = await page.$eval('.measure .label', (label) => Number(label.textContent));
       assert.ok(Math.abs(text - apart(measure.from, measure.to)) < 0.1 * voxel, 'the label says the distance');
       await page.keyboard.press('Escape');
@@ -202,7 +241,6 @@ for (const browserName of browsers)
       await page.keyboard.press('b');
       const {plane} = (await settings(page)).section;
       assert.ok(plane);
-      await pause(100);
       const at = await middle(page, '[aria-label="Plane, position along its normal"]');
       const tip = await middle(page, '[aria-label="Plane, direction of its normal"]');
       const along = tip.map((x, i) => x - at[i]), size = Math.hypot(...along);
@@ -211,7 +249,6 @@ for (const browserName of browsers)
       assert.deepEqual(pushed.normal, plane.normal);
       const way = pushed.point.map((/** @type {number} */ x, /** @type {number} */ i) => x - plane.point[i]);
       assert.ok(way.reduce((/** @type {number} */ sum, /** @type {number} */ x, /** @type {number} */ i) => sum + x * plane.normal[i], 0) > 0, 'the plane follows the pointer');
-      await pause(100);
       const from = await middle(page, '[aria-label="Plane, direction of its normal"]');
       await drag(page, from, [from[0] + 15, from[1] - 25]);
       assert.notDeepEqual((await settings(page)).section.plane.normal, plane.normal);
@@ -219,7 +256,6 @@ for (const browserName of browsers)
       // The box, by its switch, a handle in the picture and a slider.
       await page.$$eval('[role=switch]', (all) => /** @type {HTMLElement[]} */ (all).find((one) => one.closest('label')?.textContent === 'Box')?.click());
       const {box} = (await settings(page)).section;
-      await pause(100);
       const face = await middle(page, '[aria-label="Box, high y"]');
       await drag(page, face, [face[0], face[1] + 40]);
       const cut = (await settings(page)).section.box;
@@ -239,7 +275,7 @@ for (const browserName of browsers)
       const page = await load();
       await page.keyboard.press('n');
       await page.mouse.click(400, 330);
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1, {timeout: 5000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1, {timeout: 20_000});
       await page.keyboard.type('The gate');
       assert.equal((await settings(page)).annotations[0].text, 'The gate');
       await page.keyboard.press('Escape');
@@ -249,13 +285,14 @@ for (const browserName of browsers)
       await page.keyboard.press('k');
       const {path: keys, annotations} = await settings(page);
       assert.deepEqual(keys.map((/** @type {any} */ key) => key.time), [0, 2]);
+      await drawn(page);
       await page.click('.marker .disc');
       await rest(page);
       assert.ok(apart((await camera(page)).eye, annotations[0].camera.eye) < 1e-3 * apart(annotations[0].camera.eye, annotations[0].camera.target), 'the marker flies to the view of the note');
       await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('film'));
       await page.$$eval('button', (all) => all.find((one) => one.textContent === 'Play')?.click());
       await pause(2600);
-      await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), {timeout: 5000});
+      await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), {timeout: 20_000});
       assert.ok(apart((await camera(page)).eye, keys[1].eye) < 1e-9, 'the film ends at its last key');
       assertNoComplaints(page);
       await page.close();
@@ -269,10 +306,10 @@ for (const browserName of browsers)
       fs.writeFileSync(bad, '{"version": 1, "sky": "blue"}');
       const input = /** @type {import('puppeteer-core').ElementHandle<HTMLInputElement>} */ (await page.$('input[type=file]'));
       await input.uploadFile(good);
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5, {timeout: 5000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5, {timeout: 20_000});
       assert.deepEqual((await camera(page)).eye, [3, 2, 1]);
       await input.uploadFile(bad);
-      await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''), {timeout: 5000});
+      await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''), {timeout: 20_000});
       assert.equal((await settings(page)).sky, 0.5);
       await page.close();
     });

@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import {
-  DEFAULTS, MODES, SHOWS, SettingsError, mergeSettings, settingsFromHash, settingsFromJson, settingsToHash,
-  settingsToJson,
+  DEFAULTS, MODES, SHOWS, SettingsError, mergeSettings, settingsFromJson, settingsToJson,
 } from '../../apps/viewer/page/settings.js';
+import { settingsFromHash, settingsToHash } from '../../apps/viewer/page/settings_link.js';
 import { randomNumbers } from './random.mjs';
 
 /** Settings with every key at random, at a random scale. */

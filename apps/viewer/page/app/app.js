@@ -1,16 +1,17 @@
 /** The page's program: a viewer of the scene beside the page, with hands and interface. */
 import { Hands } from '../hands/hands.js';
-import { settingsFromHash } from '../settings.js';
+import { settingsFromHash } from '../settings_link.js';
 import { createInterface } from '../ui/interface.js';
 import { capitalized, keepLink } from '../ui/link.js';
 import { failureCard, tryAgain } from '../ui/status.js';
 import { createViewer } from '../viewer.js';
 
 const container = /** @type {HTMLElement} */ (document.getElementById('container'));
+const picture = /** @type {HTMLElement} */ (document.getElementById('picture'));
 
 try {
   const { settings, problems } = settingsFromHash(location.hash);
-  const viewer = createViewer({ container, settings });
+  const viewer = createViewer({ container: picture, settings });
   const hands = new Hands(viewer);
   const { ui } = createInterface(viewer, hands, container);
   keepLink(ui);

@@ -1,6 +1,7 @@
 // Text files of the page: shaders, and the parts of the worker's script.
 
-const ROOT = new URL('../', import.meta.url);
+/** The page's folder; a module of a single file has none. */
+const root = () => new URL('../', import.meta.url);
 
 /**
  * Returns the text of a file of the page. A page in a single file holds it in
@@ -11,7 +12,7 @@ const ROOT = new URL('../', import.meta.url);
 export async function loadText(path) {
   const inline = document.querySelector(`script[type="text/plain"][data-path="${path}"]`);
   if (inline !== null) return inline.textContent ?? '';
-  const response = await fetch(new URL(path, ROOT));
+  const response = await fetch(new URL(path, root()));
   if (!response.ok) throw new Error(`${path}: the server answers ${response.status}`);
   return response.text();
 }

@@ -16,12 +16,12 @@ import { cameraOf, poseOf } from './pose.js';
  */
 
 /**
- * Events: 'click' (x, y), 'hover' (x, y, down), 'leave', 'gesture' (a person moves the camera),
+ * Events: 'click' (x, y), 'double' (x, y), 'hover' (x, y, down), 'leave', 'gesture' (a person moves the camera),
  * 'rest' (the camera stands still again), 'speed' (the factor on the speed). Pixels are CSS pixels
  * of the picture.
  */
 export class Hands extends Events {
-  /** @param {Viewer} viewer @param {{keyboard?: EventTarget}} [options] */
+  /** @param {Viewer} viewer @param {{keyboard?: EventTarget}} [options]  `keyboard`: whose keys count. */
   constructor(viewer, { keyboard = window } = {}) {
     super();
     this.viewer = viewer;
@@ -72,11 +72,18 @@ export class Hands extends Events {
     this.pointers = new Pointers(canvas, this.navigator, {
       wake: () => { this.emit('gesture'); this.wake(); },
       click: (x, y) => this.emit('click', x, y),
-      doubleClick: (x, y) => this.emit('double', x, y),
+      doubleClick: (x, y) => this.#double(x, y),
       hover: (x, y, down) => this.emit('hover', x, y, down),
       leave: () => this.emit('leave'),
     }, this.#listeners.listen);
     this.#follow(this.viewer.get());
+  }
+
+  /** Turns around the point, unless someone else takes double clicks. @param {number} x @param {number} y */
+  async #double(x, y) {
+    if (this.handlers.get('double')?.size) return this.emit('double', x, y);
+    const hit = await this.viewer.pick(x, y);
+    if (hit) this.focus(hit.position);
   }
 
   #resize() {
@@ -90,8 +97,8 @@ export class Hands extends Events {
     const { navigator } = this;
     if (!navigator) return;
     // Nobody falls through levels that are still on their way.
-    const waits = settings.mode === 'walk' && this.viewer.info && this.viewer.statistics().levelsLoaded < this.viewer.info.levels && !this.isLoaded;
-    const mode = waits ? 'fly' : settings.mode;
+    const isComplete = this.isLoaded || this.viewer.statistics().levelsLoaded >= (this.viewer.info?.levels ?? 0);
+    const mode = settings.mode === 'walk' && !isComplete ? 'fly' : settings.mode;
     const camera = settings.camera ?? navigator.scene.home;
     if (!sameCamera(camera, this.lastCamera)) {
       navigator.setCamera(camera);
@@ -120,7 +127,7 @@ export class Hands extends Events {
     this.frameRequest = 0;
     const { navigator } = this;
     if (!navigator) return;
-    const time = this.lastTime ? clamp((now - this.lastTime) / 1000, 0, 0.1) : 1 / 60;
+    const time = this.lastTime ? clamp((now - this.lastTime) / 1000, 0, 0.25) : 1 / 60;
     const pad = this.pad.connected;
     this.#resize();
     const input = this.#input(pad);

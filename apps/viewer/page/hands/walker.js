@@ -83,7 +83,10 @@ export class Walker {
     }
   }
 
-  /** Returns the distance from a point to the first voxel, at most `most`. @param {Vec3} from @param {Vec3} direction @param {number} most */
+  /**
+   * Returns the distance from a point to the first voxel, at most `most`.
+   * @param {Vec3} from @param {Vec3} direction @param {number} most
+   */
   #free(from, direction, most) {
     const hit = this.scene.cast(from, direction, most);
     return hit ? Math.max(0, hit.distance) : most;

@@ -21,10 +21,17 @@ const newId = () => `c${++ids}`;
  *   from?: (position: number) => number, hint?: string}} options
  * @returns {Control & {limits: (min: number, max: number, step?: number | 'any') => void}}
  */
-export function slider({ label, min, max, step = 'any', get, set, text = (x) => String(+x.toPrecision(4)), to = (x) => x, from = (x) => x, hint }) {
+export function slider(options) {
+  const { label, min, max, step = 'any', get, set, hint } = options;
+  const { text = (x) => String(+x.toPrecision(4)), to = (x) => x, from = (x) => x } = options;
   const id = newId();
   const output = h('output', { for: id });
-  const input = h('input', { type: 'range', id, min, max, step, on: { input: () => { show(from(Number(input.value))); set(from(Number(input.value))); } } });
+  const changed = () => {
+    const value = from(Number(input.value));
+    show(value);
+    set(value);
+  };
+  const input = h('input', { type: 'range', id, min, max, step, on: { input: changed } });
   const show = (/** @type {number} */ value) => {
     say(output, text(value));
     input.setAttribute('aria-valuetext', text(value));
@@ -34,8 +41,9 @@ export function slider({ label, min, max, step = 'any', get, set, text = (x) => 
   return {
     element: h('div', { class: 'row slider' }, h('label', { for: id, title: hint }, label), output, input),
     refresh(settings) {
-      const value = get(settings), position = String(to(value));
-      if (document.activeElement !== input || Math.abs(Number(input.value) - to(value)) > 1e-6 * Math.abs(to(value))) input.value = position;
+      const value = get(settings), position = to(value);
+      // A hand on the slider is not disturbed by roundings.
+      if (Math.abs(Number(input.value) - position) > 1e-6 * Math.abs(position)) input.value = String(position);
       show(value);
     },
     limits(low, high, by = 'any') {

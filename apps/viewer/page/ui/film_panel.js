@@ -60,7 +60,8 @@ export function filmPanel(ui) {
     element: h('div', {},
       group('', add, h('div', { class: 'row' }, h('label', { for: seconds.id }, 'Seconds to the next key'), seconds)),
       list, acts,
-      h('p', { class: 'hint' }, 'The saved path renders as a film in full quality:'), ui.command('voxdag render scene.vdag --path scene.path.json -o frame_%04d.png')),
+      h('p', { class: 'hint' }, 'The saved path renders as a film in full quality:'),
+      ui.command('voxdag render scene.vdag --path scene.path.json -o frame_%04d.png')),
     refresh(/** @type {Settings} */ { path }) {
       say(player.lastChild ?? player, began ? 'Stop' : 'Play');
       clock.hidden = !began;
@@ -75,7 +76,8 @@ export function filmPanel(ui) {
         const go = button('', () => hands.flyTo({ eye, target, up, fov }), { title: 'Fly there' });
         go.className = 'item';
         go.append(h('strong', {}, `${i + 1}`), h('span', {}, `${key.time} s`));
-        return h('li', {}, go, button(`Delete key ${i + 1}`, () => viewer.set({ path: withoutKey(viewer.get().path, i) }, 'ui'), { icon: 'trash', bare: true }));
+        const remove = () => viewer.set({ path: withoutKey(viewer.get().path, i) }, 'ui');
+        return h('li', {}, go, button(`Delete key ${i + 1}`, remove, { icon: 'trash', bare: true }));
       }));
     },
     record,

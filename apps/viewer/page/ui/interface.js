@@ -1,5 +1,6 @@
 /** The interface around the picture: toolbar, panels, tools, read-out, shortcuts, messages. */
-import { DEFAULTS, settingsToHash } from '../settings.js';
+import { DEFAULTS } from '../settings.js';
+import { settingsToHash } from '../settings_link.js';
 import { isTyping } from '../hands/keys.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
@@ -65,13 +66,13 @@ const ANY_CAMERA = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 }
 const NUMBERS_MS = 250;
 
 /**
- * Adds the interface to a container that holds the viewer's canvas.
+ * Adds the interface to a container, in which an element holds just the viewer's canvas.
  * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container
  */
 export function createInterface(viewer, hands, container) {
   const status = new Status(viewer, container);
-  const overlay = new Overlay(viewer, container);
   const { canvas } = viewer;
+  const overlay = new Overlay(viewer, canvas.parentElement ?? container);
   canvas.tabIndex = 0;
   canvas.setAttribute('role', 'application');
   canvas.setAttribute('aria-label', 'Picture of the scene. Arrow keys turn, W A S D move, H lists all keys.');
@@ -100,13 +101,17 @@ export function createInterface(viewer, hands, container) {
     refresh: () => refresh(),
     reset() {
       endTool();
-      viewer.set({ ...structuredClone(DEFAULTS), camera: ui.home(), annotations: viewer.get().annotations, measures: viewer.get().measures, path: viewer.get().path }, 'ui');
+      const { annotations, measures, path } = viewer.get();
+      viewer.set({ ...structuredClone(DEFAULTS), annotations, measures, path }, 'ui');
       ui.toast('Settings reset; measures, notes and the camera path stay');
     },
     home: () => viewer.info?.view ?? ANY_CAMERA,
     name: () => (viewer.info?.name ?? 'scene').replace(/^.*\//, '').replace(/\.\w+$/, '').replace(/[^\w.-]+/g, '_') || 'scene',
-    command: (line) => h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
-      button('Copy this command', async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying'), { icon: 'copy', bare: true })),
+    command(line) {
+      const act = async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying');
+      return h('div', { class: 'command' }, h('code', { tabindex: 0 }, line),
+        button('Copy this command', act, { icon: 'copy', bare: true }));
+    },
     hash: () => settingsToHash(viewer.get(), viewer.info?.view ?? null),
     tool: (made) => ({
       get active() { return tool === made; },
@@ -161,7 +166,8 @@ export function createInterface(viewer, hands, container) {
     get: (s) => s.mode, set: (mode) => viewer.set({ mode }, 'ui'),
   });
   const bar = h('div', { class: 'modes' }, modes.element,
-    button('Home (R)', () => home(), { icon: 'home', bare: true }), button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
+    button('Home (R)', () => home(), { icon: 'home', bare: true }),
+    button('Frame (F)', () => hands.frame(), { icon: 'frame', bare: true }));
   container.append(bar, toolbar, panel);
 
   const home = () => {

@@ -1,5 +1,6 @@
 /** Keeps the address of the page in step with the settings. */
-import { DEFAULTS, settingsFromHash } from '../settings.js';
+import { DEFAULTS } from '../settings.js';
+import { settingsFromHash } from '../settings_link.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -14,6 +15,7 @@ export function keepLink(ui) {
   const { viewer } = ui;
   let timer = 0, written = location.hash.replace(/^#/, '');
   const write = () => {
+    if (ui.hands.moved) return later();  // slow frames
     const hash = ui.hash();
     if (hash === written) return;
     written = hash;
@@ -23,10 +25,11 @@ export function keepLink(ui) {
       // Pages without an address, as in a frame of a document, cannot have one.
     }
   };
-  viewer.on('settings', () => {
+  const later = () => {
     clearTimeout(timer);
     if (viewer.info) timer = setTimeout(write, PAUSE_MS);
-  });
+  };
+  viewer.on('settings', later);
   window.addEventListener('hashchange', () => {
     const hash = location.hash.replace(/^#/, '');
     if (hash === written) return;

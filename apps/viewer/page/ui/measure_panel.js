@@ -48,11 +48,11 @@ export function measurePanel(ui) {
       const { from, to } = measure, path = pathOf(projection.clipped([from, to], false));
       update(shape.line, { d: path });
       update(shape.halo, { d: path });
+      /** @type {Vec3[]} */
       const corners = [from, [to[0], from[1], from[2]], [to[0], to[1], from[2]], to];
-      shape.steps.forEach((step, axis) => {
-        const d = i === chosen || measure === open ? pathOf(projection.clipped([/** @type {Vec3} */ (corners[axis]), /** @type {Vec3} */ (corners[axis + 1])], false)) : '';
-        update(step, { d });
-      });
+      const isChosen = i === chosen || measure === open;
+      shape.steps.forEach((step, axis) =>
+        update(step, { d: isChosen ? pathOf(projection.clipped(corners.slice(axis, axis + 2), false)) : '' }));
       const [a, b] = [from, to].map((point) => projection.at(point));
       place(shape.ends[0], a);
       place(shape.ends[1], b);
@@ -88,7 +88,8 @@ export function measurePanel(ui) {
     },
   });
 
-  const start = button('Measure a distance', () => tool.toggle(), { icon: 'measure', primary: true, title: 'Click two points (key M)', keys: 'M' });
+  const start = button('Measure a distance', () => tool.toggle(),
+    { icon: 'measure', primary: true, title: 'Click two points (key M)', keys: 'M' });
   const list = h('ul', { class: 'list' });
   let shown = '';
   return {
@@ -103,8 +104,9 @@ export function measurePanel(ui) {
         const choose = button('', () => { chosen = i; ui.refresh(); overlay.redraw(); });
         choose.className = 'item';
         choose.setAttribute('aria-pressed', String(i === chosen));
-        choose.append(h('strong', {}, text(distance(measure.from, measure.to))),
-          h('span', { class: 'parts' }, ...componentsOf(measure).map((x, axis) => h('span', { class: `axis-${'xyz'[axis]}` }, `${'xyz'[axis]} ${text(x)}`))));
+        const parts = componentsOf(measure).map((x, axis) =>
+          h('span', { class: `axis-${'xyz'[axis]}` }, `${'xyz'[axis]} ${text(x)}`));
+        choose.append(h('strong', {}, text(distance(measure.from, measure.to))), h('span', { class: 'parts' }, ...parts));
         return h('li', {}, choose, button(`Delete measure ${i + 1}`, () => {
           chosen = Math.max(0, Math.min(chosen, measures.length - 2));
           viewer.set({ measures: measures.filter((_, k) => k !== i) }, 'ui');

@@ -72,12 +72,16 @@ export function notesPanel(ui) {
       area?.select();
     },
   });
-  const start = button('Add a note', () => tool.toggle(), { icon: 'add', primary: true, title: 'Click a point of the scene (key N)', keys: 'N' });
+  const start = button('Add a note', () => tool.toggle(),
+    { icon: 'add', primary: true, title: 'Click a point of the scene (key N)', keys: 'N' });
   const list = h('ul', { class: 'list notes' });
   const change = (/** @type {number} */ i, /** @type {Partial<Annotation>} */ part) =>
     viewer.set({ annotations: viewer.get().annotations.map((note, k) => (k === i ? { ...note, ...part } : note)) }, 'ui');
   const newItem = (/** @type {number} */ i) => {
-    const area = h('textarea', { rows: 2, 'aria-label': `Text of note ${i + 1}`, maxlength: 2000, on: { input: () => change(i, { text: area.value }) } });
+    const area = h('textarea', {
+      rows: 2, 'aria-label': `Text of note ${i + 1}`, maxlength: 2000, on: { input: () => change(i, { text: area.value }) },
+    });
+    const remove = () => viewer.set({ annotations: viewer.get().annotations.filter((_, k) => k !== i) }, 'ui');
     return h('li', {}, h('span', { class: 'badge', 'aria-hidden': 'true' }, String(i + 1)), area,
       h('span', { class: 'stack' },
         button(`Fly to note ${i + 1}`, () => go(i), { icon: 'fly', bare: true }),
@@ -85,11 +89,12 @@ export function notesPanel(ui) {
           change(i, { camera: roundCamera(viewer.get().camera ?? ui.home()) });
           ui.toast('The note remembers this view');
         }, { icon: 'camera', bare: true }),
-        button(`Delete note ${i + 1}`, () => viewer.set({ annotations: viewer.get().annotations.filter((_, k) => k !== i) }, 'ui'), { icon: 'trash', bare: true })));
+        button(`Delete note ${i + 1}`, remove, { icon: 'trash', bare: true })));
   };
   return {
     element: h('div', {}, group('', start), list,
-      h('p', { class: 'hint' }, 'A click on a marker flies to the view in which the note was written. Notes are part of the link and of saved settings.')),
+      h('p', { class: 'hint' },
+        'A click on a marker flies to the view in which the note was written. Notes are part of the link and of saved settings.')),
     refresh(/** @type {Settings} */ { annotations }) {
       start.setAttribute('aria-pressed', String(tool.active));
       while (list.children.length > annotations.length) list.lastElementChild?.remove();

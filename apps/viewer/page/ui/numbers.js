@@ -10,9 +10,12 @@ export function bytesText(bytes) {
 }
 
 /** @param {number} count */
-export const countText = (count) =>
-  !Number.isFinite(count) ? '–' : count < 1e4 ? String(Math.round(count)) : count < 1e6 ? Math.round(count).toLocaleString('en').replaceAll(',', '\u202f')
-    : count < 1e9 ? `${(count / 1e6).toPrecision(4)} million` : `${(count / 1e9).toPrecision(4)} billion`;
+export function countText(count) {
+  if (!Number.isFinite(count)) return '–';
+  if (count < 1e4) return String(Math.round(count));
+  if (count < 1e6) return Math.round(count).toLocaleString('en').replaceAll(',', '\u202f');
+  return count < 1e9 ? `${(count / 1e6).toPrecision(4)} million` : `${(count / 1e9).toPrecision(4)} billion`;
+}
 
 /**
  * Returns a length or coordinate with the decimals that `step`, a voxel's size, deserves.
@@ -23,3 +26,6 @@ export function lengthText(x, step) {
   const text = Math.abs(x) < 1e9 && (Math.abs(x) >= 1e-6 || x === 0) ? x.toFixed(decimals) : x.toPrecision(7);
   return text.replace('-', '\u2212');
 }
+
+/** @param {number} x */
+export const degrees = (x) => `${Math.round(x)}°`.replace('-', '\u2212');

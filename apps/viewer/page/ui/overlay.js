@@ -94,7 +94,7 @@ export class Overlay {
   /** @param {import('../viewer_types.js').Viewer} viewer @param {HTMLElement} container */
   constructor(viewer, container) {
     this.viewer = viewer;
-    this.element = svg('svg', { class: 'overlay', 'aria-label': 'Drawing over the picture' });
+    this.element = svg('svg', { class: 'overlay', 'aria-label': 'Drawing over the picture', hidden: true });
     container.append(this.element);
     /** @type {((projection: Projection, settings: Settings) => void)[]} */
     this.layers = [];
@@ -124,6 +124,7 @@ export class Overlay {
   }
   draw() {
     const { projection } = this;
+    show(this.element, projection !== null);
     if (!projection) return;
     update(this.element, { viewBox: `0 0 ${projection.width} ${projection.height}` });
     for (const draw of this.layers) draw(projection, this.viewer.get());
@@ -172,7 +173,10 @@ export function makeHandle(element, { label, start, drag, key }) {
   for (const [type, handler] of Object.entries(handlers)) element.addEventListener(type, /** @type {any} */ (handler));
 }
 
-/** Returns the corners of a box's face or edges by bits: bit 0 is high x, and so on. @param {{low: Vec3, high: Vec3}} box @param {number} bits @returns {Vec3} */
+/**
+ * Returns a corner of a box: bit 0 is set for high x, bit 1 for high y, bit 2 for high z.
+ * @param {{low: Vec3, high: Vec3}} box @param {number} bits @returns {Vec3}
+ */
 export const cornerOf = (box, bits) => [
   (bits & 1 ? box.high : box.low)[0], (bits & 2 ? box.high : box.low)[1], (bits & 4 ? box.high : box.low)[2]];
 

@@ -1,4 +1,5 @@
 /** The corner that says what is under the pointer. */
+import { roundTo3, stepBelow } from '../math.js';
 import { copy, h, say } from './dom.js';
 import { lengthText } from './numbers.js';
 
@@ -68,7 +69,8 @@ export class Readout {
   async copy() {
     const { hit } = this;
     if (!hit) return this.ui.toast('Nothing is under the pointer');
-    const text = `voxel ${hit.voxel.join(' ')} level ${hit.level} position ${hit.position.join(' ')}`;
+    const position = roundTo3(hit.position, stepBelow(this.ui.viewer.info?.voxelSize ?? 1, 0.01));
+    const text = `voxel ${hit.voxel.join(' ')} level ${hit.level} position ${position.join(' ')}`;
     this.ui.toast((await copy(text)) ? 'Voxel and position copied' : 'The browser did not allow copying');
   }
 }

@@ -8,6 +8,8 @@ import { copy, download, h } from './dom.js';
  * @typedef {import('../settings.js').Settings} Settings
  */
 
+/** Pixels of saved pictures. */
+const SIZES = ['1280x720', '1920x1080', '2560x1440', '3840x2160'];
 /** Links longer than this are cut by some programs. */
 const LONG_LINK = 8000;
 /** A file of settings is at most this long, in bytes. */
@@ -18,7 +20,8 @@ export function sharePanel(ui) {
   const { viewer } = ui;
   let size = 'window', samples = '16';
   const sizes = choice({
-    label: 'Size', options: [['window', 'as shown'], ['1280x720', '1280 × 720'], ['1920x1080', '1920 × 1080'], ['2560x1440', '2560 × 1440'], ['3840x2160', '3840 × 2160']],
+    label: 'Size',
+    options: [['window', 'as shown'], ...SIZES.map((name) => /** @type {[string, string]} */ ([name, name.replace('x', ' × ')]))],
     get: () => size, set: (value) => { size = value; },
   });
   const qualities = choice({
@@ -46,7 +49,8 @@ export function sharePanel(ui) {
       : address.length > LONG_LINK ? 'Link copied. It is long: save the settings as a file instead, if it arrives cut' : 'Link copied');
   };
   const save = () => {
-    download(`${ui.name()}.settings.json`, new Blob([settingsToJson({ ...viewer.get(), camera: viewer.get().camera ?? ui.home() })], { type: 'application/json' }));
+    const text = settingsToJson({ ...viewer.get(), camera: viewer.get().camera ?? ui.home() });
+    download(`${ui.name()}.settings.json`, new Blob([text], { type: 'application/json' }));
   };
   /** Loads settings or a camera path. @param {File} file */
   const load = async (file) => {
@@ -72,12 +76,19 @@ export function sharePanel(ui) {
       ui.toast(`${file.name}: ${error.message}`, true);
     }
   };
-  const chooser = h('input', { type: 'file', accept: '.json,application/json', class: 'offscreen', tabindex: -1, 'aria-label': 'File of settings', on: {
-    change: () => { if (chooser.files?.[0]) load(chooser.files[0]); chooser.value = ''; } } });
+  const chosen = () => {
+    if (chooser.files?.[0]) load(chooser.files[0]);
+    chooser.value = '';
+  };
+  const chooser = h('input', {
+    type: 'file', accept: '.json,application/json', class: 'offscreen', tabindex: -1, 'aria-label': 'File of settings',
+    on: { change: chosen },
+  });
   const picture = button('Save picture', screenshot, { icon: 'camera', primary: true, title: 'Key P', keys: 'P' });
   return {
     element: h('div', {},
-      group('Link', button('Copy link', link, { icon: 'link' }), h('p', { class: 'hint' }, 'The address of this page always holds the view, the light, the section, measures and notes.')),
+      group('Link', button('Copy link', link, { icon: 'link' }), h('p', { class: 'hint' },
+        'The address of this page always holds the view, the light, the section, measures and notes.')),
       group('Picture', sizes.element, qualities.element, picture),
       group('Settings', h('div', { class: 'buttons' }, button('Save', save), button('Load…', () => chooser.click())), chooser,
         h('p', { class: 'hint' }, 'Or drop a file on the picture. A still in full quality from saved settings:'),

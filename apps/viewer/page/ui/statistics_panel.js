@@ -3,14 +3,18 @@ import { group } from './controls.js';
 import { h, say } from './dom.js';
 import { bytesText, countText, lengthText } from './numbers.js';
 
-/** @typedef {import('./interface.js').Ui} Ui */
+/**
+ * @typedef {import('./interface.js').Ui} Ui
+ * @typedef {import('../viewer_types.js').SceneInfo} SceneInfo
+ * @typedef {import('../viewer_types.js').Statistics} Statistics
+ */
 
 /** @param {Ui} ui */
 export function statisticsPanel(ui) {
   const { viewer } = ui;
   /** @type {(() => void)[]} */
   const refreshers = [];
-  /** @param {[string, (info: import('../viewer_types.js').SceneInfo, s: import('../viewer_types.js').Statistics) => string | null][]} rows */
+  /** @param {[string, (info: SceneInfo, s: Statistics) => string | null][]} rows  A null hides the row. */
   const table = (rows) => h('dl', {}, ...rows.map(([name, value]) => {
     const term = h('dt', {}, name), cell = h('dd');
     refreshers.push(() => {

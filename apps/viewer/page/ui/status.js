@@ -25,7 +25,8 @@ export class Status {
     this.container = container;
     this.name = h('h1', {});
     this.detail = h('p', {});
-    this.bar = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Loading', 'aria-valuemin': 0, 'aria-valuemax': 100 }, h('i', {}));
+    const range = { 'aria-valuemin': 0, 'aria-valuemax': 100 };
+    this.bar = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Loading', ...range }, h('i', {}));
     this.message = h('div', { class: 'toast', hidden: true });
     this.pill = h('div', { class: 'toast tool-hint', hidden: true });
     this.live = h('div', { class: 'offscreen', role: 'status', 'aria-live': 'polite' });
@@ -39,9 +40,18 @@ export class Status {
     viewer.on('note', (text) => this.toast(text, true));
     viewer.on('error', (error) => this.fail(error));
     viewer.on('lost', () => this.fail({
-      title: 'The graphics were interrupted', text: 'The browser has taken the graphics away, perhaps because memory was short. The picture comes back when they do.', isLost: true }));
+      title: 'The graphics were interrupted', isLost: true,
+      text: 'The browser has taken the graphics away, perhaps because memory was short. The picture comes back when they do.',
+    }));
     viewer.on('restored', () => { if (this.lost) this.#mend(); });
     this.lost = false;
+    // A canvas without a picture is black.
+    container.classList.add('waiting');
+    const first = () => {
+      viewer.off('frame', first);
+      container.classList.remove('waiting');
+    };
+    viewer.on('frame', first);
     this.#loading();
   }
   isLoaded = false;
@@ -95,7 +105,8 @@ export class Status {
     this.#mend();
     this.lost = isLost;
     const shows = !isLost && this.viewer.info !== null && this.viewer.statistics().levelsLoaded > 0;
-    this.failure = failureCard(title, text, isLost ? [] : [tryAgain(), ...(shows ? [button('Go on with what is here', () => this.#mend())] : [])]);
+    const goOn = button('Go on with what is here', () => this.#mend());
+    this.failure = failureCard(title, text, isLost ? [] : shows ? [tryAgain(), goOn] : [tryAgain()]);
     // A picture that is there stays in sight.
     this.failure.classList.toggle('aside', shows);
     this.container.append(this.failure);

@@ -1,4 +1,6 @@
 /** The panel "View": how one moves, what is shown and how finely. */
+import { addScaled, cross, length, sub } from '../math.js';
+import { compassOf } from '../hands/pose.js';
 import { button, choice, group, refreshAll, segments, slider, toggle } from './controls.js';
 import { h } from './dom.js';
 
@@ -23,9 +25,24 @@ const MEANINGS = {
   occlusion: 'The part of the light of the sky that arrives.',
 };
 /** @type {[string, string][]} */
-export const SIDES = [['home', 'Home'], ['front', 'Front'], ['right', 'Right'], ['back', 'Back'], ['left', 'Left'], ['top', 'Top'], ['bottom', 'Bottom']];
+export const SIDES = [
+  ['home', 'Home'], ['front', 'Front'], ['right', 'Right'], ['back', 'Back'], ['left', 'Left'], ['top', 'Top'], ['bottom', 'Bottom'],
+];
 /** @type {{[name: string]: Vec3}} */
 const AXES = { '+x': [1, 0, 0], '+y': [0, 1, 0], '+z': [0, 0, 1], '-x': [-1, 0, 0], '-y': [0, -1, 0], '-z': [0, 0, -1] };
+
+/** @type {[string, string][]} */
+const AXIS_NAMES = Object.keys(AXES).map((name) => [name, name.replace('-', '\u2212')]);
+
+/**
+ * Returns the camera with another up axis. A view along it would have no horizon: then the eye moves
+ * aside.
+ * @param {import('../settings.js').Camera} camera @param {Vec3} up
+ */
+export function withUp(camera, up) {
+  const line = sub(camera.eye, camera.target), size = length(line), isAlong = length(cross(line, up)) < 0.01 * size;
+  return { ...camera, up, eye: isAlong ? addScaled(camera.eye, compassOf(up).east, 0.5 * size) : camera.eye };
+}
 
 /** @param {Ui} ui */
 export function viewPanel(ui) {
@@ -52,7 +69,7 @@ export function viewPanel(ui) {
     label: 'Cubes from', min: 0, max: 100, step: 1, get: (s) => s.cubes, set: (value) => viewer.set({ cubes: value }, 'ui'),
     text: (x) => (x ? `${x} px` : 'always'), hint: 'Voxels of at least this size look like cubes, smaller ones smooth',
   });
-  const camera = (/** @type {Settings} */ s) => s.camera ?? viewer.info?.view ?? { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
+  const camera = (/** @type {Settings} */ s) => s.camera ?? ui.home();
   const change = (/** @type {Partial<import('../settings.js').Camera>} */ part) => {
     const settings = viewer.get();
     if (viewer.info) viewer.set({ camera: { ...camera(settings), ...part } }, 'ui');
@@ -64,16 +81,8 @@ export function viewPanel(ui) {
   const axisOf = (/** @type {Settings} */ s) =>
     Object.keys(AXES).find((name) => AXES[name].every((x, i) => Math.abs(x - camera(s).up[i]) < 1e-6)) ?? 'own';
   const up = choice({
-    label: 'Up', options: [...Object.keys(AXES).map((name) => /** @type {[string, string]} */ ([name, name.replace('-', '\u2212')])), ['own', 'other']],
-    get: axisOf, set: (name) => {
-      const { eye, target } = camera(viewer.get()), axis = AXES[name];
-      if (!axis) return;
-      // A view along the new axis has no horizon: the eye moves aside.
-      const line = eye.map((x, i) => x - target[i]), along = line.reduce((sum, x, i) => sum + x * axis[i], 0);
-      const size = Math.hypot(...line), aside = Math.hypot(...line.map((x, i) => x - axis[i] * along));
-      const moved = aside > 1e-2 * size ? eye : /** @type {Vec3} */ (eye.map((x, i) => x + size * 0.5 * AXES[name[1] === 'x' ? '+z' : '+x'][i]));
-      change({ eye: moved, up: axis });
-    },
+    label: 'Up', options: [...AXIS_NAMES, ['own', 'other']], get: axisOf,
+    set: (name) => { if (AXES[name]) change(withUp(camera(viewer.get()), AXES[name])); },
   });
   const lock = button('Look around with the mouse', () => hands.lockPointer(), { title: 'Hides the pointer until Escape (key L)' });
   const refresh = refreshAll([mode, show, level, colors, normals, lod, cubes, fov, up]);
