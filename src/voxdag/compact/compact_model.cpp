@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "voxdag/compact/symbol_batch.hpp"
 #include "voxdag/compact/train_tree.hpp"
 #include "voxdag/compact/unit_symbols.hpp"
 #include "voxdag/parallel/polled_for.hpp"
@@ -34,18 +35,31 @@ class SampleSink {
 
 class CountSink {
  public:
-  explicit CountSink(const CompactTrees& trees) : trees_(trees) {
-    for (const ContextTree& tree : trees) counts.emplace_back(tree.tables());
+  CountSink(const CompactTrees& trees, const TableFinder& finder) : batch_(finder) {
+    for (const ContextTree& tree : trees) counts_.emplace_back(tree.tables());
   }
   void symbol(CompactSymbol symbol, std::uint64_t features, std::uint32_t value) {
-    counts[symbol].add(trees_[symbol].table(features), value);
+    batch_.symbol(symbol, features, value);
+    if (batch_.size() >= kBatch) count();
   }
   void raw(std::uint32_t, int) {}
 
-  std::vector<SymbolCounts> counts;
+  /// Returns the counts of all symbols so far.
+  const std::vector<SymbolCounts>& counts() {
+    count();
+    return counts_;
+  }
 
  private:
-  const CompactTrees& trees_;
+  static constexpr std::size_t kBatch = 1024;
+
+  void count() {
+    batch_.flush(
+        [&](const BatchedSymbol& symbol) { counts_[symbol.kind].add(symbol.table, symbol.value); });
+  }
+
+  SymbolBatch batch_;
+  std::vector<SymbolCounts> counts_;
 };
 
 /// The nodes that have symbols, in one sequence: units, shared bricks, nodes above the units.
@@ -128,13 +142,14 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
 
   std::size_t tables = 0;
   for (const ContextTree& tree : trees) tables += tree.tables();
-  tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees); });
+  const TableFinder finder(trees);
+  tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees, finder); });
   const MemoryReservation counted(budget, tables * 256 * sizeof(std::uint64_t) * 3);
   polled_for(all.size(), 1024, progress, "model",
              [&](std::size_t i) { all.visit(i, sinks.local()); });
   for (std::size_t s = 0; s < trees.size(); ++s) {
     SymbolCounts sum(trees[s].tables());
-    for (const CountSink& sink : sinks) sum.add(sink.counts[s]);
+    for (CountSink& sink : sinks) sum.add(sink.counts()[s]);
     sum.set_frequencies(trees[s]);
   }
   return trees;
