@@ -66,7 +66,9 @@ class TableFinder {
         const std::uint32_t next =
             nodes[(step >> 8) +
                   static_cast<std::uint32_t>(symbols[k].features >> (step & 63u) & 1u)];
-        steps[k] = (step & kLeafNode) != 0 ? step : next;
+        // Without a branch, which would often be predicted wrongly.
+        const std::uint32_t is_finished = 0u - (step / kLeafNode & 1u);
+        steps[k] = next ^ ((next ^ step) & is_finished);
       }
     }
     for (std::size_t k = 0; k < N; ++k) symbols[k].table = steps[k] >> 8;
