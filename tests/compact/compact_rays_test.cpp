@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "support/brute_svdag.hpp"
+#include "support/caster_checks.hpp"
 #include "support/random_bits.hpp"
 #include "support/test_rays.hpp"
+#include "support/voxel_sets.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/cpu/decoded_cache.hpp"
+#include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/compact_svdag_nodes.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
@@ -84,6 +87,70 @@ TEST(CompactRays, EndAtAnyStream) {
     TestRays rays(grid, static_cast<unsigned>(round));
     for (int i = 0; i < 20; ++i) closest_hit(nodes, grid, rays.make(RayKind::kGeneric));
   }
+}
+
+/// Expects packets and single rays at the compact form to meet what single rays meet at the plain
+/// form. A cache of two units replaces them all the time.
+void expect_same_results(int levels, unsigned seed, const std::vector<CastRay>& rays) {
+  for (const NamedVoxels& set : voxel_sets(levels, seed)) {
+    const Svdag dag = brute_svdag(levels, set.voxels);
+    const CompactSvdag compact = encode_svdag(dag.view());
+    for (const std::size_t cached_units : {2, 64}) {
+      const PagedDag paged(compact.view(), cached_units);
+      const SvdagNodes nodes(dag.view());
+      expect_same_hits(nodes, PacketCaster<PagedDag>(paged), rays, set.name);
+      const ScalarCaster<PagedNodes> scalar(PagedNodes(paged, paged.cache()));
+      expect_same_hits(nodes, scalar, rays, set.name + ", single rays");
+    }
+  }
+}
+
+TEST(CompactPackets, MeetWhatTheScalarCastMeets) {
+  for (const int levels : {4, 5, 6, 7})
+    expect_same_results(levels, 3, rays_of_every_kind(grid_of(levels), 100, 7));
+}
+
+TEST(CompactPackets, EndAtTheSameLevelOfDetail) {
+  for (const float coarse : {0x1p-5f, 0x1p-2f}) {
+    auto rays = rays_of_every_kind(grid_of(6), 200, 8);
+    set_random_stops(rays, coarse, 0x1p-3f, 1);
+    expect_same_results(6, 4, rays);
+  }
+}
+
+TEST(CompactPackets, RaysThatStartOnTheirWayMeetTheSame) {
+  expect_same_results(7, 9, ray_bundles(grid_of(7), 0.002, 0.01));
+}
+
+TEST(CompactPackets, RaysThatShareTheirVoxelsMeetTheSame) {
+  for (const double width : {0.003, 0.0002})
+    expect_same_results(5, 10, ray_bundles(grid_of(5), width, 0));
+}
+
+TEST(CompactPackets, ShortRaysOfOnePointMeetTheSame) {
+  expect_same_results(7, 6, short_rays_of_points(grid_of(7), 100));
+}
+
+TEST(CompactPackets, ABrokenStreamIsRefusedOrSafe) {
+  const Svdag dag = brute_svdag(7, random_voxels(7, 3000, 5));
+  CompactSvdag compact = encode_svdag(dag.view());
+  const std::vector<std::uint32_t> stream = compact.stream;
+  Random random(3);
+  const auto rays = rays_of_every_kind(grid_of(7), 5, 2);
+  int refused = 0;
+  for (int round = 0; round < 200; ++round) {
+    compact.stream = stream;
+    const std::uint64_t bit = random() % compact.stream_bits;
+    compact.stream[bit / 32] ^= 1u << (bit % 32);
+    try {
+      const PagedDag paged(compact.view(), 2);
+      any_hits(PacketCaster<PagedDag>(paged), rays);
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), "the stream of the compact DAG is broken");
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 20);
 }
 
 }  // namespace
