@@ -120,8 +120,8 @@ std::uint64_t cast_dag_packet(const BoundedDag& dag, const RayPacket& packet, Pa
   return DagPacketWalk(dag, hits).cast(packet);
 }
 
-std::uint64_t cast_paged_packet(const PagedDag& dag, UnitCache& units, const RayPacket& packet,
-                                PacketHits* hits) {
+std::uint64_t cast_in_place_packet(const InPlaceDag& dag, UnitCache& units, const RayPacket& packet,
+                                   PacketHits* hits) {
   return DagPacketWalk(dag, units, hits).cast(packet);
 }
 
@@ -131,9 +131,9 @@ std::uint64_t cast_dag_packet(const BoundedDag& dag, const RayPacket& packet, Pa
   return cast_one_by_one(dag.nodes(), packet, hits);
 }
 
-std::uint64_t cast_paged_packet(const PagedDag& dag, UnitCache& units, const RayPacket& packet,
-                                PacketHits* hits) {
-  return cast_one_by_one(PagedNodes(dag, units), packet, hits);
+std::uint64_t cast_in_place_packet(const InPlaceDag& dag, UnitCache& units, const RayPacket& packet,
+                                   PacketHits* hits) {
+  return cast_one_by_one(InPlaceNodes(dag, units), packet, hits);
 }
 
 #endif
@@ -146,7 +146,7 @@ HWY_AFTER_NAMESPACE();
 namespace voxdag {
 
 HWY_EXPORT(cast_dag_packet);
-HWY_EXPORT(cast_paged_packet);
+HWY_EXPORT(cast_in_place_packet);
 
 void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hits) {
   hits.met = HWY_DYNAMIC_DISPATCH(cast_dag_packet)(dag, packet, &hits);
@@ -156,12 +156,12 @@ std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet) {
   return HWY_DYNAMIC_DISPATCH(cast_dag_packet)(dag, packet, nullptr);
 }
 
-void cast_packet(const PagedDag& dag, const RayPacket& packet, PacketHits& hits) {
-  hits.met = HWY_DYNAMIC_DISPATCH(cast_paged_packet)(dag, dag.cache(), packet, &hits);
+void cast_packet(const InPlaceDag& dag, const RayPacket& packet, PacketHits& hits) {
+  hits.met = HWY_DYNAMIC_DISPATCH(cast_in_place_packet)(dag, dag.cache(), packet, &hits);
 }
 
-std::uint64_t cast_packet_any(const PagedDag& dag, const RayPacket& packet) {
-  return HWY_DYNAMIC_DISPATCH(cast_paged_packet)(dag, dag.cache(), packet, nullptr);
+std::uint64_t cast_packet_any(const InPlaceDag& dag, const RayPacket& packet) {
+  return HWY_DYNAMIC_DISPATCH(cast_in_place_packet)(dag, dag.cache(), packet, nullptr);
 }
 
 }  // namespace voxdag

@@ -1,7 +1,7 @@
 #pragma once
 /// Casts packets of rays at a DAG.
 #include "voxdag/cpu/packets/bounded_dag.hpp"
-#include "voxdag/cpu/packets/paged_dag.hpp"
+#include "voxdag/cpu/packets/in_place_dag.hpp"
 #include "voxdag/cpu/packets/ray_packet.hpp"
 
 namespace voxdag {
@@ -13,7 +13,7 @@ struct PacketTarget<BoundedDag> {
 };
 
 template <>
-struct PacketTarget<PagedDag> {
+struct PacketTarget<InPlaceDag> {
   using Hits = PacketHits;
   static constexpr bool kByDirection = true;
 };
@@ -26,7 +26,7 @@ void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hit
 std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet);
 
 /// These functions at a compact DAG. They use the calling thread's cache of units.
-void cast_packet(const PagedDag& dag, const RayPacket& packet, PacketHits& hits);
-std::uint64_t cast_packet_any(const PagedDag& dag, const RayPacket& packet);
+void cast_packet(const InPlaceDag& dag, const RayPacket& packet, PacketHits& hits);
+std::uint64_t cast_packet_any(const InPlaceDag& dag, const RayPacket& packet);
 
 }  // namespace voxdag

@@ -17,8 +17,8 @@
 
 #include "voxdag/cpu/packets/bounded_dag.hpp"
 #include "voxdag/cpu/packets/dag_packet.hpp"
+#include "voxdag/cpu/packets/in_place_dag.hpp"
 #include "voxdag/cpu/packets/packet_rays-inl.hpp"
-#include "voxdag/cpu/packets/paged_dag.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -35,12 +35,12 @@ class DagPacketWalk : PacketRays {
         levels_(dag.levels()),
         is_empty_(dag.nodes().is_empty()),
         hits_(hits) {}
-  DagPacketWalk(const PagedDag& dag, UnitCache& units, PacketHits* hits)
+  DagPacketWalk(const InPlaceDag& dag, UnitCache& units, PacketHits* hits)
       : words_(dag.words()),
         levels_(dag.levels()),
         is_empty_(dag.is_empty()),
         unit_level_(dag.unit_level()),
-        paged_(&dag),
+        in_place_(&dag),
         units_(&units),
         hits_(hits) {}
 
@@ -122,7 +122,7 @@ class DagPacketWalk : PacketRays {
   }
   /// Makes the unit of this number the one whose nodes are visited. Its own words come first.
   HWY_NOINLINE void open_unit(std::uint32_t number) {
-    const DecodedUnit& unit = units_->unit(*paged_, number);
+    const DecodedUnit& unit = units_->unit(*in_place_, number);
     unit_words_ = unit.words;
     leaf_blocks_ = unit.leaf_blocks;
   }
@@ -173,8 +173,8 @@ class DagPacketWalk : PacketRays {
   const std::uint64_t* leaf_blocks_ = nullptr;  ///< Of the DAG, or of the open unit.
   int levels_;
   bool is_empty_;
-  int unit_level_ = kMaxLevels;  ///< In a DAG that is not paged no node is of this level.
-  const PagedDag* paged_ = nullptr;
+  int unit_level_ = kMaxLevels;  ///< In a DAG that is not compact no node is of this level.
+  const InPlaceDag* in_place_ = nullptr;
   UnitCache* units_ = nullptr;
   const std::uint32_t* unit_words_ = nullptr;  ///< Of the open unit.
   PacketHits* hits_;

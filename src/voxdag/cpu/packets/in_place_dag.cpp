@@ -1,4 +1,4 @@
-#include "voxdag/cpu/packets/paged_dag.hpp"
+#include "voxdag/cpu/packets/in_place_dag.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -66,7 +66,7 @@ std::uint64_t UnitCache::bytes() const {
          bricks_.size() * (sizeof(DecodedBrick) + sizeof(std::uint64_t));
 }
 
-void UnitCache::decode(const PagedDag& dag, std::uint32_t number, std::size_t place) {
+void UnitCache::decode(const InPlaceDag& dag, std::uint32_t number, std::size_t place) {
   const CompactSvdagView& compact = dag.compact();
   if (read_unit(compact, dag.unit(number), unit_) != CompactFault::kNone) unit_.mask = 0;
   set_unit(
@@ -87,7 +87,8 @@ const DecodedBrick& UnitCache::shared_brick(const CompactSvdagView& compact, std
   return bricks_[place];
 }
 
-PagedDag::PagedDag(const CompactSvdagView& compact, std::size_t cached_units, Progress* progress)
+InPlaceDag::InPlaceDag(const CompactSvdagView& compact, std::size_t cached_units,
+                       Progress* progress)
     : compact_(compact), top_(std::make_shared<Top>(cached_units)) {
   assert(compact.levels >= 4);
   if (compact.is_empty()) return;
@@ -130,17 +131,11 @@ PagedDag::PagedDag(const CompactSvdagView& compact, std::size_t cached_units, Pr
   }
 }
 
-std::uint64_t PagedDag::bytes() const {
+std::uint64_t InPlaceDag::bytes() const {
   return top_->words.size() * sizeof(std::uint32_t) + top_->units.size() * sizeof(std::uint64_t);
 }
 
-std::uint64_t PagedDag::cache_bytes() const {
-  std::uint64_t bytes = 0;
-  for (const UnitCache& cache : top_->caches) bytes += cache.bytes();
-  return bytes;
-}
-
-std::uint64_t PagedDag::decoded_units() const {
+std::uint64_t InPlaceDag::decoded_units() const {
   std::uint64_t count = 0;
   for (const UnitCache& cache : top_->caches) count += cache.decoded_units();
   return count;

@@ -16,7 +16,7 @@
 
 namespace voxdag {
 
-class PagedDag;
+class InPlaceDag;
 
 /// The units that one thread decoded last.
 class UnitCache {
@@ -26,7 +26,7 @@ class UnitCache {
       : units_(units), numbers_(units, kNone), bricks_(kBricks), brick_numbers_(kBricks, kNone) {}
 
   /// Returns a unit of the DAG. The reference is valid until the next call.
-  const DecodedUnit& unit(const PagedDag& dag, std::uint32_t number) {
+  const DecodedUnit& unit(const InPlaceDag& dag, std::uint32_t number) {
     const std::size_t place = number & (units_.size() - 1);
     if (numbers_[place] != number) decode(dag, number, place);
     return units_[place];
@@ -38,7 +38,7 @@ class UnitCache {
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
   static constexpr std::size_t kBricks = 1 << 12;
 
-  void decode(const PagedDag& dag, std::uint32_t number, std::size_t place);
+  void decode(const InPlaceDag& dag, std::uint32_t number, std::size_t place);
   const DecodedBrick& shared_brick(const CompactSvdagView& compact, std::uint32_t number,
                                    std::uint32_t mask);
 
@@ -51,14 +51,14 @@ class UnitCache {
 };
 
 /// Points to the compact DAG, which must outlive it. Copies share their memory.
-class PagedDag {
+class InPlaceDag {
  public:
   /// Expands the nodes above the units, and decodes every unit once, for its box, on the threads of
   /// the current TBB arena. The DAG must have four levels or more. `cached_units` is the number of
   /// units that each thread keeps: a power of two. Throws Error if the stream is broken, and
   /// Cancelled; `progress` may be null.
-  explicit PagedDag(const CompactSvdagView& compact, std::size_t cached_units = kCachedUnits,
-                    Progress* progress = nullptr);
+  explicit InPlaceDag(const CompactSvdagView& compact, std::size_t cached_units = kCachedUnits,
+                      Progress* progress = nullptr);
 
   static constexpr std::size_t kCachedUnits = 2048;
 
@@ -77,8 +77,8 @@ class PagedDag {
 
   /// Returns the bytes that it takes in addition to the compact DAG, without the caches.
   std::uint64_t bytes() const;
-  /// Returns the bytes of the caches of all threads.
-  std::uint64_t cache_bytes() const;
+  /// Returns the bytes of one thread's cache.
+  std::uint64_t cache_bytes_per_thread() const { return cache().bytes(); }
   /// Returns how many units all threads decoded so far, after the first time.
   std::uint64_t decoded_units() const;
 
@@ -100,11 +100,11 @@ class PagedDag {
 
 /// The node layout for single rays (see trace/svdag_nodes.hpp). One thread uses it, with its cache.
 /// Nodes below a unit are valid until the cast reaches another unit.
-class PagedNodes {
+class InPlaceNodes {
  public:
   using Node = std::uint32_t;
 
-  PagedNodes(const PagedDag& dag, UnitCache& cache)
+  InPlaceNodes(const InPlaceDag& dag, UnitCache& cache)
       : dag_(&dag),
         cache_(&cache),
         words_(dag.words()),
@@ -142,7 +142,7 @@ class PagedNodes {
     return node[2 + popcount8(node[0] & ((1u << index) - 1))];
   }
 
-  const PagedDag* dag_;
+  const InPlaceDag* dag_;
   UnitCache* cache_;
   const std::uint32_t* words_;
   int levels_, unit_level_;
