@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <span>
 
 #include "voxdag/compact/compact_model.hpp"
 #include "voxdag/compact/encoded_records.hpp"
@@ -66,6 +67,19 @@ class RecordWriter {
     coder_.leave_open(bits);
   }
 
+  /// Adds symbols of CodedSymbols.
+  void put(std::span<const std::uint32_t> coded) {
+    for (std::size_t i = 0; i < coded.size(); ++i) {
+      const std::uint32_t kind = coded[i] >> 12 & 15u, value = coded[i] >> 16;
+      if (kind == BatchedSymbol::kRaw) {
+        coder_.put_raw(coded[++i], static_cast<int>(value));
+        continue;
+      }
+      const SymbolInterval interval = (*intervals_)[kind].of(coded[i] & 0xFFFu, value);
+      coder_.put(interval.start, interval.frequency);
+    }
+  }
+
   BitWriter bits;
 
  private:
@@ -92,7 +106,7 @@ class Encoder {
         memory_(options.memory),
         progress_(progress),
         shared_bricks_(memory_) {
-    trees_ = choose_trees(nodes_, options.tables, memory_, progress);
+    trees_ = choose_trees(nodes_, options.tables, memory_, progress, coded_);
     finder_.emplace(trees_);
     for (const ContextTree& tree : trees_) intervals_.emplace_back(tree);
     for (int level = 0; level <= nodes_.unit_level(); ++level) {
@@ -114,20 +128,27 @@ class Encoder {
 
   void write_bricks() {
     const auto& bricks = nodes_.shared(nodes_.brick_level());
+    const int level = nodes_.unit_level();
+    const auto& units = nodes_.nodes(level);
     shared_bricks_.write(
         bricks.size(), progress_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
-          visit_shared_brick(nodes_, bricks[i], out);
+          if (coded_.are_kept())
+            out.put(coded_.of(units.size() + i));
+          else
+            visit_shared_brick(nodes_, bricks[i], out);
           out.close();
         });
-    const int level = nodes_.unit_level();
-    const auto& units = nodes_.nodes(level);
     records_[at(level)].write(
         units.size(), progress_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
-          visit_unit(nodes_, units[i], out);
+          if (coded_.are_kept())
+            out.put(coded_.of(i));
+          else
+            visit_unit(nodes_, units[i], out);
           out.close();
         });
+    coded_.clear();
     subtree_bits_[at(level)].resize(units.size());
     for (std::size_t i = 0; i < units.size(); ++i)
       subtree_bits_[at(level)][i] = records_[at(level)].bits(i);
@@ -256,6 +277,7 @@ class Encoder {
   NumberedNodes nodes_;
   MemoryBudget* memory_;
   Progress* progress_;
+  CodedSymbols coded_;
   CompactTrees trees_;
   std::optional<TableFinder> finder_;
   std::vector<Intervals> intervals_;
