@@ -158,8 +158,8 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
   const TableFinder finder(trees);
   tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees, finder); });
   const MemoryReservation counted(budget, tables * 256 * sizeof(std::uint64_t) * 3);
-  // A brick has about 20 symbols.
-  coded.begin(all.size(), count_bricks(nodes) * 20, budget);
+  // A brick has about 35 symbols.
+  coded.begin(all.size(), count_bricks(nodes) * 35, budget);
   constexpr std::size_t kPart = CodedSymbols::kPart;
   polled_for((all.size() + kPart - 1) / kPart, 1, progress, "model", [&](std::size_t part) {
     CountSink& sink = sinks.local();
