@@ -111,26 +111,27 @@ std::string compact_rays_table(const CompactRaysResults& results) {
 }
 
 Chart compact_rays_chart(const CompactRaysResults& results, const std::filesystem::path& file) {
-  ChartPanel panel;
-  panel.title = fmt::format("{}, {}³", results.scene, std::uint64_t{1} << results.levels);
-  panel.x.label = "bytes, as part of the plain form";
-  panel.y.label = "time per ray, as ratio to the plain form";
-  constexpr const char* kNames[] = {"primary", "shadow", "occlusion"};
-  for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
-    const std::string name = kNames[c];
-    ChartLine single{name + ", single", {}, {}, static_cast<int>(c), LineStyle::kDashed, true},
-        packets{name + ", packets", {}, {}, static_cast<int>(c), LineStyle::kSolid, true};
-    for (const CompactRaysPoint& point : results.points) {
-      const CompactRaysTimes& times = point.times[c];
-      single.x.push_back(part(point, results));
-      single.y.push_back(times.seconds / times.plain_seconds);
-      packets.x.push_back(part(point, results));
-      packets.y.push_back(times.packet_seconds / times.plain_seconds);
+  const auto panel_of = [&](const std::string& name, double CompactRaysTimes::*seconds) {
+    ChartPanel panel;
+    panel.title =
+        fmt::format("{}, {}³: {}", results.scene, std::uint64_t{1} << results.levels, name);
+    panel.x.label = "bytes, as part of the plain form";
+    panel.y.label = "time / time of single rays at the plain form";
+    constexpr const char* kNames[] = {"primary", "shadow", "occlusion"};
+    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
+      ChartLine line{kNames[c], {}, {}, static_cast<int>(c)};
+      line.markers = true;
+      for (const CompactRaysPoint& point : results.points) {
+        line.x.push_back(part(point, results));
+        line.y.push_back(point.times[c].*seconds / point.times[c].plain_seconds);
+      }
+      panel.lines.push_back(std::move(line));
     }
-    panel.lines.push_back(std::move(single));
-    panel.lines.push_back(std::move(packets));
-  }
-  return {file, {panel}};
+    return panel;
+  };
+  return {file,
+          {panel_of("single rays", &CompactRaysTimes::seconds),
+           panel_of("packets", &CompactRaysTimes::packet_seconds)}};
 }
 
 }  // namespace voxdag
