@@ -12,6 +12,8 @@ class CellColors : public CellValueSink {
  public:
   explicit CellColors(std::uint64_t cells) : colors(cells) {}
 
+  bool needs_normals() const override { return false; }
+
   void add(std::uint64_t first, std::span<const VoxelValue> values) override {
     for (const VoxelValue& value : values)
       colors[first++] = {value.color[0], value.color[1], value.color[2]};

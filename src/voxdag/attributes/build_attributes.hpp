@@ -10,6 +10,8 @@ namespace voxdag {
 
 /// Weights of red, green and blue in errors of colours.
 inline constexpr std::array<int, 3> kColorWeights{2, 4, 1};
+/// ValueMetric::price of colours: small errors of flat surfaces are visible.
+inline constexpr float kColorErrorPrice = 100;
 /// The smallest bound on errors of normals, in degrees: rounding a normal to 8 bits can turn it by
 /// almost this angle.
 inline constexpr double kLeastNormalBound = 0.4;
@@ -24,6 +26,10 @@ struct AttributeOptions {
   double normal_bound_degrees = 4;
   MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
+
+/// Returns the metric of colours whose largest error is `bound`, 0 to 1 (see
+/// AttributeOptions::color_bound).
+ValueMetric make_color_metric(double bound);
 
 /// Returns a metric that keeps the angle between stored normals and unit normals, which
 /// pack_normal() rounds, within a bound of kLeastNormalBound to 180 degrees.
