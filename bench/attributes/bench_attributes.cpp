@@ -36,7 +36,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 ValuePages encode_pages(const Colors& colors, double bound, ValueErrors& errors,
                         const Progress& progress) {
   constexpr std::size_t kPart = 256 * kPageValues;
-  ValueEncoder encoder(colors.size(), make_color_metric(bound), nullptr);
+  ValueEncoder encoder(colors.size(), make_value_metric(kColorWeights, 255 * bound), nullptr);
   parallel_for((colors.size() + kPart - 1) / kPart, [&](std::size_t i) {
     progress.throw_if_cancelled();
     const std::size_t begin = i * kPart;

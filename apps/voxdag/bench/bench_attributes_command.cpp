@@ -65,7 +65,7 @@ void add_bench_attributes_command(const Command& bench, Session& session) {
   const auto arguments = std::make_shared<BenchAttributesArguments>();
   AttributesPlan& plan = arguments->plan;
   plan.levels = {10, 11};
-  plan.bounds = {0.02, 0.03, 0.04, 0.06};
+  plan.bounds = {0.03, 0.04, 0.05, 0.06, 0.08};
   plan.thresholds = {0.05, 0.1};
   plan.codecs = {std::begin(kColorCodecs), std::end(kColorCodecs)};
   const Command command = bench.add(
@@ -79,7 +79,7 @@ void add_bench_attributes_command(const Command& bench, Session& session) {
                "Voxels per side; all cells get colours (default: 1024,2048)");
   command.list("--bounds", plan.bounds, parse_bound, "D,D...",
                "Largest errors of voxdag's colours, as `build --color-bound` takes them (default: "
-               "0.02,0.03,0.04,0.06)");
+               "0.03,0.04,0.05,0.06,0.08)");
   command.list("--thresholds", plan.thresholds, parse_bound, "D,D...",
                "Largest errors of the colours of Dolonius and others, as distances in sRGB "
                "(default: 0.05,0.1)");

@@ -16,8 +16,8 @@ class AttributeEncoder : public CellValueSink {
  public:
   AttributeEncoder(std::uint64_t cells, const AttributeOptions& options) {
     if (options.colors)
-      colors = std::make_unique<ValueEncoder>(cells, make_color_metric(options.color_bound),
-                                              options.memory);
+      colors = std::make_unique<ValueEncoder>(
+          cells, make_value_metric(kColorWeights, 255 * options.color_bound), options.memory);
     if (options.normals)
       normals = std::make_unique<ValueEncoder>(
           cells, make_normal_metric(options.normal_bound_degrees), options.memory);
@@ -55,13 +55,6 @@ class AttributeEncoder : public CellValueSink {
 };
 
 }  // namespace
-
-ValueMetric make_color_metric(double bound) {
-  ValueMetric metric = make_value_metric(kColorWeights, 255 * bound);
-  metric.price = kColorErrorPrice;
-  metric.has_masking = true;
-  return metric;
-}
 
 ValueMetric make_normal_metric(double degrees) {
   constexpr double kUnit = 127;                          // length of a normal, in steps of 8 bits

@@ -10,8 +10,6 @@ namespace voxdag {
 
 /// Weights of red, green and blue in errors of colours.
 inline constexpr std::array<int, 3> kColorWeights{2, 4, 1};
-/// ValueMetric::price of colours: small errors of flat surfaces are visible.
-inline constexpr float kColorErrorPrice = 100;
 /// The smallest bound on errors of normals, in degrees: rounding a normal to 8 bits can turn it by
 /// almost this angle.
 inline constexpr double kLeastNormalBound = 0.4;
@@ -21,15 +19,11 @@ struct AttributeOptions {
   int finest_level = 0;                  ///< m: cells of levels 0 to m get attributes.
   /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'
   /// squared differences, sRGB encoded, with the weights kColorWeights. 0: lossless.
-  double color_bound = 0.03;
+  double color_bound = 0.05;
   /// The largest angle between a stored and a filtered normal, kLeastNormalBound to 180 degrees.
-  double normal_bound_degrees = 4;
+  double normal_bound_degrees = 5;
   MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
-
-/// Returns the metric of colours whose largest error is `bound`, 0 to 1 (see
-/// AttributeOptions::color_bound).
-ValueMetric make_color_metric(double bound);
 
 /// Returns a metric that keeps the angle between stored normals and unit normals, which
 /// pack_normal() rounds, within a bound of kLeastNormalBound to 180 degrees.

@@ -34,11 +34,7 @@ class PageMerger {
       unit = i % kBlockUnit == 0 ? of_value : unit + of_value;
     }
     units_ = sums_;
-    page_ = sums_[0];
-    for (std::size_t i = 1; i < kUnits; ++i) page_ += sums_[i];
   }
-
-  const ValueSums& page() const { return page_; }
 
   /// Merges the two neighbours that save most cost, until every merge would add cost. A block is
   /// named by its first unit.
@@ -98,7 +94,6 @@ class PageMerger {
     return best;
   }
 
-  ValueSums page_;
   std::array<ValueSums, kUnits> units_, sums_;
   std::array<std::size_t, kUnits> next_{}, before_{};
   std::array<float, kUnits> costs_{}, joined_costs_{}, saved_{};
@@ -108,8 +103,8 @@ class PageMerger {
 class PageEncoder {
  public:
   PageEncoder(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-              EndPrecision precision, const PageMerger& merger, ErrorPrice price)
-      : merger_(merger), fitter_(values, metric, precision, price) {}
+              EndPrecision precision, const PageMerger& merger)
+      : merger_(merger), fitter_(values, metric, precision) {}
 
   /// Calls use(block) for the fitted blocks, in order. Splits blocks for which only every value by
   /// itself keeps the bound, as long as this saves cost.
@@ -162,9 +157,8 @@ void ValueErrors::count(Value8 given, Value8 stored) {
 EncodedPage encode_page(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
                         EndPrecision precision, int given) {
   PageMerger merger(values, metric);
-  const ErrorPrice price = ErrorPrice::of(metric, merger.page());
-  merger.merge(BlockEstimator(values.data(), metric, precision, price));
-  const PageEncoder encoder(values, metric, precision, merger, price);
+  merger.merge(BlockEstimator(values.data(), metric, precision));
+  const PageEncoder encoder(values, metric, precision, merger);
   EncodedPage page;
   PageWriter writer(page);
   encoder.for_each_fitted([&](const FittedBlock& fitted) {

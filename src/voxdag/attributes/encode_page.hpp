@@ -5,7 +5,7 @@
 /// Voxelized Surface Geometry", I3D 2017. Blocks of values in depth-first order have two ends, and
 /// weights of few bits. A page begins as blocks of 4 values. In each step, the two neighbours merge
 /// that save most cost, until every merge would add cost. Unlike in the paper, the cost of a block
-/// is its bits plus the price of its squared errors (ValueMetric::price), as in rate-distortion
+/// is its bits plus the price of its squared errors (ValueMetric::price()), as in rate-distortion
 /// optimisation. Merges compare costs that are estimated from sums (estimate_block.hpp); only the
 /// blocks of the result are fitted to their values (fit_block.hpp).
 #include <array>

@@ -13,16 +13,6 @@ float square(float v) { return v * v; }
 
 }  // namespace
 
-ErrorPrice ErrorPrice::of(const ValueMetric& metric, const ValueSums& page) {
-  // The constant of SSIM that keeps it finite where nothing varies: (0.03 * 255)².
-  constexpr float kFlat = 58.5f;
-  ErrorPrice price{metric.price / (static_cast<float>(metric.bound) + 1e-3f)};
-  if (!metric.has_masking) return price;
-  const float variance = grey_spread(page, metric) / static_cast<float>(metric.sum() * page.count);
-  price.per_error *= kFlat / (kFlat + 2 * variance);
-  return price;
-}
-
 PrincipalAxis principal_axis(const ValueSums& sums, const ValueMetric& metric) {
   float scale[3];
   for (std::size_t c = 0; c < 3; ++c) scale[c] = std::sqrt(static_cast<float>(metric.weights[c]));
@@ -74,8 +64,8 @@ AxisExtent extent_along(const PrincipalAxis& axis, const Value8* values, const V
 }
 
 BlockEstimator::BlockEstimator(const Value8* values, const ValueMetric& metric,
-                               EndPrecision precision, ErrorPrice price)
-    : values_(values), metric_(metric), end_bits_(precision.bits()), price_(price.per_error) {
+                               EndPrecision precision)
+    : values_(values), metric_(metric), end_bits_(precision.bits()), price_(metric.price()) {
   for (int c = 0; c < 3; ++c) {
     const auto weight = static_cast<float>(metric.weights[static_cast<std::size_t>(c)]);
     if (precision.code < 3)

@@ -6,14 +6,6 @@
 
 namespace voxdag {
 
-/// Turns errors into bits.
-struct ErrorPrice {
-  float per_error = 0;  ///< Bits per unit of ValueMetric::error().
-
-  /// Returns the price in a page with these sums.
-  static ErrorPrice of(const ValueMetric& metric, const ValueSums& page);
-};
-
 /// The line through values along which they vary most. The channels are scaled by the roots of
 /// their weights.
 struct PrincipalAxis {
@@ -36,8 +28,7 @@ AxisExtent extent_along(const PrincipalAxis& axis, const Value8* values, const V
 class BlockEstimator {
  public:
   /// Refers to the values and the metric.
-  BlockEstimator(const Value8* values, const ValueMetric& metric, EndPrecision precision,
-                 ErrorPrice price);
+  BlockEstimator(const Value8* values, const ValueMetric& metric, EndPrecision precision);
 
   /// Returns the estimated cost in bits of the values from `begin` on, whose sums are `sums`, as
   /// one block of the best type that is expected to keep the bound.

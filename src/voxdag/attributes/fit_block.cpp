@@ -38,8 +38,8 @@ std::uint8_t to_byte(float v) {
 }  // namespace
 
 BlockFitter::BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-                         EndPrecision precision, ErrorPrice price)
-    : values_(values), metric_(metric), precision_(precision), price_(price.per_error) {}
+                         EndPrecision precision)
+    : values_(values), metric_(metric), precision_(precision), price_(metric.price()) {}
 
 std::uint32_t BlockFitter::pack(Value8 value) const {
   static const NearestFields nearest;

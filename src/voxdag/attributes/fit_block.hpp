@@ -24,7 +24,7 @@ class BlockFitter {
  public:
   /// Refers to the metric.
   BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
-              EndPrecision precision, ErrorPrice price);
+              EndPrecision precision);
 
   /// Returns the block of least cost that was found for the values from `begin` on, whose sums are
   /// `sums`; `begin` and their number are multiples of kBlockUnit. Tries one value for all, lines

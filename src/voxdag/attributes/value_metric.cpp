@@ -22,9 +22,9 @@ EndPrecision choose_precision(const ValueMetric& metric) {
       worst += weight * (step / 2) * (step / 2);
       mean += static_cast<float>(weight * (step - 1) * (step - 1)) / 12;
     }
-    // The rounding of one value may cost a bit.
-    if (worst <= metric.bound && mean * metric.price <= static_cast<float>(metric.bound))
-      return {code};
+    // Rounding costs a block this much for each of its values; a finer end costs bits once.
+    constexpr float kMostBits = 0.13f;
+    if (worst <= metric.bound && mean * metric.price() <= kMostBits) return {code};
   }
   return {3};
 }

@@ -12,11 +12,10 @@ namespace voxdag {
 struct ValueMetric {
   std::array<int, 3> weights{1, 1, 1};
   int bound = 0;  ///< The largest error(): 0 to 65025 times the sum of the weights.
+
   /// The bits that the encoder pays to avoid an error as large as the bound. It pays for smaller
-  /// errors in proportion to their squares.
-  float price = 8;
-  /// Whether errors are cheaper in pages whose values vary much: there they are hard to see.
-  bool has_masking = false;
+  /// errors in proportion to their squares, so that most are less than half of the bound.
+  static constexpr float kBoundPrice = 8;
 
   constexpr int sum() const { return weights[0] + weights[1] + weights[2]; }
   /// Returns the square of the error, times the sum of the weights.
@@ -28,6 +27,8 @@ struct ValueMetric {
     }
     return sum;
   }
+  /// Returns the price in bits of an error() of 1. It stays finite if the bound is 0.
+  constexpr float price() const { return kBoundPrice / (static_cast<float>(bound) + 1e-3f); }
   /// Returns the weighted mean of the channels, times the sum of the weights.
   constexpr int grey(Value8 value) const {
     return weights[0] * value.x + weights[1] * value.y + weights[2] * value.z;
