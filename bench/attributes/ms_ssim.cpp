@@ -25,32 +25,28 @@ std::array<double, kWindow> gaussian() {
   return window;
 }
 
-/// Returns the weighted means of product(x, y) over the windows that fit into the picture.
+/// Returns the weighted means of product(i), of pixel i, over the windows that fit into the
+/// picture.
 template <class Product>
 GreyImage window_means(int width, int height, const Product& product) {
   static const std::array<double, kWindow> window = gaussian();
-  const int across = width - kWindow + 1, down = height - kWindow + 1;
-  GreyImage rows{across, height, {}};
-  rows.values.reserve(static_cast<std::size_t>(across) * static_cast<std::size_t>(height));
-  std::vector<double> line(static_cast<std::size_t>(width));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) line[static_cast<std::size_t>(x)] = product(x, y);
-    for (int x = 0; x < across; ++x) {
-      double sum = 0;
-      for (int i = 0; i < kWindow; ++i)
-        sum += window[static_cast<std::size_t>(i)] * line[static_cast<std::size_t>(x + i)];
-      rows.values.push_back(sum);
+  const auto across = static_cast<std::size_t>(width - kWindow + 1),
+             down = static_cast<std::size_t>(height - kWindow + 1);
+  const auto columns = static_cast<std::size_t>(width);
+  GreyImage means{width - kWindow + 1, height - kWindow + 1, std::vector<double>(across * down)};
+  std::vector<double> line(columns), sums(across);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
+    for (std::size_t x = 0; x < columns; ++x) line[x] = product(y * columns + x);
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (std::size_t i = 0; i < kWindow; ++i)
+      for (std::size_t x = 0; x < across; ++x) sums[x] += window[i] * line[x + i];
+    // Row y is row i of the windows that begin at row y - i.
+    for (std::size_t i = 0; i < kWindow; ++i) {
+      if (y < i || y - i >= down) continue;
+      double* const mean = means.values.data() + (y - i) * across;
+      for (std::size_t x = 0; x < across; ++x) mean[x] += window[i] * sums[x];
     }
   }
-  GreyImage means{across, down, {}};
-  means.values.reserve(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
-  for (int y = 0; y < down; ++y)
-    for (int x = 0; x < across; ++x) {
-      double sum = 0;
-      for (int i = 0; i < kWindow; ++i)
-        sum += window[static_cast<std::size_t>(i)] * rows.at(x, y + i);
-      means.values.push_back(sum);
-    }
   return means;
 }
 
@@ -62,11 +58,12 @@ struct Similarity {
 
 Similarity compare(const GreyImage& a, const GreyImage& b) {
   const auto means = [&](const auto& product) { return window_means(a.width, a.height, product); };
-  const GreyImage mean_a = means([&](int x, int y) { return a.at(x, y); });
-  const GreyImage mean_b = means([&](int x, int y) { return b.at(x, y); });
-  const GreyImage squares_a = means([&](int x, int y) { return a.at(x, y) * a.at(x, y); });
-  const GreyImage squares_b = means([&](int x, int y) { return b.at(x, y) * b.at(x, y); });
-  const GreyImage products = means([&](int x, int y) { return a.at(x, y) * b.at(x, y); });
+  const double *const pa = a.values.data(), *const pb = b.values.data();
+  const GreyImage mean_a = means([&](std::size_t i) { return pa[i]; });
+  const GreyImage mean_b = means([&](std::size_t i) { return pb[i]; });
+  const GreyImage squares_a = means([&](std::size_t i) { return pa[i] * pa[i]; });
+  const GreyImage squares_b = means([&](std::size_t i) { return pb[i] * pb[i]; });
+  const GreyImage products = means([&](std::size_t i) { return pa[i] * pb[i]; });
   Similarity sum;
   for (std::size_t i = 0; i < products.values.size(); ++i) {
     const double ma = mean_a.values[i], mb = mean_b.values[i];

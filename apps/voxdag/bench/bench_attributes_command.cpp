@@ -85,7 +85,7 @@ void add_bench_attributes_command(const Command& bench, Session& session) {
                "(default: 0.05,0.1)");
   command.list("--codecs", plan.codecs, parse_codec, "CODEC,CODEC...",
                "Any of voxdag, dolonius, esvo (default: all)");
-  command.number("--views", plan.views, NumberRange::from(1, 100), "COUNT",
+  command.number("--views", plan.views, NumberRange::whole(1, 100), "N",
                  "Pictures to compare, chosen automatically");
   add_mesh_access_options(command, arguments->access);
   command.text("-o,--output", arguments->output.json_file, "FILE.json",

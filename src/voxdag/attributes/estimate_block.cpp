@@ -9,7 +9,7 @@ namespace {
 /// values at equal distances; w = 0 to 4.
 constexpr float kNormalError[] = {1, 0.363f, 0.119f, 0.0374f, 0.0115f};
 
-float square(float v) { return v * v; }
+constexpr float square(float v) { return v * v; }
 
 }  // namespace
 
@@ -98,6 +98,7 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
   }
   if (farthest <= bound)
     least = std::min(least, bits(ValueBlock::kFlat) + price_ * (total + rounding));
+  if (sums.distinct == 2) return std::min(least, two_value_cost(sums, rounding));
 
   // The line along grey.
   const float grey = grey_spread(sums, metric_);
@@ -114,8 +115,9 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
   const float extent = static_cast<float>(sums.hi[5] - sums.lo[5]) / weights;
   const float extent2 = weights * extent * extent;
   if (farthest_off < bound)
-    for (int k = 1; k <= 3; ++k) {
-      const float base = bits(k) + price_ * (off_line + rounding);
+    for (int k = 1; k <= 4; ++k) {
+      // A line of any direction has weights of 4 bits.
+      const float base = bits(k < 4 ? k : k + 3) + price_ * (off_line + rounding);
       if (base >= least) break;
       const auto steps = static_cast<float>((2 << k) - 2);
       if (extent2 > (bound - farthest_off) * steps * steps) continue;
@@ -127,6 +129,21 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
     return principal_cost(begin, sums, total, least);
   if (farthest_off >= bound) return principal_cost(begin, sums, total, least);
   return least;
+}
+
+/// Returns the cost of a line between the two values of a block. `rounding` is the sum of the
+/// errors of its ends.
+float BlockEstimator::two_value_cost(const ValueSums& sums, float rounding) const {
+  const auto bits = [&](int type) {
+    return static_cast<float>(ValueBlock{type, sums.count}.bits(end_bits_));
+  };
+  const int step = sums.other.x - sums.first.x;
+  const bool is_grey = sums.other.y - sums.first.y == step && sums.other.z - sums.first.z == step;
+  const float exact = bits(5) + price_ * rounding;
+  if (!is_grey) return exact;
+  constexpr float kStepError = square(ValueBlock::kStepUnit) / 12.0f;
+  const auto weights = static_cast<float>(metric_.sum() * sums.count);
+  return std::min(exact, bits(1) + price_ * (rounding + weights * kStepError));
 }
 
 /// Returns the cost of the best line along the principal axis, or `least` if that is less.

@@ -35,6 +35,7 @@ class BlockEstimator {
   float cost(int begin, const ValueSums& sums) const;
 
  private:
+  float two_value_cost(const ValueSums& sums, float rounding) const;
   float principal_cost(int begin, const ValueSums& sums, float total, float least) const;
   float line_error(int weight_bits, float spread, float range2) const;
 

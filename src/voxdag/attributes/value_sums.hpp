@@ -18,11 +18,16 @@ struct ValueSums {
   std::array<std::int32_t, 6> products{};
   /// The channels, the differences 0 - 1 and 2 - 1 of channels, and grey().
   std::array<std::int16_t, 6> lo{}, hi{};
+  /// The first value, and the first other one if there is one.
+  Value8 first{}, other{};
+  int distinct = 0;  ///< Number of different values; 3 stands for more than 2.
 
   static ValueSums of(Value8 value, const ValueMetric& metric) {
     const std::int32_t x = value.x, y = value.y, z = value.z;
     ValueSums sums;
     sums.count = 1;
+    sums.first = value;
+    sums.distinct = 1;
     sums.sum = {x, y, z};
     sums.products = {x * x, y * y, z * z, x * y, x * z, y * z};
     const int extents[] = {x, y, z, x - y, z - y, metric.grey(value)};
@@ -31,13 +36,15 @@ struct ValueSums {
     return sums;
   }
 
-  ValueSums& operator+=(const ValueSums& other) {
-    count += other.count;
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += other.sum[i];
-    for (std::size_t i = 0; i < 6; ++i) products[i] += other.products[i];
+  ValueSums& operator+=(const ValueSums& more) {
+    count += more.count;
+    include(more.first, more.distinct);
+    if (more.distinct > 1) include(more.other, more.distinct);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += more.sum[i];
+    for (std::size_t i = 0; i < 6; ++i) products[i] += more.products[i];
     for (std::size_t i = 0; i < 6; ++i) {
-      lo[i] = std::min(lo[i], other.lo[i]);
-      hi[i] = std::max(hi[i], other.hi[i]);
+      lo[i] = std::min(lo[i], more.lo[i]);
+      hi[i] = std::max(hi[i], more.hi[i]);
     }
     return *this;
   }
@@ -52,6 +59,15 @@ struct ValueSums {
     const std::int64_t exact =
         std::int64_t{products[product]} * count - std::int64_t{sum[a]} * sum[b];
     return static_cast<float>(exact) / static_cast<float>(count);
+  }
+
+ private:
+  /// Counts a value that is one of `all` different values.
+  void include(Value8 value, int all) {
+    if (all > 2) distinct = 3;
+    if (distinct > 2 || value == first || (distinct == 2 && value == other)) return;
+    if (distinct == 1) other = value;
+    ++distinct;
   }
 };
 
