@@ -73,8 +73,8 @@ BlockEstimator::BlockEstimator(const Value8* values, const ValueMetric& metric,
   }
 }
 
-/// Returns the expected sum of errors along a line, of values with this spread (the sum of their
-/// squared distances from the mean) and this squared extent, times their number.
+/// Returns the expected sum of errors along a line. `spread` is the sum of the values' squared
+/// distances from their mean, `range2` the square of their extent times their number.
 float BlockEstimator::line_error(int weight_bits, float spread, float range2) const {
   const float even = range2 / (12 * static_cast<float>(1 << (2 * weight_bits)));
   return std::min(even, spread * kNormalError[weight_bits]);
