@@ -22,7 +22,9 @@ namespace {
 /// Keeps all values.
 class Values : public CellValueSink {
  public:
-  explicit Values(std::uint64_t cells) : values(cells), times(cells) {}
+  explicit Values(std::uint64_t cells, bool with_normals = true)
+      : values(cells), times(cells), with_normals_(with_normals) {}
+  bool needs_normals() const override { return with_normals_; }
   void add(std::uint64_t first, std::span<const VoxelValue> part) override {
     for (const VoxelValue& value : part) {
       values[first] = value;
@@ -31,6 +33,9 @@ class Values : public CellValueSink {
   }
   std::vector<VoxelValue> values;
   std::vector<int> times;
+
+ private:
+  bool with_normals_;
 };
 
 /// A mesh of large triangles with a colour at each corner.
@@ -117,6 +122,25 @@ TEST(FilterCells, EveryCellHasTheMeanColourOfTheSurfaceInIt) {
 }
 
 /// The transparent sheet fills whole tasks.
+TEST(FilterCells, ColoursDoNotDependOnWhetherNormalsAreNeeded) {
+  ColoredMesh scene(20, 6);
+  for (std::size_t i = 0; i < scene.appearance.colors.size(); ++i)
+    scene.appearance.normals.push_back(i % 3 == 0 ? Vec3f{0, 0, 1} : Vec3f{0, 0.6f, 0.8f});
+  for (const bool has_colors : {true, false}) {
+    if (!has_colors) scene.appearance.colors.clear();
+    const SurfaceShading shading(scene.mesh, scene.appearance);
+    const Svdag dag = build_svdag(scene.mesh, scene.grid, {}).dag;
+    const CellIndex index = build_cell_index(dag.view(), 6);
+    Values with(index.cells), without(index.cells, false);
+    filter_cells(scene.mesh, scene.grid, dag.view(), index.view(), &shading, with);
+    filter_cells(scene.mesh, scene.grid, dag.view(), index.view(), &shading, without);
+    for (std::uint64_t i = 0; i < index.cells; ++i) {
+      ASSERT_EQ(without.times[i], 1);
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(without.values[i].color[c], with.values[i].color[c]);
+    }
+  }
+}
+
 TEST(FilterCells, CellsWithoutVisibleSurfaceHaveTheValueOfTheNearestCellAboveThatHasSome) {
   const int levels = 9;
   Mesh mesh;

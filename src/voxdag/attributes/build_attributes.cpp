@@ -24,6 +24,8 @@ class AttributeEncoder : public CellValueSink {
           cells, make_normal_metric(options.normal_bound_degrees), options.memory);
   }
 
+  bool needs_normals() const override { return normals != nullptr; }
+
   void add(std::uint64_t first, std::span<const VoxelValue> values) override {
     while (!values.empty()) {
       const std::uint64_t left_in_page = kPageValues - first % kPageValues;

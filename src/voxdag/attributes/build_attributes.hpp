@@ -19,9 +19,9 @@ struct AttributeOptions {
   int finest_level = 0;  ///< m: cells of levels 0 to m get attributes.
   /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'
   /// squared differences, sRGB encoded, with the weights kColorWeights. 0: lossless.
-  double color_bound = 0.03;
+  double color_bound = 0.05;
   /// The largest angle between a stored and a filtered normal, kLeastNormalBound to 180 degrees.
-  double normal_bound_degrees = 4;
+  double normal_bound_degrees = 5;
   MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
 
