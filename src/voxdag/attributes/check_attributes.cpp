@@ -60,7 +60,8 @@ class CellComparer {
                const SurfaceShading& shading)
       : attributes_(colored.attributes),
         source_(source),
-        filter_(colored.dag, colored.attributes.index, source, &shading, nullptr),
+        filter_(colored.dag, colored.attributes.index, source, &shading,
+                colored.attributes.has_normals(), nullptr),
         materials_(colored.dag, colored.attributes.index, all, materials, nullptr) {}
 
   CellErrors compare(const CellTask& task) {
