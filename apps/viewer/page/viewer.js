@@ -3,13 +3,12 @@
 import {LIGHT} from './constants.js';
 import {inlineScene} from './file/byte_source.js';
 import {SceneLoader} from './file/scene_loader.js';
-import {loadText} from './file/text_assets.js';
 import {Pacer} from './gpu/pacer.js';
 import {Picture} from './gpu/picture.js';
 import {Renderer, loadShaders} from './gpu/renderer.js';
 import {SceneTextures} from './gpu/scene_textures.js';
 import {directionThrough} from './hands/pose.js';
-import {DEFAULTS, mergeSettings, settingsFromJson} from './settings.js';
+import {DEFAULTS, mergeSettings} from './settings.js';
 import {SceneMemory} from './scene_memory.js';
 import {castInSection} from './section_ray.js';
 import {bounds, cast, contains} from './trace.js';
@@ -40,18 +39,6 @@ export function createViewer(options) {
   return new CanvasViewer(options);
 }
 
-/**
- * Returns the view that `voxdag` has chosen for the scene, if the page has one.
- * @returns {Promise<import('./settings.js').Camera | null>}
- */
-async function loadSuggestedView() {
-  try {
-    return settingsFromJson(await loadText('view.json')).camera;
-  } catch {
-    return null;
-  }
-}
-
 /** Returns the scale of the next finer picture. @param {number} scale */
 function finerScale(scale) {
   return scale < 0.4 ? 2 * scale : 1;
@@ -73,8 +60,6 @@ class CanvasViewer {
     this.settings = mergeSettings(DEFAULTS, settings ?? {});
     /** @type {SceneInfo | null} */
     this.info = null;
-    /** The view that the page suggests. @type {import('./settings.js').Camera | null} */
-    this.suggested = null;
     /** @type {SceneMemory | null} */
     this.memory = null;
     /** @type {SceneTextures | null} */
@@ -124,10 +109,8 @@ class CanvasViewer {
   async start(url, bytes) {
     this.gl = this.canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance'});
     if (this.gl === null) return this.fail('This browser shows no WebGL 2', 'Turn on hardware acceleration, or use a current version of Chrome, Edge, Firefox or Safari.', 'webgl');
-    const [shaders, suggested] = await Promise.all([loadShaders(), loadSuggestedView()]);
+    this.shaders = await loadShaders();
     if (this.isDestroyed) return;
-    this.shaders = shaders;
-    this.suggested = suggested;
     this.renderer = new Renderer(this.gl, this.shaders);
     this.renderer.warmUp();
     this.resize();
@@ -182,7 +165,7 @@ class CanvasViewer {
       this.stats.levelsLoaded = shown;
       if (message.type !== 'attributes' && this.info !== null) {
         this.info.bounds = bounds(this.memory.dag(), BOUNDS_LEVEL) ?? this.info.bounds;
-        if (this.suggested === null) this.info.view = defaultView(this.info.bounds, this.aspect());
+        this.info.view = defaultView(this.info.bounds, this.aspect());
         this.emit('level', {level: shown, levels: info.levels, bytes: this.stats.bytesLoaded});
       } else {
         this.emit('look', {});
@@ -202,7 +185,7 @@ class CanvasViewer {
     this.info = {
       name: info.source.name, levels: info.levels, resolution: info.resolution, origin: info.origin, voxelSize: info.voxelSize, bounds: box,
       voxels: info.voxels, dagNodesPerLevel: info.dagNodesPerLevel, fileBytes: info.fileBytes, hasColors: info.hasColors, hasNormals: info.hasNormals,
-      source: info.source, view: this.suggested ?? defaultView(box, this.aspect()),
+      source: info.source, view: defaultView(box, this.aspect()),
     };
     this.stats.fileBytes = info.fileBytes;
     this.stats.bytesLoaded = bytes;
