@@ -42,7 +42,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {Viewer} viewer
  * @property {Hands} hands
  * @property {Overlay} overlay
- * @property {(text: string, isError?: boolean) => void} toast
+ * @property {(text: string, isError?: boolean, stays?: boolean) => void} toast
  * @property {(text: string) => void} announce  For screen readers only.
  * @property {(name: string) => void} open
  * @property {() => void} refresh
@@ -95,7 +95,7 @@ export function createInterface(viewer, hands, container) {
   /** @type {Ui} */
   const ui = {
     viewer, hands, overlay,
-    toast: (text, isError) => status.toast(text, isError),
+    toast: (text, isError, stays) => status.toast(text, isError, stays),
     announce: (text) => status.announce(text),
     open: (name) => { if (opened !== name) toggle(name); },
     refresh: () => refresh(),
