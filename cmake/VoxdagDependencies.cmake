@@ -37,6 +37,9 @@ endif()
 
 if(VOXDAG_BUILD_APPS)
   find_package(CLI11 REQUIRED)
+endif()
+
+if(VOXDAG_BUILD_APPS AND VOXDAG_VIEW_SERVER)
   # Debian's cpp-httplib has no CMake package. Its library is built with TLS and compression, which
   # its headers must know. Later versions have other functions for subclasses.
   find_path(VOXDAG_HTTPLIB_INCLUDE httplib.h)

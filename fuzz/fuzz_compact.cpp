@@ -3,6 +3,7 @@
 ///
 /// The mutator keeps the offsets and checksums of the container correct (chunk_mutator.hpp). It
 /// needs no corpus, because it starts with small DAGs of random voxels.
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 #include <string>
@@ -11,13 +12,34 @@
 #include "chunk_mutator.hpp"
 #include "support/brute_svdag.hpp"
 #include "support/compact_walk.hpp"
+#include "support/number_colors.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/compact_file.hpp"
+#include "voxdag/layout/build_cell_index.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 
 namespace voxdag {
 namespace {
+
+/// Reads the attributes of some cells of all levels.
+void read_attributes(const CompactContents& contents, const SvdagView& dag) {
+  if (!contents.has_attributes()) return;
+  const CellIndex index = build_cell_index(dag, contents.metadata.attributes.level());
+  DagAttributesView attributes;
+  try {
+    attributes = contents.attributes(index.view());
+  } catch (const Error&) {
+    return;
+  }
+  for (std::uint64_t i = 0; i < std::min<std::uint64_t>(index.cells, 5000); ++i) {
+    if (attributes.has_colors()) read_value(attributes.colors, i);
+    if (attributes.has_normals()) read_value(attributes.normals, index.cells - 1 - i);
+    if (attributes.has_materials() &&
+        read_material(attributes.materials, index.cells - 1 - i) >= attributes.materials.materials)
+      std::abort();
+  }
+}
 
 void walk(const CompactContents& contents) {
   const CompactSvdagView view = contents.view();
@@ -31,6 +53,7 @@ void walk(const CompactContents& contents) {
   }
   validate_svdag(dag.view());
   if (dag.nodes.size() > 100'000) return;
+  read_attributes(contents, dag.view());
   check_canonical(dag.view());
 }
 
@@ -51,7 +74,17 @@ std::string seed_file(std::mt19937& rng) {
   const Svdag dag = brute_svdag(
       levels, random_voxels(levels, static_cast<int>(rng() % 200), static_cast<unsigned>(rng())));
   const TempDir dir;
-  write_vdag(dir / "file.vdag", encode_svdag(dag.view()), example_metadata(dag.view()));
+  VdagMetadata metadata = example_metadata(dag.view());
+  const int finest = static_cast<int>(rng() % static_cast<unsigned>(levels + 1));
+  const NumberColors colors(dag.view(), finest);
+  DagAttributesView attributes;
+  if (rng() % 2 == 0 && !dag.view().is_empty()) {
+    attributes = colors.view().attributes;
+    metadata.attributes.resolution = std::int64_t{1} << finest;
+    metadata.attributes.colors = metadata.attributes.normals = {0.5, 3};
+    metadata.attributes.materials.emplace(kNumberMaterials, "name");
+  }
+  write_vdag(dir / "file.vdag", encode_svdag(dag.view()), metadata, attributes);
   return read_text(dir / "file.vdag");
 }
 

@@ -76,7 +76,11 @@ void read_attributes(const VdagContents& contents, const std::vector<Vec3i>& vox
     for (int shift = 0; shift <= contents.view.levels; ++shift) {
       const Vec3i cell{voxel.x >> shift, voxel.y >> shift, voxel.z >> shift};
       const StoredLook look = look_at(colored, cell, contents.view.levels - shift);
-      if (!look.has_color && !look.has_normal) std::abort();
+      const MaterialIdsView& materials = contents.attributes.materials;
+      if (!materials.is_empty() &&
+          material_at(colored, cell, contents.view.levels - shift) >= materials.materials)
+        std::abort();
+      if (!look.has_color && !look.has_normal && materials.is_empty()) std::abort();
     }
 }
 

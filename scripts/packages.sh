@@ -16,6 +16,11 @@ voxdag_test_packages=(
   clang clang-format clang-tidy
 )
 
+# The tests of the viewer in browsers skip themselves without these.
+voxdag_browser_packages=(chromium firefox-esr xvfb)
+# Node from elsewhere brings its own npm, with which Debian's cannot be installed.
+command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packages+=(nodejs npm)
+
 # install_packages PACKAGE...
 install_packages() {
   local package missing=() as_root=()

@@ -1,7 +1,5 @@
 #include "bench/compact_rays/compact_rays.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <chrono>
 
 #include "bench/rays/caster_runner.hpp"
@@ -9,14 +7,12 @@
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/cpu_scene.hpp"
-#include "voxdag/cpu/decoded_cache.hpp"
+#include "voxdag/cpu/packets/in_place_dag.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 
 namespace voxdag {
 namespace {
-
-using Caches = tbb::enumerable_thread_specific<DecodedCache>;
 
 class Watch {
  public:
@@ -28,39 +24,33 @@ class Watch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Returns a runner that casts at the compact form. Each thread keeps its cache from set to set.
-TraceRunner compact_runner(const CompactSvdagView& compact, Caches& caches, RayClass rays,
-                           std::span<const CastRay> casts) {
+/// Returns a runner that casts single rays at the compact form.
+TraceRunner single_rays(const InPlaceDag& dag, RayClass rays, std::span<const CastRay> casts) {
   TraceRunner runner;
   runner.name = "compact";
-  runner.cast = [compact, &caches, rays, casts](std::size_t first, std::size_t last,
-                                                std::uint8_t* hits) {
-    const CompactSvdagNodes<DecodedCache> nodes(compact, caches.local());
-    runner_of(ScalarCaster<CompactSvdagNodes<DecodedCache>>(nodes), rays, casts)
+  runner.cast = [dag, rays, casts](std::size_t first, std::size_t last, std::uint8_t* hits) {
+    runner_of(ScalarCaster<InPlaceNodes>(InPlaceNodes(dag, dag.cache())), rays, casts)
         .cast(first, last, hits);
   };
   return runner;
 }
 
-double decoded(const Caches& caches) {
-  std::uint64_t count = 0;
-  for (const DecodedCache& cache : caches) count += cache.decoded_units() + cache.decoded_bricks();
-  return static_cast<double>(count);
-}
-
 class Bench {
  public:
   Bench(const SvdagView& dag, const Grid& grid, const CompactRaysPlan& plan, Progress& progress)
-      : dag_(dag), grid_(grid), plan_(plan), progress_(progress) {}
+      : dag_(dag),
+        grid_(grid),
+        plan_(plan),
+        progress_(progress),
+        plain_(SvdagNodes(dag)),
+        plain_packets_(BoundedDag(SvdagNodes(dag))) {}
 
   CompactRaysResults run(const std::string& scene) {
     results_.scene = scene;
     results_.levels = dag_.levels;
     results_.plain_bytes = dag_.bytes();
     results_.nodes = count_svdag(dag_).dag_nodes();
-    results_.cache_bytes = DecodedCache::bytes();
     record();
-    measure_plain();
     for (const int tables : plan_.tables) measure_tables(tables);
     return std::move(results_);
   }
@@ -80,20 +70,6 @@ class Bench {
     }
   }
 
-  void measure_plain() {
-    const ScalarCaster<SvdagNodes> scalar{SvdagNodes(dag_)};
-    const PacketCaster<BoundedDag> packets{BoundedDag(SvdagNodes(dag_))};
-    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
-      const RayClass rays = kCompactRayClasses[c];
-      const auto measured =
-          measure({runner_of(scalar, rays, casts_[c]), runner_of(packets, rays, casts_[c])},
-                  casts_[c].size(), plan_.repeat);
-      results_.plain_seconds[c] = measured[0].seconds;
-      results_.packet_seconds[c] = measured[1].seconds;
-      hits_[c] = measured[0].hits;
-    }
-  }
-
   void measure_tables(int tables) {
     CompactRaysPoint point;
     point.tables = tables;
@@ -105,18 +81,37 @@ class Bench {
       throw Error("the compact form does not give the DAG back");
     point.decode_seconds = decoding.seconds();
     point.bytes = compact_head(compact).size() + compact.words().size() * 4;
+    // Each has caches of its own.
+    const Watch opening;
+    const InPlaceDag for_single(compact.view());
+    point.open_seconds = opening.seconds();
+    const InPlaceDag for_packets(compact.view());
+    point.open_bytes = for_single.bytes();
     for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
-      Caches caches;
-      const std::size_t count = casts_[c].size();
-      const auto measured =
-          measure({compact_runner(compact.view(), caches, kCompactRayClasses[c], casts_[c])}, count,
-                  plan_.repeat);
-      if (agreeing(measured[0].hits, hits_[c]) != count)
-        throw Error("rays at the compact form hit other voxels than those at the plain form");
-      point.ray_seconds[c] = measured[0].seconds;
-      point.units_per_ray[c] =
-          decoded(caches) / static_cast<double>(count) / static_cast<double>(plan_.repeat + 1);
+      const RayClass rays = kCompactRayClasses[c];
+      const std::span<const CastRay> casts = casts_[c];
+      const std::uint64_t single_before = for_single.decoded_units(),
+                          packets_before = for_packets.decoded_units();
+      const std::vector<Measured> measured =
+          measure({runner_of(plain_, rays, casts), runner_of(plain_packets_, rays, casts),
+                   single_rays(for_single, rays, casts),
+                   runner_of(PacketCaster<InPlaceDag>(for_packets), rays, casts)},
+                  casts.size(), plan_.repeat);
+      for (const Measured& runner : measured)
+        if (agreeing(runner.hits, measured[0].hits) != casts.size())
+          throw Error("rays at the compact form hit other voxels than those at the plain form");
+      const double all_rays = static_cast<double>(casts.size()) * (plan_.repeat + 1);
+      CompactRaysTimes& times = point.times[c];
+      times.plain_seconds = measured[0].seconds;
+      times.plain_packet_seconds = measured[1].seconds;
+      times.seconds = measured[2].seconds;
+      times.packet_seconds = measured[3].seconds;
+      times.units_per_ray =
+          static_cast<double>(for_single.decoded_units() - single_before) / all_rays;
+      times.packet_units_per_ray =
+          static_cast<double>(for_packets.decoded_units() - packets_before) / all_rays;
     }
+    results_.cache_bytes = for_packets.cache_bytes_per_thread();
     results_.points.push_back(point);
   }
 
@@ -126,7 +121,8 @@ class Bench {
   Progress& progress_;
   CompactRaysResults results_;
   std::vector<CastRay> casts_[kCompactRayClassCount];
-  std::vector<std::uint8_t> hits_[kCompactRayClassCount];
+  ScalarCaster<SvdagNodes> plain_;
+  PacketCaster<BoundedDag> plain_packets_;
 };
 
 }  // namespace
@@ -134,6 +130,7 @@ class Bench {
 CompactRaysResults bench_compact_rays(const std::string& scene, const SvdagView& dag,
                                       const Grid& grid, const CompactRaysPlan& plan,
                                       Progress& progress) {
+  if (dag.levels < 4) throw Error("rays at the compact form need a grid of 16³ voxels or more");
   return Bench(dag, grid, plan, progress).run(scene);
 }
 

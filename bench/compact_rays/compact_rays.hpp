@@ -1,9 +1,8 @@
 #pragma once
 /// `voxdag bench compact-rays`: bytes of the compact form against the time of rays at it.
 ///
-/// The benchmark encodes the DAG with 1 to 4096 tables. It casts rays at each result as it is, one
-/// at a time and with a cache of decoded nodes per thread, and casts the same rays at the plain
-/// form, one at a time and in packets.
+/// The benchmark encodes the DAG with 1 to 4096 tables. It casts rays at each result as it is, and
+/// the same rays at the plain form, both one at a time and in packets. The four take turns.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -27,22 +26,29 @@ inline constexpr RayClass kCompactRayClasses[] = {RayClass::kPrimary, RayClass::
                                                   RayClass::kAo};
 inline constexpr std::size_t kCompactRayClassCount = std::size(kCompactRayClasses);
 
+/// The times of a class of rays.
+struct CompactRaysTimes {
+  double plain_seconds = 0, plain_packet_seconds = 0;  ///< At the plain form.
+  double seconds = 0, packet_seconds = 0;              ///< At the compact form.
+  double units_per_ray = 0, packet_units_per_ray = 0;  ///< Units that were decoded.
+};
+
 /// The compact form with one number of tables.
 struct CompactRaysPoint {
   int tables = 0;
   std::uint64_t bytes = 0;
-  double encode_seconds = 0, decode_seconds = 0;  ///< Wall-clock, on all threads.
-  double ray_seconds[kCompactRayClassCount] = {};
-  double units_per_ray[kCompactRayClassCount] = {};  ///< Units and shared bricks that were decoded.
+  /// Wall-clock, on all threads. Opening is what rays at the compact form need once.
+  double encode_seconds = 0, decode_seconds = 0, open_seconds = 0;
+  std::uint64_t open_bytes = 0;  ///< What an open DAG takes beyond its bytes, without caches.
+  CompactRaysTimes times[kCompactRayClassCount];
 };
 
 struct CompactRaysResults {
   std::string scene;
   int levels = 0;
-  std::uint64_t plain_bytes = 0, nodes = 0, cache_bytes = 0;
+  std::uint64_t plain_bytes = 0, nodes = 0;
+  std::uint64_t cache_bytes = 0;  ///< Of a thread.
   std::size_t rays[kCompactRayClassCount] = {};
-  double plain_seconds[kCompactRayClassCount] = {};   ///< One ray at a time.
-  double packet_seconds[kCompactRayClassCount] = {};  ///< In packets.
   std::vector<CompactRaysPoint> points;
 };
 
@@ -54,7 +60,8 @@ CompactRaysResults bench_compact_rays(const std::string& scene, const SvdagView&
 nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
                                          const nlohmann::ordered_json& machine);
 std::string compact_rays_table(const CompactRaysResults& results);
-/// Returns the time of each class of rays over the bytes, both as ratios to the plain form.
+/// Returns the time of each class of rays over the bytes, as ratios to single rays at the plain
+/// form and to its bytes.
 Chart compact_rays_chart(const CompactRaysResults& results, const std::filesystem::path& file);
 
 }  // namespace voxdag

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bench/compact_rays/compact_rays.hpp"
@@ -28,22 +29,28 @@ nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
   json["dag_nodes"] = results.nodes;
   json["cache_bytes_per_thread"] = results.cache_bytes;
   for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
-    json["plain"][std::string(name_of(kCompactRayClasses[c]))] = {
-        {"rays", results.rays[c]},
-        {"seconds", results.plain_seconds[c]},
-        {"packet_seconds", results.packet_seconds[c]}};
+    json["rays"][std::string(name_of(kCompactRayClasses[c]))] = results.rays[c];
   json["compact"] = nlohmann::ordered_json::array();
   for (const CompactRaysPoint& point : results.points) {
     nlohmann::ordered_json row = {{"tables", point.tables},
                                   {"bytes", point.bytes},
                                   {"part_of_plain", part(point, results)},
                                   {"encode_seconds", point.encode_seconds},
-                                  {"decode_seconds", point.decode_seconds}};
-    for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
+                                  {"decode_seconds", point.decode_seconds},
+                                  {"open_seconds", point.open_seconds},
+                                  {"open_bytes", point.open_bytes}};
+    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
+      const CompactRaysTimes& times = point.times[c];
       row[std::string(name_of(kCompactRayClasses[c]))] = {
-          {"seconds", point.ray_seconds[c]},
-          {"time_ratio", point.ray_seconds[c] / results.plain_seconds[c]},
-          {"decoded_per_ray", point.units_per_ray[c]}};
+          {"plain_seconds", times.plain_seconds},
+          {"plain_packet_seconds", times.plain_packet_seconds},
+          {"seconds", times.seconds},
+          {"packet_seconds", times.packet_seconds},
+          {"time_ratio", times.seconds / times.plain_seconds},
+          {"packet_time_ratio", times.packet_seconds / times.plain_seconds},
+          {"decoded_per_ray", times.units_per_ray},
+          {"packet_decoded_per_ray", times.packet_units_per_ray}};
+    }
     json["compact"].push_back(row);
   }
   return json;
@@ -52,53 +59,79 @@ nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
 std::string compact_rays_table(const CompactRaysResults& results) {
   std::string text = fmt::format(
       "{}, {}³: {} in the plain form, {} nodes\n\n"
-      "Million rays/s, and the time as a ratio to single rays at the plain form:\n\n"
-      "  {:<14}{:>10}{:>8}{:>10}{:>10}{:>18}{:>18}{:>18}\n",
+      "Million rays/s, and the time as a ratio to single rays at the plain form in the same "
+      "turns:\n\n"
+      "  {:<14}{:>10}{:>8}{:>10}{:>10}{:>8}{:>16}{:>16}{:>16}\n",
       results.scene, with_commas(std::uint64_t{1} << results.levels),
       human_bytes(results.plain_bytes), with_commas(results.nodes), "", "size", "part", "encode s",
-      "decode s", "primary", "shadow", "occlusion");
-  const auto row = [&](const std::string& name, const std::string& left, const double* seconds) {
-    text += fmt::format("  {:<14}{}", name, left);
-    for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
-      text += fmt::format(
-          "{:>18}", fmt::format("{:.2f} ({:.2f})", million_per_second(results.rays[c], seconds[c]),
-                                seconds[c] / results.plain_seconds[c]));
+      "decode s", "open s", "primary", "shadow", "occlusion");
+  const auto row = [&](const std::string& name, const std::string& left,
+                       const CompactRaysPoint& point, double CompactRaysTimes::*seconds) {
+    text += fmt::format("  {:<14}{:<46}", name, left);
+    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
+      const double time = point.times[c].*seconds;
+      text += fmt::format("{:>16}",
+                          fmt::format("{:.2f} ({:.2f})", million_per_second(results.rays[c], time),
+                                      time / point.times[c].plain_seconds));
+    }
     text += '\n';
   };
-  const std::string plain =
-      fmt::format("{:>10}{:>8.3f}{:>10}{:>10}", human_bytes(results.plain_bytes), 1.0, "", "");
-  row("plain", plain, results.plain_seconds);
-  row("  in packets", plain, results.packet_seconds);
-  for (const CompactRaysPoint& point : results.points)
+  const auto fastest = [&](double CompactRaysTimes::*seconds) {
+    CompactRaysPoint point = results.points.at(0);
+    for (const CompactRaysPoint& other : results.points)
+      for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
+        point.times[c].*seconds = std::min(point.times[c].*seconds, other.times[c].*seconds);
+    return point;
+  };
+  if (results.points.empty()) return text;
+  CompactRaysPoint plain = fastest(&CompactRaysTimes::plain_seconds);
+  row("plain", fmt::format("{:>10}{:>8.3f}", human_bytes(results.plain_bytes), 1.0), plain,
+      &CompactRaysTimes::plain_seconds);
+  for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
+    plain.times[c].plain_packet_seconds =
+        fastest(&CompactRaysTimes::plain_packet_seconds).times[c].plain_packet_seconds;
+  row("  in packets", "", plain, &CompactRaysTimes::plain_packet_seconds);
+  for (const CompactRaysPoint& point : results.points) {
     row(fmt::format("{} tables", point.tables),
-        fmt::format("{:>10}{:>8.3f}{:>10.2f}{:>10.2f}", human_bytes(point.bytes),
-                    part(point, results), point.encode_seconds, point.decode_seconds),
-        point.ray_seconds);
-  text +=
-      fmt::format("\n  cache of decoded nodes: {} per thread; units and bricks decoded per ray:",
-                  human_bytes(results.cache_bytes));
-  if (!results.points.empty())
-    for (const double units : results.points.back().units_per_ray)
-      text += fmt::format(" {:.3f}", units);
-  return text + '\n';
+        fmt::format("{:>10}{:>8.3f}{:>10.2f}{:>10.2f}{:>8.2f}", human_bytes(point.bytes),
+                    part(point, results), point.encode_seconds, point.decode_seconds,
+                    point.open_seconds),
+        point, &CompactRaysTimes::seconds);
+    row("  in packets", "", point, &CompactRaysTimes::packet_seconds);
+  }
+  const CompactRaysPoint& last = results.points.back();
+  text += fmt::format(
+      "\n  rays at the compact form also need {}, and {} of cache per thread\n"
+      "  units decoded per ray, single and in packets:",
+      human_bytes(last.open_bytes), human_bytes(results.cache_bytes));
+  for (const CompactRaysTimes& times : last.times)
+    text += fmt::format(" {:.3f} {:.3f};", times.units_per_ray, times.packet_units_per_ray);
+  text.back() = '\n';
+  return text;
 }
 
 Chart compact_rays_chart(const CompactRaysResults& results, const std::filesystem::path& file) {
-  ChartPanel panel;
-  panel.title = fmt::format("{}, {}³", results.scene, std::uint64_t{1} << results.levels);
-  panel.x.label = "bytes, as part of the plain form";
-  panel.y.label = "time per ray, as ratio to the plain form";
-  constexpr const char* kNames[] = {"primary", "shadow", "occlusion"};
-  for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
-    ChartLine line{kNames[c], {}, {}, static_cast<int>(c)};
-    line.markers = true;
-    for (const CompactRaysPoint& point : results.points) {
-      line.x.push_back(part(point, results));
-      line.y.push_back(point.ray_seconds[c] / results.plain_seconds[c]);
+  const auto panel_of = [&](const std::string& name, double CompactRaysTimes::*seconds) {
+    ChartPanel panel;
+    panel.title =
+        fmt::format("{}, {}³: {}", results.scene, std::uint64_t{1} << results.levels, name);
+    panel.x.label = "bytes, as part of the plain form";
+    panel.y.label = "time / time of single rays at the plain form";
+    constexpr const char* kNames[] = {"primary", "shadow", "occlusion"};
+    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
+      ChartLine line{kNames[c], {}, {}, static_cast<int>(c)};
+      line.markers = true;
+      for (const CompactRaysPoint& point : results.points) {
+        line.x.push_back(part(point, results));
+        line.y.push_back(point.times[c].*seconds / point.times[c].plain_seconds);
+      }
+      panel.lines.push_back(std::move(line));
     }
-    panel.lines.push_back(std::move(line));
-  }
-  return {file, {panel}};
+    return panel;
+  };
+  return {file,
+          {panel_of("single rays", &CompactRaysTimes::seconds),
+           panel_of("packets", &CompactRaysTimes::packet_seconds)}};
 }
 
 }  // namespace voxdag

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "voxdag/attributes/build_attributes.hpp"
+#include "voxdag/attributes/fit_block.hpp"
 #include "voxdag/attributes/value_encoder.hpp"
 #include "voxdag/layout/validate_value_pages.hpp"
 
@@ -92,6 +93,44 @@ TEST(EncodePage, FlatPagesAreAlmostFree) {
   const ValuePages pages = encode(flat, make_value_metric(kColorWeights, 5));
   EXPECT_LE(8.0 * static_cast<double>(pages.view().bytes()) / static_cast<double>(flat.size()),
             0.2);
+}
+
+/// Returns the cost of a page: its bits, and the price of its errors.
+double cost_of(const ValuePages& pages, const std::vector<Value8>& values,
+               const ValueMetric& metric) {
+  double errors = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    errors += metric.error(values[i], read_value(pages.view(), i));
+  return 8 * static_cast<double>(pages.view().bytes() - pages.view().page_count() * 2 -
+                                 pages.view().group_count() * 8) +
+         errors * static_cast<double>(metric.price());
+}
+
+/// Compares with the best of all cuts of a page into blocks, found by dynamic programming. The
+/// merges are greedy and use estimates.
+TEST(EncodePage, ThePageCostsLittleMoreThanTheBestCut) {
+  for (const NamedValues& set : value_sets(kPageValues))
+    for (const double bound : {2.0, 8.0, 20.0}) {
+      const ValueMetric metric = make_value_metric(kColorWeights, bound);
+      const EndPrecision precision = choose_precision(metric);
+      const BlockFitter fitter(std::span<const Value8, kPageValues>(set.values), metric, precision);
+      std::vector<double> best{0};
+      for (int end = kBlockUnit; end <= kPageValues; end += kBlockUnit) {
+        double least = 1e30;
+        ValueSums sums = ValueSums::of(set.values[static_cast<std::size_t>(end - 1)], metric);
+        for (int begin = end - 2; begin >= 0; --begin) {
+          sums += ValueSums::of(set.values[static_cast<std::size_t>(begin)], metric);
+          if (begin % kBlockUnit == 0)
+            least = std::min(least, best[static_cast<std::size_t>(begin / kBlockUnit)] +
+                                        static_cast<double>(fitter.fit(begin, sums).cost));
+        }
+        best.push_back(least);
+      }
+      const double cost = cost_of(encode(set.values, metric), set.values, metric);
+      EXPECT_GE(cost, best.back() - 0.01) << set.name << ", bound " << bound;
+      // Pages end at whole words.
+      EXPECT_LE(cost, 1.1 * best.back() + 64) << set.name << ", bound " << bound;
+    }
 }
 
 /// Returns a normal in the xz plane.

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "support/clipped_polygon.hpp"
 #include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/dag/build_svdag.hpp"
@@ -21,7 +22,9 @@ namespace {
 /// Keeps all values.
 class Values : public CellValueSink {
  public:
-  explicit Values(std::uint64_t cells) : values(cells), times(cells) {}
+  explicit Values(std::uint64_t cells, bool with_normals = true)
+      : values(cells), times(cells), with_normals_(with_normals) {}
+  bool needs_normals() const override { return with_normals_; }
   void add(std::uint64_t first, std::span<const VoxelValue> part) override {
     for (const VoxelValue& value : part) {
       values[first] = value;
@@ -30,6 +33,9 @@ class Values : public CellValueSink {
   }
   std::vector<VoxelValue> values;
   std::vector<int> times;
+
+ private:
+  bool with_normals_;
 };
 
 /// A mesh of large triangles with a colour at each corner.
@@ -55,20 +61,6 @@ struct ColoredMesh {
   }
 };
 
-using Polygon = std::vector<Vec3d>;
-
-/// Returns the part of a polygon with sign * (p[axis] - at) >= 0.
-Polygon clipped(const Polygon& polygon, int axis, double at, double sign) {
-  Polygon result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    const double da = sign * (a[axis] - at), db = sign * (b[axis] - at);
-    if (da >= 0) result.push_back(a);
-    if ((da < 0) != (db < 0)) result.push_back(a + (b - a) * (da / (da - db)));
-  }
-  return result;
-}
-
 /// The mean colour of the surface in a box of the grid, by clipping every triangle to it: for
 /// corner colours, the mean over a polygon is the colour at its centroid.
 struct BruteMean {
@@ -82,11 +74,7 @@ struct BruteMean {
         corners[k] = of.grid.to_grid(Vec3d(of.mesh.vertices[of.mesh.triangles[t][k]]));
         colors[k] = Vec3d(of.appearance.colors[3 * t + k].color());
       }
-      Polygon polygon(corners, corners + 3);
-      for (int axis = 0; axis < 3; ++axis) {
-        polygon = clipped(polygon, axis, lo[axis], 1);
-        polygon = clipped(polygon, axis, hi[axis], -1);
-      }
+      const Polygon polygon = clipped(Polygon(corners, corners + 3), lo, hi);
       const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
       for (std::size_t i = 2; i < polygon.size(); ++i) {
         const Vec3d n = cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
@@ -134,6 +122,25 @@ TEST(FilterCells, EveryCellHasTheMeanColourOfTheSurfaceInIt) {
 }
 
 /// The transparent sheet fills whole tasks.
+TEST(FilterCells, ColoursDoNotDependOnWhetherNormalsAreNeeded) {
+  ColoredMesh scene(20, 6);
+  for (std::size_t i = 0; i < scene.appearance.colors.size(); ++i)
+    scene.appearance.normals.push_back(i % 3 == 0 ? Vec3f{0, 0, 1} : Vec3f{0, 0.6f, 0.8f});
+  for (const bool has_colors : {true, false}) {
+    if (!has_colors) scene.appearance.colors.clear();
+    const SurfaceShading shading(scene.mesh, scene.appearance);
+    const Svdag dag = build_svdag(scene.mesh, scene.grid, {}).dag;
+    const CellIndex index = build_cell_index(dag.view(), 6);
+    Values with(index.cells), without(index.cells, false);
+    filter_cells(scene.mesh, scene.grid, dag.view(), index.view(), &shading, with);
+    filter_cells(scene.mesh, scene.grid, dag.view(), index.view(), &shading, without);
+    for (std::uint64_t i = 0; i < index.cells; ++i) {
+      ASSERT_EQ(without.times[i], 1);
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(without.values[i].color[c], with.values[i].color[c]);
+    }
+  }
+}
+
 TEST(FilterCells, CellsWithoutVisibleSurfaceHaveTheValueOfTheNearestCellAboveThatHasSome) {
   const int levels = 9;
   Mesh mesh;

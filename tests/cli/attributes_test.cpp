@@ -11,6 +11,7 @@
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 #include "support/test_rays.hpp"
+#include "support/vdag_bytes.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
@@ -155,7 +156,7 @@ TEST_F(AttributesCommand, PicturesShowThem) {
   EXPECT_NE(picture(dag), picture(grey));
 }
 
-TEST_F(AttributesCommand, ConvertKeepsThemOrRefuses) {
+TEST_F(AttributesCommand, ConvertKeepsOrDropsThem) {
   const std::string colored = build("a.vdag", {"--color", "--normal"}), grey = build("b.vdag", {});
   const auto convert = [&](std::vector<std::string> options) {
     options.insert(options.begin(), {"convert", colored, "-o", dir_ / "c.vdag"});
@@ -163,11 +164,162 @@ TEST_F(AttributesCommand, ConvertKeepsThemOrRefuses) {
   };
   ASSERT_EQ(convert({}).status, 0);
   EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(colored));
-  expect_failure(convert({"--compact"}), 1, "use --drop-attributes");
-  expect_failure(convert({"--levels", "5"}), 1, "use --drop-attributes");
   ASSERT_EQ(convert({"--drop-attributes"}).status, 0);
   EXPECT_EQ(read_text(dir_ / "c.vdag"), read_text(grey));
   EXPECT_EQ(convert({"--compact", "--drop-attributes"}).status, 0);
+}
+
+TEST_F(AttributesCommand, TheCompactFormKeepsThem) {
+  const std::string plain = build("a.vdag", {"--color", "--normal"}), small = dir_ / "b.vdag";
+  ASSERT_EQ(run_voxdag({"convert", plain, "--compact", "-o", small}).status, 0);
+  EXPECT_EQ(read_text(build("c.vdag", {"--color", "--normal", "--compact"})), read_text(small));
+  ASSERT_EQ(run_voxdag({"convert", small, "--plain", "-o", dir_ / "d.vdag"}).status, 0);
+  EXPECT_EQ(read_text(dir_ / "d.vdag"), read_text(plain));
+  EXPECT_EQ(run_voxdag({"verify", small}).status, 0);
+  EXPECT_NE(run_voxdag({"info", small}).out.find("cell numbers"), std::string::npos);
+  const auto info = [](const std::string& file) {
+    return nlohmann::json::parse(run_voxdag({"info", file, "--json"}).out);
+  };
+  EXPECT_EQ(info(small).at("attributes"), info(plain).at("attributes"));
+  EXPECT_GT(info(small).at("bytes").at("compact"), 0);
+  write_rays(VdagFile(plain).grid());
+  EXPECT_EQ(trace(small), trace(plain));
+  const std::string grey = build("e.vdag", {});
+  EXPECT_EQ(trace(grey, {"--look", small}), trace(plain));
+}
+
+TEST_F(AttributesCommand, DamagedColoursOfACompactFileAreRefusedByPlace) {
+  const std::string dag = build("a.vdag", {"--color", "--compact"});
+  std::string bytes = read_text(dag);
+  bytes[bytes.size() - 65] ^= 1;
+  write_text(dag, bytes);
+  expect_failure(run_voxdag({"info", dag}), 1, "chunk COLR: checksum is wrong");
+  expect_failure(run_voxdag({"verify", dag, "--quiet"}), 1, "chunk COLR: checksum is wrong");
+}
+
+TEST_F(AttributesCommand, ExportWritesThem) {
+  const std::string plain = build("a.vdag", {"--color", "--normal"}), grey = build("b.vdag", {}),
+                    small = build("c.vdag", {"--color", "--normal", "--compact"});
+  const auto exported = [&](const std::string& file, const std::string& to,
+                            std::vector<std::string> options = {}) {
+    options.insert(options.begin(), {"export", file, "--quiet", "-o", dir_ / to});
+    const ProcessResult result = run_voxdag(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_text(dir_ / to);
+  };
+  for (const char* to : {"v.npy", "v.ply"}) {
+    const std::string colored = exported(plain, to), plainly = exported(grey, to);
+    EXPECT_GT(colored.size(), 1.9 * static_cast<double>(plainly.size()));
+    EXPECT_EQ(exported(small, to), colored);
+    EXPECT_EQ(exported(plain, to, {"--grey"}), plainly);
+    EXPECT_EQ(exported(grey, to, {"--look", small}), colored);
+  }
+  EXPECT_NE(exported(plain, "f.ply", {"--faces"}).find("property uchar red"), std::string::npos);
+  expect_failure(run_voxdag({"export", plain, "--grey", "-o", dir_ / "v.raw"}), 2,
+                 "cannot hold colours");
+}
+
+TEST_F(AttributesCommand, ACoarserGridKeepsTheColoursOfItsCells) {
+  const std::string fine = build("a.vdag", {"--color", "--normal"}), coarse = dir_ / "b.vdag",
+                    same = dir_ / "c.vdag";
+  ASSERT_EQ(run_voxdag({"convert", fine, "--levels", "4", "-o", coarse}).status, 0);
+  EXPECT_EQ(run_voxdag({"verify", coarse}).status, 0);
+  const auto attributes = [](const std::string& file) {
+    return nlohmann::json::parse(run_voxdag({"info", file, "--json"}).out).at("attributes");
+  };
+  EXPECT_EQ(attributes(coarse).at("color").at("resolution"), 16);
+  EXPECT_EQ(attributes(coarse).at("color").at("bound"), 0.03);
+  EXPECT_FALSE(attributes(coarse).at("color").contains("psnr_db"));
+  EXPECT_FALSE(attributes(coarse).at("normal").contains("mean_degrees"));
+  ASSERT_EQ(run_voxdag({"convert", fine, "--levels", "4", "--color-bound", "0.02", "--normal-bound",
+                        "3", "-o", same})
+                .status,
+            0);
+  EXPECT_EQ(attributes(same).at("color").at("bound"), 0.05);
+  EXPECT_EQ(attributes(same).at("normal").at("bound"), 7);
+  EXPECT_LT(attributes(same).at("color").at("bytes"), attributes(coarse).at("color").at("bytes"));
+  expect_failure(run_voxdag({"convert", fine, "--color-bound", "0.1", "-o", same}), 2,
+                 "without --levels");
+  // Attributes that are as coarse as the coarse grid keep their bytes and errors.
+  const std::string coarsely = build("d.vdag", {"--color", "--attribute-resolution", "16"});
+  ASSERT_EQ(run_voxdag({"convert", coarsely, "--levels", "4", "--compact", "-o", same}).status, 0);
+  EXPECT_EQ(attributes(same).at("color"), attributes(coarsely).at("color"));
+  // Hits at the coarse voxels show what the fine file stores for these cells.
+  write_rays(VdagFile(coarse).grid());
+  EXPECT_EQ(trace(coarse), trace(coarse, {"--look", fine}));
+}
+
+TEST_F(AttributesCommand, VerifyComparesThemWithTheMesh) {
+  const std::string dag = build("a.vdag", {"--color", "--normal", "--compact"}),
+                    mesh = dir_ / "waves.obj";
+  const ProcessResult result = run_voxdag({"verify", dag, "--mesh", mesh});
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* text : {"colours         passed", "normals         passed", "largest error 0.0"})
+    EXPECT_NE(result.out.find(text), std::string::npos) << text << "\n" << result.out;
+  // A red channel changes in a block of colours; all checksums are right.
+  std::string bytes = read_text(dag);
+  const auto colors = peek<VdagChunkEntry>(bytes, entry_offset(3));
+  ASSERT_EQ(colors.id, kChunkColors);
+  const auto groups = (peek<std::uint64_t>(bytes, colors.offset + 8) + 256 * 64 - 1) / (256 * 64);
+  bytes[colors.offset + 64 + 8 * groups + 1] ^= 0x30;
+  repair_checksums(bytes);
+  write_text(dag, bytes);
+  EXPECT_EQ(run_voxdag({"verify", dag}).status, 0);
+  expect_failure(run_voxdag({"verify", dag, "--mesh", mesh, "--quiet"}), 1,
+                 "the bound and rounding allow");
+}
+
+TEST_F(AttributesCommand, MaterialsAreStoredShownAndChecked) {
+  const std::string mesh = dir_ / "parts.obj", dag = dir_ / "a.vdag", small = dir_ / "b.vdag";
+  write_text(mesh, colored_waves(true));
+  const auto run = [](const std::vector<std::string>& words) {
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  run({"build", mesh, "-r", "64", "--material-ids", "-o", dag});
+  run({"convert", dag, "--compact", "-o", small});
+  const auto material =
+      nlohmann::json::parse(run({"info", small, "--json"})).at("attributes").at("material");
+  EXPECT_EQ(material.at("names"), nlohmann::json({"left", "middle", "right"}));
+  EXPECT_EQ(material.at("resolution"), 64);
+  EXPECT_NE(run({"info", dag}).find("3 materials"), std::string::npos);
+  EXPECT_NE(run({"verify", small, "--mesh", mesh}).find("material ids    passed"),
+            std::string::npos);
+
+  // The materials lie side by side in x.
+  std::vector<std::array<float, 8>> rays;
+  for (int x = 0; x < 20; ++x)
+    rays.push_back({static_cast<float>(x) + 0.5f, 100, 9.3f, 0, 0, -1, 0, 1000});
+  rays.push_back({-5, 100, 9, 0, 0, -1, 0, 1000});  // misses
+  write_text(dir_ / "rays.npy", rays_npy(rays));
+  run({"trace", small, "--rays", dir_ / "rays.npy", "-o", dir_ / "hits.npy"});
+  NpyReader reader(dir_ / "hits.npy",
+                   "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1'), "
+                   "('material', '<u2')]",
+                   {}, 20);
+  std::string row(20, '\0');
+  for (int x = 0; x <= 20; ++x) {
+    ASSERT_EQ(reader.read_rows(row.data(), 1), 1u);
+    EXPECT_EQ(peek<std::uint16_t>(row, 18), x == 20 ? 65535 : x / 7) << x;
+  }
+
+  const auto picture = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"render", small, "--size", "64x64",
+                                      "--ao",   "0",   "-o",     dir_ / "a.png"};
+    words.insert(words.end(), more.begin(), more.end());
+    run(words);
+    return read_text(dir_ / "a.png");
+  };
+  EXPECT_NE(picture({"--materials"}), picture({}));
+}
+
+TEST_F(AttributesCommand, MaterialIdsNeedMaterials) {
+  expect_failure(run_build("a.vdag", {"--material-ids"}), 1, "waves.obj: has no materials");
+  const std::string dag = build("b.vdag", {"--color"});
+  expect_failure(run_voxdag({"render", dag, "--materials", "-o", dir_ / "a.png"}), 1,
+                 "has no material ids");
+  EXPECT_EQ(dir_.count(), 2);
 }
 
 TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
@@ -179,7 +331,6 @@ TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
   expect_failure(run_voxdag({"build", dir_ / "waves.obj", "--voxel-size", "1", "-o",
                              dir_ / "a.vdag", "--color", "--attribute-resolution", "1024"}),
                  1, "1024 is more than the grid's resolution, ");
-  expect_failure(run_build("a.vdag", {"--color", "--compact"}), 2, "only the plain form");
   expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
   EXPECT_EQ(dir_.count(), 1);
 }

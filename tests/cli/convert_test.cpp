@@ -43,6 +43,37 @@ TEST_F(Convert, BuildWritesTheSameCompactFile) {
   EXPECT_EQ(read_text(built), read_text(small_));
 }
 
+TEST_F(Convert, TraceInPlaceFindsTheHitsOfThePlainForm) {
+  convert({plain_, "--compact", "-o", small_});
+  const std::string rays = dir_ / "rays.npy";
+  std::vector<std::array<float, 8>> values;
+  for (int i = 0; i < 500; ++i) {
+    const auto at = static_cast<float>(i);
+    values.push_back({-30, at / 9, 40, 0, 1, 0.01F * at - 2, -0.6F, 1e9F});
+  }
+  write_text(rays, rays_npy(values));
+  const ProcessResult plain =
+      run_voxdag({"trace", plain_, "--rays", rays, "-o", dir_ / "plain.npy"});
+  ASSERT_EQ(plain.status, 0) << plain.err;
+  EXPECT_EQ(plain.out.find(" 0 hits"), std::string::npos) << plain.out;
+  const ProcessResult in_place =
+      run_voxdag({"trace", small_, "--in-place", "--rays", rays, "-o", dir_ / "small.npy"});
+  ASSERT_EQ(in_place.status, 0) << in_place.err;
+  EXPECT_EQ(read_text(dir_ / "small.npy"), read_text(dir_ / "plain.npy"));
+
+  const auto refused = [&](const std::vector<std::string>& words, int status,
+                           const std::string& reason) {
+    std::vector<std::string> all = {"trace", "--in-place", "--rays", rays, "-o", dir_ / "n.npy"};
+    all.insert(all.end(), words.begin(), words.end());
+    expect_failure(run_voxdag(all), status, reason);
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "n.npy"));
+  };
+  refused({plain_}, 1, "plain.vdag: does not have the compact form, which --in-place needs");
+  refused({small_, "--device", "cuda"}, 2, "--in-place");
+  convert({small_, "--levels", "3", "-o", dir_ / "tiny.vdag"});
+  refused({dir_ / "tiny.vdag"}, 1, "has fewer than 16³ voxels, too few for --in-place");
+}
+
 TEST_F(Convert, EveryCommandTakesACompactDag) {
   convert({plain_, "--compact", "-o", small_});
   const std::string rays = dir_ / "rays.npy";

@@ -224,7 +224,7 @@ TEST_F(TraceCommand, RefusesTheLookOfSomethingElse) {
       expect_failure(run_voxdag(words), 1, reason);
     }
   };
-  refused(dag, dag, "dag.vdag: is neither an ESVO nor a DAG with colours");
+  refused(dag, dag, "dag.vdag: is neither an ESVO nor a DAG with attributes");
   refused(dag, dir_ / "hair.esvo", "hair.esvo: is of another mesh");
   refused(dag, dir_ / "absent.esvo", "absent.esvo");
   refused(esvo, esvo, "--look: needs a DAG");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -20,37 +21,54 @@ uint3 place(unsigned i, const dim3& size) {
 
 }  // namespace
 
-void Warp::run_thread() {
-  (*running->thread_)();
-  running->is_done_[running->lane_] = true;
+void Warp::run_threads() {
+  Warp& warp = *running;
+  const unsigned stack = warp.started_;
+  while (warp.started_ < warp.size_) {
+    const unsigned lane = warp.started_++;
+    warp.stack_of_[lane] = stack;
+    warp.enter(lane);
+    (*warp.thread_)();
+    warp.is_done_[lane] = true;
+  }
 }
 
-void Warp::begin(unsigned lane) {
-  is_done_[lane] = false;
-  ucontext_t& context = contexts_[lane];
+void Warp::enter(unsigned lane) {
+  lane_ = lane;
+  threadIdx = place(first_ + lane, block_);
+}
+
+void Warp::start_stack(unsigned stack) {
+  ucontext_t& context = contexts_[stack];
   getcontext(&context);
-  context.uc_stack.ss_sp = stacks_.get() + lane * kStackBytes;
+  context.uc_stack.ss_sp = stacks_.get() + stack * kStackBytes;
   context.uc_stack.ss_size = kStackBytes;
   context.uc_link = &caller_;
-  makecontext(&context, run_thread, 0);
+  makecontext(&context, run_threads, 0);
+  swapcontext(&caller_, &context);
 }
 
 void Warp::run(const std::function<void()>& thread, const dim3& block, unsigned first) {
   thread_ = &thread;
   running = this;
+  block_ = block;
+  first_ = first;
   size_ = count(block) - first < kSize ? count(block) - first : kSize;
-  for (unsigned lane = 0; lane < size_; ++lane) begin(lane);
-  for (unsigned left = size_; left > 0; ++round_) {
-    for (lane_ = 0; lane_ < size_; ++lane_) {
-      if (is_done_[lane_]) continue;
-      threadIdx = place(first + lane_, block);
-      swapcontext(&caller_, &contexts_[lane_]);
-      left -= is_done_[lane_] ? 1 : 0;
-    }
-    if (left == 0 || left == size_) continue;
+  is_done_ = {};
+  for (started_ = 0; started_ < size_;) start_stack(started_);
+  for (;;) {
+    ++round_;
+    const auto done = static_cast<unsigned>(std::count(is_done_.begin(), is_done_.end(), true));
+    if (done == size_) return;
     // This is undefined behaviour in CUDA.
-    std::fputs("a thread ended while others of its warp waited for it\n", stderr);
-    std::abort();
+    if (done != 0) {
+      std::fputs("a thread ended while others of its warp waited for it\n", stderr);
+      std::abort();
+    }
+    for (unsigned lane = 0; lane < size_; ++lane) {
+      enter(lane);
+      swapcontext(&caller_, &contexts_[stack_of_[lane]]);
+    }
   }
 }
 
@@ -59,7 +77,7 @@ unsigned long long Warp::value_down(unsigned long long value, unsigned by) {
   // Two rounds alternate, because other threads still read the values of the previous round.
   auto& values = values_[round_ % 2];
   values[lane] = value;
-  swapcontext(&contexts_[lane], &caller_);
+  swapcontext(&contexts_[stack_of_[lane]], &caller_);
   return lane + by < size_ ? values[lane + by] : value;
 }
 

@@ -10,7 +10,8 @@
 
 namespace voxdag {
 
-/// Up to 32 threads that take turns, each on its own stack.
+/// Up to 32 threads that take turns. A thread that waits for the others keeps its stack; until
+/// then, one thread after the other runs on the same stack, because changing stacks takes long.
 class Warp {
  public:
   static constexpr unsigned kSize = 32;
@@ -26,16 +27,22 @@ class Warp {
  private:
   static constexpr std::size_t kStackBytes = std::size_t{1} << 18;
 
-  void begin(unsigned lane);
-  static void run_thread();
+  /// Runs the threads that did not start yet on a new stack, until one of them waits.
+  void start_stack(unsigned stack);
+  static void run_threads();
+  /// Makes `lane` the running thread.
+  void enter(unsigned lane);
 
   std::unique_ptr<std::byte[]> stacks_;
   const std::function<void()>* thread_ = nullptr;
+  dim3 block_{};
+  unsigned first_ = 0;
   ucontext_t caller_{};
   std::array<ucontext_t, kSize> contexts_{};
   std::array<bool, kSize> is_done_{};
+  std::array<unsigned, kSize> stack_of_{};
   std::array<std::array<unsigned long long, kSize>, 2> values_{};
-  unsigned size_ = 0, lane_ = 0, round_ = 0;
+  unsigned size_ = 0, started_ = 0, lane_ = 0, round_ = 0;
 };
 
 }  // namespace voxdag

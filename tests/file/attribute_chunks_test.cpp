@@ -17,6 +17,8 @@ const Svdag& small_dag() {
   return dag;
 }
 
+const std::vector<std::string> kNames = {"brick", "glass", "", "leaf \"x\"", "wood"};
+
 std::string colored_file(int finest = 5) {
   const Svdag& dag = small_dag();
   const NumberColors colors(dag.view(), finest);
@@ -24,6 +26,7 @@ std::string colored_file(int finest = 5) {
   metadata.attributes.resolution = std::int64_t{1} << finest;
   metadata.attributes.colors = {0.25, 1234};
   metadata.attributes.normals = {3.5, 99};
+  metadata.attributes.materials = kNames;
   const TempDir dir;
   write_vdag(dir / "file.vdag", dag.view(), metadata, colors.view().attributes);
   return read_text(dir / "file.vdag");
@@ -41,8 +44,10 @@ VdagChunkEntry entry_of(const std::string& bytes, std::size_t index) {
 void read_all(const VdagContents& contents) {
   const ColoredDagView colored{contents.view, contents.attributes};
   for (int level = 0; level <= colored.dag.levels; ++level)
-    for (std::uint64_t code = 0; code < std::uint64_t{1} << 3 * level; ++code)
+    for (std::uint64_t code = 0; code < std::uint64_t{1} << 3 * level; ++code) {
       look_at(colored, morton_decode(code), level);
+      if (contents.attributes.has_materials()) material_at(colored, morton_decode(code), level);
+    }
 }
 
 TEST(AttributeChunks, WhatWasWrittenIsRead) {
@@ -56,7 +61,9 @@ TEST(AttributeChunks, WhatWasWrittenIsRead) {
     for (std::uint64_t i = 0; i < attributes.index.cells; ++i) {
       EXPECT_EQ(read_value(attributes.colors, i), color_of_number(i));
       EXPECT_EQ(read_value(attributes.normals, i), color_of_number(i));
+      EXPECT_EQ(read_material(attributes.materials, i), material_of_number(i));
     }
+    EXPECT_EQ(contents.metadata.attributes.materials, kNames);
     EXPECT_EQ(contents.metadata.attributes.resolution, std::int64_t{1} << finest);
     EXPECT_EQ(contents.metadata.attributes.colors->errors, 1234u);
     EXPECT_EQ(contents.metadata.attributes.normals->bound, 3.5);
@@ -74,12 +81,12 @@ TEST(AttributeChunks, TheGeometryHasTheBytesOfAFileWithoutAttributes) {
 
 TEST(AttributeChunks, AReaderWithoutAttributesCanSkipThem) {
   const std::string bytes = colored_file();
-  for (std::size_t i = 4; i < 7; ++i) EXPECT_EQ(entry_of(bytes, i).flags, 0u);
+  for (std::size_t i = 4; i < 8; ++i) EXPECT_EQ(entry_of(bytes, i).flags, 0u);
 }
 
 TEST(AttributeChunks, EveryFlippedBitIsRefusedWithoutChecksums) {
   const std::string bytes = colored_file();
-  for (std::size_t i = 4; i < 7; ++i)
+  for (std::size_t i = 4; i < 8; ++i)
     for (std::uint64_t at = 0; at < entry_of(bytes, i).length; ++at) {
       std::string changed = bytes;
       changed[entry_of(bytes, i).offset + at] ^= static_cast<char>(1 << at % 8);
@@ -90,7 +97,7 @@ TEST(AttributeChunks, EveryFlippedBitIsRefusedWithoutChecksums) {
 TEST(AttributeChunks, EveryFlippedBitWithCorrectChecksumsIsRefusedOrSafeToRead) {
   const std::string bytes = colored_file(4);
   int refused = 0;
-  for (std::size_t i = 4; i < 7; ++i)
+  for (std::size_t i = 4; i < 8; ++i)
     for (std::uint64_t bit = 0; bit < 8 * entry_of(bytes, i).length; ++bit) {
       std::string changed = bytes;
       changed[entry_of(bytes, i).offset + bit / 8] ^= static_cast<char>(1 << bit % 8);
@@ -110,8 +117,8 @@ TEST(AttributeChunks, EveryFlippedBitWithCorrectChecksumsIsRefusedOrSafeToRead) 
 /// Returns the file with the last `cut` bytes of chunk `index` removed, and all offsets, sizes and
 /// checksums correct.
 std::string shortened(const std::string& bytes, std::size_t index, std::uint64_t cut) {
-  std::string file = bytes.substr(0, vdag_align(entry_offset(7)));
-  for (std::size_t i = 0; i < 7; ++i) {
+  std::string file = bytes.substr(0, vdag_align(entry_offset(8)));
+  for (std::size_t i = 0; i < 8; ++i) {
     VdagChunkEntry entry = entry_of(bytes, i);
     const std::string chunk = bytes.substr(entry.offset, entry.length - (i == index ? cut : 0));
     entry.offset = file.size();
@@ -128,7 +135,7 @@ std::string shortened(const std::string& bytes, std::size_t index, std::uint64_t
 TEST(AttributeChunks, EveryTruncatedChunkIsRefused) {
   const std::string bytes = colored_file(4);
   ASSERT_EQ(error_of(shortened(bytes, 4, 0)), "no error");
-  for (std::size_t i = 4; i < 7; ++i)
+  for (std::size_t i = 4; i < 8; ++i)
     for (std::uint64_t cut = 1; cut <= entry_of(bytes, i).length; ++cut)
       ASSERT_NE(error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
 }

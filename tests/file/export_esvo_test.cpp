@@ -89,7 +89,9 @@ TEST_F(ExportEsvo, WindowsAndLookupsAgreeWithTheWhole) {
 TEST_F(ExportEsvo, PointsHaveNormalsAndColours) {
   const TempDir dir;
   const Esvo esvo = build_esvo(hills(), unit_grid());
-  export_voxels(dir.path() / "points.ply", esvo.view(), unit_grid(), PlyContent::kPoints);
+  ExportOptions options;
+  options.look = esvo.view();
+  export_voxels(dir.path() / "points.ply", esvo.view(), unit_grid(), PlyContent::kPoints, options);
   const std::string text = read_text(dir.path() / "points.ply");
   for (const char* property :
        {"property float nx", "property float nz", "property uchar red", "property uchar blue"})

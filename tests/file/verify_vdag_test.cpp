@@ -89,6 +89,7 @@ TEST(VerifyVdag, FindsMetadataOfOtherAttributes) {
     metadata.attributes.resolution = 8;
     metadata.attributes.colors.emplace();
     metadata.attributes.normals.emplace();
+    metadata.attributes.materials.emplace(kNumberMaterials, "a");
     change(metadata.attributes);
     write_vdag(dir / "a.vdag", dag.view(), metadata, colors.view().attributes);
     return verify_vdag(dir / "a.vdag").checks.back().detail;
@@ -100,6 +101,9 @@ TEST(VerifyVdag, FindsMetadataOfOtherAttributes) {
             "chunk META, attributes.resolution: is 16, but the chunk CIDX has 8");
   EXPECT_EQ(detail([](AttributesMetadata& stated) { stated.colors.reset(); }),
             "chunk META, attributes.color: is missing, but the file has the chunk COLR");
+  EXPECT_EQ(detail([](AttributesMetadata& stated) { stated.materials->pop_back(); }),
+            "chunk META, attributes.material.names: has 4 names, but the chunk MTID has 5 "
+            "materials");
   const TempDir dir;
   VdagMetadata metadata = example_metadata(dag.view());
   metadata.attributes.resolution = 8;

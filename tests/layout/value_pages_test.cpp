@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/error_of.hpp"
+#include "voxdag/layout/page_reader.hpp"
 #include "voxdag/layout/validate_value_pages.hpp"
 
 namespace voxdag {
@@ -87,9 +88,13 @@ TEST(ValuePages, EveryTypeOfBlockIsReadAsSpecified) {
                                         {136, 136, 136},
                                         white,
                                         white};
-  for (std::size_t i = 0; i < expected.size(); ++i)
+  PageReader reader(pages.view());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(read_value(pages.view(), i), expected[i]) << i;
+    EXPECT_EQ(reader.value(i), expected[i]) << i;
+  }
   EXPECT_EQ(read_value(pages.view(), 255), white);
+  EXPECT_EQ(reader.value(255), white);
   EXPECT_NO_THROW(validate_value_pages(pages.view()));
 }
 

@@ -53,6 +53,12 @@ TEST(Rooms, EverySourceOfTheCommandLineIncludesOnlyWhatItsRoomMay) {
     ADD_FAILURE() << line;
 }
 
+TEST(Rooms, EverySourceOfTheViewerIncludesOnlyWhatItsRoomMay) {
+  const fs::path root = kSourceDir / "apps/viewer";
+  for (const std::string& line : broken_includes(root, read_rooms(root / "rooms.txt"), "viewer/"))
+    ADD_FAILURE() << line;
+}
+
 TEST(Rooms, EveryBenchmarkIncludesOnlyWhatItsRoomMay) {
   const fs::path root = kSourceDir / "bench";
   for (const std::string& line : broken_includes(root, read_rooms(root / "rooms.txt"), "bench/"))

@@ -1,6 +1,7 @@
 #pragma once
 /// Colours and normals that tell the numbers of a DAG's cells.
 #include "voxdag/layout/build_cell_index.hpp"
+#include "voxdag/layout/encode_material_ids.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
 
 namespace voxdag {
@@ -11,8 +12,15 @@ inline Value8 color_of_number(std::uint64_t number) {
           static_cast<std::uint8_t>(number >> 16)};
 }
 
-/// Attributes of a DAG: the colour of each cell tells its number, and so does the normal. Values
-/// are stored in blocks of 4, each by itself.
+/// Returns a material that belongs to a number, one of kNumberMaterials. Runs have 1 to 8 cells.
+inline constexpr std::uint32_t kNumberMaterials = 5;
+inline std::uint32_t material_of_number(std::uint64_t number) {
+  return static_cast<std::uint32_t>((number / 8 + (number % 8 > number / 8 % 8 ? 1 : 0)) %
+                                    kNumberMaterials);
+}
+
+/// Attributes of a DAG: the colour of each cell tells its number, and so do the normal and the
+/// material. Values are stored in blocks of 4, each by itself.
 class NumberColors {
  public:
   NumberColors(const SvdagView& dag, int finest_level)
@@ -38,15 +46,21 @@ class NumberColors {
                  color.x | std::uint64_t{color.y} << 8 | std::uint64_t{color.z} << 16);
       at += 24;
     }
+    MaterialEncoder encoder(kNumberMaterials);
+    for (std::uint64_t i = 0; i < index_.cells; ++i) encoder.add(material_of_number(i), 1);
+    materials_ = encoder.finish();
   }
 
   /// Returns a view that is valid while this object and the DAG live.
-  ColoredDagView view() const { return {dag_, {index_.view(), pages_.view(), pages_.view()}}; }
+  ColoredDagView view() const {
+    return {dag_, {index_.view(), pages_.view(), pages_.view(), materials_.view()}};
+  }
 
  private:
   SvdagView dag_;
   CellIndex index_;
   ValuePages pages_;
+  MaterialIds materials_;
 };
 
 }  // namespace voxdag

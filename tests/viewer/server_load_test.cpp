@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -164,6 +165,40 @@ TEST(ServerLoad, TooMuchHeadIsRefused) {
   EXPECT_EQ(get(server.port(), "/", "X: " + std::string(20'000, 'x') + "\r\n").status, 431);
   EXPECT_EQ(get(server.port(), std::string("/").append(9000, 'x')).status, 414);
   EXPECT_EQ(get(server.port(), "/").status, 200);
+}
+
+TEST(ServerLoad, DamagedRequestsHarmNothing) {
+  const PatternScene scene(1000);
+  PageServer server(scene, with_limits({.head = 200ms, .idle = 200ms}));
+  server.start();
+  const std::string whole =
+      request("/scene.vdag",
+              "Range: bytes=0-9,20-29, -5\r\nIf-Range: \"a\"\r\nIf-None-Match: "
+              "W/\"a\", *\r\nAccept: */*\r\nConnection: keep-alive\r\n");
+  std::mt19937 random(21);
+  for (int i = 0; i < 1000; ++i) {
+    std::string text = whole;
+    for (unsigned changes = 1 + random() % 4; changes > 0; --changes) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 4) {
+        case 0:
+          text[at] = static_cast<char>(random());
+          break;
+        case 1:
+          text.erase(at, random() % 20);
+          break;
+        case 2:
+          text.insert(at, text.substr(random() % text.size(), random() % 40));
+          break;
+        default:
+          text.insert(at, std::string(random() % 3000, static_cast<char>(random())));
+      }
+    }
+    HttpClient client(server.port());
+    client.send(text);
+    if (i % 4 == 0) client.fill(1, 50ms);
+  }
+  EXPECT_EQ(get(server.port(), "/scene.vdag", "Range: bytes=1-2\r\n").body, scene.text(1, 2));
 }
 
 TEST(ServerLoad, PipelinedRequestsAreAnsweredInOrder) {

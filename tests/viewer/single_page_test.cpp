@@ -36,7 +36,7 @@ TEST(SinglePage, ModulesBecomeAnImportMap) {
       << text;
   EXPECT_NE(text.find("\"voxdag/b/c.js\": \"data:text/javascript;base64," + base64("export {};") +
                       "\"}}</script>\n<script type=\"text/plain\" id=\"scene\">SCENE</script>\n"
-                      "<script type=\"module\">import 'voxdag/a.js';</script></body></html>"),
+                      "<script type=\"module\">import 'voxdag/a.js';</script>\n</body></html>"),
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("src="), std::string::npos);
@@ -69,6 +69,19 @@ TEST(SinglePage, StylesAndPicturesMoveIn) {
   EXPECT_NE(text.find("<link rel=\"icon\" type=\"image/svg+xml\" href=\"" + url + "\">"),
             std::string::npos);
   EXPECT_NE(text.find("<img src=\"" + url + "\">"), std::string::npos);
+}
+
+TEST(SinglePage, TheSceneComesAfterTheRestOfThePage) {
+  const std::string text = page_text(page_with(
+      "<head><script type=\"module\" src=\"a.js\"></script></head><body><p>wait</p></body>"));
+  EXPECT_LT(text.find("<p>wait</p>"), text.find("importmap"));
+}
+
+TEST(SinglePage, DataUrlsStay) {
+  const std::string link = "<link rel=\"icon\" href=\"data:image/svg+xml,abc\">";
+  const std::string html =
+      "<head>" + link + "</head><script type=\"module\" src=\"a.js\"></script>";
+  EXPECT_NE(page_text(page_with(html)).find(link), std::string::npos);
 }
 
 TEST(SinglePage, ItsPolicyForbidsConnections) {

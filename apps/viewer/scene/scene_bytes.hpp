@@ -30,7 +30,7 @@ class SceneBytes {
 
 /// Files up to this size are checked completely before they are shown. Of larger ones only the
 /// header, the chunk table and META are read; the page checks all that it uses.
-inline constexpr std::uint64_t kWholeCheckBytes = std::uint64_t{64} << 20;
+inline constexpr std::uint64_t kWholeCheckBytes = std::uint64_t{32} << 20;
 
 /// Opens a .vdag file in the plain form. Keeps its descriptor, so that it shows the file that was
 /// opened also when another takes its name. Reads by pread(), never through a mapping: a file that

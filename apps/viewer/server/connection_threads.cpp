@@ -1,5 +1,6 @@
 #include "viewer/server/connection_threads.hpp"
 
+#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -23,12 +24,22 @@ void ConnectionThreads::join_done() {
   }
 }
 
+bool ConnectionThreads::make_way() {
+  // Connections that end, or that are about to wait for their next request, need a moment.
+  constexpr int kTries = 40;
+  constexpr std::chrono::milliseconds kMoment{5};
+  for (int i = 0; i < kTries; ++i) {
+    if (i > 0) std::this_thread::sleep_for(kMoment);
+    join_done();
+    if (workers_.size() < most_) return true;
+    // One that was ended to make way may still be in the list.
+    if (workers_.size() < 2 * most_ && connections_.end_longest_waiting()) return true;
+  }
+  return false;
+}
+
 void ConnectionThreads::enqueue(std::function<void()> serve) {
-  join_done();
-  // A connection that was ended to make way may still be in the list for a moment.
-  bool fits = workers_.size() < most_ ||
-              (workers_.size() < 2 * most_ && connections_.end_longest_waiting());
-  if (fits) {
+  if (make_way()) {
     Worker& worker = workers_.emplace_back();
     try {
       worker.thread = std::thread([serve, &worker] {

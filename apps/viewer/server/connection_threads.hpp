@@ -32,6 +32,8 @@ class ConnectionThreads final : public httplib::TaskQueue {
   };
 
   void join_done();
+  /// Returns whether there is room for one more connection, if need be by ending one that waits.
+  bool make_way();
 
   Connections& connections_;
   std::size_t most_;

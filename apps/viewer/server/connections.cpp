@@ -38,6 +38,11 @@ bool Connections::end_longest_waiting() {
   return true;
 }
 
+void Connections::begin_again() {
+  const std::lock_guard lock(mutex_);
+  are_ended_ = false;
+}
+
 void Connections::end_all() {
   const std::lock_guard lock(mutex_);
   are_ended_ = true;

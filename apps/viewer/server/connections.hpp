@@ -16,8 +16,9 @@ class Connections {
 
   /// Ends the connection that has waited longest for its next request. Returns false if none waits.
   bool end_longest_waiting();
-  /// Ends all connections, now and later.
+  /// Ends all connections, and those that are added later, until begin_again().
   void end_all();
+  void begin_again();
 
  private:
   struct State {

@@ -1,6 +1,7 @@
 #include "viewer/server/page_server.hpp"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <httplib.h>
 #include <netinet/tcp.h>
@@ -24,6 +25,7 @@
 #include "viewer/server/scene_ranges.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/checksum.hpp"
+#include "voxdag/io/descriptor.hpp"
 
 namespace voxdag {
 namespace {
@@ -118,18 +120,16 @@ class PageServer::Http final : public httplib::Server {
   }
   ~Http() override {
     stop();
-    const socket_t socket = svr_sock_.exchange(INVALID_SOCKET);
-    if (socket != INVALID_SOCKET) ::close(socket);
+    if (svr_sock_ != INVALID_SOCKET) ::close(svr_sock_);
   }
 
   void start() {
-    thread_ = std::thread([this] { listen_after_bind(); });
-    while (!is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    thread_ = std::thread([this] { serve(); });
   }
   void stop() {
     if (!thread_.joinable()) return;
     is_stopping_ = true;
-    httplib::Server::stop();
+    shutdown(listener_.get(), SHUT_RDWR);  // accept() fails, also when it has not begun.
     thread_.join();
   }
   int port() const { return port_; }
@@ -152,8 +152,24 @@ class PageServer::Http final : public httplib::Server {
                               : std::system_category().message(error)));
     // The library's queue of 5 is short: a page asks for many files at once.
     ::listen(svr_sock_, SOMAXCONN);
+    listener_ = Descriptor(fcntl(svr_sock_, F_DUPFD_CLOEXEC, 0));
+    if (!listener_.is_open())
+      throw Error("cannot listen: " + std::system_category().message(errno));
     port_ = port_of(bound);
     is_local_ = is_loopback(bound);
+  }
+
+  /// Accepts connections until stop(). The library gives up, and closes its socket, at each error
+  /// of accept() that it does not know, for example if the system has too many open files.
+  void serve() {
+    for (;;) {
+      if (svr_sock_ != INVALID_SOCKET) listen_after_bind();
+      svr_sock_ = INVALID_SOCKET;
+      if (is_stopping_) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      svr_sock_ = fcntl(listener_.get(), F_DUPFD_CLOEXEC, 0);
+      connections_.begin_again();
+    }
   }
 
   bool process_and_close_socket(socket_t socket) override {
@@ -315,6 +331,7 @@ class PageServer::Http final : public httplib::Server {
   const std::string scene_tag_;
   std::map<std::string_view, std::string> page_tags_;
   Connections connections_;
+  Descriptor listener_;  // The listening socket again: svr_sock_ belongs to the library.
   std::thread thread_;
   std::atomic<bool> is_stopping_ = false;
   int port_ = 0;

@@ -17,7 +17,7 @@ class Gzip {
  public:
   Gzip() {
     constexpr int kWindowBits = 15, kGzipFormat = 16, kMemoryLevel = 9;
-    if (deflateInit2(&stream_, Z_BEST_COMPRESSION, Z_DEFLATED, kWindowBits + kGzipFormat,
+    if (deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kWindowBits + kGzipFormat,
                      kMemoryLevel, Z_DEFAULT_STRATEGY) != Z_OK)
       throw Error("cannot compress: out of memory");
   }

@@ -71,7 +71,9 @@ Tag next_reference(std::string_view html, std::size_t from) {
     if (!rest.starts_with("<script ") && !rest.starts_with("<link ") && !rest.starts_with("<img "))
       continue;
     const Tag tag{begin, html.find('>', begin) + 1, rest.substr(0, rest.find('>') + 1)};
-    if (!tag.attribute("src").empty() || !tag.attribute("href").empty()) return tag;
+    const std::string_view source = tag.attribute("src"), target = tag.attribute("href");
+    if (source.starts_with("data:") || target.starts_with("data:")) continue;
+    if (!source.empty() || !target.empty()) return tag;
   }
   return {html.size(), html.size(), {}};
 }
@@ -88,7 +90,7 @@ class PageBuilder {
       text_.append(html.substr(at, tag.begin - at));
       at = tag.end;
       if (tag.text.starts_with("<script ")) {
-        add_module(tag);
+        take_module(tag);
         at = html.find("</script>", at);
         if (at == html.npos) throw Error("index.html", "", "has a script without an end");
         at += std::string_view("</script>").size();
@@ -97,21 +99,29 @@ class PageBuilder {
       }
     }
     text_.append(html.substr(at));
-    if (page_.before.empty()) throw Error("index.html", "", "has no module");
-    page_.after = std::move(text_);
+    if (entry_.empty()) throw Error("index.html", "", "has no module");
     add_policy();
-    return page_;
+    // At the end of the body: a browser shows the rest while it reads the scene.
+    const std::size_t end = std::min(text_.rfind("</body>"), text_.size());
+    const std::string tail = text_.substr(end);
+    text_.erase(end);
+    add_assets();
+    return {text_,
+            "</script>\n<script type=\"module\">import 'voxdag/" + entry_ + "';</script>\n" + tail};
   }
 
  private:
   const PageFile& find(std::string_view path) const { return file_at(files_, path, "index.html"); }
 
-  /// Adds the module with all that it imports, the other files, and the place of the scene.
-  void add_module(const Tag& tag) {
-    const std::string entry(tag.attribute("src"));
-    if (tag.attribute("type") != "module" || !page_.before.empty())
+  void take_module(const Tag& tag) {
+    if (tag.attribute("type") != "module" || !entry_.empty())
       throw Error("index.html", "", "must have one script with src=, a module");
-    const std::set<std::string> modules = reachable_modules(files_, entry);
+    entry_ = tag.attribute("src");
+  }
+
+  /// Adds the module with all that it imports, the other texts, and the start of the scene.
+  void add_assets() {
+    const std::set<std::string> modules = reachable_modules(files_, entry_);
     for (const PageFile& file : files_)
       if (is_text(file) && !modules.contains(std::string(file.path)))
         text_.append("<script type=\"text/plain\" data-path=\"")
@@ -130,8 +140,6 @@ class PageBuilder {
           .append("\"");
     }
     text_ += "}}</script>\n<script type=\"text/plain\" id=\"scene\">";
-    page_.before = std::move(text_);
-    text_ = "</script>\n<script type=\"module\">import 'voxdag/" + entry + "';</script>";
   }
 
   void add_link(const Tag& tag) {
@@ -157,14 +165,14 @@ class PageBuilder {
 
   /// Adds the policy behind <head>, or behind the declaration of the characters.
   void add_policy() {
-    std::size_t at = page_.before.find("<meta charset");
-    at = page_.before.find('>', at == std::string::npos ? page_.before.find("<head") : at);
+    std::size_t at = text_.find("<meta charset");
+    at = text_.find('>', at == std::string::npos ? text_.find("<head") : at);
     if (at == std::string::npos) throw Error("index.html", "", "has no <head>");
-    page_.before.insert(at + 1, "\n" + std::string(kPolicy));
+    text_.insert(at + 1, "\n" + std::string(kPolicy));
   }
 
   std::span<const PageFile> files_;
-  SinglePage page_;
+  std::string entry_;  // the path of the page's module
   std::string text_;
 };
 

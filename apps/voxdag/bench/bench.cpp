@@ -13,6 +13,7 @@ void add_bench_command(const Command& program, Session& session) {
   add_bench_esvo_command(bench, session);
   add_bench_compact_command(bench, session);
   add_bench_compact_rays_command(bench, session);
+  add_bench_attributes_command(bench, session);
   add_bench_papers_command(bench, session);
   add_bench_untrusted_command(bench, session);
 }

@@ -6,6 +6,7 @@
 
 #include "cli/parse.hpp"
 #include "cli/usage_error.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 
@@ -20,12 +21,18 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .in_group(group);
   command.flag("--normal", options.normals, "Also store the normals of all cells").in_group(group);
   command
+      .flag("--material-ids", options.materials,
+            "Also store the material of all cells, as its number in the mesh: the one with the "
+            "largest area in the cell")
+      .in_group(group);
+  command
       .parsed(
           "--attribute-resolution", arguments.levels, parse_levels, "M",
-          "Resolution of the finest colours and normals, in cells per side: a power of two from 4 "
+          "Resolution of the finest colours, normals and materials, in cells per side: a power of "
+          "two from 4 "
           "to the grid's resolution (default: the finest that is expected to fit into 4 GiB and "
           "the memory limit)")
-      .only_if(is_wanted, "without --color and --normal")
+      .only_if(is_wanted, "without --color, --normal and --material-ids")
       .in_group(group);
   command
       .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
@@ -48,9 +55,20 @@ void AttributeArguments::check_levels(int dag_levels) const {
                                  std::int64_t{1} << *levels, std::int64_t{1} << dag_levels));
 }
 
+void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
+                     const std::string& file) {
+  if (!arguments.options.materials) return;
+  if (mesh.triangle_materials.empty())
+    throw Error(file, "", "has no materials, so that --material-ids has nothing to store");
+  if (mesh.materials.size() > kMostMaterials)
+    throw Error(file, "",
+                fmt::format("has {} materials, but --material-ids can store {} at most",
+                            mesh.materials.size(), kMostMaterials));
+}
+
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const MeshWithAppearance& source, const SvdagView& dag,
-                                      const SurfaceShading& shading, MemoryBudget& memory,
+                                      const SurfaceShading* shading, MemoryBudget& memory,
                                       VdagMetadata& metadata, Progress& progress) {
   AttributeOptions options = arguments.options;
   options.memory = &memory;
@@ -59,12 +77,13 @@ DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                              : finest_level_within(metadata.counts, options,
                                                    std::min(kAttributeBudget, memory.left()));
   DagAttributes attributes =
-      build_attributes(source.mesh, metadata.grid, dag, &shading, options, &progress);
+      build_attributes(source.mesh, metadata.grid, dag, shading, options, &progress);
   AttributesMetadata& stored = metadata.attributes;
   stored.resolution = std::int64_t{1} << options.finest_level;
   if (options.colors) stored.colors = {options.color_bound, attributes.color_errors.squared};
   if (options.normals)
     stored.normals = {options.normal_bound_degrees, attributes.normal_errors.absolute};
+  if (options.materials) stored.materials = source.mesh.materials;
   return attributes;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The options of `voxdag build` for colours and normals on a DAG.
+/// The options of `voxdag build` for colours, normals and materials on a DAG.
 #include <map>
 #include <optional>
 #include <string>
@@ -14,7 +14,8 @@ struct AttributeArguments {
   AttributeOptions options;
   std::optional<int> levels;  ///< log2 of --attribute-resolution.
 
-  bool is_wanted() const { return options.colors || options.normals; }
+  bool needs_shading() const { return options.colors || options.normals; }
+  bool is_wanted() const { return needs_shading() || options.materials; }
   /// Throws UsageError if the attributes would be finer than a DAG of `dag_levels`.
   void check_levels(int dag_levels) const;
 };
@@ -26,12 +27,16 @@ inline constexpr std::uint64_t kAttributeBudget = std::uint64_t{4} << 30;
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
                            const std::string& group);
 
+/// Throws Error if material ids are wanted, but the mesh has no materials or too many.
+void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
+                     const std::string& file);
+
 /// Builds the attributes of a DAG at the resolution that the arguments ask for, which must pass
-/// check_levels(). Uses metadata.grid and metadata.counts, and sets metadata.attributes. Throws
-/// what build_attributes() throws.
+/// check_levels(). `shading` may be null if the arguments do not need it. Uses metadata.grid and
+/// metadata.counts, and sets metadata.attributes. Throws what build_attributes() throws.
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const MeshWithAppearance& source, const SvdagView& dag,
-                                      const SurfaceShading& shading, MemoryBudget& memory,
+                                      const SurfaceShading* shading, MemoryBudget& memory,
                                       VdagMetadata& metadata, Progress& progress);
 
 }  // namespace voxdag

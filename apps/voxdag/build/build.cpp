@@ -118,9 +118,8 @@ void add_build_command(const Command& program, Session& session) {
   add_attribute_options(command, arguments->attributes, kDagOptions);
   command
       .flag("--compact", arguments->compact,
-            "Write the compact form, about a quarter of the bytes; every command reads it")
-      .only_if([&arguments = *arguments] { return !arguments.attributes.is_wanted(); },
-               "with --color and --normal, which only the plain form can store")
+            "Write the compact form: the geometry takes about a quarter of the bytes; every "
+            "command reads it")
       .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
@@ -61,7 +62,7 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
 /// Reads the mesh, and its appearance if attributes are wanted.
 MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess& access,
                                Session& session) {
-  if (arguments.attributes.is_wanted())
+  if (arguments.attributes.needs_shading())
     return read_mesh_file_with_appearance(session.subject, access, session);
   MeshWithAppearance source;
   source.mesh = read_mesh_file(session.subject, access, session);
@@ -81,6 +82,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   access.memory = &memory;
   MeshWithAppearance source = read_source(arguments, access, session);
   Mesh& mesh = source.mesh;
+  check_materials(arguments.attributes, mesh, session.subject);
   seconds.read = watch.lap();
 
   DagReport report;
@@ -112,19 +114,23 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
     watch.lap();
     const MemoryReservation dag_bytes(&memory, view.bytes());
     std::vector<std::string> warnings;
-    const SurfaceShading shading(mesh, source.appearance, &warnings, &progress, &memory);
+    std::optional<SurfaceShading> shading;
+    if (arguments.attributes.needs_shading())
+      shading.emplace(mesh, source.appearance, &warnings, &progress, &memory);
     print_warnings(warnings, session);
-    attributes = build_wanted_attributes(arguments.attributes, source, view, shading, memory,
-                                         report.metadata, progress);
+    attributes =
+        build_wanted_attributes(arguments.attributes, source, view, shading ? &*shading : nullptr,
+                                memory, report.metadata, progress);
     seconds.attributes = watch.lap();
   }
   if (has_attributes) free_source();
   progress.throw_if_cancelled();
   report.attributes = sizes_of(attributes.view());
   if (arguments.compact) {
+    const MemoryReservation attribute_bytes(&memory, attributes.bytes());
     const CompactSvdag compact = encode_svdag(view, {.memory = &memory}, &progress);
     seconds.compact = watch.lap();
-    write_vdag(arguments.output, compact, report.metadata);
+    write_vdag(arguments.output, compact, report.metadata, attributes.view());
     report.compact = bytes_of(compact.view(), compact_head(compact).size());
   } else {
     write_vdag(arguments.output, view, report.metadata, attributes.view());

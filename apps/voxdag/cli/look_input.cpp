@@ -35,7 +35,7 @@ std::optional<SceneInput> open_look(const std::string& file, const SceneInput& s
     throw Error("--look", "", "needs a DAG, but the scene is an ESVO, which has a look of its own");
   SceneInput look(file, &session.progress);
   if (look_of(look).is_empty())
-    throw Error(file, "", "is neither an ESVO nor a DAG with colours or normals");
+    throw Error(file, "", "is neither an ESVO nor a DAG with attributes");
   if (!have_same_cube(look.grid(), scene.grid()))
     throw Error(file, "", "is of another mesh: its grid has another place or size than the DAG's");
   return look;

@@ -1,16 +1,38 @@
 #include "cli/scene_input.hpp"
 
+#include "voxdag/attributes/material_colors.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/compact_file.hpp"
+#include "voxdag/layout/build_cell_index.hpp"
 
 namespace voxdag {
 namespace {
 
-Svdag decode(const CompactFile& file, const std::filesystem::path& path, MemoryBudget* memory,
-             Progress* progress) {
+std::variant<DagInput, EsvoFile> open(const std::filesystem::path& path, Progress* progress) {
+  if (is_esvo_file(path)) return EsvoFile(path);
+  return DagInput(path, progress);
+}
+
+[[noreturn]] void fail_without_materials(const std::filesystem::path& path) {
+  throw Error(path.string(), "", "has no material ids: voxdag build --material-ids stores them");
+}
+
+}  // namespace
+
+DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* progress,
+                                   MemoryBudget* memory) {
+  Decoded decoded;
+  CompactFile file(path);
+  const CompactContents& contents = file.contents();
+  const MemoryReservation file_bytes(memory, file.file_bytes());
   try {
-    return decode_svdag(file.view(), memory, progress);
+    decoded.dag = decode_svdag(file.view(), memory, progress);
+    if (contents.has_attributes()) {
+      const MemoryReservation dag_bytes(memory, decoded.view().bytes());
+      decoded.index =
+          build_cell_index(decoded.view(), contents.metadata.attributes.level(), memory);
+      decoded.stored = contents.attributes(decoded.index.view());
+    }
   } catch (const Cancelled&) {
     throw;
   } catch (const OverMemory&) {
@@ -18,24 +40,21 @@ Svdag decode(const CompactFile& file, const std::filesystem::path& path, MemoryB
   } catch (const Error& error) {
     throw error.in_file(path.string());
   }
+  decoded.file = std::move(file);
+  return decoded;
 }
-
-std::variant<DagInput, EsvoFile> open(const std::filesystem::path& path, Progress* progress) {
-  if (is_esvo_file(path)) return EsvoFile(path);
-  return DagInput(path, progress);
-}
-
-}  // namespace
 
 DagInput::DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory)
-    : dag_(Svdag()) {
+    : dag_(Decoded()) {
   if (is_compact_file(path)) {
-    const CompactFile file(path);
-    memory_ = MemoryReservation(memory, file.file_bytes());
-    dag_ = decode(file, path, memory, progress);
-    metadata_ = file.metadata();
-    file_bytes_ = file.file_bytes();
-    memory_.resize(std::get<Svdag>(dag_).view().bytes());
+    Decoded decoded = decode(path, progress, memory);
+    metadata_ = decoded.file->metadata();
+    file_bytes_ = decoded.file->file_bytes();
+    const bool is_kept = decoded.file->contents().has_attributes();
+    if (!is_kept) decoded.file.reset();
+    memory_ = MemoryReservation(memory, decoded.view().bytes() + decoded.index.view().bytes() +
+                                            (is_kept ? file_bytes_ : 0));
+    dag_ = std::move(decoded);
   } else {
     VdagFile file(path);
     metadata_ = file.metadata();
@@ -50,8 +69,15 @@ SvdagView DagInput::view() const {
 }
 
 DagAttributesView DagInput::attributes() const {
-  const VdagFile* const plain = std::get_if<VdagFile>(&dag_);
-  return plain == nullptr ? DagAttributesView{} : plain->attributes();
+  DagAttributesView view =
+      std::visit([](const auto& dag) -> DagAttributesView { return dag.attributes(); }, dag_);
+  if (material_colors_) view.colors = material_colors_->view();
+  return view;
+}
+
+void DagInput::show_materials(const std::filesystem::path& path, Progress* progress) {
+  if (!attributes().has_materials()) fail_without_materials(path);
+  material_colors_ = material_colors(attributes().materials, progress);
 }
 
 SceneInput::SceneInput(const std::filesystem::path& path, Progress* progress)
@@ -64,6 +90,12 @@ VoxelSet SceneInput::voxels() const {
 ColoredDagView SceneInput::colored_dag() const {
   const DagInput* const dag = std::get_if<DagInput>(&scene_);
   return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
+}
+
+void SceneInput::show_materials(const std::filesystem::path& path, Progress* progress) {
+  DagInput* const dag = std::get_if<DagInput>(&scene_);
+  if (dag == nullptr) fail_without_materials(path);
+  dag->show_materials(path, progress);
 }
 
 const SceneMetadata& SceneInput::metadata() const {

@@ -1,9 +1,11 @@
 #pragma once
 /// Opens the scene of a command: a DAG in either form, or an ESVO.
 #include <filesystem>
+#include <optional>
 #include <variant>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/layout/voxel_set.hpp"
@@ -19,16 +21,32 @@ class DagInput {
   DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
 
   SvdagView view() const;
-  /// Returns the colours and normals of the DAG's cells; empty if the file has none.
+  /// Returns the attributes of the DAG's cells; empty if the file has none.
   DagAttributesView attributes() const;
   const VdagMetadata& metadata() const { return metadata_; }
   const Grid& grid() const { return metadata_.grid; }
   std::uint64_t file_bytes() const { return file_bytes_; }
+  /// Replaces the colours by one for each material. Throws Error if the file has no material ids.
+  void show_materials(const std::filesystem::path& path, Progress* progress);
   /// Returns whether the file has the compact form.
-  bool is_compact() const { return std::holds_alternative<Svdag>(dag_); }
+  bool is_compact() const { return std::holds_alternative<Decoded>(dag_); }
 
  private:
-  std::variant<VdagFile, Svdag> dag_;
+  /// What a compact file holds.
+  struct Decoded {
+    std::optional<CompactFile> file;  ///< The attributes point into it. None: no attributes.
+    Svdag dag;
+    CellIndex index;           ///< The numbers of the cells with attributes.
+    DagAttributesView stored;  ///< Of `file` and `index`; stays valid when they are moved.
+
+    SvdagView view() const { return dag.view(); }
+    const DagAttributesView& attributes() const { return stored; }
+  };
+  static Decoded decode(const std::filesystem::path& path, Progress* progress,
+                        MemoryBudget* memory);
+
+  std::variant<VdagFile, Decoded> dag_;
+  std::optional<ValuePages> material_colors_;  ///< After show_materials().
   VdagMetadata metadata_;
   std::uint64_t file_bytes_ = 0;
   MemoryReservation memory_;
@@ -45,6 +63,8 @@ class SceneInput {
   ColoredDagView colored_dag() const;
   const SceneMetadata& metadata() const;
   const Grid& grid() const { return metadata().grid; }
+  /// Does what DagInput::show_materials() does. An ESVO has no material ids.
+  void show_materials(const std::filesystem::path& path, Progress* progress);
 
  private:
   std::variant<DagInput, EsvoFile> scene_;

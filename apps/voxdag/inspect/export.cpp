@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
@@ -15,7 +17,8 @@ namespace voxdag {
 namespace {
 
 struct ExportArguments {
-  std::string output;
+  std::string output, look;
+  bool grey = false;
   ExportOptions options;
   bool faces = false;
   ShownSceneArguments page;
@@ -41,6 +44,8 @@ void export_file(ExportArguments& arguments, Session& session) {
     session.progress.throw_if_cancelled();
     session.progress.report("export", fraction, done);
   };
+  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);
   export_voxels(arguments.output, voxels, file.grid(),
                 arguments.faces ? PlyContent::kFaces : PlyContent::kPoints, arguments.options);
 }
@@ -93,9 +98,23 @@ void add_export_command(const Command& program, Session& session) {
             "With .ply: write the outer faces of the voxels, not points")
       .only_if([arguments] { return arguments->output.ends_with(".ply"); },
                "on an output that does not end in .ply");
+  const auto carries_look = [arguments] {
+    return arguments->output.ends_with(".ply") ||
+           (arguments->output.ends_with(".npy") && !arguments->options.window);
+  };
+  constexpr const char* kCarriesNone =
+      "on an output that cannot hold colours, normals and materials";
+  const Option look = add_look_option(command, arguments->look).only_if(carries_look, kCarriesNone);
+  command
+      .flag(
+          "--grey", arguments->grey,
+          "Leave out colours, normals and materials: an .npy file is a plain array of coordinates")
+      .only_if(carries_look, kCarriesNone)
+      .not_with(look);
   add_page_options(command, *arguments);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
+    session.inputs = {arguments->look};
     check_outputs(*arguments, session);
     session.work = [arguments, &session] { export_file(*arguments, session); };
   });

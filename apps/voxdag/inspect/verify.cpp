@@ -2,6 +2,7 @@
 /// mesh.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "inspect/verify_compact.hpp"
+#include "voxdag/attributes/check_attributes.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
@@ -55,11 +57,8 @@ void announce_samples(std::uint64_t samples, const Check& check, Session& sessio
                 probe / static_cast<double>(kProbe) * static_cast<double>(samples), session);
 }
 
-VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
-  if (!arguments.displace.texture.empty())
-    throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
-  const DagInput file(session.subject, &session.progress);
-  const Mesh mesh = read_mesh_file(arguments.mesh, arguments.access, session);
+VerifyCheck cover_check(const VerifyArguments& arguments, const DagInput& file, const Mesh& mesh,
+                        Session& session) {
   const auto check_samples = [&](std::uint64_t samples) {
     return check_cover(file.view(), file.grid(), mesh, samples, arguments.seed, &session.progress);
   };
@@ -78,6 +77,78 @@ VerifyCheck cover_check(const VerifyArguments& arguments, Session& session) {
                                with_commas(cover.covered));
   }
   return check;
+}
+
+/// Compares one kind of attribute: its largest error with the encoder's bound and a tolerance for
+/// rounding. `unit` follows the errors.
+VerifyCheck value_check(const char* name, const ValueCheck& values, double bound, double tolerance,
+                        const char* unit, const std::string& mesh) {
+  VerifyCheck check{name, Result::kPassed, {}};
+  const double allowed = bound + tolerance;
+  if (values.largest_error <= allowed) {
+    check.detail =
+        fmt::format("{} cells, largest error {:.4g}{} of {:.4g}{}", with_commas(values.cells),
+                    values.largest_error, unit, allowed, unit);
+    return check;
+  }
+  check.result = Result::kFailed;
+  check.detail = fmt::format(
+      "cell ({}, {}, {}) of level {} differs from {} by {:.4g}{}; the bound and rounding allow "
+      "{:.4g}{}",
+      values.worst.x, values.worst.y, values.worst.z, values.worst_level, mesh,
+      values.largest_error, unit, allowed, unit);
+  return check;
+}
+
+/// Compares the attributes with the mesh; none if the file has none.
+std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, const DagInput& file,
+                                          const MeshWithAppearance& source, Session& session) {
+  const DagAttributesView attributes = file.attributes();
+  if (attributes.is_empty()) return {};
+  if (attributes.has_materials() && source.mesh.triangle_materials.empty())
+    return {{"material ids", Result::kFailed, arguments.mesh + " has no materials"}};
+  const SurfaceShading shading(source.mesh, source.appearance, nullptr, &session.progress);
+  const AttributeCheck found =
+      check_attributes(source.mesh, file.grid(), {file.view(), attributes}, shading,
+                       arguments.samples, arguments.seed, &session.progress);
+  const AttributesMetadata& stored = file.metadata().attributes;
+  std::vector<VerifyCheck> checks;
+  if (attributes.has_colors())
+    checks.push_back(value_check("colours", found.colors, stored.colors->bound, kColorTolerance, "",
+                                 arguments.mesh));
+  if (attributes.has_normals())
+    checks.push_back(value_check("normals", found.normals, stored.normals->bound, kNormalTolerance,
+                                 "°", arguments.mesh));
+  if (attributes.has_materials())
+    checks.push_back(value_check("material ids", found.materials, 0, kMaterialTolerance,
+                                 " of the area", arguments.mesh));
+  return checks;
+}
+
+/// Returns the mesh with materials that say nothing.
+MeshWithAppearance without_appearance(Mesh mesh) {
+  MeshWithAppearance source;
+  source.appearance.materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
+  source.mesh = std::move(mesh);
+  return source;
+}
+
+/// Compares a DAG with the mesh.
+std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& session) {
+  if (!arguments.displace.texture.empty())
+    throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
+  const DagInput file(session.subject, &session.progress);
+  MeshWithAppearance source;
+  if (file.attributes().has_colors() || file.attributes().has_normals())
+    source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
+  else
+    source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
+  std::vector<VerifyCheck> checks = {cover_check(arguments, file, source.mesh, session)};
+  // The voxels of another mesh have other colours.
+  if (checks[0].result != Result::kPassed) return checks;
+  for (VerifyCheck& check : attribute_checks(arguments, file, source, session))
+    checks.push_back(std::move(check));
+  return checks;
 }
 
 void print_checks(const std::vector<VerifyCheck>& checks, bool json) {
@@ -150,9 +221,9 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
   return check;
 }
 
-VerifyCheck mesh_check(const VerifyArguments& arguments, Session& session) {
-  return is_esvo_file(session.subject) ? enclosure_check(arguments, session)
-                                       : cover_check(arguments, session);
+std::vector<VerifyCheck> mesh_checks(const VerifyArguments& arguments, Session& session) {
+  if (is_esvo_file(session.subject)) return {enclosure_check(arguments, session)};
+  return dag_checks(arguments, session);
 }
 
 /// Returns whether the file is a compact DAG; false for a file that is damaged.
@@ -171,7 +242,8 @@ void verify(const VerifyArguments& arguments, Session& session) {
   session.progress.throw_if_cancelled();
   if (!arguments.mesh.empty()) {
     if (report.passed())
-      report.checks.push_back(mesh_check(arguments, session));
+      for (VerifyCheck& check : mesh_checks(arguments, session))
+        report.checks.push_back(std::move(check));
     else
       report.checks.push_back(
           {"mesh", Result::kSkipped, "not checked, because the file is damaged"});
@@ -188,11 +260,13 @@ void add_verify_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<VerifyArguments>();
   const Command command = program.add(
       "verify",
-      "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh also its voxels",
+      "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh also its voxels "
+      "and attributes",
       "voxdag verify sponza.vdag --mesh sponza.obj");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
-  const Option mesh = command.text("--mesh", arguments->mesh, "MESH",
-                                   "Compare the voxels with this mesh, in random cells or points");
+  const Option mesh =
+      command.text("--mesh", arguments->mesh, "MESH",
+                   "Compare voxels and attributes with this mesh, in random cells or points");
   command
       .number("--samples", arguments->samples, NumberRange::whole(0, kMostSamples), "N",
               "With --mesh: number of random cells or points")

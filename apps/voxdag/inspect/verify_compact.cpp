@@ -6,6 +6,7 @@
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/file_copy.hpp"
+#include "voxdag/layout/build_cell_index.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 
@@ -50,6 +51,15 @@ VerifyReport verify_compact(const std::filesystem::path& path, Progress& progres
   check("canonical", {kStructure}, [&] { check_bytes(dag, contents, progress); });
   check("counts", {kStructure},
         [&] { compare_counts(contents.metadata.counts, count_svdag(dag.view())); });
+  check("attributes", {kStructure}, [&] {
+    CellIndex index;
+    DagAttributesView stored;
+    if (contents.has_attributes()) {
+      index = build_cell_index(dag.view(), contents.metadata.attributes.level());
+      stored = contents.attributes(index.view());
+    }
+    if (!dag.view().is_empty()) compare_attributes(contents.metadata.attributes, stored);
+  });
   return report;
 }
 

@@ -19,13 +19,19 @@ namespace voxdag {
 namespace {
 
 void render_loaded(const RenderArguments& arguments, Session& session) {
-  const SceneInput file(session.subject, &session.progress);
+  SceneInput file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
-  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  if (arguments.materials && look)
+    look->show_materials(arguments.look, &session.progress);
+  else if (arguments.materials)
+    file.show_materials(session.subject, &session.progress);
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   const LookOnDevice look_on_device(arguments.device, look ? *look : file, !look, device_scene);
   options.look = look_on_device.view();
+  if (!arguments.view.colors) options.look.dag.attributes.colors = {};
+  if (!arguments.view.normals) options.look.dag.attributes.normals = {};
   std::optional<CpuScene> cpu_scene;
   if (!device_scene) cpu_scene.emplace(scene);
   const std::unique_ptr<ViewSource> source =
@@ -46,7 +52,8 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
     print_picture_summary(arguments.output, image, seconds, device_name(device_scene));
 }
 
-void render(const RenderArguments& arguments, Session& session) {
+void render(RenderArguments& arguments, Session& session) {
+  apply_view_file(arguments, session);
   for (const PicturePass& pass : all_passes(arguments)) check_writable(frame_name(pass.path, 0));
   if (arguments.stream_memory == 0) return render_loaded(arguments, session);
   if (!is_esvo_file(session.subject))

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/output_files.hpp"
 #include "voxdag/film/frame_names.hpp"
+#include "voxdag/film/view_settings.hpp"
 
 namespace voxdag {
 namespace {
@@ -61,7 +63,7 @@ void check_view(const ViewRequest& view) {
 }  // namespace
 
 void check_render_arguments(RenderArguments& arguments, Session& session) {
-  session.inputs = {arguments.mesh.file, arguments.path.file, arguments.look};
+  session.inputs = {arguments.mesh.file, arguments.path.file, arguments.look, arguments.view.file};
   if (arguments.mesh.primary == "mesh" && arguments.mesh.file.empty())
     throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
@@ -70,6 +72,48 @@ void check_render_arguments(RenderArguments& arguments, Session& session) {
   if (arguments.options.lights.size() > kMostLights)
     throw UsageError("--light", fmt::format("is given {} times; at most {} are allowed",
                                             arguments.options.lights.size(), kMostLights));
+}
+
+bool ViewFileArguments::has(const std::string& option) const {
+  return std::any_of(winners.begin(), winners.end(), [&](const Option& winner) {
+    return winner.name() == option && winner.is_given();
+  });
+}
+
+void apply_view_file(RenderArguments& arguments, Session& session) {
+  ViewFileArguments& view = arguments.view;
+  if (view.file.empty()) return;
+  const ViewSettings settings = read_view_settings(view.file);
+  RenderOptions& options = arguments.options;
+  const RenderOptions& saved = settings.options;
+  const auto take = [&](const char* option, auto& value, const auto& from_file) {
+    if (!view.has(option)) value = from_file;
+  };
+  // A camera path has the views of a film.
+  if (arguments.path.file.empty()) {
+    take("--eye", options.view.eye, saved.view.eye);
+    take("--target", options.view.target, saved.view.target);
+    take("--up", options.view.up, saved.view.up);
+    take("--fov", options.view.vertical_fov_degrees, saved.view.vertical_fov_degrees);
+  }
+  take("--sun", options.sun, saved.sun);
+  take("--sun-angle", options.sun_degrees, saved.sun_degrees);
+  // Who gives a sun wants to see it.
+  if (!view.has("--sun") && !view.has("--sun-angle"))
+    take("--no-sun", options.with_sun, saved.with_sun);
+  take("--sky", options.sky, saved.sky);
+  take("--no-shadows", options.shadows, saved.shadows);
+  take("--exposure", options.exposure, saved.exposure);
+  take("--ao", options.occlusion_samples, saved.occlusion_samples);
+  take("--ao-distance", options.occlusion_distance, saved.occlusion_distance);
+  take("--ao-cone", options.occlusion_cone, saved.occlusion_cone);
+  take("--lod", options.lod_pixels, saved.lod_pixels);
+  take("--cubes", options.cube_pixels, saved.cube_pixels);
+  view.colors = settings.colors;
+  view.normals = settings.normals;
+  std::vector<std::string> warnings;
+  for (const std::string& text : settings.ignored) warnings.push_back(view.file + ": " + text);
+  print_warnings(warnings, session);
 }
 
 std::vector<PicturePass> all_passes(const RenderArguments& arguments) {

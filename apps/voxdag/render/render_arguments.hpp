@@ -30,9 +30,20 @@ struct PathArguments {
   double frames_per_second = 30;
 };
 
+/// The option --view: settings of the viewer.
+struct ViewFileArguments {
+  std::string file;                    ///< Empty: none.
+  std::vector<Option> winners;         ///< The options that win over the file if they are given.
+  bool colors = true, normals = true;  ///< Show those of a DAG.
+
+  bool has(const std::string& option) const;  ///< Whether this option of `winners` is given.
+};
+
 struct RenderArguments {
   std::string output, depth, normal;
+  ViewFileArguments view;
   std::string look;                 ///< The ESVO with the look of a DAG's voxels; empty: none.
+  bool materials = false;           ///< Show each material in a colour of its own.
   std::vector<PicturePass> passes;  ///< Values of --pass.
   ImageSize size{1920, 1080};
   RenderOptions options;
@@ -50,6 +61,10 @@ void add_render_options(const Command& command, Session& session, RenderArgument
 /// Throws UsageError for values or combinations that are wrong for every scene, and for wrong
 /// outputs.
 void check_render_arguments(RenderArguments& arguments, Session& session);
+
+/// Reads the file of --view, if there is one, into the options that are not given. Prints a line
+/// for each setting that it ignores. Throws Error with the file and the key.
+void apply_view_file(RenderArguments& arguments, Session& session);
 
 /// Returns all passes to write: the picture, --depth, --normal and --pass.
 std::vector<PicturePass> all_passes(const RenderArguments& arguments);

@@ -62,46 +62,51 @@ struct ViewOptions {
   Option eye, target;
 };
 
-ViewOptions add_view_options(const Command& command, ViewRequest& view) {
+using Options = std::vector<Option>;
+
+ViewOptions add_view_options(const Command& command, ViewRequest& view, Options& winners) {
   const Option eye = command.parsed("--eye", view.eye, parse_vec3, "X,Y,Z",
                                     "Position of the camera (default: chosen to show the scene)");
   const Option target =
       command.parsed("--target", view.target, parse_vec3, "X,Y,Z",
                      "Point in the centre of the picture (default: chosen to show the scene)");
-  command.parsed(
+  winners.push_back(command.parsed(
       "--up", view.up, parse_direction, "X,Y,Z",
-      "Direction that is up (default: y, or z if the shape of the scene shows that z is up)");
-  command.optional_number<double>(
+      "Direction that is up (default: y, or z if the shape of the scene shows that z is up)"));
+  winners.push_back(command.optional_number<double>(
       "--fov", view.vertical_fov_degrees, NumberRange::half_open(kLeastFovDegrees, 180), "DEGREES",
-      "Vertical angle of view, below 180 (default: chosen to show the scene)");
+      "Vertical angle of view, below 180 (default: chosen to show the scene)"));
+  winners.insert(winners.end(), {eye, target});
   return {eye, target};
 }
 
-void add_sun_options(const Command& command, RenderOptions& options) {
+void add_sun_options(const Command& command, RenderOptions& options, Options& winners) {
   const auto has_sun = [&options] { return options.with_sun; };
-  command
-      .parsed("--sun", options.sun, parse_direction, "X,Y,Z",
-              "Direction towards the sun (default: over the viewer's left shoulder)")
-      .only_if(has_sun, "with --no-sun");
-  command
-      .number("--sun-angle", options.sun_degrees, NumberRange::from(0, 89), "DEGREES",
-              "Angular diameter of the sun; 0: hard shadows")
-      .only_if(has_sun, "with --no-sun");
-  command.off_switch("--no-sun", options.with_sun, "Turn the sun off");
+  winners.push_back(
+      command
+          .parsed("--sun", options.sun, parse_direction, "X,Y,Z",
+                  "Direction towards the sun (default: over the viewer's left shoulder)")
+          .only_if(has_sun, "with --no-sun"));
+  winners.push_back(command
+                        .number("--sun-angle", options.sun_degrees, NumberRange::from(0, 89),
+                                "DEGREES", "Angular diameter of the sun; 0: hard shadows")
+                        .only_if(has_sun, "with --no-sun"));
+  winners.push_back(command.off_switch("--no-sun", options.with_sun, "Turn the sun off"));
 }
 
-void add_light_options(const Command& command, RenderOptions& options) {
-  add_sun_options(command, options);
+void add_light_options(const Command& command, RenderOptions& options, Options& winners) {
+  add_sun_options(command, options, winners);
   command.repeated(
       "--light", options.lights, parse_light, "KIND:...",
       "Add a light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
       "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
-  command.number("--sky", options.sky, NumberRange::from(0, 1e6), "FACTOR",
-                 "Factor that scales the light of the sky; 0: black");
+  winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, 1e6), "FACTOR",
+                                   "Factor that scales the light of the sky; 0: black"));
   const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
-  command
-      .off_switch("--no-shadows", options.shadows, "Turn the shadows of the sun and the lights off")
-      .only_if(has_lights, "without sun and lights");
+  winners.push_back(command
+                        .off_switch("--no-shadows", options.shadows,
+                                    "Turn the shadows of the sun and the lights off")
+                        .only_if(has_lights, "without sun and lights"));
   command
       .parsed("--specular", options.specular, parse_specular, "STRENGTH[:EXPONENT]",
               "Add Phong highlights of the sun and the lights: the mirrored part of the light, 0 "
@@ -114,30 +119,34 @@ void add_light_options(const Command& command, RenderOptions& options) {
       .only_if([&options] { return has_soft_light(options); }, "without a light with soft edges");
 }
 
-void add_occlusion_options(const Command& command, RenderOptions& options) {
+void add_occlusion_options(const Command& command, RenderOptions& options, Options& winners) {
   const auto has_occlusion = [&options] { return options.occlusion_samples > 0; };
-  command.number("--ao", options.occlusion_samples, NumberRange::whole(0, 4096), "N",
-                 "Ambient occlusion rays per pixel; 0: none");
-  command
-      .parsed("--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
+  winners.push_back(command.number("--ao", options.occlusion_samples, NumberRange::whole(0, 4096),
+                                   "N", "Ambient occlusion rays per pixel; 0: none"));
+  winners.push_back(
+      command
+          .parsed(
+              "--ao-distance", options.occlusion_distance, parse_positive, "LENGTH",
               "Length of ambient occlusion rays, in world units (default: 0.15 of the grid's side)")
-      .only_if(has_occlusion, "with --ao 0");
-  command
-      .number("--ao-cone", options.occlusion_cone, NumberRange::from(0, 6), "SR",
-              "End ambient occlusion rays at cells of this solid angle, such as 0.07; 0: never")
-      .only_if(has_occlusion, "with --ao 0");
+          .only_if(has_occlusion, "with --ao 0"));
+  winners.push_back(
+      command
+          .number("--ao-cone", options.occlusion_cone, NumberRange::from(0, 6), "SR",
+                  "End ambient occlusion rays at cells of this solid angle, such as 0.07; 0: never")
+          .only_if(has_occlusion, "with --ao 0"));
 }
 
-void add_quality_options(const Command& command, RenderOptions& options) {
+void add_quality_options(const Command& command, RenderOptions& options, Options& winners) {
   command.number("--spp,--samples", options.samples_per_pixel, NumberRange::whole(1, 4096), "N",
                  "Samples per pixel");
-  command.number("--lod", options.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
-                 "End rays at cells of this size in the picture; 0: always at voxels");
+  winners.push_back(
+      command.number("--lod", options.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
+                     "End rays at cells of this size in the picture; 0: always at voxels"));
   command.off_switch("--no-beams", options.beams,
                      "Do not shorten rays by beams: slower, the same picture");
-  command.optional_number<float>(
+  winners.push_back(command.optional_number<float>(
       "--exposure", options.exposure, NumberRange::positive(), "FACTOR",
-      "Factor that scales the light before tone mapping (default: chosen for the picture)");
+      "Factor that scales the light before tone mapping (default: chosen for the picture)"));
 }
 
 Option add_mesh_options(const Command& command, MeshArguments& mesh) {
@@ -159,6 +168,12 @@ Option add_mesh_options(const Command& command, MeshArguments& mesh) {
 
 void add_filter_options(const Command& command, RenderArguments& arguments) {
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
+  arguments.view.winners.push_back(
+      command
+          .number("--cubes", arguments.options.cube_pixels, NumberRange::from(0, 1e6), "PIXELS",
+                  "Show voxels as cubes if they are larger in the picture, and as smooth surfaces "
+                  "below half of that; 0: always cubes")
+          .only_if(shows_voxels, "with --mesh"));
   const Option filter = command
                             .flag("--filter", arguments.filter,
                                   "Smooth voxels that are larger than pixels (default for an ESVO)")
@@ -201,10 +216,14 @@ void add_render_options(const Command& command, Session& session, RenderArgument
       .required();
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
                  "Width and height in pixels (default: 1920x1080)");
-  const ViewOptions view = add_view_options(command, options.view);
-  add_light_options(command, options);
-  add_occlusion_options(command, options);
-  add_quality_options(command, options);
+  Options& winners = arguments.view.winners;
+  const ViewOptions view = add_view_options(command, options.view, winners);
+  add_light_options(command, options, winners);
+  add_occlusion_options(command, options, winners);
+  add_quality_options(command, options, winners);
+  command.text("--view", arguments.view.file, "SETTINGS.json",
+               "Take the camera, the light and the quality from settings that the viewer saved; "
+               "other options win over them");
   add_filter_options(command, arguments);
   command.text("--depth", arguments.depth, "OUT", "Same as --pass depth=OUT");
   command.text("--normal", arguments.normal, "OUT", "Same as --pass normal=OUT");
@@ -213,6 +232,12 @@ void add_render_options(const Command& command, Session& session, RenderArgument
                    "or steps64 to a .exr or .png file; repeatable");
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
   add_look_option(command, arguments.look).only_if(shows_voxels, "with --mesh");
+  command
+      .flag("--materials", arguments.materials,
+            "Show each material in a colour of its own, if the file or --look has material ids")
+      .only_if(shows_voxels, "with --mesh")
+      .only_if([&arguments] { return arguments.stream_memory == 0; },
+               "with --memory: ESVOs have no material ids");
   add_mesh_options(command, arguments.mesh);
   add_path_options(command, arguments.path, view);
   add_device_option(command, arguments.device);

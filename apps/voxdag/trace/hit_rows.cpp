@@ -29,6 +29,10 @@ HitRows::HitRows(int levels, const LookView& look) : levels_(levels), look_(look
     dtype_ += ", ('color', '|u1', (3,))";
     row_bytes_ += sizeof(Vec3<std::uint8_t>);
   }
+  if (look.has_materials()) {
+    dtype_ += ", ('material', '<u2')";
+    row_bytes_ += sizeof(std::uint16_t);
+  }
   dtype_ += "]";
 }
 
@@ -43,7 +47,7 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   put(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
   put(row, hit.hit ? hit.face : Face::kNone);
   put(row, hit.hit);
-  if (!normals_ && !colors_) return;
+  if (!normals_ && !colors_ && !look_.has_materials()) return;
   Vec3f normal{};
   Vec3<std::uint8_t> color{};
   const int shift = levels_ - hit.level;
@@ -55,6 +59,9 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   }
   if (normals_) put(row, normal);
   if (colors_) put(row, color);
+  if (look_.has_materials())
+    put(row, static_cast<std::uint16_t>(hit.hit ? material_at(look_.dag, cell, hit.level)
+                                                : kMostMaterials));
 }
 
 }  // namespace voxdag

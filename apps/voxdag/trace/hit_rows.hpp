@@ -9,8 +9,8 @@
 
 namespace voxdag {
 
-/// Rows of a structured array without padding: t, voxel, face, hit, and the normal and the colour
-/// of the voxel if `look` stores them. Normals and colours are looked up by voxel, so they do not
+/// Rows of a structured array without padding: t, voxel, face, hit, and the normal, the colour and
+/// the material of the voxel if `look` stores them. They are looked up by voxel, so they do not
 /// depend on the device that cast the ray.
 class HitRows {
  public:

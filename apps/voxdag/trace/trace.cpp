@@ -10,9 +10,12 @@
 #include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
 #include "cli/scene_input.hpp"
+#include "cli/usage_error.hpp"
 #include "trace/hit_rows.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -24,22 +27,16 @@ constexpr std::size_t kBatch = std::size_t{1} << 20;
 
 struct TraceArguments {
   std::string rays, output, look;
+  bool in_place = false;
   DeviceChoice device;
 };
 
-void trace(const TraceArguments& arguments, Session& session) {
-  const SceneInput file(session.subject, &session.progress);
-  const VoxelSet scene = file.voxels();
-  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
-  const std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
-  std::optional<CudaTracer> cuda;
-  if (device_scene) cuda.emplace(*device_scene, file.grid());
-  NpyReader reader(arguments.rays, "<f4", {8}, sizeof(float));
-  std::optional<CpuScene> cpu_scene;
-  if (!cuda) cpu_scene.emplace(scene, reader.rows());
-  const HitRows hit_rows(scene.levels(), look_of(look ? *look : file));
+/// Casts all rays of the file with cast(rays, hits) and writes the hits. Returns the line that says
+/// so.
+template <class Cast>
+std::string trace_rays(const TraceArguments& arguments, const HitRows& hit_rows, NpyReader& reader,
+                       const std::string& device, Session& session, const Cast& cast) {
   NpyWriter writer(arguments.output, hit_rows.dtype(), {}, hit_rows.row_bytes(), reader.rows());
-
   const std::size_t batch =
       static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
   std::vector<Ray> rays(batch);
@@ -48,12 +45,8 @@ void trace(const TraceArguments& arguments, Session& session) {
   std::uint64_t hit_count = 0;
   while (const std::size_t count = reader.read_rows(rays.data(), batch)) {
     session.progress.throw_if_cancelled();
-    const auto batch_rays = std::span(rays).first(count);
     const auto batch_hits = std::span(hits).first(count);
-    if (cuda)
-      cuda->trace(batch_rays, batch_hits);
-    else
-      trace_batch(*cpu_scene, file.grid(), batch_rays, batch_hits);
+    cast(std::span<const Ray>(rays).first(count), batch_hits);
     hit_rows.pack(batch_hits, rows.data());
     hit_count += static_cast<std::uint64_t>(
         std::count_if(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count),
@@ -64,10 +57,69 @@ void trace(const TraceArguments& arguments, Session& session) {
         writer.rows_written());
   }
   writer.commit();
+  return fmt::format("{}: {} rays, {} hits, on {}\n", arguments.output, with_commas(reader.rows()),
+                     with_commas(hit_count), device);
+}
+
+NpyReader ray_reader(const TraceArguments& arguments) {
+  return NpyReader(arguments.rays, "<f4", {8}, sizeof(float));
+}
+
+std::string trace_scene(const TraceArguments& arguments, Session& session) {
+  const SceneInput file(session.subject, &session.progress);
+  const VoxelSet scene = file.voxels();
+  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  const std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
+  std::optional<CudaTracer> cuda;
+  if (device_scene) cuda.emplace(*device_scene, file.grid());
+  NpyReader reader = ray_reader(arguments);
+  std::optional<CpuScene> cpu_scene;
+  if (!cuda) cpu_scene.emplace(scene, reader.rows());
+  const HitRows hit_rows(scene.levels(), look_of(look ? *look : file));
+  return trace_rays(arguments, hit_rows, reader, device_name(device_scene), session,
+                    [&](std::span<const Ray> rays, std::span<Hit> hits) {
+                      if (cuda)
+                        cuda->trace(rays, hits);
+                      else
+                        trace_batch(*cpu_scene, file.grid(), rays, hits);
+                    });
+}
+
+/// Opens the file in the compact form. Throws Error if it has another form.
+CompactFile compact_file(const std::string& path) {
+  if (!is_compact_file(path))
+    throw Error(path, "", "does not have the compact form, which --in-place needs");
+  CompactFile file(path);
+  if (file.view().levels < 4)
+    throw Error(path, "", "has fewer than 16³ voxels, too few for --in-place");
+  return file;
+}
+
+InPlaceDag open_in_place(const CompactFile& file, Session& session) {
+  try {
+    return InPlaceDag(file.view(), InPlaceDag::kCachedUnits, &session.progress);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    throw error.in_file(session.subject);
+  }
+}
+
+std::string trace_in_place(const TraceArguments& arguments, Session& session) {
+  const CompactFile file = compact_file(session.subject);
+  const InPlaceDag dag = open_in_place(file, session);
+  NpyReader reader = ray_reader(arguments);
+  return trace_rays(arguments, HitRows(dag.levels(), {}), reader, "the CPU", session,
+                    [&](std::span<const Ray> rays, std::span<Hit> hits) {
+                      trace_batch(dag, file.grid(), rays, hits);
+                    });
+}
+
+void trace(const TraceArguments& arguments, Session& session) {
+  const std::string done =
+      arguments.in_place ? trace_in_place(arguments, session) : trace_scene(arguments, session);
   session.bar.clear();
-  if (!session.quiet)
-    fmt::print("{}: {} rays, {} hits, on {}\n", arguments.output, with_commas(reader.rows()),
-               with_commas(hit_count), device_name(device_scene));
+  if (!session.quiet) fmt::print("{}", done);
 }
 
 }  // namespace
@@ -85,16 +137,24 @@ void add_trace_command(const Command& program, Session& session) {
   command
       .text("-o,--output", arguments->output, "HITS.npy",
             "Structured array of shape (N,): t, voxel, face (0 to 5: -x, +x, -y, +y, -z, +z; -1: "
-            "the ray starts inside), hit; if the scene or --look stores normals or colours, also "
-            "normal (world space) or color (sRGB, 0 to 255)")
+            "the ray starts inside), hit; if the scene or --look stores normals, colours or "
+            "materials, also normal (world space), color (sRGB, 0 to 255) or material (65535: "
+            "none)")
       .required();
-  add_look_option(command, arguments->look);
+  const Option look = add_look_option(command, arguments->look);
+  command
+      .flag("--in-place", arguments->in_place,
+            "Cast at a file in the compact form without decoding it, on the CPU: less memory, more "
+            "time; no normals and colours")
+      .not_with(look);
   add_device_option(command, arguments->device);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {
     session.inputs = {arguments->rays, arguments->look};
     check_distinct({{"--output", arguments->output}}, session);
+    if (arguments->in_place && arguments->device.kind == DeviceChoice::Kind::kCuda)
+      throw UsageError("--in-place", "casts on the CPU, not on a CUDA device");
     session.work = [arguments, &session] { trace(*arguments, session); };
   });
 }

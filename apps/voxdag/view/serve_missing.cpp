@@ -4,12 +4,13 @@
 
 namespace voxdag {
 
-bool has_page_server() { return false; }
-
-void serve_scene(const SceneBytes&, const ServeArguments&, Session&) {
+void require_page_server() {
   throw Error(
-      "this voxdag was built without its server, which needs cpp-httplib 0.11: `voxdag export "
-      "FILE -o FOLDER/` writes a page for any other server");
+      "this voxdag was built without its server, which needs cpp-httplib 0.11: `voxdag export FILE "
+      "-o "
+      "FOLDER/` writes a page for any other server");
 }
+
+void serve_scene(const SceneBytes&, const ServeArguments&, Session&) { require_page_server(); }
 
 }  // namespace voxdag

@@ -13,8 +13,8 @@ struct ServeArguments {
   bool open = true;  ///< Open the page in the browser if there is a display.
 };
 
-/// Returns whether this program has the server.
-bool has_page_server();
+/// Throws Error if this program was built without the server.
+void require_page_server();
 
 /// Prints the page's address as one line on stdout, and serves it. Throws Error if it cannot
 /// listen, and Cancelled when a signal ends it.

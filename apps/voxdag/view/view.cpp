@@ -15,6 +15,7 @@ struct ViewArguments {
 };
 
 void view(const ViewArguments& arguments, Session& session) {
+  require_page_server();
   const ShownScene scene = ShownScene::open(session.subject, arguments.scene, session);
   serve_scene(scene.bytes(), arguments.serve, session);
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "voxdag/attributes/filter_materials.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
 
 namespace voxdag {
@@ -22,6 +23,8 @@ class AttributeEncoder : public CellValueSink {
       normals = std::make_unique<ValueEncoder>(
           cells, make_normal_metric(options.normal_bound_degrees), options.memory);
   }
+
+  bool needs_normals() const override { return normals != nullptr; }
 
   void add(std::uint64_t first, std::span<const VoxelValue> values) override {
     while (!values.empty()) {
@@ -68,6 +71,11 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
   DagAttributes result;
   result.index = build_cell_index(dag, options.finest_level, options.memory);
   const MemoryReservation index_bytes(options.memory, result.index.view().bytes());
+  if (options.materials)
+    result.materials =
+        filter_materials(mesh, grid, dag, result.index.view(), options.memory, progress);
+  const MemoryReservation material_bytes(options.memory, result.materials.view().bytes());
+  if (!options.colors && !options.normals) return result;
   AttributeEncoder encoder(result.index.cells, options);
   filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, options.memory, progress);
   const auto finish = [](std::unique_ptr<ValueEncoder>& values, ValuePages& pages,

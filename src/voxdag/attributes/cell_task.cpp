@@ -17,8 +17,8 @@ void fill_unseen(std::span<VoxelValue> values, const VoxelValue& value) {
 
 CellFilter::CellFilter(const SvdagView& dag, const CellIndexView& index,
                        const TriangleSource& source, const SurfaceShading* shading,
-                       MemoryBudget* memory)
-    : dag_(dag), index_(index), source_(source), sampler_(shading), pieces_(memory) {}
+                       bool with_normals, MemoryBudget* memory)
+    : dag_(dag), index_(index), source_(source), sampler_(shading, with_normals), pieces_(memory) {}
 
 SurfaceSum CellFilter::filter(const CellTask& task, std::vector<VoxelValue>& values) {
   const std::uint64_t cells = cells_in(dag_, index_, task.cell);

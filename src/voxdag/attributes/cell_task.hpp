@@ -20,9 +20,10 @@ struct CellTask {
 /// Filters tasks, one at a time. Each thread has its own.
 class CellFilter {
  public:
-  /// Refers to the arguments. Counts the pieces of triangles in `memory`; null: no limit.
+  /// Refers to the arguments. Counts the pieces of triangles in `memory`; null: no limit. Without
+  /// `with_normals`, the normals of the values are meaningless unit vectors.
   CellFilter(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
-             const SurfaceShading* shading, MemoryBudget* memory);
+             const SurfaceShading* shading, bool with_normals, MemoryBudget* memory);
 
   /// The largest number of triangles that are cut into pieces at a time.
   static constexpr std::size_t kMostLoaded = 1 << 14;

@@ -1,5 +1,6 @@
 #include "voxdag/attributes/encode_page.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "voxdag/attributes/fit_block.hpp"
@@ -23,46 +24,122 @@ class PageWriter {
   EncodedPage& page_;
 };
 
-/// The blocks of a page while they merge.
+/// The sums of the units of a page, and then of its blocks while they merge.
 class PageMerger {
  public:
-  explicit PageMerger(const BlockFitter& fitter) : fitter_(fitter) {
-    for (int i = 0; i < kUnits; ++i)
-      blocks_[static_cast<std::size_t>(i)] = fitter.fit(i * kBlockUnit, (i + 1) * kBlockUnit);
-    count_ = kUnits;
-    for (std::size_t i = 0; i + 1 < count_; ++i) join(i);
+  PageMerger(std::span<const Value8, kPageValues> values, const ValueMetric& metric) {
+    for (int i = 0; i < kPageValues; ++i) {
+      const ValueSums of_value = ValueSums::of(values[static_cast<std::size_t>(i)], metric);
+      ValueSums& unit = sums_[static_cast<std::size_t>(i / kBlockUnit)];
+      unit = i % kBlockUnit == 0 ? of_value : unit + of_value;
+    }
+    units_ = sums_;
   }
 
-  /// Merges the two neighbours that save most bits, until every merge would cost bits.
-  void merge() {
+  /// Merges the two neighbours that save most cost, until every merge would add cost. A block is
+  /// named by its first unit.
+  void merge(const BlockEstimator& estimator) {
+    for (std::size_t i = 0; i < kUnits; ++i) {
+      next_[i] = i + 1;
+      before_[i] = i - 1;  // of no use for 0
+      costs_[i] = estimator.cost(static_cast<int>(i) * kBlockUnit, sums_[i]);
+    }
+    saved_.fill(-1);
+    for (std::size_t i = 0; i + 1 < kUnits; ++i) join(estimator, i);
     for (;;) {
-      std::size_t best = count_;
-      int most = -1;
-      for (std::size_t i = 0; i + 1 < count_; ++i) {
-        const int saved = blocks_[i].bits + blocks_[i + 1].bits - joined_[i].bits;
-        if (saved > most) {
-          most = saved;
-          best = i;
-        }
-      }
-      if (best == count_) return;
-      blocks_[best] = joined_[best];
-      --count_;
-      for (std::size_t i = best + 1; i < count_; ++i) blocks_[i] = blocks_[i + 1];
-      for (std::size_t i = best; i + 1 < count_; ++i) joined_[i] = joined_[i + 1];
-      if (best > 0) join(best - 1);
-      if (best + 1 < count_) join(best);
+      const std::size_t best = most_saved();
+      if (saved_[best] < 0) return;
+      const std::size_t gone = next_[best];
+      sums_[best] += sums_[gone];
+      costs_[best] = joined_costs_[best];
+      saved_[gone] = -1;
+      next_[best] = next_[gone];
+      if (next_[best] < kUnits) before_[next_[best]] = best;
+      join(estimator, best);
+      if (best > 0) join(estimator, before_[best]);
     }
   }
 
-  std::span<const FittedBlock> blocks() const { return {blocks_.data(), count_}; }
+  /// Calls use(first value, sums) for each block, in order.
+  template <class Use>
+  void for_each_block(const Use& use) const {
+    for (std::size_t i = 0; i < kUnits; i = next_[i])
+      use(static_cast<int>(i) * kBlockUnit, sums_[i]);
+  }
+
+  /// Returns the sums of the values from `begin` to `end` - 1, multiples of kBlockUnit.
+  ValueSums sums_between(int begin, int end) const {
+    ValueSums sums = units_[static_cast<std::size_t>(begin / kBlockUnit)];
+    for (int i = begin / kBlockUnit + 1; i < end / kBlockUnit; ++i)
+      sums += units_[static_cast<std::size_t>(i)];
+    return sums;
+  }
 
  private:
-  void join(std::size_t i) { joined_[i] = fitter_.fit(blocks_[i].begin, blocks_[i + 1].end()); }
+  /// Finds what a merge of block `i` with the next one saves.
+  void join(const BlockEstimator& estimator, std::size_t i) {
+    saved_[i] = -1;
+    const std::size_t other = next_[i];
+    if (other >= kUnits) return;
+    joined_costs_[i] = estimator.cost(static_cast<int>(i) * kBlockUnit, sums_[i] + sums_[other]);
+    saved_[i] = costs_[i] + costs_[other] - joined_costs_[i];
+  }
 
-  const BlockFitter& fitter_;
-  std::size_t count_ = 0;
-  std::array<FittedBlock, kUnits> blocks_, joined_;  // joined_[i]: blocks i and i + 1 as one
+  /// Returns the block whose merge saves most; the first of several.
+  std::size_t most_saved() const {
+    float most = saved_[0];
+    for (std::size_t i = 1; i < kUnits; ++i) most = std::max(most, saved_[i]);
+    std::size_t best = 0;
+    while (saved_[best] != most) ++best;
+    return best;
+  }
+
+  std::array<ValueSums, kUnits> units_, sums_;
+  std::array<std::size_t, kUnits> next_{}, before_{};
+  std::array<float, kUnits> costs_{}, joined_costs_{}, saved_{};
+};
+
+/// Writes the blocks of a page.
+class PageEncoder {
+ public:
+  PageEncoder(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
+              EndPrecision precision, const PageMerger& merger)
+      : merger_(merger), fitter_(values, metric, precision) {}
+
+  /// Calls use(block) for the fitted blocks, in order. Splits blocks for which only every value by
+  /// itself keeps the bound, as long as this saves cost.
+  template <class Use>
+  void for_each_fitted(const Use& use) const {
+    std::array<FittedBlock, kUnits> blocks;
+    merger_.for_each_block([&](int begin, const ValueSums& sums) {
+      std::size_t count = 0;
+      fit(begin, sums, blocks, count);
+      for (std::size_t i = 0; i < count; ++i) use(blocks[i]);
+    });
+  }
+
+  const BlockFitter& fitter() const { return fitter_; }
+
+ private:
+  /// Appends the blocks of values to `blocks`, and returns their cost.
+  float fit(int begin, const ValueSums& sums, std::array<FittedBlock, kUnits>& blocks,
+            std::size_t& count) const {
+    const FittedBlock whole = fitter_.fit(begin, sums);
+    const std::size_t first = count;
+    if (whole.block.type == ValueBlock::kRaw && sums.count > kBlockUnit) {
+      const int end = begin + sums.count;
+      const int middle = begin + sums.count / (2 * kBlockUnit) * kBlockUnit;
+      float parts = fit(begin, merger_.sums_between(begin, middle), blocks, count);
+      parts += fit(middle, merger_.sums_between(middle, end), blocks, count);
+      if (parts < whole.cost) return parts;
+      count = first;
+    }
+    blocks[count++] = whole;
+    return whole.cost;
+  }
+
+  const PageMerger& merger_;
+  const BlockFitter fitter_;
 };
 
 }  // namespace
@@ -77,41 +154,21 @@ void ValueErrors::count(Value8 given, Value8 stored) {
   absolute += static_cast<std::uint64_t>(256 * std::sqrt(static_cast<float>(sum)) + 0.5f);
 }
 
-ValueMetric make_value_metric(std::array<int, 3> weights, double bound) {
-  ValueMetric metric;
-  metric.weights = weights;
-  metric.bound = static_cast<int>(std::floor(bound * bound * metric.sum() + 1e-9));
-  return metric;
-}
-
-EndPrecision choose_precision(const ValueMetric& metric) {
-  for (int code = 0; code < 3; ++code) {
-    int worst = 0;
-    for (int c = 0; c < 3; ++c) {
-      // The values of neighbouring ends differ by at most this step.
-      const int step = (1 << (8 - EndPrecision{code}.channel_bits(c))) + 1;
-      worst += metric.weights[static_cast<std::size_t>(c)] * (step / 2) * (step / 2);
-    }
-    if (worst <= metric.bound) return {code};
-  }
-  return {3};
-}
-
 EncodedPage encode_page(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
                         EndPrecision precision, int given) {
-  const BlockFitter fitter(values, metric, precision);
-  PageMerger merger(fitter);
-  merger.merge();
+  PageMerger merger(values, metric);
+  merger.merge(BlockEstimator(values.data(), metric, precision));
+  const PageEncoder encoder(values, metric, precision, merger);
   EncodedPage page;
   PageWriter writer(page);
-  for (const FittedBlock& fitted : merger.blocks()) {
+  encoder.for_each_fitted([&](const FittedBlock& fitted) {
     writer.add(fitted.block.pack(), ValueBlock::kHeaderBits);
-    fitter.write(
+    encoder.fitter().write(
         fitted, [&](std::uint64_t value, int bits) { writer.add(value, bits); },
         [&](int i, Value8 stored) {
           if (i < given) page.errors.count(values[static_cast<std::size_t>(i)], stored);
         });
-  }
+  });
   return page;
 }
 

@@ -3,39 +3,18 @@
 ///
 /// Source: D. Dolonius, E. Sintorn, V. Kämpe and U. Assarsson, "Compressing Color Data for
 /// Voxelized Surface Geometry", I3D 2017. Blocks of values in depth-first order have two ends, and
-/// weights of as few bits as the error bound allows. A page begins as blocks of 4 values. In each
-/// step, the two neighbours merge that save most bits, until every merge would cost bits.
+/// weights of few bits. A page begins as blocks of 4 values. In each step, the two neighbours merge
+/// that save most cost, until every merge would add cost. Unlike in the paper, the cost of a block
+/// is its bits plus the price of its squared errors (ValueMetric::price()), as in rate-distortion
+/// optimisation. Merges compare costs that are estimated from sums (estimate_block.hpp); only the
+/// blocks of the result are fitted to their values (fit_block.hpp).
 #include <array>
 #include <cstdint>
 #include <span>
 
-#include "voxdag/layout/value_pages.hpp"
+#include "voxdag/attributes/value_metric.hpp"
 
 namespace voxdag {
-
-/// Measures errors and bounds them. The error of a value is the square root of the weighted mean of
-/// its channels' squared differences, in steps of 8 bits.
-struct ValueMetric {
-  std::array<int, 3> weights{1, 1, 1};
-  int bound = 0;  ///< The largest error(): 0 to 65025 times the sum of the weights.
-
-  int sum() const { return weights[0] + weights[1] + weights[2]; }
-  /// Returns the square of the error, times the sum of the weights.
-  int error(Value8 a, Value8 b) const {
-    int sum = 0;
-    for (int c = 0; c < 3; ++c) {
-      const int d = int{a[c]} - int{b[c]};
-      sum += weights[static_cast<std::size_t>(c)] * d * d;
-    }
-    return sum;
-  }
-};
-
-/// Makes a metric whose largest error is `bound`, 0 to 255.
-ValueMetric make_value_metric(std::array<int, 3> weights, double bound);
-
-/// Returns the coarsest precision at which an end can stand for every value within the bound.
-EndPrecision choose_precision(const ValueMetric& metric);
 
 /// The most words of a page: all its blocks have the least length and store each value by itself.
 inline constexpr int kMostPageWords =

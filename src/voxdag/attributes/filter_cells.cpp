@@ -25,8 +25,8 @@ class TaskFilter {
         sink_(sink),
         memory_(memory),
         gate_(memory),
-        filters_([&dag, &index, &source, shading, memory] {
-          return CellFilter(dag, index, source, shading, memory);
+        filters_([&dag, &index, &source, shading, with_normals = sink.needs_normals(), memory] {
+          return CellFilter(dag, index, source, shading, with_normals, memory);
         }) {}
 
   /// Filters the task, stores its sum in it and frees its triangles. Gives the values to the sink,

@@ -37,18 +37,9 @@ std::uint8_t to_byte(float v) {
 
 }  // namespace
 
-/// Consecutive values of a page.
-struct BlockFitter::Run {
-  int begin, end;
-  Value8 lo, hi;  // the smallest and the largest value of each channel
-  float mean[3];
-
-  int count() const { return end - begin; }
-};
-
 BlockFitter::BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
                          EndPrecision precision)
-    : values_(values), metric_(metric), precision_(precision) {}
+    : values_(values), metric_(metric), precision_(precision), price_(metric.price()) {}
 
 std::uint32_t BlockFitter::pack(Value8 value) const {
   static const NearestFields nearest;
@@ -58,6 +49,10 @@ std::uint32_t BlockFitter::pack(Value8 value) const {
     end = end << bits | nearest(bits, value[c]);
   }
   return end;
+}
+
+std::uint32_t BlockFitter::pack(const float (&value)[3]) const {
+  return pack(Value8{to_byte(value[0]), to_byte(value[1]), to_byte(value[2])});
 }
 
 BlockFitter::Line BlockFitter::line_of(const FittedBlock& fitted) const {
@@ -82,150 +77,167 @@ BlockFitter::Line BlockFitter::line_of(const FittedBlock& fitted) const {
   return line;
 }
 
-bool BlockFitter::keeps_bound(const FittedBlock& fitted) const {
+/// Sets the cost of a line and the sums of its weights. Returns false if an error is above the
+/// bound.
+bool BlockFitter::measure(FittedBlock& fitted, WeightSums& sums) const {
   const Line line = line_of(fitted);
+  std::uint32_t errors = 0;  // at most 256 * 65025 * sum of the weights
+  int largest = 0;
   for (int i = fitted.begin; i < fitted.end(); ++i) {
     const Value8 value = values_[static_cast<std::size_t>(i)];
-    if (metric_.error(value, line.palette[line.nearest(value)]) > metric_.bound) return false;
+    const int k = line.nearest(value);
+    const int error = metric_.error(value, line.palette[k]);
+    largest = std::max(largest, error);
+    errors += static_cast<std::uint32_t>(error);
+    sums.weights += k;
+    sums.squares += k * k;
+    for (int c = 0; c < 3; ++c) sums.products[static_cast<std::size_t>(c)] += k * value[c];
   }
-  return true;
+  fitted.cost = static_cast<float>(fitted.block.bits(precision_.bits())) +
+                price_ * static_cast<float>(errors);
+  return largest <= metric_.bound;
 }
 
-bool BlockFitter::fit_flat(const Run& run, FittedBlock& fitted) const {
-  Value8 centre{};
-  for (int c = 0; c < 3; ++c) {
-    const int extent = run.hi[c] - run.lo[c];
-    if (metric_.weights[static_cast<std::size_t>(c)] * (extent / 2) * (extent / 2) > metric_.bound)
-      return false;
-    centre[c] = static_cast<std::uint8_t>((run.lo[c] + run.hi[c] + 1) / 2);
+/// Sets the cost of a block without weights. Returns false if an error is above the bound.
+bool BlockFitter::measure_constant(FittedBlock& fitted) const {
+  const bool is_flat = fitted.block.type == ValueBlock::kFlat;
+  const Value8 e0 = precision_.unpack(fitted.e0);
+  std::uint32_t errors = 0;
+  int largest = 0;
+  for (int i = fitted.begin; i < fitted.end(); ++i) {
+    const Value8 value = values_[static_cast<std::size_t>(i)];
+    const int error = metric_.error(value, is_flat ? e0 : precision_.unpack(pack(value)));
+    largest = std::max(largest, error);
+    errors += static_cast<std::uint32_t>(error);
   }
-  fitted.block.type = ValueBlock::kFlat;
-  fitted.e0 = pack(centre);
-  const Value8 stored = precision_.unpack(fitted.e0);
-  for (int i = run.begin; i < run.end; ++i)
-    if (metric_.error(values_[static_cast<std::size_t>(i)], stored) > metric_.bound) return false;
-  fitted.bits = fitted.block.bits(precision_.bits());
-  return true;
+  fitted.cost = static_cast<float>(fitted.block.bits(precision_.bits())) +
+                price_ * static_cast<float>(errors);
+  return largest <= metric_.bound;
 }
 
-/// Replaces `best` by `candidate`, whose ends are set, if that keeps the bound in fewer bits. Takes
-/// the type, `first_type` to `last_type`, with the fewest bits of a weight. `off_line` is the
-/// largest squared distance of a value from the line, and `range` the extent of the values along
-/// it. Both scale each channel by the root of its weight.
-void BlockFitter::try_line(const Run& run, FittedBlock candidate, int first_type, int last_type,
-                           float range, float off_line, FittedBlock& best) const {
-  const float left = static_cast<float>(metric_.bound) - off_line;
-  if (left <= 0) return;
-  candidate.block.length = run.count();
-  for (int type = first_type; type <= last_type; ++type) {
-    candidate.block.type = type;
-    candidate.bits = candidate.block.bits(precision_.bits());
-    if (candidate.bits >= best.bits) return;
-    const float steps = static_cast<float>((2 << candidate.block.weight_bits()) - 2);
-    if (range * range > left * steps * steps || !keeps_bound(candidate)) continue;
-    best = candidate;
-    return;
+/// Replaces `best` by one value for all, if that keeps the bound and costs less.
+void BlockFitter::try_flat(const ValueSums& sums, FittedBlock& best) const {
+  FittedBlock candidate = best;
+  candidate.block.type = ValueBlock::kFlat;
+  candidate.e0 = pack({sums.mean(0), sums.mean(1), sums.mean(2)});
+  bool keeps_bound = measure_constant(candidate);
+  if (!keeps_bound) {
+    float middle[3];
+    for (std::size_t c = 0; c < 3; ++c)
+      middle[c] = 0.5f * static_cast<float>(sums.lo[c] + sums.hi[c]);
+    candidate.e0 = pack(middle);
+    keeps_bound = measure_constant(candidate);
   }
+  if (keeps_bound && candidate.cost < best.cost) best = candidate;
 }
 
-void BlockFitter::fit_grey(const Run& run, FittedBlock& best) const {
-  float share[3], mean = 0;
-  for (int c = 0; c < 3; ++c) {
-    share[c] = static_cast<float>(metric_.weights[static_cast<std::size_t>(c)]) /
-               static_cast<float>(metric_.sum());
-    mean += share[c] * run.mean[c];
-  }
-  float lo = 255, hi = 0, off_line = 0;
-  for (int i = run.begin; i < run.end; ++i) {
-    const Value8 v = values_[static_cast<std::size_t>(i)];
-    const float d[3] = {v.x - run.mean[0], v.y - run.mean[1], v.z - run.mean[2]};
-    const float along = share[0] * d[0] + share[1] * d[1] + share[2] * d[2];
-    lo = std::min(lo, along);
-    hi = std::max(hi, along);
-    float off = 0;
-    for (int c = 0; c < 3; ++c) off += share[c] * (d[c] - along) * (d[c] - along);
-    off_line = std::max(off_line, off);
-  }
-  FittedBlock candidate;
-  candidate.begin = run.begin;
-  candidate.e0 =
-      pack({to_byte(run.mean[0] + lo), to_byte(run.mean[1] + lo), to_byte(run.mean[2] + lo)});
+/// Sets the ends of a line along grey. Returns false if there is no such line.
+bool BlockFitter::set_grey(const float (&low)[3], float length, FittedBlock& candidate) const {
+  candidate.e0 = pack(low);
   const Value8 e0 = precision_.unpack(candidate.e0);
-  float low_end = 0;  // of the stored end, along grey
-  for (int c = 0; c < 3; ++c) low_end += share[c] * e0[c];
-  const int step = static_cast<int>((mean + hi - low_end) / ValueBlock::kStepUnit + 0.5f);
+  float rounding = 0;  // of the stored end, along grey
+  for (int c = 0; c < 3; ++c)
+    rounding += static_cast<float>(metric_.weights[static_cast<std::size_t>(c)]) *
+                (low[c] - static_cast<float>(e0[c]));
+  length += rounding / static_cast<float>(metric_.sum());
+  const int step = static_cast<int>(length / ValueBlock::kStepUnit + 0.5f);
   candidate.second = static_cast<std::uint32_t>(std::clamp(step - 1, 0, 63));
-  const auto weight = static_cast<float>(metric_.sum());
-  try_line(run, candidate, 1, 3, (hi - lo) * std::sqrt(weight), off_line * weight, best);
+  return length > 0;
 }
 
-void BlockFitter::fit_principal(const Run& run, FittedBlock& best) const {
-  float scale[3];
-  for (int c = 0; c < 3; ++c)
-    scale[c] = std::sqrt(static_cast<float>(metric_.weights[static_cast<std::size_t>(c)]));
-  const auto scaled = [&](int i) {
-    const Value8 v = values_[static_cast<std::size_t>(i)];
-    return Vec3f{(v.x - run.mean[0]) * scale[0], (v.y - run.mean[1]) * scale[1],
-                 (v.z - run.mean[2]) * scale[2]};
-  };
-  float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-  for (int i = run.begin; i < run.end; ++i) {
-    const Vec3f d = scaled(i);
-    xx += d.x * d.x, xy += d.x * d.y, xz += d.x * d.z;
-    yy += d.y * d.y, yz += d.y * d.z, zz += d.z * d.z;
-  }
-  // A few steps of the power method, from the row of the largest variance.
-  Vec3f axis = xx >= yy && xx >= zz ? Vec3f{xx, xy, xz}
-               : yy >= zz           ? Vec3f{xy, yy, yz}
-                                    : Vec3f{xz, yz, zz};
-  for (int i = 0; i < 5; ++i) {
-    axis = {xx * axis.x + xy * axis.y + xz * axis.z, xy * axis.x + yy * axis.y + yz * axis.z,
-            xz * axis.x + yz * axis.y + zz * axis.z};
-    const float length = std::sqrt(dot(axis, axis));
-    if (!(length > 0)) return;
-    axis = axis * (1 / length);
-  }
-  float lo = 0, hi = 0, off_line = 0;
-  for (int i = run.begin; i < run.end; ++i) {
-    const Vec3f d = scaled(i);
-    const float along = dot(d, axis);
-    lo = std::min(lo, along);
-    hi = std::max(hi, along);
-    off_line = std::max(off_line, dot(d, d) - along * along);
-  }
-  const auto end_at = [&](float along) {
-    return pack({to_byte(run.mean[0] + along * axis.x / scale[0]),
-                 to_byte(run.mean[1] + along * axis.y / scale[1]),
-                 to_byte(run.mean[2] + along * axis.z / scale[2])});
-  };
-  FittedBlock candidate;
-  candidate.begin = run.begin;
-  candidate.e0 = end_at(lo);
-  candidate.second = end_at(hi);
-  try_line(run, candidate, 5, 7, hi - lo, off_line, best);
-}
-
-FittedBlock BlockFitter::fit(int begin, int end) const {
-  Run run{begin, end, values_[static_cast<std::size_t>(begin)], {}, {}};
-  run.hi = run.lo;
-  int sum[3] = {};
-  for (int i = begin; i < end; ++i)
-    for (int c = 0; c < 3; ++c) {
-      const std::uint8_t v = values_[static_cast<std::size_t>(i)][c];
-      run.lo[c] = std::min(run.lo[c], v);
-      run.hi[c] = std::max(run.hi[c], v);
-      sum[c] += v;
+/// Measures a line, then the line that fits its weights best. Replaces `best` by those that keep
+/// the bound and cost less.
+void BlockFitter::try_line(FittedBlock& candidate, const ValueSums& sums, FittedBlock& best) const {
+  for (int round = 0; round < 2; ++round) {
+    WeightSums weights;
+    if (measure(candidate, weights) && candidate.cost < best.cost) best = candidate;
+    if (round == 1) return;
+    // Least squares: value = low + slope * weight.
+    const auto n = static_cast<float>(sums.count);
+    const float most = static_cast<float>((1 << candidate.block.weight_bits()) - 1);
+    const float mean_weight = static_cast<float>(weights.weights) / n;
+    const float spread =
+        static_cast<float>(weights.squares) - static_cast<float>(weights.weights) * mean_weight;
+    if (!(spread > 0)) return;
+    float slope[3], mean_slope = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      slope[c] = (static_cast<float>(weights.products[c]) -
+                  static_cast<float>(sums.sum[c]) * mean_weight) /
+                 spread;
+      mean_slope += static_cast<float>(metric_.weights[c]) * slope[c];
     }
-  for (int c = 0; c < 3; ++c)
-    run.mean[c] = static_cast<float>(sum[c]) / static_cast<float>(run.count());
+    if (candidate.block.has_step())
+      for (float& s : slope) s = mean_slope / static_cast<float>(metric_.sum());
+    float low[3], high[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c] = sums.mean(c) - slope[c] * mean_weight;
+      high[c] = low[c] + slope[c] * most;
+    }
+    if (candidate.block.has_step()) {
+      if (!set_grey(low, slope[0] * most, candidate)) return;
+    } else {
+      candidate.e0 = pack(low);
+      candidate.second = pack(high);
+    }
+  }
+}
+
+/// Tries lines of the types from `first_type` on, with weights of more and more bits, until their
+/// bits alone cost more than `best`. `off_line` is the sum of the errors between the values and the
+/// line, and set_ends(candidate) sets the ends to those of the values.
+template <class SetEnds>
+void BlockFitter::try_lines(int first_type, float off_line, const ValueSums& sums,
+                            const SetEnds& set_ends, FittedBlock& best) const {
+  for (int type = first_type; type < first_type + 3; ++type) {
+    FittedBlock candidate = best;
+    candidate.block.type = type;
+    const auto bits = static_cast<float>(candidate.block.bits(precision_.bits()));
+    if (bits + price_ * off_line >= best.cost) return;
+    set_ends(candidate);
+    try_line(candidate, sums, best);
+  }
+}
+
+FittedBlock BlockFitter::fit(int begin, const ValueSums& sums) const {
   FittedBlock best;
   best.begin = begin;
-  best.block.length = run.count();
-  if (fit_flat(run, best)) return best;
+  best.block.length = sums.count;
   best.block.type = ValueBlock::kRaw;
-  best.bits = best.block.bits(precision_.bits());
-  fit_grey(run, best);
-  fit_principal(run, best);
+  measure_constant(best);
+  try_flat(sums, best);
+
+  const float total = total_spread(sums, metric_), grey = grey_spread(sums, metric_);
+  const float means[3] = {sums.mean(0), sums.mean(1), sums.mean(2)};
+  const auto weights = static_cast<float>(metric_.sum());
+  try_lines(
+      1, std::max(total - grey, 0.0f), sums,
+      [&](FittedBlock& candidate) {
+        float mean = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+          mean += static_cast<float>(metric_.weights[c]) * means[c] / weights;
+        const float below = static_cast<float>(sums.lo[5]) / weights - mean;
+        set_grey({means[0] + below, means[1] + below, means[2] + below},
+                 static_cast<float>(sums.hi[5] - sums.lo[5]) / weights, candidate);
+      },
+      best);
+
+  const PrincipalAxis axis = principal_axis(sums, metric_);
+  const AxisExtent extent =
+      extent_along(axis, &values_[static_cast<std::size_t>(begin)], sums, metric_);
+  const auto end_at = [&](float along) {
+    float end[3];
+    for (std::size_t c = 0; c < 3; ++c)
+      end[c] =
+          means[c] + along * axis.direction[c] / std::sqrt(static_cast<float>(metric_.weights[c]));
+    return pack(end);
+  };
+  try_lines(
+      5, std::max(total - axis.spread, 0.0f), sums,
+      [&](FittedBlock& candidate) {
+        candidate.e0 = end_at(extent.lo);
+        candidate.second = end_at(extent.hi);
+      },
+      best);
   return best;
 }
 

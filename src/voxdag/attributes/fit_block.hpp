@@ -1,9 +1,10 @@
 #pragma once
-/// Fits a block to a run of values: few bits, and no error above the bound.
+/// Fits a block to a run of values: few bits and small errors, none above the bound.
+#include <array>
 #include <cstdint>
 #include <span>
 
-#include "voxdag/attributes/encode_page.hpp"
+#include "voxdag/attributes/estimate_block.hpp"
 
 namespace voxdag {
 
@@ -11,7 +12,7 @@ namespace voxdag {
 struct FittedBlock {
   ValueBlock block;
   int begin = 0;
-  int bits = 0;              ///< Size of the whole block.
+  float cost = 0;            ///< Bits of the whole block, plus the price of its errors in bits.
   std::uint32_t e0 = 0;      ///< Packed end.
   std::uint32_t second = 0;  ///< Packed end, or the step.
 
@@ -21,13 +22,14 @@ struct FittedBlock {
 /// Fits blocks to the values of one page.
 class BlockFitter {
  public:
+  /// Refers to the metric.
   BlockFitter(std::span<const Value8, kPageValues> values, const ValueMetric& metric,
               EndPrecision precision);
 
-  /// Returns a block of the values `begin` to `end` - 1; both are multiples of kBlockUnit. Chooses
-  /// one value for all if that keeps the bound; otherwise the smallest of a line along grey, a line
-  /// along the principal axis, and every value by itself.
-  FittedBlock fit(int begin, int end) const;
+  /// Returns the block of least cost that was found for the values from `begin` on, whose sums are
+  /// `sums`; `begin` and their number are multiples of kBlockUnit. Tries one value for all, lines
+  /// along grey and along the principal axis, and every value by itself.
+  FittedBlock fit(int begin, const ValueSums& sums) const;
 
   /// Calls add(number, bits) for each end, step and weight of a block, in the order of the file,
   /// and is_stored(i, stored) for each value of the page that the block holds.
@@ -72,20 +74,28 @@ class BlockFitter {
       return rounded < most ? rounded : most;
     }
   };
-  struct Run;
+  /// Sums over the weights of a block's values.
+  struct WeightSums {
+    int weights = 0, squares = 0;   ///< Of the weights.
+    std::array<int, 3> products{};  ///< Of weights and channels.
+  };
 
   std::uint32_t pack(Value8 value) const;
+  std::uint32_t pack(const float (&value)[3]) const;
   Line line_of(const FittedBlock& fitted) const;
-  bool keeps_bound(const FittedBlock& fitted) const;
-  bool fit_flat(const Run& run, FittedBlock& fitted) const;
-  void fit_grey(const Run& run, FittedBlock& best) const;
-  void fit_principal(const Run& run, FittedBlock& best) const;
-  void try_line(const Run& run, FittedBlock candidate, int first_type, int last_type, float range,
-                float off_line, FittedBlock& best) const;
+  bool measure(FittedBlock& fitted, WeightSums& sums) const;
+  bool measure_constant(FittedBlock& fitted) const;
+  void try_flat(const ValueSums& sums, FittedBlock& best) const;
+  template <class SetEnds>
+  void try_lines(int first_type, float off_line, const ValueSums& sums, const SetEnds& set_ends,
+                 FittedBlock& best) const;
+  void try_line(FittedBlock& candidate, const ValueSums& sums, FittedBlock& best) const;
+  bool set_grey(const float (&low)[3], float length, FittedBlock& candidate) const;
 
   std::span<const Value8, kPageValues> values_;
-  ValueMetric metric_;
+  const ValueMetric& metric_;
   EndPrecision precision_;
+  float price_;
 };
 
 }  // namespace voxdag

@@ -32,20 +32,47 @@ class SampleSink {
   std::array<std::vector<ContextSample>, kCompactSymbols> samples;
 };
 
+/// Counts symbols, and keeps them if there is a part of CodedSymbols for them.
 class CountSink {
  public:
-  explicit CountSink(const CompactTrees& trees) : trees_(trees) {
-    for (const ContextTree& tree : trees) counts.emplace_back(tree.tables());
+  CountSink(const CompactTrees& trees, const TableFinder& finder) : batch_(finder) {
+    for (const ContextTree& tree : trees) counts_.emplace_back(tree.tables());
   }
   void symbol(CompactSymbol symbol, std::uint64_t features, std::uint32_t value) {
-    counts[symbol].add(trees_[symbol].table(features), value);
+    batch_.symbol(symbol, features, value);
+    if (batch_.size() >= kBatch) count();
+    ++words_;
   }
-  void raw(std::uint32_t, int) {}
+  void raw(std::uint32_t value, int bits) {
+    if (kept_ != nullptr) batch_.raw(value, bits);
+    words_ += 2;
+  }
 
-  std::vector<SymbolCounts> counts;
+  /// Starts a part; `kept` may be null.
+  void begin(CodedSymbols::Part* kept) {
+    kept_ = kept;
+    words_ = 0;
+  }
+  void end_node() {
+    if (kept_ != nullptr) kept_->ends.push_back(words_);
+  }
+  /// Ends a part: counts its last symbols.
+  void count() {
+    batch_.flush([&](const BatchedSymbol& symbol) {
+      if (symbol.kind != BatchedSymbol::kRaw) counts_[symbol.kind].add(symbol.table, symbol.value);
+      if (kept_ != nullptr) kept_->put(symbol);
+    });
+  }
+
+  const std::vector<SymbolCounts>& counts() const { return counts_; }
 
  private:
-  const CompactTrees& trees_;
+  static constexpr std::size_t kBatch = 1024;
+
+  SymbolBatch batch_;
+  std::vector<SymbolCounts> counts_;
+  CodedSymbols::Part* kept_ = nullptr;
+  std::uint32_t words_ = 0;  ///< Of the symbols of the part so far.
 };
 
 /// The nodes that have symbols, in one sequence: units, shared bricks, nodes above the units.
@@ -106,7 +133,7 @@ void SymbolCounts::set_frequencies(ContextTree& tree) const {
 }
 
 CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
-                          Progress* progress) {
+                          Progress* progress, CodedSymbols& coded) {
   const AllNodes all(nodes);
   const std::uint64_t stride = std::max<std::uint64_t>(count_bricks(nodes) / kSampledBricks, 1);
   SampleSink samples;
@@ -128,13 +155,27 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
 
   std::size_t tables = 0;
   for (const ContextTree& tree : trees) tables += tree.tables();
-  tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees); });
+  const TableFinder finder(trees);
+  tbb::enumerable_thread_specific<CountSink> sinks([&] { return CountSink(trees, finder); });
   const MemoryReservation counted(budget, tables * 256 * sizeof(std::uint64_t) * 3);
-  polled_for(all.size(), 1024, progress, "model",
-             [&](std::size_t i) { all.visit(i, sinks.local()); });
+  // A brick has about 35 symbols.
+  coded.begin(all.size(), count_bricks(nodes) * 35, budget);
+  constexpr std::size_t kPart = CodedSymbols::kPart;
+  polled_for((all.size() + kPart - 1) / kPart, 1, progress, "model", [&](std::size_t part) {
+    CountSink& sink = sinks.local();
+    CodedSymbols::Part* const kept = coded.are_kept() ? &coded.part(part) : nullptr;
+    sink.begin(kept);
+    for (std::uint64_t i = part * kPart;
+         i < std::min<std::uint64_t>(all.size(), (part + 1) * kPart); ++i) {
+      all.visit(i, sink);
+      sink.end_node();
+    }
+    sink.count();
+    if (kept != nullptr) kept->memory = MemoryReservation(budget, kept->words.capacity() * 4);
+  });
   for (std::size_t s = 0; s < trees.size(); ++s) {
     SymbolCounts sum(trees[s].tables());
-    for (const CountSink& sink : sinks) sum.add(sink.counts[s]);
+    for (const CountSink& sink : sinks) sum.add(sink.counts()[s]);
     sum.set_frequencies(trees[s]);
   }
   return trees;

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "voxdag/compact/coded_symbols.hpp"
 #include "voxdag/compact/numbered_nodes.hpp"
 #include "voxdag/layout/compact/compact_svdag.hpp"
 
@@ -12,10 +13,11 @@ using CompactTrees = std::array<ContextTree, kCompactSymbols>;
 
 /// Returns the trees and frequencies of all symbols but kUnitBits: lengths are not known yet, so
 /// that its tree is one table without symbols. `most_tables` limits the tables of cell masks, half
-/// of it those of leaf masks, and an eighth those of other symbols. Throws OverMemory and
+/// of it those of leaf masks, and an eighth those of other symbols. `coded` gets the symbols of all
+/// units, then those of all shared bricks, if the budget has room for them. Throws OverMemory and
 /// Cancelled.
 CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
-                          Progress* progress);
+                          Progress* progress, CodedSymbols& coded);
 
 /// Counts the symbols of one context tree by table.
 class SymbolCounts {

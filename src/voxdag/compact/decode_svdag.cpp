@@ -4,7 +4,7 @@
 
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/layout/compact/compact_nodes.hpp"
+#include "voxdag/layout/compact/compact_top.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
@@ -54,9 +54,8 @@ class LeafBlocks {
   CountedVector<std::uint64_t> blocks_;
 };
 
-/// Walks the compact DAG depth first, which meets the nodes of each level in canonical order. The
-/// walk makes the nodes above the units and lists the units. Then the decoder reads the units in
-/// parallel and appends them in the order of the list.
+/// Expands the nodes above the units, then reads the units in parallel and appends them in their
+/// order, which is the canonical one.
 class Decoder {
  public:
   Decoder(const CompactSvdagView& compact, MemoryBudget* memory, Progress* progress)
@@ -65,15 +64,14 @@ class Decoder {
         progress_(progress),
         levels_(compact.coded_levels()),
         units_(memory),
-        leaf_blocks_(memory) {
-    for (int level = 0; level <= levels_ - 3; ++level) {
-      words_.emplace_back(memory);
-      places_.emplace_back(compact.shared_nodes(level), kNone, memory);
-    }
-  }
+        shared_places_(compact.shared_nodes(levels_ - 3), kNone, memory),
+        leaf_blocks_(memory) {}
 
   Svdag decode() {
-    place_node(0, root_node(compact_));
+    CompactTop top = expand_top(compact_, memory_, [this] { poll(progress_); });
+    words_ = std::move(top.levels);
+    units_ = std::move(top.units);
+    for (int i = 0; i < 2; ++i) words_.emplace_back(memory_);
     read_shared_bricks();
     place_units();
     return assemble();
@@ -82,37 +80,6 @@ class Decoder {
  private:
   static std::size_t at(int level) { return static_cast<std::size_t>(level); }
   int unit_level() const { return levels_ - 4; }
-
-  /// Appends a node and what is below it, and returns the node's first word in its level. Appends a
-  /// unit to the list, and returns its place there.
-  std::uint32_t place_node(int level, CompactRange range) {
-    if (level == unit_level()) {
-      if (units_.size() >= kNone) fail_too_large();
-      units_.push_back(range);
-      return static_cast<std::uint32_t>(units_.size() - 1);
-    }
-    poll_seldom(progress_, words_[at(level)].size());
-    CompactNode node;
-    if (read_node(compact_, range, level, node) != CompactFault::kNone) fail();
-    const std::size_t place = append_mask(level, node.mask);
-    std::size_t word = place + 1;
-    for (int i = 0; i < 8; ++i) {
-      if ((node.mask >> i & 1) == 0) continue;
-      const bool is_shared = (node.inline_mask >> i & 1) == 0;
-      const std::uint32_t child = is_shared ? place_shared(level + 1, node.shared[i])
-                                            : place_node(level + 1, node.children[i]);
-      words_[at(level)][word++] = child;
-    }
-    return static_cast<std::uint32_t>(place);
-  }
-
-  std::uint32_t place_shared(int level, std::uint32_t number) {
-    if (places_[at(level)][number] == kNone) {
-      const std::uint32_t place = place_node(level, shared_node(compact_, level, number));
-      places_[at(level)][number] = place;
-    }
-    return places_[at(level)][number];
-  }
 
   /// Appends a node without pointers. Returns its first word.
   std::size_t append_mask(int level, std::uint32_t mask) {
@@ -168,7 +135,7 @@ class Decoder {
       if ((unit.inline_mask >> i & 1) != 0) {
         child = place_brick(unit.bricks[i]);
       } else {
-        std::uint32_t& brick = places_[at(levels_ - 3)][unit.shared[i]];
+        std::uint32_t& brick = shared_places_[unit.shared[i]];
         if (brick == kNone) brick = place_brick(bricks_[unit.shared[i]].leaves);
         child = brick;
       }
@@ -233,8 +200,8 @@ class Decoder {
   int levels_;  ///< C
   std::vector<CountedVector<std::uint32_t>>
       words_;  ///< By level; pointers count from the level's first word.
-  std::vector<CountedVector<std::uint32_t>> places_;  ///< Of the shared nodes, by level.
   CountedVector<CompactRange> units_;
+  CountedVector<std::uint32_t> shared_places_;  ///< Of the shared bricks.
   std::vector<std::uint32_t> unit_places_;
   std::vector<Brick> bricks_;  ///< The shared ones.
   MemoryReservation bricks_memory_;

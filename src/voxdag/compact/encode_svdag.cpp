@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
+#include <span>
 
 #include "voxdag/compact/compact_model.hpp"
 #include "voxdag/compact/encoded_records.hpp"
+#include "voxdag/compact/symbol_batch.hpp"
 #include "voxdag/compact/unit_symbols.hpp"
 
 namespace voxdag {
@@ -34,29 +37,66 @@ Svdag in_corner(const SvdagView& dag) {
 /// The intervals of the symbols of one tree's tables.
 class Intervals {
  public:
-  explicit Intervals(const ContextTree& tree) : tree_(&tree), of_(tree.tables()) {
+  explicit Intervals(const ContextTree& tree) : of_(tree.tables()) {
     for (std::size_t t = 0; t < tree.tables(); ++t) of_[t] = intervals_of(tree.weights[t]);
   }
-  void put(std::uint64_t features, std::uint32_t symbol, SymbolWriter& out) const {
-    const SymbolInterval interval = of_[tree_->table(features)][symbol];
-    out.put(interval.start, interval.frequency);
-  }
+  SymbolInterval of(std::uint32_t table, std::uint32_t symbol) const { return of_[table][symbol]; }
 
  private:
-  const ContextTree* tree_;
   std::vector<std::array<SymbolInterval, 256>> of_;
 };
 
 /// Writes the records of one task.
-struct RecordWriter {
-  const std::vector<Intervals>& intervals;
-  BitWriter bits{};
-  SymbolWriter symbols{};
+class RecordWriter {
+ public:
+  RecordWriter(const std::vector<Intervals>& intervals, const TableFinder& finder)
+      : intervals_(&intervals), batch_(finder) {}
 
   void symbol(CompactSymbol symbol, std::uint64_t features, std::uint32_t value) {
-    intervals[symbol].put(features, value, symbols);
+    batch_.symbol(symbol, features, value);
   }
-  void raw(std::uint32_t value, int count) { symbols.put_raw(value, count); }
+  void raw(std::uint32_t value, int count) { batch_.raw(value, count); }
+
+  /// Appends the record of the symbols so far to `bits`.
+  void close() {
+    put_symbols();
+    coder_.close(bits);
+  }
+  void leave_open() {
+    put_symbols();
+    coder_.leave_open(bits);
+  }
+
+  /// Adds symbols of CodedSymbols.
+  void put(std::span<const std::uint32_t> coded) {
+    for (std::size_t i = 0; i < coded.size(); ++i) {
+      const std::uint32_t kind = coded[i] >> 12 & 15u, value = coded[i] >> 16;
+      if (kind == BatchedSymbol::kRaw) {
+        coder_.put_raw(coded[++i], static_cast<int>(value));
+        continue;
+      }
+      const SymbolInterval interval = (*intervals_)[kind].of(coded[i] & 0xFFFu, value);
+      coder_.put(interval.start, interval.frequency);
+    }
+  }
+
+  BitWriter bits;
+
+ private:
+  void put_symbols() {
+    batch_.flush([&](const BatchedSymbol& symbol) {
+      if (symbol.kind == BatchedSymbol::kRaw) {
+        coder_.put_raw(symbol.value, symbol.bits);
+        return;
+      }
+      const SymbolInterval interval = (*intervals_)[symbol.kind].of(symbol.table, symbol.value);
+      coder_.put(interval.start, interval.frequency);
+    });
+  }
+
+  const std::vector<Intervals>* intervals_;
+  SymbolBatch batch_;
+  SymbolWriter coder_;
 };
 
 class Encoder {
@@ -66,7 +106,8 @@ class Encoder {
         memory_(options.memory),
         progress_(progress),
         shared_bricks_(memory_) {
-    trees_ = choose_trees(nodes_, options.tables, memory_, progress);
+    trees_ = choose_trees(nodes_, options.tables, memory_, progress, coded_);
+    finder_.emplace(trees_);
     for (const ContextTree& tree : trees_) intervals_.emplace_back(tree);
     for (int level = 0; level <= nodes_.unit_level(); ++level) {
       records_.emplace_back(memory_);
@@ -83,24 +124,31 @@ class Encoder {
 
  private:
   static std::size_t at(int level) { return static_cast<std::size_t>(level); }
-  RecordWriter writer() const { return RecordWriter{intervals_}; }
+  RecordWriter writer() const { return {intervals_, *finder_}; }
 
   void write_bricks() {
     const auto& bricks = nodes_.shared(nodes_.brick_level());
+    const int level = nodes_.unit_level();
+    const auto& units = nodes_.nodes(level);
     shared_bricks_.write(
         bricks.size(), progress_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
-          visit_shared_brick(nodes_, bricks[i], out);
-          out.symbols.close(out.bits);
+          if (coded_.are_kept())
+            out.put(coded_.of(units.size() + i));
+          else
+            visit_shared_brick(nodes_, bricks[i], out);
+          out.close();
         });
-    const int level = nodes_.unit_level();
-    const auto& units = nodes_.nodes(level);
     records_[at(level)].write(
         units.size(), progress_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
-          visit_unit(nodes_, units[i], out);
-          out.symbols.close(out.bits);
+          if (coded_.are_kept())
+            out.put(coded_.of(i));
+          else
+            visit_unit(nodes_, units[i], out);
+          out.close();
         });
+    coded_.clear();
     subtree_bits_[at(level)].resize(units.size());
     for (std::size_t i = 0; i < units.size(); ++i)
       subtree_bits_[at(level)][i] = records_[at(level)].bits(i);
@@ -170,7 +218,7 @@ class Encoder {
         out.symbol(kUnitBits, unit_features(node[0], i, left),
                    static_cast<std::uint32_t>(std::bit_width(lengths[i])));
     });
-    out.symbols.leave_open(out.bits);
+    out.leave_open();
     for (int i = 0; i < 8; ++i) {
       if (kinds[i] != 0) {
         const std::uint64_t number =
@@ -229,7 +277,9 @@ class Encoder {
   NumberedNodes nodes_;
   MemoryBudget* memory_;
   Progress* progress_;
+  CodedSymbols coded_;
   CompactTrees trees_;
+  std::optional<TableFinder> finder_;
   std::vector<Intervals> intervals_;
   EncodedRecords shared_bricks_;
   std::vector<EncodedRecords> records_;  ///< Of levels 0 to C-4.

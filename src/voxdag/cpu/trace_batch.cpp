@@ -26,25 +26,37 @@ void trace_block(const Caster& caster, const Grid& grid, std::span<const Ray> ra
       });
 }
 
+/// Casts all rays in blocks.
+template <class Caster>
+void trace_all(const Caster& caster, const Grid& grid, std::span<const Ray> rays,
+               std::span<Hit> hits, Progress* progress) {
+  const std::size_t blocks = (rays.size() + kBlock - 1) / kBlock;
+  std::atomic<std::size_t> done{0};
+  parallel_for(blocks, [&](std::size_t block) {
+    if (progress != nullptr && progress->cancelled()) return;
+    const std::size_t begin = block * kBlock, size = std::min(kBlock, rays.size() - begin);
+    trace_block(caster, grid, rays.subspan(begin, size), hits.subspan(begin, size));
+    const std::size_t so_far = done.fetch_add(size) + size;
+    if (progress != nullptr)
+      progress->report("trace", static_cast<double>(so_far) / static_cast<double>(rays.size()),
+                       so_far);
+  });
+  if (progress != nullptr) progress->throw_if_cancelled();
+}
+
 }  // namespace
 
 void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress) {
   assert(rays.size() == hits.size() && grid.levels == scene.voxels().levels());
-  const std::size_t blocks = (rays.size() + kBlock - 1) / kBlock;
-  std::atomic<std::size_t> done{0};
-  scene.visit([&](const auto&, const auto& caster) {
-    parallel_for(blocks, [&](std::size_t block) {
-      if (progress != nullptr && progress->cancelled()) return;
-      const std::size_t begin = block * kBlock, size = std::min(kBlock, rays.size() - begin);
-      trace_block(caster, grid, rays.subspan(begin, size), hits.subspan(begin, size));
-      const std::size_t so_far = done.fetch_add(size) + size;
-      if (progress != nullptr)
-        progress->report("trace", static_cast<double>(so_far) / static_cast<double>(rays.size()),
-                         so_far);
-    });
-  });
-  if (progress != nullptr) progress->throw_if_cancelled();
+  scene.visit(
+      [&](const auto&, const auto& caster) { trace_all(caster, grid, rays, hits, progress); });
+}
+
+void trace_batch(const InPlaceDag& dag, const Grid& grid, std::span<const Ray> rays,
+                 std::span<Hit> hits, Progress* progress) {
+  assert(rays.size() == hits.size() && grid.levels == dag.levels());
+  trace_all(PacketCaster<InPlaceDag>(dag), grid, rays, hits, progress);
 }
 
 }  // namespace voxdag

@@ -16,4 +16,9 @@ namespace voxdag {
 void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress = nullptr);
 
+/// Casts at a compact DAG in place: it takes less memory than a CpuScene, and more time. The hits
+/// are the same.
+void trace_batch(const InPlaceDag& dag, const Grid& grid, std::span<const Ray> rays,
+                 std::span<Hit> hits, Progress* progress = nullptr);
+
 }  // namespace voxdag

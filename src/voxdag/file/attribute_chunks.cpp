@@ -6,10 +6,13 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
+#include "voxdag/layout/encode_material_ids.hpp"
 #include "voxdag/layout/validate_value_pages.hpp"
 
 namespace voxdag {
 namespace {
+
+constexpr std::uint32_t kValueChunks[] = {kChunkColors, kChunkNormals, kChunkMaterials};
 
 [[noreturn]] void fail(const std::string& reason) { throw Error("", "", reason); }
 
@@ -55,18 +58,17 @@ CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag)
   return index;
 }
 
-ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells) {
-  const auto header = read_header<ValuePagesHeader>(bytes);
+/// Sets the arrays of `view`, whose counts the header has, to those of the chunk. Throws Error
+/// unless the chunk has exactly these arrays, for `cells` cells.
+template <class Header, class View>
+void read_tables(std::span<const std::byte> bytes, const Header& header, std::uint64_t cells,
+                 View& view) {
   check_zeros(header.reserved, header.padding);
-  if (header.precision > 3)
-    fail("unknown precision " + std::to_string(header.precision) + ": 0 to 3 are allowed");
   if (header.values != cells)
-    fail("has " + std::to_string(header.values) + " values, but the chunk CIDX has " +
-         std::to_string(cells) + " cells");
-  ValuePagesView view;
+    fail("has " + std::to_string(header.values) + " values, but the DAG has " +
+         std::to_string(cells) + " numbered cells");
   view.values = header.values;
   view.word_count = header.words;
-  view.precision = {static_cast<int>(header.precision)};
   // The difference cannot overflow, but the sum of both counts could.
   const std::uint64_t words = (bytes.size() - sizeof header) / 8;
   const std::uint64_t table_words = view.group_count() + (view.page_count() + 3) / 4;
@@ -79,32 +81,77 @@ ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells)
   view.pages = reinterpret_cast<const std::uint16_t*>(view.words + view.word_count);
   for (std::uint64_t page = view.page_count(); page % 4 != 0; ++page)
     if (view.pages[page] != 0) fail("padding is not zero");
+}
+
+ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells) {
+  const auto header = read_header<ValuePagesHeader>(bytes);
+  if (header.precision > 3)
+    fail("unknown precision " + std::to_string(header.precision) + ": 0 to 3 are allowed");
+  ValuePagesView view;
+  view.precision = {static_cast<int>(header.precision)};
+  read_tables(bytes, header, cells, view);
   validate_value_pages(view);
   return view;
 }
 
-}  // namespace
-
-AttributeChunks::AttributeChunks(const DagAttributesView& attributes) {
-  if (attributes.is_empty()) return;
-  const CellIndexView& index = attributes.index;
-  index_.finest_level = index.finest_level;
-  index_.cells = index.cells;
-  std::copy(std::begin(index.width), std::end(index.width), std::begin(index_.width));
-  chunks_.push_back({kChunkCellIndex,
-                     {std::as_bytes(std::span(&index_, 1)),
-                      std::as_bytes(std::span(index.words, index.word_count()))}});
-  if (attributes.has_colors()) add(kChunkColors, attributes.colors, colors_);
-  if (attributes.has_normals()) add(kChunkNormals, attributes.normals, normals_);
+MaterialIdsView read_materials(std::span<const std::byte> bytes, std::uint64_t cells) {
+  const auto header = read_header<MaterialIdsHeader>(bytes);
+  MaterialIdsView view;
+  view.materials = header.materials;
+  read_tables(bytes, header, cells, view);
+  validate_material_ids(view);
+  return view;
 }
 
-void AttributeChunks::add(std::uint32_t id, const ValuePagesView& pages, ValuePagesHeader& header) {
+void set_kind(ValuePagesHeader& header, const ValuePagesView& view) {
+  header.precision = static_cast<std::uint32_t>(view.precision.code);
+}
+void set_kind(MaterialIdsHeader& header, const MaterialIdsView& view) {
+  header.materials = view.materials;
+}
+
+/// Calls work(bytes) for the chunk, if the file has it, and returns whether it has. Errors name the
+/// chunk.
+template <class Work>
+bool read_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id, const Work& work) {
+  const VdagChunk* const chunk = find_chunk(chunks, id);
+  if (chunk == nullptr) return false;
+  try {
+    work(chunk->bytes);
+  } catch (const Error& error) {
+    throw error.within(ErrorPlace::chunk(vdag_chunk_name(id)));
+  }
+  return true;
+}
+
+}  // namespace
+
+AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_cells) {
+  if (attributes.is_empty()) return;
+  if (of_cells == Index::kStored) {
+    const CellIndexView& index = attributes.index;
+    index_.finest_level = index.finest_level;
+    index_.cells = index.cells;
+    std::copy(std::begin(index.width), std::end(index.width), std::begin(index_.width));
+    chunks_.push_back({kChunkCellIndex,
+                       0,
+                       {std::as_bytes(std::span(&index_, 1)),
+                        std::as_bytes(std::span(index.words, index.word_count()))}});
+  }
+  if (attributes.has_colors()) add(kChunkColors, attributes.colors, colors_);
+  if (attributes.has_normals()) add(kChunkNormals, attributes.normals, normals_);
+  if (attributes.has_materials()) add(kChunkMaterials, attributes.materials, materials_);
+}
+
+template <class View, class Header>
+void AttributeChunks::add(std::uint32_t id, const View& pages, Header& header) {
   static constexpr std::byte kZeros[6]{};
-  header.precision = static_cast<std::uint32_t>(pages.precision.code);
+  set_kind(header, pages);
   header.values = pages.values;
   header.words = pages.word_count;
   const std::uint64_t padding = (4 - pages.page_count() % 4) % 4 * sizeof(std::uint16_t);
   chunks_.push_back({id,
+                     0,
                      {std::as_bytes(std::span(&header, 1)),
                       std::as_bytes(std::span(pages.groups, pages.group_count())),
                       std::as_bytes(std::span(pages.words, pages.word_count)),
@@ -112,31 +159,39 @@ void AttributeChunks::add(std::uint32_t id, const ValuePagesView& pages, ValuePa
                       std::span<const std::byte>(kZeros, padding)}});
 }
 
-DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
-                                        const SvdagView& dag) {
+bool has_attribute_values(const std::vector<VdagChunk>& chunks) {
+  return std::any_of(std::begin(kValueChunks), std::end(kValueChunks),
+                     [&](std::uint32_t id) { return has_chunk(chunks, id); });
+}
+
+DagAttributesView read_attribute_values(const std::vector<VdagChunk>& chunks,
+                                        const CellIndexView& index) {
   DagAttributesView attributes;
-  const auto read = [&](std::uint32_t id, const auto& work) {
-    const VdagChunk* const chunk = find_chunk(chunks, id);
-    if (chunk == nullptr) return false;
-    try {
-      work(chunk->bytes);
-    } catch (const Error& error) {
-      throw error.within(ErrorPlace::chunk(vdag_chunk_name(id)));
-    }
-    return true;
-  };
-  const bool has_index = read(kChunkCellIndex, [&](std::span<const std::byte> bytes) {
-    attributes.index = read_index(bytes, dag);
-  });
+  attributes.index = index;
   const auto read_values = [&](std::uint32_t id, ValuePagesView& view) {
-    read(id, [&](std::span<const std::byte> bytes) {
-      if (!has_index) fail("needs the chunk CIDX, which is missing");
-      view = read_pages(bytes, attributes.index.cells);
-    });
+    read_chunk(chunks, id,
+               [&](std::span<const std::byte> bytes) { view = read_pages(bytes, index.cells); });
   };
   read_values(kChunkColors, attributes.colors);
   read_values(kChunkNormals, attributes.normals);
+  read_chunk(chunks, kChunkMaterials, [&](std::span<const std::byte> bytes) {
+    attributes.materials = read_materials(bytes, index.cells);
+  });
   return attributes;
+}
+
+DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
+                                        const SvdagView& dag) {
+  CellIndexView index;
+  const bool has_index = read_chunk(chunks, kChunkCellIndex, [&](std::span<const std::byte> bytes) {
+    index = read_index(bytes, dag);
+  });
+  if (!has_index)
+    for (const std::uint32_t id : kValueChunks)
+      read_chunk(chunks, id, [](std::span<const std::byte>) {
+        fail("needs the chunk CIDX, which is missing");
+      });
+  return read_attribute_values(chunks, index);
 }
 
 }  // namespace voxdag

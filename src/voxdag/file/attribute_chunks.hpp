@@ -8,9 +8,14 @@
 /// COLR and NRML, the values of cells:
 ///   0    ValuePagesHeader  64 bytes
 ///   64   ValuePagesView::groups, ::words, ::pages
+///
+/// MTID, the materials of cells:
+///   0    MaterialIdsHeader  64 bytes
+///   64   MaterialIdsView::groups, ::words, ::pages
 #include <span>
 #include <vector>
 
+#include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
 
@@ -34,33 +39,50 @@ struct ValuePagesHeader {
 };
 static_assert(sizeof(ValuePagesHeader) == 64);
 
-/// The bytes of a chunk, in parts that follow each other.
-struct AttributeChunk {
-  std::uint32_t id;
-  std::vector<std::span<const std::byte>> parts;
+struct MaterialIdsHeader {
+  std::uint32_t materials;
+  std::uint32_t reserved;  ///< Zero.
+  std::uint64_t values;
+  std::uint64_t words;
+  std::uint64_t padding[5];  ///< Zero.
 };
+static_assert(sizeof(MaterialIdsHeader) == 64);
 
 /// The bytes of the chunks of attributes. Refers to the attributes and owns the headers.
 class AttributeChunks {
  public:
-  explicit AttributeChunks(const DagAttributesView& attributes);
+  enum class Index { kStored, kLeftOut };
+
+  /// `index` says whether the chunk CIDX is among the chunks.
+  AttributeChunks(const DagAttributesView& attributes, Index index);
   AttributeChunks(const AttributeChunks&) = delete;
   AttributeChunks& operator=(const AttributeChunks&) = delete;
 
   /// Returns the chunks in the order of the file; none if there are no attributes.
-  const std::vector<AttributeChunk>& chunks() const { return chunks_; }
+  const std::vector<OutputChunk>& chunks() const { return chunks_; }
 
  private:
-  void add(std::uint32_t id, const ValuePagesView& pages, ValuePagesHeader& header);
+  template <class View, class Header>
+  void add(std::uint32_t id, const View& pages, Header& header);
 
   CellIndexHeader index_{};
   ValuePagesHeader colors_{}, normals_{};
-  std::vector<AttributeChunk> chunks_;
+  MaterialIdsHeader materials_{};
+  std::vector<OutputChunk> chunks_;
 };
+
+/// Returns whether the file has values of cells: one of the chunks COLR, NRML and MTID.
+bool has_attribute_values(const std::vector<VdagChunk>& chunks);
 
 /// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none. The
 /// result refers to the chunks and is safe to read. Linear time. Throws Error, whose place begins
 /// with the chunk.
 DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks, const SvdagView& dag);
+
+/// Reads and checks the values of the cells that `index` numbers, in a file without CIDX. The
+/// result refers to the chunks and to the words of `index`. Throws Error like
+/// read_attribute_chunks().
+DagAttributesView read_attribute_values(const std::vector<VdagChunk>& chunks,
+                                        const CellIndexView& index);
 
 }  // namespace voxdag

@@ -1,6 +1,7 @@
 #include "voxdag/file/compact_file.hpp"
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/mapped_file.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
@@ -16,6 +17,12 @@ CompactSvdagView CompactContents::view() const {
   if (!view.is_empty())
     view.stream = chunk_values<std::uint32_t>(chunks, kChunkCompactStream).data();
   return view;
+}
+
+bool CompactContents::has_attributes() const { return has_attribute_values(chunks); }
+
+DagAttributesView CompactContents::attributes(const CellIndexView& index) const {
+  return read_attribute_values(chunks, index);
 }
 
 CompactContents parse_compact(std::span<const std::byte> file) {
@@ -35,6 +42,11 @@ CompactContents parse_compact(std::span<const std::byte> file) {
   // Readers may load the word after the last bit.
   if (!stream.empty() && stream.back() != 0)
     throw Error("", ErrorPlace::chunk("CSTR"), "the last word is not zero");
+  if (has_chunk(contents.chunks, kChunkCellIndex))
+    throw Error("", ErrorPlace::chunk("CIDX"), "belongs to the plain form only");
+  if (contents.has_attributes() && contents.metadata.attributes.resolution == 0)
+    throw Error("", ErrorPlace::chunk("META") / "attributes",
+                "is missing, but the file has attributes");
   return contents;
 }
 

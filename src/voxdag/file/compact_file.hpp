@@ -7,6 +7,7 @@
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/io/file_copy.hpp"
 #include "voxdag/layout/compact/compact_svdag.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 
 namespace voxdag {
 
@@ -21,11 +22,19 @@ struct CompactContents {
 
   /// Returns the DAG. Its stream points into the bytes that were parsed.
   CompactSvdagView view() const;
+  /// Returns whether the file has colours or normals. Then metadata.attributes.level() is the
+  /// finest level with attributes, for which build_cell_index() numbers the cells of the decoded
+  /// DAG.
+  bool has_attributes() const;
+  /// Reads and checks the colours and normals of these cells. The result refers to the bytes that
+  /// were parsed and to the words of `index`. Linear time. Throws Error.
+  DagAttributesView attributes(const CellIndexView& index) const;
 };
 
 /// Parses the bytes of a file; vdag_parse.hpp describes the container and the rules for errors.
-/// Checks everything but the contents of the stream: any stream is safe to walk and to decode, and
-/// decode_svdag() and verify find what is wrong with it.
+/// Checks everything but the contents of the stream and the attributes: any stream is safe to walk
+/// and to decode, and decode_svdag() and verify find what is wrong with it.
+/// CompactContents::attributes() checks the attributes.
 CompactContents parse_compact(std::span<const std::byte> file);
 
 /// Reads the file into memory and checks its checksums and its head. Views stay valid when the

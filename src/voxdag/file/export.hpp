@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/layout/look.hpp"
 #include "voxdag/layout/voxel_set.hpp"
 
 namespace voxdag {
@@ -14,6 +15,9 @@ struct ExportOptions {
   /// The voxels to export: a half-open box of voxel coordinates, inside the grid and not empty.
   /// Without it, all voxels.
   std::optional<Box3i> window;
+  /// The colours, normals and materials of points, faces and lists of coordinates: those that the
+  /// file of the voxels stores, or those of another file of the same mesh. Empty: none.
+  LookView look;
   /// The greatest size of a dense array, in bytes; larger ones are refused before anything is
   /// written.
   std::uint64_t most_dense_bytes = std::uint64_t{16} << 30;
@@ -29,7 +33,9 @@ struct ExportOptions {
 /// voxels.levels(). If the format cannot hold the placement, the functions write it beside the
 /// output, as PATH.json, unless the output is a pipe or device.
 
-/// Writes voxel coordinates, N×3 int32 in Morton order, as .npy; with PATH.json.
+/// Writes voxel coordinates in Morton order as .npy; with PATH.json. The array is N×3 int32. With a
+/// look it is a structured array of shape (N,): voxel (int32 × 3), normal (float32 × 3), color
+/// (uint8 × 3) and material (uint16), as far as the look has them.
 void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& voxels,
                             const Grid& grid, const ExportOptions& options = {});
 
@@ -45,13 +51,15 @@ void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const
 
 /// Writes voxel centres in world units, in Morton order, as binary little-endian PLY. Coordinates
 /// are float if that is exact to 1/16 voxel over the whole grid, else double. Normals (nx, ny, nz)
-/// and colours (red, green, blue: 8 bits, sRGB) follow if an ESVO stores them.
+/// colours (red, green, blue: 8 bits, sRGB) and the number of the material (material: 16 bits)
+/// follow if the look has them.
 void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                        const ExportOptions& options = {});
 
 /// Writes the voxels of the window as cubes in world units, as PLY: a quad, counter-clockwise from
 /// outside, for each face whose neighbour is not a voxel of the window. Quads share corners within
-/// a leaf block of 4³. Coordinates are as in export_ply_points(); at most 2^31 - 1 corners.
+/// a leaf block of 4³; with a look only within a voxel, whose attributes they have.
+/// Coordinates are as in export_ply_points(); at most 2^31 - 1 corners.
 void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options = {});
 

@@ -6,6 +6,7 @@
 #include "voxdag/file/export_common.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/io/atomic_file.hpp"
+#include "voxdag/layout/look_reader.hpp"
 
 namespace voxdag {
 namespace {
@@ -13,9 +14,42 @@ namespace {
 constexpr std::int64_t kStripBytes = std::int64_t{32} << 20;
 constexpr std::size_t kRowsAtOnce = 16384;
 
-const ArrayLayout kCoordinates{"voxel coordinates (x, y, z), in Morton order", "int32", ""};
 const ArrayLayout kNpyDense{"1 where the voxel is set", "uint8", "xyz"};
 const ArrayLayout kRawDense{"1 where the voxel is set", "uint8", "zyx"};
+
+/// The type of the rows of coordinates: a structured type if the look has something.
+struct CoordinateRows {
+  explicit CoordinateRows(const LookReader& look) {
+    if (look.is_empty()) return;
+    layout = {"voxels with their attributes, in Morton order", "", ""};
+    dtype = "[('voxel', '<i4', (3,))";
+    if (look.has_normals()) add(", ('normal', '<f4', (3,))", sizeof(Vec3f));
+    if (look.has_colors()) add(", ('color', '|u1', (3,))", sizeof(Value8));
+    if (look.has_materials()) add(", ('material', '<u2')", sizeof(std::uint16_t));
+    dtype += "]";
+    layout.dtype = dtype;
+    shape = {};
+    item_bytes = bytes;
+  }
+
+  std::string dtype = "<i4";  ///< Of an item.
+  std::vector<std::uint64_t> shape{3};
+  std::size_t item_bytes = sizeof(std::int32_t);
+  std::size_t bytes = sizeof(Vec3i);  ///< Of a row.
+  ArrayLayout layout{"voxel coordinates (x, y, z), in Morton order", "int32", ""};
+
+ private:
+  void add(const char* field, std::size_t size) {
+    dtype += field;
+    bytes += size;
+  }
+};
+
+template <class T>
+void append(std::vector<std::byte>& rows, const T& value) {
+  const auto bytes = std::as_bytes(std::span(&value, 1));
+  rows.insert(rows.end(), bytes.begin(), bytes.end());
+}
 
 Vec3l size_of(const Box3i& window) { return Vec3l(window.hi) - Vec3l(window.lo); }
 
@@ -76,20 +110,29 @@ void for_each_dense_strip(const VoxelSet& voxels, const Box3i& window, const std
 void export_npy_coordinates(const std::filesystem::path& path, const VoxelSet& voxels,
                             const Grid& grid, const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  const std::uint64_t count = count_for_export(path, voxels, window, sizeof(Vec3i), options);
-  NpyWriter writer(path, "<i4", {3}, sizeof(std::int32_t), count);
-  std::vector<Vec3i> rows;
-  static_assert(sizeof(Vec3i) == 12);
+  LookReader look(options.look);
+  const CoordinateRows row(look);
+  const std::uint64_t count = count_for_export(path, voxels, window, row.bytes, options);
+  NpyWriter writer(path, row.dtype, row.shape, row.item_bytes, count);
+  std::vector<std::byte> rows;
   export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
-    for (; mask != 0; mask &= mask - 1)
-      rows.push_back(origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask))));
-    if (rows.size() < kRowsAtOnce) return;
-    writer.write_rows(rows.data(), rows.size());
+    for (; mask != 0; mask &= mask - 1) {
+      const Vec3i voxel =
+          origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
+      append(rows, voxel);
+      if (look.is_empty()) continue;
+      const VoxelLook of_voxel = look.read(voxel, voxels.levels());
+      if (look.has_normals()) append(rows, of_voxel.normal);
+      if (look.has_colors()) append(rows, of_voxel.color);
+      if (look.has_materials()) append(rows, of_voxel.material);
+    }
+    if (rows.size() < kRowsAtOnce * row.bytes) return;
+    writer.write_bytes(rows.data(), rows.size());
     rows.clear();
   });
-  writer.write_rows(rows.data(), rows.size());
+  writer.write_bytes(rows.data(), rows.size());
   writer.commit();
-  write_placement(path, grid, window, kCoordinates);
+  write_placement(path, grid, window, row.layout);
 }
 
 void export_npy_dense(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,

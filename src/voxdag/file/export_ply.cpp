@@ -8,7 +8,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/export_common.hpp"
 #include "voxdag/io/atomic_file.hpp"
-#include "voxdag/layout/stored_values.hpp"
+#include "voxdag/layout/look_reader.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,7 +34,7 @@ bool float_suffices(const Grid& grid) {
 class PlyFile {
  public:
   struct Content {
-    bool faces = false, normals = false, colors = false;
+    bool faces = false, normals = false, colors = false, materials = false;
   };
 
   PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content)
@@ -44,7 +44,8 @@ class PlyFile {
     file_.write_zeros(header_bytes_);
   }
 
-  void write_vertex(Vec3d grid_position) {
+  /// Writes a vertex, with the parts of `look` that the content has.
+  void write_vertex(Vec3d grid_position, const VoxelLook& look) {
     const Vec3d world = grid_.to_world(grid_position);
     if (use_float_) {
       const Vec3f rounded(world);
@@ -52,15 +53,10 @@ class PlyFile {
     } else {
       file_.write(&world, sizeof world);
     }
+    if (content_.normals) file_.write(&look.normal, sizeof look.normal);
+    if (content_.colors) file_.write(&look.color, sizeof look.color);
+    if (content_.materials) file_.write(&look.material, sizeof look.material);
     ++vertices_;
-  }
-
-  /// Writes the last vertex's normal and colour. If there are any, call it after each vertex.
-  void write_appearance(const EsvoView& esvo, const EsvoVoxel& voxel) {
-    Vec3f normal;
-    Vec3<std::uint8_t> color;
-    if (content_.normals && stored_normal(esvo, voxel, normal)) file_.write(&normal, sizeof normal);
-    if (content_.colors && stored_srgb8(esvo, voxel, color)) file_.write(&color, sizeof color);
   }
 
   void write_quad(const std::array<std::uint32_t, 4>& corners) {
@@ -96,6 +92,7 @@ class PlyFile {
     if (content_.colors)
       for (const char* channel : {"red", "green", "blue"})
         text += std::string("property uchar ") + channel + "\n";
+    if (content_.materials) text += "property ushort material\n";
     if (content_.faces)
       text +=
           "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
@@ -109,6 +106,10 @@ class PlyFile {
   std::size_t header_bytes_ = 0;
   std::uint64_t vertices_ = 0, faces_ = 0;
 };
+
+PlyFile::Content content_of(const LookReader& look, bool faces) {
+  return {faces, look.has_normals(), look.has_colors(), look.has_materials()};
+}
 
 constexpr int kCorners = 5 * 5 * 5;  ///< Corners of the voxels of a leaf block.
 
@@ -158,6 +159,13 @@ void for_each_face(const BlockSurface& surface, const Fn& fn) {
                       face % 2));
 }
 
+/// Sets the corners that the faces use.
+void find_corners(BlockSurface& surface) {
+  for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
+    for (const Vec3i corner : corners) surface.corners.set(corner_index(corner));
+  });
+}
+
 BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i origin,
                            std::uint64_t block) {
   const auto neighbour = [&](int axis, int step) {
@@ -170,10 +178,24 @@ BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i or
     surface.faces[2 * axis] = block & ~shift_up(block, neighbour(axis, -4), axis);
     surface.faces[2 * axis + 1] = block & ~shift_down(block, neighbour(axis, 4), axis);
   }
-  for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
-    for (const Vec3i corner : corners) surface.corners.set(corner_index(corner));
-  });
+  find_corners(surface);
   return surface;
+}
+
+/// Calls fn(surface, voxel) for the parts of a block's surface whose faces share corners: for the
+/// whole block, or for each voxel that has faces. `voxel` is its first one.
+template <class Fn>
+void for_each_part(const BlockSurface& whole, Vec3i origin, bool by_voxel, const Fn& fn) {
+  if (!by_voxel) return fn(whole, origin);
+  std::uint64_t left = 0;
+  for (const std::uint64_t faces : whole.faces) left |= faces;
+  for (; left != 0; left &= left - 1) {
+    BlockSurface part;
+    for (std::size_t face = 0; face < 6; ++face)
+      part.faces[face] = whole.faces[face] & (left & -left);
+    find_corners(part);
+    fn(part, origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(left))));
+  }
 }
 
 }  // namespace
@@ -181,31 +203,19 @@ BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i or
 void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                        const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
-  const std::uint64_t count = count_for_export(path, voxels, window, sizeof(Vec3f), options);
-  const auto write_voxels = [](PlyFile& file, Vec3i origin, std::uint64_t mask,
-                               const auto& after_vertex) {
+  LookReader look(options.look);
+  const std::uint64_t vertex_bytes = sizeof(Vec3f) + (look.has_normals() ? sizeof(Vec3f) : 0) +
+                                     (look.has_colors() ? sizeof(Value8) : 0) +
+                                     (look.has_materials() ? sizeof(std::uint16_t) : 0);
+  const std::uint64_t count = count_for_export(path, voxels, window, vertex_bytes, options);
+  PlyFile file(path, grid, content_of(look, false));
+  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
     for (; mask != 0; mask &= mask - 1) {
       const Vec3i voxel =
           origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
-      file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5});
-      after_vertex();
+      file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5},
+                        look.is_empty() ? VoxelLook{} : look.read(voxel, voxels.levels()));
     }
-  };
-  if (const EsvoView* esvo = voxels.esvo(); esvo != nullptr && !esvo->is_empty()) {
-    PlyFile file(path, grid,
-                 {.normals = has_stored(*esvo, EsvoAttachmentKind::kNormals),
-                  .colors = has_stored(*esvo, EsvoAttachmentKind::kColors)});
-    std::uint64_t parts = 0;
-    for_each_leaf_part(*esvo, window, [&](Vec3i origin, std::uint64_t mask, const EsvoVoxel& leaf) {
-      write_voxels(file, origin, mask, [&] { file.write_appearance(*esvo, leaf); });
-      if (++parts % 16384 == 0) report_export(options, file.vertices(), count);
-    });
-    file.commit();
-    return;
-  }
-  PlyFile file(path, grid, {});
-  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
-    write_voxels(file, origin, mask, [] {});
   });
   file.commit();
 }
@@ -214,18 +224,26 @@ void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels,
                       const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
   const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
-  PlyFile file(path, grid, {.faces = true});
+  LookReader look(options.look);
+  const bool by_voxel = !look.is_empty();
+  PlyFile file(path, grid, content_of(look, true));
   // In PLY all vertices come before all faces. So two walks compute the same surfaces.
-  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
-    const BlockSurface surface = block_surface(voxels, window, origin, block);
+  const auto for_each_surface = [&](const auto& fn) {
+    export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
+      for_each_part(block_surface(voxels, window, origin, block), origin, by_voxel,
+                    [&](const BlockSurface& surface, Vec3i voxel) { fn(surface, origin, voxel); });
+    });
+  };
+  for_each_surface([&](const BlockSurface& surface, Vec3i origin, Vec3i voxel) {
+    const VoxelLook of_voxel = by_voxel ? look.read(voxel, voxels.levels()) : VoxelLook{};
     for (int i = 0; i < kCorners; ++i)
-      if (surface.corners[i]) file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}));
+      if (surface.corners[i])
+        file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}), of_voxel);
     if (file.vertices() > std::numeric_limits<std::int32_t>::max())
       throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
   });
   std::uint32_t first_vertex = 0;
-  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
-    const BlockSurface surface = block_surface(voxels, window, origin, block);
+  for_each_surface([&](const BlockSurface& surface, Vec3i, Vec3i) {
     std::array<std::uint32_t, kCorners> vertex_of_corner;
     std::uint32_t next = first_vertex;
     for (int i = 0; i < kCorners; ++i) {

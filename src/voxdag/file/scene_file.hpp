@@ -21,11 +21,6 @@ class SceneFile {
   VoxelSet voxels() const {
     return std::visit([](const auto& file) { return VoxelSet(file.view()); }, file_);
   }
-  /// Returns the DAG with its attributes; empty for an ESVO, and for a DAG without attributes.
-  ColoredDagView colored_dag() const {
-    const VdagFile* const dag = std::get_if<VdagFile>(&file_);
-    return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
-  }
   const SceneMetadata& metadata() const {
     return std::visit([](const auto& file) -> const SceneMetadata& { return file.metadata(); },
                       file_);

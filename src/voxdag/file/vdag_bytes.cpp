@@ -12,20 +12,14 @@ namespace {
 
 constexpr std::byte kZeros[kVdagAlignment] = {};
 
-std::uint64_t checksum(const VdagOutputChunk& chunk) {
-  Xxh3Stream stream;
-  for (const auto& part : chunk.parts) stream.add(part);
-  return stream.digest();
-}
-
 /// Returns the bytes before the first chunk: header and table with checksums, padded.
-std::vector<std::byte> make_head(const std::vector<VdagOutputChunk>& chunks) {
+std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
   const std::size_t table_end = sizeof(VdagHeader) + chunks.size() * sizeof(VdagChunkEntry);
   std::vector<std::byte> head(vdag_align(table_end));
   std::uint64_t offset = head.size();
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     const VdagChunkEntry entry{chunks[i].id, chunks[i].flags, offset, chunks[i].length(),
-                               checksum(chunks[i])};
+                               chunks[i].checksum()};
     std::memcpy(head.data() + sizeof(VdagHeader) + i * sizeof entry, &entry, sizeof entry);
     offset += vdag_align(entry.length);
   }
@@ -45,19 +39,18 @@ std::span<const std::byte> bytes_of(const T* values, std::size_t count) {
   return std::as_bytes(std::span<const T>(values, count));
 }
 
-std::vector<VdagOutputChunk> plain_chunks(const std::string& json, const SvdagView& view,
-                                          const std::uint64_t* level_begin,
-                                          const AttributeChunks& attributes) {
+std::vector<OutputChunk> plain_chunks(const std::string& json, const SvdagView& view,
+                                      const std::uint64_t* level_begin,
+                                      const AttributeChunks& attributes) {
   const auto required = [](std::uint32_t id, std::span<const std::byte> bytes) {
-    return VdagOutputChunk{id, kVdagChunkRequired, {bytes}};
+    return OutputChunk{id, kVdagChunkRequired, {bytes}};
   };
-  std::vector<VdagOutputChunk> chunks = {
+  std::vector<OutputChunk> chunks = {
       required(kChunkMeta, bytes_of(json.data(), json.size())),
       required(kChunkLevels, bytes_of(level_begin, static_cast<std::size_t>(view.levels - 1))),
       required(kChunkNodes, bytes_of(view.nodes, view.node_words())),
       required(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count))};
-  for (const AttributeChunk& chunk : attributes.chunks())
-    chunks.push_back({chunk.id, 0, chunk.parts});
+  chunks.insert(chunks.end(), attributes.chunks().begin(), attributes.chunks().end());
   return chunks;
 }
 
@@ -68,19 +61,13 @@ const std::uint64_t* copy_level_begin(const SvdagView& view, std::uint64_t* copy
 
 }  // namespace
 
-std::uint64_t VdagOutputChunk::length() const {
-  std::uint64_t sum = 0;
-  for (const auto& part : parts) sum += part.size();
-  return sum;
-}
-
-VdagBytes::VdagBytes(const std::vector<VdagOutputChunk>& chunks) : head_(make_head(chunks)) {
+VdagBytes::VdagBytes(const std::vector<OutputChunk>& chunks) : head_(make_head(chunks)) {
   const auto add = [this](std::span<const std::byte> part) {
     if (!part.empty()) parts_.push_back(part);
     size_ += part.size();
   };
   add(head_);
-  for (const VdagOutputChunk& chunk : chunks) {
+  for (const OutputChunk& chunk : chunks) {
     for (const auto& part : chunk.parts) add(part);
     add({kZeros, vdag_align(chunk.length()) - chunk.length()});
   }
@@ -89,13 +76,18 @@ VdagBytes::VdagBytes(const std::vector<VdagOutputChunk>& chunks) : head_(make_he
 PlainVdagBytes::PlainVdagBytes(const SvdagView& view, const VdagMetadata& metadata,
                                const DagAttributesView& attributes)
     : json_(checked_metadata_json(metadata)),
-      attributes_(attributes),
+      attributes_(attributes, AttributeChunks::Index::kStored),
       bytes_(plain_chunks(json_, view, copy_level_begin(view, level_begin_), attributes_)) {
   assert(metadata.grid.levels == view.levels);
 }
 
 std::string checked_metadata_json(const VdagMetadata& metadata) {
   std::string json = vdag_metadata_json(metadata);
+  if (json.size() > kVdagMostMetadataBytes)
+    throw Error("", ErrorPlace::chunk("META"),
+                "would have " + std::to_string(json.size()) + " bytes, more than the limit of " +
+                    std::to_string(kVdagMostMetadataBytes) +
+                    (metadata.attributes.materials ? ": the materials have too long names" : ""));
   parse_vdag_metadata(json);
   return json;
 }

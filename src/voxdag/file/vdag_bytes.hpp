@@ -6,24 +6,17 @@
 #include <vector>
 
 #include "voxdag/file/attribute_chunks.hpp"
+#include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
 
-/// A chunk to write, in parts that follow each other.
-struct VdagOutputChunk {
-  std::uint32_t id, flags;
-  std::vector<std::span<const std::byte>> parts;
-
-  std::uint64_t length() const;
-};
-
 /// The parts of a file with these chunks. Refers to the chunks' bytes and owns the rest.
 class VdagBytes {
  public:
-  explicit VdagBytes(const std::vector<VdagOutputChunk>& chunks);
+  explicit VdagBytes(const std::vector<OutputChunk>& chunks);
   VdagBytes(const VdagBytes&) = delete;
   VdagBytes& operator=(const VdagBytes&) = delete;
 

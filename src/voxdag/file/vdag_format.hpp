@@ -70,6 +70,7 @@ inline constexpr std::uint32_t kChunkEsvoBlocks =
 inline constexpr std::uint32_t kChunkCellIndex = vdag_chunk_id("CIDX");  ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkColors = vdag_chunk_id("COLR");     ///< attribute_chunks.hpp
 inline constexpr std::uint32_t kChunkNormals = vdag_chunk_id("NRML");    ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkMaterials = vdag_chunk_id("MTID");  ///< attribute_chunks.hpp
 
 /// Returns the id as text, such as "NODE", with "?" for bytes other than letters, digits and
 /// spaces.

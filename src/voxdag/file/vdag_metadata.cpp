@@ -11,7 +11,9 @@ namespace voxdag {
 namespace {
 
 MetadataJson values_json(const AttributesMetadata::Values& values) {
-  return {{"bound", values.bound}, {"errors", values.errors}};
+  MetadataJson json = {{"bound", values.bound}};
+  if (values.errors) json["errors"] = *values.errors;
+  return json;
 }
 
 MetadataJson attributes_json(const AttributesMetadata& attributes) {
@@ -19,6 +21,7 @@ MetadataJson attributes_json(const AttributesMetadata& attributes) {
   json["resolution"] = attributes.resolution;
   if (attributes.colors) json["color"] = values_json(*attributes.colors);
   if (attributes.normals) json["normal"] = values_json(*attributes.normals);
+  if (attributes.materials) json["material"] = {{"names", *attributes.materials}};
   return json;
 }
 
@@ -32,24 +35,33 @@ AttributesMetadata read_attributes(const MetadataField& field, const Grid& grid)
   const auto read = [&](const char* name, std::optional<AttributesMetadata::Values>& values) {
     if (!field.value.contains(name)) return;
     const MetadataField of = field.at(name);
-    values = {of.at("bound").finite(), of.at("errors").count()};
+    values = {of.at("bound").finite(), {}};
+    if (of.value.contains("errors")) values->errors = of.at("errors").count();
   };
   read("color", attributes.colors);
   read("normal", attributes.normals);
+  if (field.value.contains("material")) {
+    const MetadataField names = field.at("material").at("names");
+    if (!names.value.is_array()) names.fail("not an array");
+    attributes.materials.emplace();
+    for (std::size_t i = 0; i < names.value.size(); ++i)
+      attributes.materials->push_back(names.at(i).text());
+  }
   return attributes;
 }
 
 }  // namespace
 
 double AttributesMetadata::color_psnr_db(std::uint64_t cells) const {
-  if (!colors || colors->errors == 0) return std::numeric_limits<double>::infinity();
+  if (!colors || colors->errors.value_or(0) == 0) return std::numeric_limits<double>::infinity();
   return 10 * std::log10(255.0 * 255 * 3 * static_cast<double>(cells) /
-                         static_cast<double>(colors->errors));
+                         static_cast<double>(*colors->errors));
 }
 
 double AttributesMetadata::normal_mean_degrees(std::uint64_t cells) const {
   if (!normals || cells == 0) return 0;
-  const double distance = static_cast<double>(normals->errors) / 256 / static_cast<double>(cells);
+  const double distance =
+      static_cast<double>(normals->errors.value_or(0)) / 256 / static_cast<double>(cells);
   return distance / 127 * 180 / std::numbers::pi;
 }
 

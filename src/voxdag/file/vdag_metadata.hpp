@@ -1,9 +1,11 @@
 #pragma once
 /// The metadata of a DAG in a .vdag file: the JSON of its META chunk.
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "voxdag/file/scene_metadata.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
@@ -16,18 +18,23 @@ struct AttributesMetadata {
   struct Values {
     double bound = 0;  ///< For colours from 0 to 1, for normals in degrees.
     /// For colours, the sum of the squared differences of all channels, in steps of 8 bits. For
-    /// normals, the sum of the distances, in 1/256 of a step of 8 bits.
-    std::uint64_t errors = 0;
+    /// normals, the sum of the distances, in 1/256 of a step of 8 bits. None: not known.
+    std::optional<std::uint64_t> errors;
     friend bool operator==(const Values&, const Values&) = default;
   };
   std::int64_t resolution = 0;  ///< M: cells per side at the finest level with attributes.
   std::optional<Values> colors, normals;
+  /// The names of the materials, by id.
+  std::optional<std::vector<std::string>> materials;
+
+  /// Returns m, the finest level with attributes; there must be some.
+  int level() const { return std::countr_zero(static_cast<std::uint64_t>(resolution)); }
 
   /// Returns the peak signal-to-noise ratio of the colours of `cells` cells, in dB; infinity if all
-  /// are exact.
+  /// are exact. The errors must be known.
   double color_psnr_db(std::uint64_t cells) const;
   /// Returns the mean angle between given and stored normals of `cells` cells, in degrees: an
-  /// estimate from their distances, which is good for small angles.
+  /// estimate from their distances, which is good for small angles. The errors must be known.
   double normal_mean_degrees(std::uint64_t cells) const;
   friend bool operator==(const AttributesMetadata&, const AttributesMetadata&) = default;
 };

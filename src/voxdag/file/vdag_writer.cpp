@@ -7,8 +7,11 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/attribute_chunks.hpp"
+#include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
 
@@ -42,17 +45,24 @@ void write_vdag(const std::filesystem::path& path, const SvdagView& view,
 }
 
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
-                const VdagMetadata& metadata) {
+                const VdagMetadata& metadata, const DagAttributesView& attributes) {
   assert(metadata.grid.levels == compact.levels);
-  const std::string json = with_name(path, [&] { return checked_metadata_json(metadata); });
+  const std::string json = with_name(path, [&] {
+    // A reader numbers the cells down to the level that the metadata has.
+    if (!attributes.is_empty()) compare_attributes(metadata.attributes, attributes);
+    return checked_metadata_json(metadata);
+  });
   const std::vector<std::byte> head = compact_head(compact);
   const auto required = [](std::uint32_t id, std::span<const std::byte> bytes) {
-    return VdagOutputChunk{id, kVdagChunkRequired, {bytes}};
+    return OutputChunk{id, kVdagChunkRequired, {bytes}};
   };
-  const VdagBytes bytes({required(kChunkMeta, std::as_bytes(std::span<const char>(json))),
-                         required(kChunkCompactHead, head),
-                         required(kChunkCompactStream, std::as_bytes(compact.words()))});
-  write_parts(path, bytes.parts());
+  std::vector<OutputChunk> chunks = {
+      required(kChunkMeta, std::as_bytes(std::span<const char>(json))),
+      required(kChunkCompactHead, head),
+      required(kChunkCompactStream, std::as_bytes(compact.words()))};
+  const AttributeChunks attribute_chunks(attributes, AttributeChunks::Index::kLeftOut);
+  chunks.insert(chunks.end(), attribute_chunks.chunks().begin(), attribute_chunks.chunks().end());
+  write_parts(path, VdagBytes(chunks).parts());
 }
 
 }  // namespace voxdag

@@ -16,8 +16,10 @@ namespace voxdag {
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata, const DagAttributesView& attributes = {});
 
-/// Writes a DAG in the compact form, in the same way.
+/// Writes a DAG in the compact form, in the same way. The numbers of the attributes are left out,
+/// because they follow from the DAG. Also throws Error if metadata.attributes does not describe
+/// `attributes`.
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
-                const VdagMetadata& metadata);
+                const VdagMetadata& metadata, const DagAttributesView& attributes = {});
 
 }  // namespace voxdag

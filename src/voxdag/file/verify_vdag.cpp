@@ -35,10 +35,6 @@ void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted) {
   compare_levels("dag_nodes_per_level", stated.dag_nodes_per_level, counted.dag_nodes_per_level);
 }
 
-namespace {
-
-/// Throws Error if the metadata describes other attributes than those that the file stores. A DAG
-/// without voxels stores none.
 void compare_attributes(const AttributesMetadata& stated, const DagAttributesView& stored) {
   const auto fail = [](const char* key, const std::string& reason) {
     throw Error("", ErrorPlace::chunk("META") / key, reason);
@@ -54,11 +50,19 @@ void compare_attributes(const AttributesMetadata& stated, const DagAttributesVie
     fail("attributes", "is missing, but the file has attributes");
   compare_values("attributes.color", "COLR", stated.colors.has_value(), stored.has_colors());
   compare_values("attributes.normal", "NRML", stated.normals.has_value(), stored.has_normals());
+  compare_values("attributes.material", "MTID", stated.materials.has_value(),
+                 stored.has_materials());
+  if (stored.has_materials() && stated.materials->size() != stored.materials.materials)
+    fail("attributes.material.names",
+         "has " + std::to_string(stated.materials->size()) + " names, but the chunk MTID has " +
+             std::to_string(stored.materials.materials) + " materials");
   const std::int64_t resolution = std::int64_t{1} << stored.index.finest_level;
   if (!stored.is_empty() && stated.resolution != resolution)
     fail("attributes.resolution", "is " + std::to_string(stated.resolution) +
                                       ", but the chunk CIDX has " + std::to_string(resolution));
 }
+
+namespace {
 
 VerifyReport verify_esvo(std::span<const std::byte> file) {
   VerifyReport report;

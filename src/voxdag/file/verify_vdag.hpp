@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 
 namespace voxdag {
@@ -49,6 +51,10 @@ void run_check(VerifyReport& report, std::string name, std::initializer_list<std
 
 /// Throws Error if the counts that a file states are not those of its DAG.
 void compare_counts(const SvdagCounts& stated, const SvdagCounts& counted);
+
+/// Throws Error if the metadata describes other attributes than those that are stored. A DAG
+/// without voxels stores none.
+void compare_attributes(const AttributesMetadata& stated, const DagAttributesView& stored);
 
 /// Runs all checks, but skips those that make no sense after a failed one:
 ///   container        magic, version, sizes, chunk table, padding

@@ -29,22 +29,38 @@ struct LookView {
   VOXDAG_HD bool has_normals() const {
     return has_stored(esvo, EsvoAttachmentKind::kNormals) || dag.attributes.has_normals();
   }
+  VOXDAG_HD bool has_materials() const { return dag.attributes.has_materials(); }
 };
 
-/// Returns what a DAG stores for a cell of `level`, or for the cell's ancestor of the finest level
-/// with attributes if `level` is finer. The grid of the cell may have more or fewer levels than
-/// that of the DAG.
-VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
-  StoredLook look;
-  const DagAttributesView& attributes = colored.attributes;
+/// Sets `number` to the number of a cell of `level`, or of its ancestor of the finest level with
+/// attributes if `level` is finer. The grid of the cell may have more or fewer levels than that of
+/// the DAG. Returns false if the DAG has no attributes there.
+VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int level,
+                                  std::uint64_t& number) {
   const int finer = level - colored.dag.levels;
   if (finer > 0) {
     cell = {cell.x >> finer, cell.y >> finer, cell.z >> finer};
     level = colored.dag.levels;
   }
+  return !colored.is_empty() &&
+         find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
+}
+
+/// Returns the material of the cell of find_number(); kMostMaterials if there is none. `colored`
+/// must have materials.
+VOXDAG_HD inline std::uint32_t material_at(const ColoredDagView& colored, Vec3i cell, int level) {
   std::uint64_t number = 0;
-  if (colored.is_empty() || !find_cell_number(colored.dag, attributes.index, cell, level, number))
-    return look;
+  return find_number(colored, cell, level, number)
+             ? read_material(colored.attributes.materials, number)
+             : kMostMaterials;
+}
+
+/// Returns the colour and the normal that a DAG stores for the cell of find_number().
+VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
+  StoredLook look;
+  const DagAttributesView& attributes = colored.attributes;
+  std::uint64_t number = 0;
+  if (!find_number(colored, cell, level, number)) return look;
   look.has_color = attributes.has_colors();
   if (look.has_color) {
     const Value8 color = read_value(attributes.colors, number);

@@ -1,6 +1,7 @@
 #pragma once
-/// The colours and normals of a DAG's cells.
+/// The colours, normals and materials of a DAG's cells.
 #include "voxdag/layout/cell_index_lookup.hpp"
+#include "voxdag/layout/material_ids.hpp"
 #include "voxdag/layout/value_pages.hpp"
 
 namespace voxdag {
@@ -8,12 +9,14 @@ namespace voxdag {
 /// A view for kernels and readers. The value of a cell has the cell's number.
 struct DagAttributesView {
   CellIndexView index;
-  ValuePagesView colors;   ///< sRGB encoded; empty: none.
-  ValuePagesView normals;  ///< See unpack_normal(); empty: none.
+  ValuePagesView colors;      ///< sRGB encoded; empty: none.
+  ValuePagesView normals;     ///< See unpack_normal(); empty: none.
+  MaterialIdsView materials;  ///< Empty: none.
 
   VOXDAG_HD bool has_colors() const { return !colors.is_empty(); }
   VOXDAG_HD bool has_normals() const { return !normals.is_empty(); }
-  VOXDAG_HD bool is_empty() const { return !has_colors() && !has_normals(); }
+  VOXDAG_HD bool has_materials() const { return !materials.is_empty(); }
+  VOXDAG_HD bool is_empty() const { return !has_colors() && !has_normals() && !has_materials(); }
 };
 
 /// A DAG with the attributes of its cells.

@@ -8,10 +8,10 @@ std::optional<SurfaceSample> PieceSampler::constant_sample(const SurfaceTriangle
   const auto own_normal = static_cast<Vec3f>(triangle.normal);
   if (shading_ == nullptr) return SurfaceSample{kSurfaceGrey, 1, own_normal};
   if (!shading_->has_one_color(triangle.source) ||
-      !(triangle.is_displaced || shading_->has_one_normal(triangle.source)))
+      !(triangle.is_displaced || !with_normals_ || shading_->has_one_normal(triangle.source)))
     return std::nullopt;
-  SurfaceSample sample =
-      shading_->mean(triangle.source, std::array<Vec2f, 1>{Vec2f{1.0f / 3, 1.0f / 3}});
+  SurfaceSample sample = shading_->mean(
+      triangle.source, std::array<Vec2f, 1>{Vec2f{1.0f / 3, 1.0f / 3}}, with_normals_);
   if (triangle.is_displaced) sample.normal = own_normal;
   return sample;
 }
@@ -32,7 +32,7 @@ SurfaceSample PieceSampler::sample(const Cell& cell, const TrianglePiece& piece,
                                    const PieceCorners& corners) const {
   const SurfaceTriangle& triangle = cell.triangle_of(piece);
   if (triangle.constant_sample) return *triangle.constant_sample;
-  SurfaceSample sample = shading_->mean(triangle.source, corners);
+  SurfaceSample sample = shading_->mean(triangle.source, corners, with_normals_);
   if (triangle.is_displaced) sample.normal = static_cast<Vec3f>(triangle.normal);
   return sample;
 }

@@ -25,8 +25,10 @@ struct PieceCorners {
 
 class PieceSampler {
  public:
-  /// If `shading` is null, surfaces are grey and have the normals of their triangles.
-  explicit PieceSampler(const SurfaceShading* shading) : shading_(shading) {}
+  /// If `shading` is null, surfaces are grey and have the normals of their triangles. Without
+  /// `with_normals`, samples of surfaces with shading have no normals: they are zero.
+  explicit PieceSampler(const SurfaceShading* shading, bool with_normals = true)
+      : shading_(shading), with_normals_(with_normals) {}
 
   /// Returns the common sample of all points of a triangle, or nothing if they differ.
   std::optional<SurfaceSample> constant_sample(const SurfaceTriangle& triangle) const;
@@ -51,6 +53,7 @@ class PieceSampler {
 
  private:
   const SurfaceShading* shading_;
+  bool with_normals_;
 };
 
 }  // namespace voxdag

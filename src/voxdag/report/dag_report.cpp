@@ -43,23 +43,27 @@ double bits_per_cell(std::uint64_t bytes, const AttributeSizes& sizes) {
 Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
   Json json;
   json["index_bytes"] = sizes.index_bytes;
-  const auto add = [&](const char* name, std::uint64_t bytes, double bound) -> Json& {
+  const auto add = [&](const char* name, std::uint64_t bytes) -> Json& {
     json[name] = {{"resolution", metadata.resolution},
                   {"cells", sizes.cells},
                   {"bytes", bytes},
-                  {"bits_per_cell", bits_per_cell(bytes, sizes)},
-                  {"bound", bound}};
+                  {"bits_per_cell", bits_per_cell(bytes, sizes)}};
     return json[name];
   };
   if (metadata.colors) {
     const double psnr = metadata.color_psnr_db(sizes.cells);
+    Json& color = add("color", sizes.color_bytes);
+    color["bound"] = metadata.colors->bound;
     // The PSNR of exact colours is infinite, which JSON cannot write.
-    add("color", sizes.color_bytes, metadata.colors->bound)["psnr_db"] =
-        std::isfinite(psnr) ? Json(psnr) : Json();
+    if (metadata.colors->errors) color["psnr_db"] = std::isfinite(psnr) ? Json(psnr) : Json();
   }
-  if (metadata.normals)
-    add("normal", sizes.normal_bytes, metadata.normals->bound)["mean_degrees"] =
-        metadata.normal_mean_degrees(sizes.cells);
+  if (metadata.normals) {
+    Json& normal = add("normal", sizes.normal_bytes);
+    normal["bound"] = metadata.normals->bound;
+    if (metadata.normals->errors)
+      normal["mean_degrees"] = metadata.normal_mean_degrees(sizes.cells);
+  }
+  if (metadata.materials) add("material", sizes.material_bytes)["names"] = *metadata.materials;
   return json;
 }
 
@@ -69,16 +73,24 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
   std::string text = fmt::format(
       "\n  {:<14}{} of {}³ and coarser, index {}\n", "cells", with_commas(sizes.cells),
       with_commas(static_cast<std::uint64_t>(metadata.resolution)), human_bytes(sizes.index_bytes));
+  const auto add = [&](const char* name, std::uint64_t bytes, const std::string& error) {
+    text += fmt::format("  {:<14}{}, {:.3f} bits/cell{}\n", name, human_bytes(bytes),
+                        bits_per_cell(bytes, sizes), error);
+  };
   if (metadata.colors)
-    text += fmt::format("  {:<14}{}, {:.3f} bits/cell, {}\n", "colours",
-                        human_bytes(sizes.color_bytes), bits_per_cell(sizes.color_bytes, sizes),
-                        metadata.colors->errors == 0
-                            ? "lossless"
-                            : fmt::format("PSNR {:.1f} dB", metadata.color_psnr_db(sizes.cells)));
+    add("colours", sizes.color_bytes,
+        !metadata.colors->errors ? ""
+        : *metadata.colors->errors == 0
+            ? ", lossless"
+            : fmt::format(", PSNR {:.1f} dB", metadata.color_psnr_db(sizes.cells)));
   if (metadata.normals)
-    text += fmt::format("  {:<14}{}, {:.3f} bits/cell, mean error {:.2f}°\n", "normals",
-                        human_bytes(sizes.normal_bytes), bits_per_cell(sizes.normal_bytes, sizes),
-                        metadata.normal_mean_degrees(sizes.cells));
+    add("normals", sizes.normal_bytes,
+        !metadata.normals->errors
+            ? ""
+            : fmt::format(", mean error {:.2f}°", metadata.normal_mean_degrees(sizes.cells)));
+  if (metadata.materials)
+    add("material ids", sizes.material_bytes,
+        fmt::format(", {} materials", with_commas(metadata.materials->size())));
   return text;
 }
 
@@ -87,7 +99,7 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
 AttributeSizes sizes_of(const DagAttributesView& attributes) {
   if (attributes.is_empty()) return {};
   return {attributes.index.cells, attributes.index.bytes(), attributes.colors.bytes(),
-          attributes.normals.bytes()};
+          attributes.normals.bytes(), attributes.materials.bytes()};
 }
 
 CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes) {
@@ -179,11 +191,21 @@ std::string dag_table(const DagReport& report) {
                 fmt::format("{:.3f}", quotient(static_cast<double>(bytes),
                                                static_cast<double>(report.svdag_bytes()))));
   };
-  compact_row("all", report.svdag_bytes(), compact.total());
+  compact_row("geometry", report.svdag_bytes(), compact.total());
   compact_row("nodes", 0, compact.nodes);
   compact_row("units", 0, compact.units);
   compact_row("shared bricks", 0, compact.shared_bricks);
   compact_row("head", 0, compact.head);
+  const AttributeSizes& sizes = report.attributes;
+  const auto attribute_row = [&](const char* name, std::uint64_t plain, std::uint64_t bytes) {
+    if (plain > 0) text += row(name, human_bytes(plain), human_bytes(bytes), "");
+  };
+  attribute_row("cell numbers", sizes.index_bytes, 0);
+  attribute_row("colours", sizes.color_bytes, sizes.color_bytes);
+  attribute_row("normals", sizes.normal_bytes, sizes.normal_bytes);
+  attribute_row("material ids", sizes.material_bytes, sizes.material_bytes);
+  const std::uint64_t values = sizes.color_bytes + sizes.normal_bytes + sizes.material_bytes;
+  attribute_row("all", report.svdag_bytes() + sizes.index_bytes + values, compact.total() + values);
   text += row("bits/voxel", fmt::format("{:.3f}", bits_per_voxel(report.svdag_bytes(), counts)),
               fmt::format("{:.3f}", bits_per_voxel(compact.total(), counts)), "");
   return text;

@@ -15,7 +15,7 @@ namespace voxdag {
 /// Counts and bytes of a DAG's attributes; all 0 if it has none.
 struct AttributeSizes {
   std::uint64_t cells = 0;
-  std::uint64_t index_bytes = 0, color_bytes = 0, normal_bytes = 0;
+  std::uint64_t index_bytes = 0, color_bytes = 0, normal_bytes = 0, material_bytes = 0;
 };
 AttributeSizes sizes_of(const DagAttributesView& attributes);
 

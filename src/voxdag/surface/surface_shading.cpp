@@ -52,16 +52,20 @@ SurfaceShading::SurfaceShading(const Mesh& mesh, const Appearance& appearance,
 SurfaceShading::~SurfaceShading() = default;
 SurfaceShading::SurfaceShading(SurfaceShading&&) noexcept = default;
 
-SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polygon) const {
+SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polygon,
+                                   bool with_normal) const {
   const SurfaceTables& tables = *tables_;
   const ResolvedMaterial& material = tables.material(t);
-  const bool is_plain = has_one_color(t) && !material.normal_texture;
+  const bool has_normal_texture = with_normal && material.normal_texture;
+  const bool is_plain = has_one_color(t) && !has_normal_texture;
+  if (is_plain && !with_normal) return {material.color, 1, {}};
   if (is_plain && has_one_normal(t)) {
     const Vec3f* const n = tables.normals(t);
     return {material.color, 1, n == nullptr ? face_normal(tables.mesh, t) : n[0]};
   }
   const PolygonMoments moments = polygon_moments(polygon);
-  SurfaceSample sample{material.color, 1, tables.mean_normal(t, polygon, moments)};
+  SurfaceSample sample{material.color, 1,
+                       with_normal ? tables.mean_normal(t, polygon, moments) : Vec3f{}};
   if (is_plain) return sample;
   if (!tables.appearance.colors.empty())
     sample.color = sample.color * tables.corner_colors(t)(moments.center);
@@ -77,7 +81,7 @@ SurfaceSample SurfaceShading::mean(std::uint32_t t, std::span<const Vec2f> polyg
     sample.color = sample.color * Vec3f{value[0] * scale, value[1] * scale, value[2] * scale};
   }
   if (!tables.is_visible(t, material, moments.center)) sample.coverage = 0;
-  if (material.normal_texture) {
+  if (has_normal_texture) {
     const CornerTangents corners = tables.tangents[t];
     if (corners.tangents == nullptr) return sample;
     const Texture::Value value =

@@ -40,8 +40,9 @@ class SurfaceShading {
   SurfaceShading(SurfaceShading&&) noexcept;
 
   /// Returns the mean appearance of a polygon. Textures are filtered by mip maps, with a footprint
-  /// of the polygon's size and shape.
-  SurfaceSample mean(std::uint32_t triangle, std::span<const Vec2f> polygon) const;
+  /// of the polygon's size and shape. Without `with_normal`, the sample's normal is zero.
+  SurfaceSample mean(std::uint32_t triangle, std::span<const Vec2f> polygon,
+                     bool with_normal = true) const;
 
   /// Returns whether the triangle's material has a normal map that was read.
   bool has_normal_map(std::uint32_t triangle) const;

@@ -9,49 +9,6 @@
 namespace voxdag {
 namespace {
 
-constexpr std::uint32_t kLast = CellBox::kParts - 1;
-
-struct Extent {
-  std::uint32_t first[3] = {kLast, kLast, kLast}, last[3] = {0, 0, 0};
-
-  /// Adds the box of octant `index`.
-  void add(CellBox box, std::uint32_t index) {
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const std::uint32_t begin = (index >> axis & 1u) * CellBox::kParts;
-      const std::uint32_t low = box.bits >> (CellBox::kBits * axis) & kLast;
-      const std::uint32_t high = box.bits >> (CellBox::kBits * (axis + 3)) & kLast;
-      first[axis] = std::min(first[axis], (begin + low) / 2);
-      last[axis] = std::max(last[axis], (begin + high) / 2);
-    }
-  }
-  CellBox box() const {
-    CellBox box;
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
-      box.bits |= first[axis] << (CellBox::kBits * axis) | last[axis]
-                                                               << (CellBox::kBits * (axis + 3));
-    return box;
-  }
-};
-
-CellBox box_of(std::uint64_t block) {
-  constexpr std::uint64_t kOdd[3] = {0xAAAAAAAAAAAAAAAAu, 0xCCCCCCCCCCCCCCCCu, 0xF0F0F0F0F0F0F0F0u};
-  constexpr std::uint64_t kUpper[3] = {0xFF00FF00FF00FF00u, 0xFFFF0000FFFF0000u,
-                                       0xFFFFFFFF00000000u};
-  constexpr std::uint32_t kVoxel = CellBox::kParts / 4;
-  Extent extent;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::uint32_t slices = 0;  // Bit i is set if there is a voxel at coordinate i.
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      const std::uint64_t slice = ((i & 1u) != 0 ? kOdd[axis] : ~kOdd[axis]) &
-                                  ((i & 2u) != 0 ? kUpper[axis] : ~kUpper[axis]);
-      slices |= (block & slice) != 0 ? 1u << i : 0u;
-    }
-    extent.first[axis] = static_cast<std::uint32_t>(lowest_bit64(slices)) * kVoxel;
-    extent.last[axis] = static_cast<std::uint32_t>(highest_bit(slices) + 1) * kVoxel - 1;
-  }
-  return extent.box();
-}
-
 /// Returns the first words of some nodes in [begin, end), about kRun words apart.
 std::vector<std::uint64_t> runs_of(const SvdagView& dag, std::uint64_t begin, std::uint64_t end) {
   constexpr std::uint64_t kRun = 1 << 14;
@@ -85,7 +42,7 @@ std::uint64_t make_node(const SvdagView& dag, int level, std::uint64_t at, std::
   std::uint32_t* const node = words + 2 * at;
   std::uint32_t* const pointers = node + 2;
   std::uint32_t* const boxes = pointers + children;
-  Extent extent;
+  CellExtent extent;
   std::uint32_t rest = mask;
   for (std::uint64_t i = 0; i < children; ++i, rest &= rest - 1) {
     const std::uint32_t child = dag.nodes[at + 1 + i];

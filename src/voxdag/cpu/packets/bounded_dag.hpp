@@ -3,21 +3,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "voxdag/cpu/packets/cell_box.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
-
-/// A box in a cell, in 32nds of the cell's side. 30 bits: five each for the first 32nd with voxels
-/// along x, y and z, then five each for the last one. Boxes of smaller voxels are rounded outwards.
-///
-/// A surface fills only a small part of the cells that it crosses. Rays that pass beside it, or
-/// start on it, meet these cells but not their boxes.
-struct CellBox {
-  static constexpr int kBits = 5;
-  static constexpr std::uint32_t kParts = 1u << kBits;
-
-  std::uint32_t bits = 0;
-};
 
 /// Built once from a DAG, to which it points. It holds the nodes above the leaf blocks; a node's
 /// index is twice its word index in the DAG:

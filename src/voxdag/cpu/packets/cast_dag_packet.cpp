@@ -37,31 +37,40 @@ namespace HWY_NAMESPACE {
 #if VOXDAG_PACKET_LANES
 
 /// Pushes the nodes to visit first onto the stack. Returns their number.
-inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) const {
+inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) {
   CommonCell starts, reach;
-  common_cells(starts, reach, rays_.has_stop ? finest_without_stop() : nodes_.levels() - 2);
+  common_cells(starts, reach, rays_.has_stop ? finest_without_stop() : levels_ - 2);
   std::size_t top = 0;
-  std::uint32_t node = nodes_.root();
+  std::uint32_t node = 0;
   for (int level = 0;; ++level) {
     const std::uint32_t child_bit = 22u - static_cast<std::uint32_t>(level);
     const std::uint32_t index = (starts.corner[0] >> child_bit & 1u) |
                                 (starts.corner[1] >> child_bit & 1u) << 1 |
                                 (starts.corner[2] >> child_bit & 1u) << 2;
-    const std::uint32_t unmirrored = nodes_.child_mask(node, level);
-    const bool descends =
-        level < starts.level && (unmirrored >> (index ^ rays_.mirrored) & 1u) != 0;
+    const std::uint32_t stored = index ^ rays_.mirrored;
+    const std::uint32_t unit = node;
+    if (level == unit_level_) {
+      open_unit(unit);
+      node = 0;
+    }
+    const std::uint32_t* words = nullptr;
+    bool descends = level < starts.level;
+    if (descends) {
+      words = words_of(node, level);
+      descends = (words[0] >> stored & 1u) != 0;
+    }
     if (level >= reach.level || !descends) {
       // Skips the child in which the rays start, because another visit covers it.
       Visit& visit = stack[top++];
       visit.rays = all;
-      visit.node = node;
+      visit.node = level == unit_level_ ? unit : node;
       for (int axis = 0; axis < 3; ++axis)
         visit.corner[axis] = level == 0 ? kOne : starts.corner[axis] & ~0u << (child_bit + 1);
       visit.level = static_cast<std::uint32_t>(level);
-      visit.skipped = descends ? 1u << index : stop_level_ < nodes_.levels() ? kOctantsMayEnd : 0u;
+      visit.skipped = descends ? 1u << index : stop_level_ < levels_ ? kOctantsMayEnd : 0u;
     }
     if (!descends) return top;
-    node = nodes_.child(node, level, static_cast<int>(index ^ rays_.mirrored));
+    node = words[2 + popcount8(words[0] & ((1u << stored) - 1))];
   }
 }
 
@@ -80,21 +89,26 @@ inline void DagPacketWalk::walk() {
     store(load(popped), visit);
     if (visit.skipped == kEndsHere)
       end(visit.rays, visit.corner, static_cast<int>(visit.level));
-    else if (static_cast<int>(visit.level) == nodes_.levels() - 2)
+    else if (static_cast<int>(visit.level) == levels_ - 2)
       if ((visit.skipped & kOctantsEnd) != 0)
         end_at_octants(visit);
       else
         cast_in_block(visit);
-    else
+    else {
+      if (static_cast<int>(visit.level) == unit_level_) {
+        open_unit(visit.node);
+        visit.node = 0;
+      }
       visit_children(visit, stack, top);
+    }
     if (searching_ == 0) return;
   }
 }
 
 inline DagPacketWalk::Rays DagPacketWalk::cast(const RayPacket& packet) {
-  if (packet.size == 0 || nodes_.is_empty()) return 0;
+  if (packet.size == 0 || is_empty_) return 0;
   load(packet);
-  bound(nodes_.levels());
+  bound(levels_);
   const Rays all = first(packet.size);
   searching_ = all;
   walk();
@@ -106,10 +120,20 @@ std::uint64_t cast_dag_packet(const BoundedDag& dag, const RayPacket& packet, Pa
   return DagPacketWalk(dag, hits).cast(packet);
 }
 
+std::uint64_t cast_in_place_packet(const InPlaceDag& dag, UnitCache& units, const RayPacket& packet,
+                                   PacketHits* hits) {
+  return DagPacketWalk(dag, units, hits).cast(packet);
+}
+
 #else
 
 std::uint64_t cast_dag_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits* hits) {
   return cast_one_by_one(dag.nodes(), packet, hits);
+}
+
+std::uint64_t cast_in_place_packet(const InPlaceDag& dag, UnitCache& units, const RayPacket& packet,
+                                   PacketHits* hits) {
+  return cast_one_by_one(InPlaceNodes(dag, units), packet, hits);
 }
 
 #endif
@@ -122,6 +146,7 @@ HWY_AFTER_NAMESPACE();
 namespace voxdag {
 
 HWY_EXPORT(cast_dag_packet);
+HWY_EXPORT(cast_in_place_packet);
 
 void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hits) {
   hits.met = HWY_DYNAMIC_DISPATCH(cast_dag_packet)(dag, packet, &hits);
@@ -129,6 +154,14 @@ void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hit
 
 std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet) {
   return HWY_DYNAMIC_DISPATCH(cast_dag_packet)(dag, packet, nullptr);
+}
+
+void cast_packet(const InPlaceDag& dag, const RayPacket& packet, PacketHits& hits) {
+  hits.met = HWY_DYNAMIC_DISPATCH(cast_in_place_packet)(dag, dag.cache(), packet, &hits);
+}
+
+std::uint64_t cast_packet_any(const InPlaceDag& dag, const RayPacket& packet) {
+  return HWY_DYNAMIC_DISPATCH(cast_in_place_packet)(dag, dag.cache(), packet, nullptr);
 }
 
 }  // namespace voxdag

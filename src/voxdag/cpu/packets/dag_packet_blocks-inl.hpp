@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 /// against one voxel after the other, else single rays against all voxels. Ends the rays that meet
 /// a voxel, or an octant at which the level of detail ends them.
 inline void DagPacketWalk::cast_in_block(const Visit& visit) {
-  const std::uint64_t block = mirrored_block(nodes_.block(visit.node), rays_.mirrored);
+  const std::uint64_t block = mirrored_block(leaf_blocks_[visit.node], rays_.mirrored);
   Rays others = visit.rays;
   if ((visit.skipped & kOctantsMayEnd) == 0) {
     // Measured costs, in units of one test of a vector against a voxel: the overhead of a vector,
@@ -45,7 +45,7 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
   const DF d;
   const hn::RebindToUnsigned<DF> du;
   const hn::RebindToSigned<DF> di;
-  const std::uint32_t size = 1u << (23 - nodes_.levels());
+  const std::uint32_t size = 1u << (23 - levels_);
   // T at which rays enter and leave the slabs of voxels, indexed by axis, then by coordinate, then
   // by ray.
   alignas(64) float enter[12 * kWidth], exit[12 * kWidth];
@@ -96,13 +96,13 @@ inline void DagPacketWalk::cast_vector_in_block(const std::uint32_t corner[3], s
     hn::Store(hn::IfThenElse(hn::RebindMask(du, ends), low, hn::Load(du, corners)), du, corners);
   }
   std::int32_t* levels = hits_->level + first;
-  hn::Store(hn::IfThenElse(ends, hn::Set(di, nodes_.levels()), hn::Load(di, levels)), di, levels);
+  hn::Store(hn::IfThenElse(ends, hn::Set(di, levels_), hn::Load(di, levels)), di, levels);
 }
 
 /// Casts rays one at a time at the voxels of a block; lane i of a vector is voxel i of an octant.
 inline void DagPacketWalk::cast_one_by_one_in_block(const Visit& visit, std::uint64_t block,
                                                     Rays rays) {
-  const int levels = nodes_.levels();
+  const int levels = levels_;
   const std::uint32_t* corner = visit.corner;
   const bool may_end_at_octants = (visit.skipped & kOctantsMayEnd) != 0;
   // A ray that meets an octant meets one of its 2³ voxels, which may be set or not.
@@ -180,9 +180,9 @@ inline void DagPacketWalk::cast_one_by_one_in_block(const Visit& visit, std::uin
 
 /// Ends rays at the octants of a block that they meet.
 inline void DagPacketWalk::end_at_octants(const Visit& visit) {
-  const int level = nodes_.levels() - 2;
+  const int level = levels_ - 2;
   set_planes(visit.corner, level, hn::Zero(DU8()));
-  std::uint32_t met = mirrored(nodes_.child_mask(visit.node, level));
+  std::uint32_t met = mirrored(leaf_block_child_mask(leaf_blocks_[visit.node]));
   if (popcount64(visit.rays) > kFew) met &= bound_children(level + 1).met;
   end_at_children(visit, met);
 }

@@ -54,7 +54,7 @@ HWY_INLINE void DagPacketWalk::set_ends(int child_level, hn::Vec<DF8> enter, hn:
   const DF8 d;
   children.all_end = children.some_end = 0;
   children.octants_end = children.octants_may_end = 0;
-  const int levels = nodes_.levels();
+  const int levels = levels_;
   const auto ends = [&](int level, int of, hn::Vec<DF8> t) HWY_ATTR {
     const auto limit = hn::Add(hn::Set(d, start[of]), hn::Mul(hn::Set(d, per_t[of]), t));
     return bits_of_children(hn::Le(hn::Set(d, side_of(level)), limit));
@@ -164,7 +164,7 @@ HWY_NOINLINE DagPacketWalk::Rays DagPacketWalk::rays_ending(std::uint32_t child,
 /// is pushed with these rays alone.
 inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std::size_t& top) {
   const auto level = static_cast<int>(visit.level);
-  const std::uint32_t* node = words_ + 2 * std::size_t{visit.node};
+  const std::uint32_t* node = words_of(visit.node, level);
   const std::uint32_t present = node[0];
   const std::uint32_t* pointers = node + 2;
   const DU8 d;
@@ -212,9 +212,11 @@ inline void DagPacketWalk::visit_children(const Visit& visit, Visit* stack, std:
     next.skipped = ((children.octants_end >> child & 1u) != 0 ? kOctantsEnd : 0u) |
                    ((children.octants_may_end >> child & 1u) != 0 ? kOctantsMayEnd : 0u);
     next.node = pointers[rank_of[child]];
-    hwy::Prefetch(level == nodes_.levels() - 3
-                      ? static_cast<const std::uint32_t*>(nodes_.address(next.node, level + 1))
-                      : words_ + 2 * std::size_t{next.node});
+    // The number of a unit is no place in words_, but a prefetch of any address is harmless.
+    if (level == levels_ - 3)
+      hwy::Prefetch(leaf_blocks_ + next.node);
+    else
+      hwy::Prefetch(words_of(next.node, level));
     set_child(visit, child, next);
     if (!may_end) {
       top += next.rays != 0 ? 1 : 0;

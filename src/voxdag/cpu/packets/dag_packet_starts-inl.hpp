@@ -74,7 +74,7 @@ inline void DagPacketWalk::common_cells(CommonCell& starts, CommonCell& reach, i
 /// leaves that cell at t_min + side at the latest, because T grows by 1 across the grid.
 inline int DagPacketWalk::finest_without_stop() const {
   int level = 0;
-  for (; level < nodes_.levels() - 2; ++level) {
+  for (; level < levels_ - 2; ++level) {
     if (level + 1 < stop_level_) continue;
     const float side = side_of(level + 1);
     const float leaves = last_t_min_ + side;

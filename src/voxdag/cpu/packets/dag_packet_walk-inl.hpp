@@ -17,6 +17,7 @@
 
 #include "voxdag/cpu/packets/bounded_dag.hpp"
 #include "voxdag/cpu/packets/dag_packet.hpp"
+#include "voxdag/cpu/packets/in_place_dag.hpp"
 #include "voxdag/cpu/packets/packet_rays-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -29,7 +30,19 @@ class DagPacketWalk : PacketRays {
  public:
   /// `hits` is null if the caller only wants to know which rays meet anything.
   DagPacketWalk(const BoundedDag& dag, PacketHits* hits)
-      : nodes_(dag.nodes()), words_(dag.words()), hits_(hits) {}
+      : words_(dag.words()),
+        leaf_blocks_(dag.nodes().view().leaf_blocks),
+        levels_(dag.levels()),
+        is_empty_(dag.nodes().is_empty()),
+        hits_(hits) {}
+  DagPacketWalk(const InPlaceDag& dag, UnitCache& units, PacketHits* hits)
+      : words_(dag.words()),
+        levels_(dag.levels()),
+        is_empty_(dag.is_empty()),
+        unit_level_(dag.unit_level()),
+        in_place_(&dag),
+        units_(&units),
+        hits_(hits) {}
 
   Rays cast(const RayPacket& packet);
 
@@ -103,9 +116,20 @@ class DagPacketWalk : PacketRays {
     return m;
   }
 
+  /// Returns the words of a node above the leaf blocks.
+  HWY_INLINE const std::uint32_t* words_of(std::uint32_t node, int level) const {
+    return (level < unit_level_ ? words_ : unit_words_) + 2 * std::size_t{node};
+  }
+  /// Makes the unit of this number the one whose nodes are visited. Its own words come first.
+  HWY_NOINLINE void open_unit(std::uint32_t number) {
+    const DecodedUnit& unit = units_->unit(*in_place_, number);
+    unit_words_ = unit.words;
+    leaf_blocks_ = unit.leaf_blocks;
+  }
+
   void common_cells(CommonCell& starts, CommonCell& reach, int finest) const;
   int finest_without_stop() const;
-  std::size_t begin(Rays all, Visit* stack) const;
+  std::size_t begin(Rays all, Visit* stack);
   void walk();
   HWY_INLINE void set_planes(const std::uint32_t corner[3], int level, hn::Vec<DU8> boxes);
   HWY_INLINE Children bound_children(int child_level) const;
@@ -145,8 +169,14 @@ class DagPacketWalk : PacketRays {
   }
   void set_hit_t();
 
-  const SvdagNodes& nodes_;
-  const std::uint32_t* words_;
+  const std::uint32_t* words_;                  ///< Of the nodes above the units.
+  const std::uint64_t* leaf_blocks_ = nullptr;  ///< Of the DAG, or of the open unit.
+  int levels_;
+  bool is_empty_;
+  int unit_level_ = kMaxLevels;  ///< In a DAG that is not compact no node is of this level.
+  const InPlaceDag* in_place_ = nullptr;
+  UnitCache* units_ = nullptr;
+  const std::uint32_t* unit_words_ = nullptr;  ///< Of the open unit.
   PacketHits* hits_;
   Rays searching_ = 0;              ///< Rays that have not met anything yet.
   alignas(64) float planes_[6][8];  ///< The planes of the current boxes: the lower ones by axis,

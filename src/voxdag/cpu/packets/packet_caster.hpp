@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// A caster (see trace/scalar_caster.hpp) at a BoundedDag, EsvoNodes, ContourNodes or
+/// A caster (see trace/scalar_caster.hpp) at a BoundedDag, InPlaceDag, EsvoNodes, ContourNodes or
 /// StreamedNodes. It is fast if rays within a few thousand places in the stream are also near each
 /// other in space, like the rays of a tile of a picture.
 template <class Target>

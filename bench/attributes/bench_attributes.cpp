@@ -1,0 +1,243 @@
+#include "bench/attributes/bench_attributes.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "bench/attributes/cell_colors.hpp"
+#include "bench/attributes/color_pictures.hpp"
+#include "bench/attributes/dolonius.hpp"
+#include "bench/attributes/esvo_blocks.hpp"
+#include "bench/build/bench_mesh.hpp"
+#include "bench/report/scratch_folder.hpp"
+#include "voxdag/attributes/build_attributes.hpp"
+#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/layout/build_cell_index.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+namespace {
+
+namespace fs = std::filesystem;
+using Colors = std::vector<Value8>;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Encodes colours as the builder of .vdag files does, on all threads.
+ValuePages encode_pages(const Colors& colors, double bound, ValueErrors& errors,
+                        const Progress& progress) {
+  constexpr std::size_t kPart = 256 * kPageValues;
+  ValueEncoder encoder(colors.size(), make_value_metric(kColorWeights, 255 * bound), nullptr);
+  parallel_for((colors.size() + kPart - 1) / kPart, [&](std::size_t i) {
+    progress.throw_if_cancelled();
+    const std::size_t begin = i * kPart;
+    encoder.add(begin, std::span(colors).subspan(begin, std::min(kPart, colors.size() - begin)));
+  });
+  ValuePages pages = encoder.finish();
+  errors = encoder.errors();
+  return pages;
+}
+
+double psnr_of(double squared, std::size_t cells) {
+  return squared == 0 ? std::numeric_limits<double>::infinity()
+                      : 10 * std::log10(255.0 * 255 * 3 * static_cast<double>(cells) / squared);
+}
+
+double psnr_of(const Colors& given, const Colors& stored) {
+  ValueErrors errors;
+  for (std::size_t i = 0; i < given.size(); ++i) errors.count(given[i], stored[i]);
+  return psnr_of(static_cast<double>(errors.squared), given.size());
+}
+
+/// The colours of one DAG, and their pictures.
+class ColoredScene {
+ public:
+  ColoredScene(const SvdagView& dag, const Grid& grid, const CellIndexView& index, Colors colors,
+               int views, Progress& progress)
+      : dag_(dag), index_(index), colors_(std::move(colors)), progress_(progress) {
+    pictures_ =
+        std::make_unique<ColorPictures>(dag_, grid, views, exact(colors_).attributes, progress_);
+  }
+
+  ColorResult voxdag(double bound) const {
+    ColorResult result;
+    result.bound = bound;
+    const auto start = std::chrono::steady_clock::now();
+    ValueErrors errors;
+    const ValuePages pages = encode_pages(colors_, bound, errors, progress_);
+    result.seconds = seconds_since(start);
+    result.bytes = pages.view().bytes();
+    result.psnr_db = psnr_of(static_cast<double>(errors.squared), colors_.size());
+    result.ms_ssim = pictures_->similarities({index_, pages.view(), {}}, progress_);
+    return result;
+  }
+
+  ColorResult dolonius(double threshold) const {
+    std::vector<ColorBytes> bytes;
+    bytes.reserve(colors_.size());
+    for (const Value8 color : colors_)
+      bytes.push_back(color.x | static_cast<ColorBytes>(color.y) << 8 |
+                      static_cast<ColorBytes>(color.z) << 16);
+    ColorResult result;
+    result.codec = ColorCodec::kDolonius;
+    result.bound = threshold;
+    const auto start = std::chrono::steady_clock::now();
+    const EncodedColors encoded = encode_dolonius(bytes, static_cast<float>(threshold), progress_);
+    result.seconds = seconds_since(start);
+    result.bytes = encoded.size.bytes();
+    Colors stored;
+    stored.reserve(colors_.size());
+    for (const ColorBytes color : encoded.colors)
+      stored.push_back({static_cast<std::uint8_t>(color), static_cast<std::uint8_t>(color >> 8),
+                        static_cast<std::uint8_t>(color >> 16)});
+    compare(stored, result);
+    return result;
+  }
+
+  ColorResult esvo() const {
+    ColorResult result;
+    result.codec = ColorCodec::kEsvo;
+    result.bound = std::numeric_limits<double>::quiet_NaN();
+    const auto start = std::chrono::steady_clock::now();
+    const EsvoColors encoded = encode_esvo_colors(dag_, index_, colors_, progress_);
+    result.seconds = seconds_since(start);
+    result.bytes = 8 * encoded.blocks;
+    compare(encoded.colors, result);
+    return result;
+  }
+
+ private:
+  /// Colours in exact pages, for pictures.
+  struct Exact {
+    ValuePages pages;
+    DagAttributesView attributes;
+  };
+  Exact exact(const Colors& colors) const {
+    ValueErrors errors;
+    Exact result{encode_pages(colors, 0, errors, progress_), {}};
+    result.attributes = {index_, result.pages.view(), {}};
+    return result;
+  }
+
+  void compare(const Colors& stored, ColorResult& result) const {
+    result.psnr_db = psnr_of(colors_, stored);
+    result.ms_ssim = pictures_->similarities(exact(stored).attributes, progress_);
+  }
+
+  const SvdagView& dag_;
+  const CellIndexView index_;
+  const Colors colors_;
+  Progress& progress_;
+  std::unique_ptr<ColorPictures> pictures_;
+};
+
+class Bench {
+ public:
+  Bench(const AttributesPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
+
+  AttributesResults run() {
+    for (const std::string& scene : plan_.scenes) {
+      const std::size_t runs = results_.runs.size();
+      try {
+        measure(scene);
+      } catch (const Cancelled&) {
+        throw;
+      } catch (const Error& error) {
+        if (results_.runs.size() == runs) {
+          results_.runs.emplace_back();
+          results_.runs.back().scene = fs::path(scene).filename();
+        }
+        results_.runs.back().failure = error.what();
+      }
+    }
+    return std::move(results_);
+  }
+
+ private:
+  void measure(const std::string& scene) {
+    const PreparedMesh prepared = prepare_mesh(scene, folder_.path(), progress_);
+    MemoryBudget memory = command_budget(0);
+    ReadOptions read = plan_.read;
+    read.progress = &progress_;
+    read.memory = &memory;
+    const MeshWithAppearance source = read_mesh_with_appearance(prepared.path, read);
+    const SurfaceShading shading(source.mesh, source.appearance, nullptr, &progress_, &memory);
+    for (const int levels : plan_.levels) {
+      AttributesRun& run = results_.runs.emplace_back();
+      run.scene = prepared.identity.name;
+      run.levels = levels;
+      measure(source.mesh, shading, memory, run);
+    }
+  }
+
+  void measure(const Mesh& mesh, const SurfaceShading& shading, MemoryBudget& memory,
+               AttributesRun& run) {
+    const Grid grid = fit_grid(mesh, run.levels);
+    BuildOptions options;
+    options.memory = &memory;
+    const BuildResult built = build_svdag(mesh, grid, options, &progress_);
+    const SvdagView dag = built.dag.view();
+    run.voxels = count_svdag(dag).voxels;
+    if (run.voxels == 0) throw Error(run.scene, std::to_string(1 << run.levels), "has no voxels");
+    const CellIndex index = build_cell_index(dag, run.levels, &memory);
+    run.cells = index.cells;
+    run.index_bytes = index.view().bytes();
+    CellColors cells(index.cells);
+    const auto start = std::chrono::steady_clock::now();
+    filter_cells(mesh, grid, dag, index.view(), &shading, cells, &memory, &progress_);
+    run.filter_seconds = seconds_since(start);
+    const ColoredScene colored(dag, grid, index.view(), std::move(cells.colors), plan_.views,
+                               progress_);
+    for (const ColorCodec codec : plan_.codecs) {
+      progress_.report(
+          fmt::format("encoding {} {} as {}", run.scene, 1 << run.levels, key_of(codec)), 0);
+      if (codec == ColorCodec::kVoxdag)
+        for (const double bound : plan_.bounds) run.results.push_back(colored.voxdag(bound));
+      else if (codec == ColorCodec::kDolonius)
+        for (const double threshold : plan_.thresholds)
+          run.results.push_back(colored.dolonius(threshold));
+      else
+        run.results.push_back(colored.esvo());
+    }
+  }
+
+  const AttributesPlan& plan_;
+  Progress& progress_;
+  ScratchFolder folder_;
+  AttributesResults results_;
+};
+
+}  // namespace
+
+std::string key_of(ColorCodec codec) {
+  return codec == ColorCodec::kVoxdag     ? "voxdag"
+         : codec == ColorCodec::kDolonius ? "dolonius"
+                                          : "esvo";
+}
+
+double ColorResult::mean_ms_ssim() const {
+  return std::accumulate(ms_ssim.begin(), ms_ssim.end(), 0.0) / static_cast<double>(ms_ssim.size());
+}
+
+double AttributesRun::bits_per_voxel(const ColorResult& result) const {
+  return 8 * static_cast<double>(result.bytes) / static_cast<double>(voxels);
+}
+
+double AttributesRun::bits_per_cell(const ColorResult& result) const {
+  return 8 * static_cast<double>(result.bytes) / static_cast<double>(cells);
+}
+
+AttributesResults bench_attributes(const AttributesPlan& plan, Progress& progress) {
+  return Bench(plan, progress).run();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,75 @@
+#pragma once
+/// `voxdag bench attributes`: bytes, errors and pictures of a DAG's colours in several codecs.
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/report/charts.hpp"
+#include "voxdag/readers/read_options.hpp"
+
+namespace voxdag {
+
+enum class ColorCodec {
+  kVoxdag,    ///< COLR chunks of .vdag files.
+  kDolonius,  ///< Dolonius and others 2017.
+  kEsvo,      ///< The blocks of an ESVO.
+};
+
+/// The name of a codec on the command line and in the JSON.
+std::string key_of(ColorCodec codec);
+inline constexpr ColorCodec kColorCodecs[] = {ColorCodec::kVoxdag, ColorCodec::kDolonius,
+                                              ColorCodec::kEsvo};
+
+struct AttributesPlan {
+  std::vector<std::string> scenes;  ///< Mesh files, or procedural scenes as NAME or NAME:SIZE.
+  std::vector<int> levels;          ///< Of the grids; ascending. All cells get colours.
+  std::vector<double> bounds;       ///< Of voxdag's colours: AttributeOptions::color_bound.
+  std::vector<double> thresholds;   ///< Of Dolonius's colours.
+  std::vector<ColorCodec> codecs;
+  int views = 4;
+  ReadOptions read;  ///< Rights of the readers; its other members are unused.
+};
+
+/// The colours of a scene in one codec.
+struct ColorResult {
+  ColorCodec codec = ColorCodec::kVoxdag;
+  double bound = 0;             ///< Of voxdag and Dolonius; NaN: the codec has none.
+  std::uint64_t bytes = 0;      ///< Without the numbers of cells.
+  double psnr_db = 0;           ///< Of all channels of all cells; infinite if all are exact.
+  std::vector<double> ms_ssim;  ///< Of each view.
+  double seconds = 0;           ///< Wall-clock seconds of the encoder, from colours in memory.
+
+  double mean_ms_ssim() const;
+};
+
+/// A scene at one resolution.
+struct AttributesRun {
+  std::string scene;
+  int levels = 0;
+  std::uint64_t voxels = 0, cells = 0;
+  std::uint64_t index_bytes = 0;  ///< Of the numbers of cells, which every codec needs.
+  double filter_seconds = 0;      ///< From the mesh and the DAG in memory to colours.
+  std::vector<ColorResult> results;
+  std::string failure;  ///< Not empty: the members above are not all known.
+
+  double bits_per_voxel(const ColorResult& result) const;
+  double bits_per_cell(const ColorResult& result) const;
+};
+
+struct AttributesResults {
+  std::vector<AttributesRun> runs;
+};
+
+/// Builds each scene, filters its colours and encodes them. A scene that fails is a run with a
+/// failure. Throws Cancelled.
+AttributesResults bench_attributes(const AttributesPlan& plan, Progress& progress);
+
+nlohmann::ordered_json attributes_json(const AttributesResults& results,
+                                       const nlohmann::ordered_json& machine);
+std::string attributes_table(const AttributesResults& results);
+/// Returns a panel for each scene and resolution: MS-SSIM against bits per voxel. Throws Error if
+/// there is nothing to plot.
+Chart attributes_chart(const AttributesResults& results, const std::filesystem::path& file);
+
+}  // namespace voxdag

@@ -1,0 +1,25 @@
+#pragma once
+/// The attributes of a coarser grid.
+#include "voxdag/attributes/build_attributes.hpp"
+
+namespace voxdag {
+
+/// By how much values may change when they are encoded again; 0: not at all. The units are those
+/// of AttributeOptions.
+struct CoarsenBounds {
+  double color_bound = 0;
+  double normal_bound_degrees = 0;  ///< Less than about kLeastNormalBound: not at all.
+};
+
+/// Returns the attributes of `coarse`, the DAG that coarsen() made of `fine`. Each cell keeps its
+/// values: those that the encoder stored for this inner cell of the fine grid. If the finest level
+/// with attributes is a level of the coarse grid, the bytes of all values stay. Otherwise finer
+/// values are dropped, and the others are encoded again within `bounds`, materials without loss.
+/// The result's errors are not set. Runs on the current TBB arena. The budget no longer counts the
+/// result when the function returns. Throws OverMemory and Cancelled; `memory` and `progress` may
+/// be null.
+DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& coarse,
+                                 const CoarsenBounds& bounds = {}, MemoryBudget* memory = nullptr,
+                                 Progress* progress = nullptr);
+
+}  // namespace voxdag
