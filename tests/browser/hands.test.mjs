@@ -111,6 +111,13 @@ for (const browserName of browsers)
       await rest(page);
       assert.ok(apart((await camera(page)).target, focus) < 0.02 * apart(before.eye, focus), 'the double click sets the target');
 
+      const away = await camera(page);
+      await page.keyboard.down('+');
+      await pause(300);
+      await page.keyboard.up('+');
+      await rest(page);
+      assert.ok(apart((await camera(page)).eye, away.target) < apart(away.eye, away.target), 'plus comes closer');
+
       await page.keyboard.press('r');
       await rest(page);
       assert.equal((await settings(page)).camera, null, 'R goes home');
@@ -166,6 +173,9 @@ for (const browserName of browsers)
       await drag(page, [400, 300], [450, 300]);
       await rest(page);
       assert.ok(apart((await camera(page)).eye, flown.eye) < 1e-3 * Math.hypot(...way), 'a drag only looks');
+
+      await page.mouse.wheel({deltaY: -200});
+      await page.waitForFunction(() => /^Speed × 1\.\d/.test(document.querySelector('.toast:not(.tool-hint)')?.textContent ?? ''), {timeout: 20_000});
 
       await page.keyboard.press('g');
       await rest(page);

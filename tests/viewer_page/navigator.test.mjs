@@ -224,6 +224,20 @@ test('the walker falls to the ground, climbs a step and stops at walls', () => {
   }
 });
 
+test('the walker rests on ground that rays find only as exactly as floats', () => {
+  for (const scale of SCALES) {
+    const hands = navigator(scale, 'walk'), { cast } = hands.scene;
+    const random = randomNumbers(13);
+    hands.scene.cast = (...ray) => {
+      const hit = cast(...ray);
+      return hit && { ...hit, distance: hit.distance + (random() - 0.5) * 0.05 * hands.scene.voxelSize };
+    };
+    hands.setCamera({ eye: [scale, 3 * scale, 2 * scale], target: [0, 0, 0], up: [0, 1, 0], fov: 50 });
+    steps(hands, 3, 60, input({ move: [0, 0, 1] }));
+    assert.ok(rest(hands) < 3);
+  }
+});
+
 test('the walker jumps and lands, and nobody falls out of the scene', () => {
   const hands = navigator(1, 'walk');
   rest(hands);

@@ -75,6 +75,7 @@ export class Hands extends Events {
       doubleClick: (x, y) => this.#double(x, y),
       hover: (x, y, down) => this.emit('hover', x, y, down),
       leave: () => this.emit('leave'),
+      speed: () => this.emit('speed', this.navigator?.speedFactor),
     }, this.#listeners.listen);
     this.#follow(this.viewer.get());
   }

@@ -23,19 +23,30 @@ export function isTyping(event) {
   return event.key.length > 1 || event.key === ' ' ? target.closest('button, [role=slider], [role=tab], summary') !== null : false;
 }
 
+/**
+ * Returns the key that moves the camera, by its place on the keyboard, plus and minus also by what is
+ * printed on them; an empty text for other keys.
+ * @param {KeyboardEvent} event
+ */
+export function movingKey(event) {
+  if (event.code in KEYS || event.code === 'Space') return event.code;
+  return event.key === '+' ? 'Equal' : event.key === '-' ? 'Minus' : '';
+}
+
 export class Keys {
   /** @param {EventTarget} target @param {() => void} wake
    *  @param {ReturnType<typeof import('./events.js').listeners>['listen']} listen */
   constructor(target, wake, listen) {
-    /** @type {Set<string>} */
-    this.held = new Set();
+    /** Keys that are down: what they mean, by their place. @type {Map<string, string>} */
+    this.held = new Map();
     this.shift = false;
     listen(target, 'keydown', (/** @type {KeyboardEvent} */ event) => {
       this.shift = event.shiftKey;
       if (event.ctrlKey || event.metaKey || event.altKey || isTyping(event)) return;
-      if (!(event.code in KEYS) && event.code !== 'Space') return;
+      const key = movingKey(event);
+      if (!key) return;
       event.preventDefault();  // arrows and Space do not scroll an embedding page
-      this.held.add(event.code);
+      this.held.set(event.code, key);
       wake();
     });
     listen(target, 'keyup', (/** @type {KeyboardEvent} */ event) => {
@@ -49,8 +60,8 @@ export class Keys {
   get input() {
     /** @type {{move: import('../math.js').Vec3, turn: [number, number], zoom: [number]}} */
     const sums = { move: [0, 0, 0], turn: [0, 0], zoom: [0] };
-    for (const code of this.held) {
-      const key = KEYS[code];
+    for (const held of this.held.values()) {
+      const key = KEYS[held];
       if (key) sums[key[0]][key[1]] += key[2];
     }
     return { move: sums.move, turn: sums.turn, zoom: sums.zoom[0], fast: this.shift, jump: this.held.has('Space') };

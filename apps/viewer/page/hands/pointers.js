@@ -16,6 +16,7 @@ import { clamp } from '../math.js';
  * @property {(x: number, y: number) => void} doubleClick
  * @property {(x: number, y: number, down: boolean) => void} hover  Where the pointer is, over the picture.
  * @property {() => void} leave
+ * @property {() => void} speed  The speed of flying and walking has changed.
  */
 
 /** Pixels that a click may move, by kind of pointer. */
@@ -177,7 +178,10 @@ export class Pointers {
     const factor = Math.exp(turned * (event.ctrlKey ? 0.01 : 0.0017));  // a pinch on a touchpad sets ctrlKey
     const { x, y } = this.#at(event);
     if (this.navigator.mode === 'orbit') this.navigator.zoom(x, y, factor);
-    else this.navigator.changeSpeed(1 / factor);
+    else {
+      this.navigator.changeSpeed(1 / factor);
+      this.owner.speed();
+    }
     this.owner.wake();
   }
 }

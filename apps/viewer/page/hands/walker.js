@@ -175,7 +175,8 @@ export class Walker {
       return true;
     }
     if (this.stands ? below <= reach : below <= drop) {
-      const stepped = Math.abs(below) > height * 1e-7;
+      // Rays are exact to a few hundredths of a voxel: a body at rest must not tremble.
+      const stepped = Math.abs(below) > height * 1e-4 + this.scene.voxelSize * 0.05;
       if (stepped) {
         if (this.stands) this.behind -= below;
         this.feet = addScaled(this.feet, up, -below);

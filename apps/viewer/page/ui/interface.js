@@ -1,7 +1,7 @@
 /** The interface around the picture: toolbar, panels, tools, read-out, shortcuts, messages. */
 import { DEFAULTS } from '../settings.js';
 import { settingsToHash } from '../settings_link.js';
-import { isTyping } from '../hands/keys.js';
+import { isTyping, movingKey } from '../hands/keys.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
 import { filmPanel } from './film_panel.js';
@@ -42,7 +42,7 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {Viewer} viewer
  * @property {Hands} hands
  * @property {Overlay} overlay
- * @property {(text: string, isError?: boolean) => void} toast
+ * @property {(text: string, isError?: boolean, stays?: boolean) => void} toast
  * @property {(text: string) => void} announce  For screen readers only.
  * @property {(name: string) => void} open
  * @property {() => void} refresh
@@ -95,7 +95,7 @@ export function createInterface(viewer, hands, container) {
   /** @type {Ui} */
   const ui = {
     viewer, hands, overlay,
-    toast: (text, isError) => status.toast(text, isError),
+    toast: (text, isError, stays) => status.toast(text, isError, stays),
     announce: (text) => status.announce(text),
     open: (name) => { if (opened !== name) toggle(name); },
     refresh: () => refresh(),
@@ -197,6 +197,7 @@ export function createInterface(viewer, hands, container) {
   hands.on('hover', (x, y, down) => {
     if (!down) readout.look(x, y);
   });
+  hands.on('speed', (factor) => status.toast(`Speed × ${+factor.toPrecision(2)}`));
   hands.on('leave', () => readout.clear());
   hands.on('gesture', () => readout.clear());
   readout.onHit = (hit) => tool?.hover?.(hit);
@@ -223,8 +224,10 @@ export function createInterface(viewer, hands, container) {
       }
       return;
     }
-    const act = shortcuts[event.key.toLowerCase()];
-    if (!act || isTyping(event)) return;
+    // Digits by their place: some keyboards want Shift for them.
+    const key = /^(?:Digit|Numpad)([1-9])$/.exec(event.code)?.[1] ?? event.key.toLowerCase();
+    const act = shortcuts[key];
+    if (!act || isTyping(event) || movingKey(event)) return;
     event.preventDefault();
     act();
   };

@@ -31,7 +31,7 @@ export function sharePanel(ui) {
   const screenshot = async () => {
     const [width, height] = size === 'window' ? [undefined, undefined] : size.split('x').map(Number);
     picture.disabled = true;
-    ui.toast('Rendering the picture…');
+    ui.toast('Rendering the picture…', false, true);
     try {
       const blob = await viewer.capture({ width, height, samples: Number(samples) });
       download(`${ui.name()}.png`, blob);

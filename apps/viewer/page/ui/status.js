@@ -76,13 +76,14 @@ export class Status {
     this.bar.setAttribute('aria-hidden', String(done));
   }
 
-  /** @param {string} text @param {boolean} [isError] */
-  toast(text, isError = false) {
+  /** @param {string} text @param {boolean} [isError] @param {boolean} [stays]  Until the next message. */
+  toast(text, isError = false, stays = false) {
     say(this.message, text);
     this.announce(text);
     this.message.classList.toggle('error', isError);
     this.message.hidden = false;
     clearTimeout(this.timer);
+    if (stays) return;
     this.timer = setTimeout(() => { this.message.hidden = true; }, isError ? ERROR_MS : TOAST_MS);
   }
 
