@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <thread>
 
 #include "process.hpp"
 #include "support/temp_dir.hpp"
@@ -53,6 +55,43 @@ TEST_F(View, ASignalEndsItWhileAClientIsConnected) {
   program.send_signal(SIGINT);
   EXPECT_EQ(program.wait().status, 128 + SIGINT);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
+/// Returns the text of a file as soon as it is a line, or what it is after some seconds.
+std::string line_in(const std::string& file) {
+  for (int i = 0; i < 400 && !read_text(file).ends_with("\n"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  return read_text(file);
+}
+
+TEST_F(View, OpensThePageWhereThereIsADisplay) {
+  const std::string script = dir_ / "xdg-open", opened = dir_ / "opened.txt";
+  // A browser that outlives the server.
+  write_text(script, "#!/bin/sh\necho \"$1\" > '" + opened + "'\nexec sleep 3\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const auto command = [&](const std::string& display, std::vector<std::string> options) {
+    std::vector<std::string> words = {"env", "PATH=" + dir_.path().string() + ":/usr/bin:/bin",
+                                      "WAYLAND_DISPLAY=", "DISPLAY=" + display};
+    options.insert(options.begin(), {"view", plain_, "-q"});
+    for (const std::string& word : voxdag_command(options)) words.push_back(word);
+    return words;
+  };
+  int port = 0;
+  {
+    Process program(command(":7", {}));
+    port = port_of(program);
+    EXPECT_EQ(line_in(opened), "http://127.0.0.1:" + std::to_string(port) + "/\n");
+    program.send_signal(SIGTERM);
+    EXPECT_EQ(program.wait().status, 128 + SIGTERM);
+  }
+  // The browser has none of the server's sockets: the port is free again.
+  std::filesystem::remove(opened);
+  Process again(command(":7", {"--no-open", "--port", std::to_string(port)}));
+  EXPECT_EQ(port_of(again), port);
+  Process headless(command("", {}));
+  EXPECT_NE(port_of(headless), 0);
+  EXPECT_EQ(get(port, "/").status, 200);
+  EXPECT_FALSE(std::filesystem::exists(opened));
 }
 
 TEST_F(View, AFileItCannotShowIsRefusedBeforeItListens) {

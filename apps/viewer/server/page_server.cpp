@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <exception>
 #include <map>
 #include <span>
 #include <system_error>
@@ -180,10 +181,16 @@ class PageServer::Http final : public httplib::Server {
     if (ConnectionThreads::is_refused())
       client.send_status(503);
     else
-      for (int requests = 1; serve_one(client, requests == kMostRequests); ++requests) {
-      }
+      serve_all(client);
     connections_.close(socket);
     return true;
+  }
+
+  /// Answers requests until the connection ends. Without memory only this connection ends.
+  void serve_all(ClientStream& client) try {
+    for (int requests = 1; serve_one(client, requests == kMostRequests); ++requests) {
+    }
+  } catch (const std::exception&) {
   }
 
   /// Answers the next request. Returns whether the connection stays open.
