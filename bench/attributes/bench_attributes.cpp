@@ -77,7 +77,7 @@ class ColoredScene {
     result.seconds = seconds_since(start);
     result.bytes = pages.view().bytes();
     result.psnr_db = psnr_of(static_cast<double>(errors.squared), colors_.size());
-    result.ms_ssim = pictures_->similarities({index_, pages.view(), {}}, progress_);
+    result.ms_ssim = pictures_->similarities({index_, pages.view(), {}, {}}, progress_);
     return result;
   }
 
@@ -124,7 +124,7 @@ class ColoredScene {
   Exact exact(const Colors& colors) const {
     ValueErrors errors;
     Exact result{encode_pages(colors, 0, errors, progress_), {}};
-    result.attributes = {index_, result.pages.view(), {}};
+    result.attributes = {index_, result.pages.view(), {}, {}};
     return result;
   }
 

@@ -30,7 +30,7 @@ std::string large_file(std::size_t filler_bytes) {
   const std::string json = checked_metadata_json(example_metadata(dag.view()));
   const std::string filler(filler_bytes, 'f');
   const auto chunk = [](std::uint32_t id, std::uint32_t flags, const auto& values) {
-    return VdagOutputChunk{id, flags, {std::as_bytes(std::span(values))}};
+    return OutputChunk{id, flags, {std::as_bytes(std::span(values))}};
   };
   const VdagBytes bytes(
       {chunk(kChunkMeta, 1, json),
