@@ -62,9 +62,10 @@ TEST(CheckAttributes, WhatTheBuilderStoresIsWithinTheBounds) {
   EXPECT_EQ(check.colors.cells, scene.attributes.index.cells);
   EXPECT_EQ(check.materials.cells, scene.attributes.index.cells);
   EXPECT_GT(check.normals.cells, scene.attributes.index.cells / 2);
-  EXPECT_LE(check.colors.largest_error, 0.03 + kColorTolerance);
+  EXPECT_LE(check.colors.largest_error, AttributeOptions{}.color_bound + kColorTolerance);
   EXPECT_GT(check.colors.largest_error, 0.02) << "the encoder uses its bound";
-  EXPECT_LE(check.normals.largest_error, 4 + kNormalTolerance);
+  EXPECT_LE(check.normals.largest_error,
+            AttributeOptions{}.normal_bound_degrees + kNormalTolerance);
   EXPECT_LE(check.materials.largest_error, kMaterialTolerance);
 }
 
@@ -75,7 +76,8 @@ TEST(CheckAttributes, AFlippedBitOfAColourIsFound) {
   scene.attributes.colors.words[0] ^= std::uint64_t{1} << bit;
   const AttributeCheck check = scene.check();
   EXPECT_GT(check.colors.largest_error, 0.1);
-  EXPECT_LE(check.normals.largest_error, 4 + kNormalTolerance);
+  EXPECT_LE(check.normals.largest_error,
+            AttributeOptions{}.normal_bound_degrees + kNormalTolerance);
 }
 
 TEST(CheckAttributes, AWrongMaterialIsFoundAtItsCell) {

@@ -9,6 +9,9 @@ import {assertNoComplaints, browsers, launch, open, still} from './browser.mjs';
 import {readPng, spread} from './pictures.mjs';
 import {build, buildColored, folder, proxy, view, voxdag} from './program.mjs';
 
+/** Light that costs little. */
+const QUICK = '#ao=0&shadows=off';
+
 for (const browserName of browsers)
   describe(`loading in ${browserName}`, {timeout: 600_000}, () => {
     /** @type {import('puppeteer-core').Browser} */
@@ -21,7 +24,7 @@ for (const browserName of browsers)
     it('asks for the root first, and shows a picture before the last level has arrived', async () => {
       const file = build('courtyard', 1024), server = await view(file);
       const slow = await proxy(server.url, {bytesPerSecond: 2_000_000});
-      const page = await open(browser, slow.url);
+      const page = await open(browser, slow.url + QUICK);
       const levels = await page.evaluate(() => new Promise((resolve) => {
         const {viewer} = /** @type {any} */ (window).voxdag;
         /** @type {any[]} */
@@ -46,7 +49,7 @@ for (const browserName of browsers)
 
     it('loads from a server that knows no ranges', async () => {
       const server = await view(buildColored(128)), whole = await proxy(server.url, {ranges: false});
-      const page = await open(browser, whole.url);
+      const page = await open(browser, whole.url + QUICK);
       await still(page);
       assert.equal(whole.requests.filter(({path}) => path === '/scene.vdag').length, 1);
       assertNoComplaints(page);
@@ -69,7 +72,7 @@ for (const browserName of browsers)
       await new Promise((resolve) => plain.listen(0, '127.0.0.1', () => resolve(undefined)));
       const {port} = /** @type {import('node:net').AddressInfo} */ (plain.address());
       for (const url of [`http://127.0.0.1:${port}/`, pathToFileURL(single).href]) {
-        const page = await open(browser, url);
+        const page = await open(browser, url + QUICK);
         await still(page);
         const shot = path.join(folder, `site-${browserName}.png`);
         await page.screenshot({path: shot});
@@ -83,7 +86,7 @@ for (const browserName of browsers)
 
     it('says what is wrong with broken files, and never hangs', async () => {
       const file = buildColored(128), server = await view(file);
-      const page = await open(browser, server.url);
+      const page = await open(browser, server.url + QUICK);
       await still(page);
       const bytes = fs.readFileSync(file);
       const outcomes = await page.evaluate(async (base64, cuts, flips) => {
@@ -125,7 +128,7 @@ for (const browserName of browsers)
 
     it('draws again after the graphics card was lost', async () => {
       const server = await view(build('courtyard', 256));
-      const page = await open(browser, server.url);
+      const page = await open(browser, server.url + QUICK);
       await still(page);
       const before = path.join(folder, 'before.png'), after = path.join(folder, 'after.png');
       const canvas = await page.$('canvas');
@@ -149,7 +152,7 @@ for (const browserName of browsers)
 
     it('follows the size of its container', async () => {
       const server = await view(build('courtyard', 256));
-      const page = await open(browser, server.url, {width: 200, height: 300});
+      const page = await open(browser, server.url + QUICK, {width: 200, height: 300});
       await still(page);
       await page.setViewport({width: 330, height: 140});
       await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.canvas.width === 330, {timeout: 10_000});

@@ -49,7 +49,7 @@ for (const browserName of browsers)
     it('hits the same voxels as `voxdag trace`, away from ties', async () => {
       for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
         const file = fileOf(name), server = await view(file);
-        const page = await open(browser, server.url);
+        const page = await open(browser, `${server.url}#ao=0&shadows=off`);
         await still(page);
         for (const {eye, target} of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
           const camera = {eye, target, up: [0.02, 1, 0.03], fov: 60};

@@ -91,17 +91,22 @@ export async function proxy(url, {bytesPerSecond = Infinity, ranges = true} = {}
       if (!ranges) delete kept['accept-ranges'];
       response.writeHead(answer.statusCode ?? 500, kept);
       if (bytesPerSecond === Infinity) return answer.pipe(response);
-      answer.on('data', (bytes) => {
-        answer.pause();
-        setTimeout(() => {
-          response.write(bytes);
-          answer.resume();
-        }, (1000 * bytes.length) / bytesPerSecond);
-      });
-      answer.on('end', () => setTimeout(() => response.end(), 1));
+      slowly(answer, response, bytesPerSecond).catch(() => response.destroy());
     }).on('error', () => response.destroy());
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(undefined)));
   const {port} = /** @type {import('node:net').AddressInfo} */ (server.address());
   return {url: `http://127.0.0.1:${port}/`, requests, close: () => server.close()};
+}
+
+/**
+ * Passes an answer on at a bounded speed.
+ * @param {http.IncomingMessage} answer @param {http.ServerResponse} response @param {number} bytesPerSecond
+ */
+async function slowly(answer, response, bytesPerSecond) {
+  for await (const bytes of answer) {
+    await new Promise((resolve) => setTimeout(resolve, (1000 * bytes.length) / bytesPerSecond));
+    response.write(bytes);
+  }
+  response.end();
 }

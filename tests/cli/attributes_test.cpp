@@ -220,8 +220,9 @@ TEST_F(AttributesCommand, ExportWritesThem) {
 }
 
 TEST_F(AttributesCommand, ACoarserGridKeepsTheColoursOfItsCells) {
-  const std::string fine = build("a.vdag", {"--color", "--normal"}), coarse = dir_ / "b.vdag",
-                    same = dir_ / "c.vdag";
+  const std::string fine = build("a.vdag", {"--color", "--normal", "--color-bound", "0.03",
+                                            "--normal-bound", "4"}),
+                    coarse = dir_ / "b.vdag", same = dir_ / "c.vdag";
   ASSERT_EQ(run_voxdag({"convert", fine, "--levels", "4", "-o", coarse}).status, 0);
   EXPECT_EQ(run_voxdag({"verify", coarse}).status, 0);
   const auto attributes = [](const std::string& file) {

@@ -120,6 +120,7 @@ class CanvasViewer {
 
   /** @param {string} title @param {string} text @param {string} [kind] */
   fail(title, text, kind = 'file') {
+    this.isLoaded ||= this.memory === null;
     this.emit('error', {title, text, kind});
     for (const wake of this.stillWaiters.splice(0)) wake();
   }
@@ -437,14 +438,20 @@ class CanvasViewer {
     return new Promise((resolve) => this.stillWaiters.push(resolve));
   }
 
+  /** Waits until the scene has arrived, or has failed to. */
+  async whenLoaded() {
+    while (!this.isLoaded && !this.isDestroyed) await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+
   /**
-   * Renders a picture in full quality, as PNG.
+   * Renders a picture in full quality, as PNG, once the scene has arrived.
    * @param {{width?: number, height?: number, samples?: number}} [size]
    * @returns {Promise<Blob>}
    */
   async capture({width = this.canvas.width, height = this.canvas.height, samples = STILL_SAMPLES} = {}) {
+    await this.whenLoaded();
     const {gl, renderer} = this;
-    if (gl === null || renderer === null || this.memory === null) throw new Error('there is no scene yet');
+    if (gl === null || renderer === null || this.memory === null) throw new Error('there is no scene');
     const picture = new Picture(gl, width, height);
     const shot = {...this.shot(false), samples};
     while (picture.samples < samples) {

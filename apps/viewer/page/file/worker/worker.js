@@ -13,7 +13,7 @@ let info;
 let head;
 let bytesLoaded = 0;
 
-/** @param {any} message @param {ArrayBuffer[]} [transfer] */
+/** @param {any} message @param {ArrayBufferLike[]} [transfer] */
 function send(message, transfer) {
   /** @type {any} */ (self).postMessage(message, transfer ?? []);
 }
@@ -49,7 +49,9 @@ async function loadLevels(shown) {
   let above = null;
   let most = 1;
   // A request for several small levels at once: their bytes follow each other.
-  let ready = new Uint8Array(0), readyBegin = 0;
+  /** @type {Uint8Array} */
+  let ready = new Uint8Array(0);
+  let readyBegin = 0;
   for (let level = 0; level < Math.min(shown, levels - 2); ++level) {
     const begin = 4 * levelBegin[level], end = 4 * levelBegin[level + 1];
     if (end > readyBegin + ready.length) {
