@@ -1,4 +1,4 @@
-// Starts browsers, and opens pages whose complaints are failures.
+/** Starts browsers, and opens pages whose complaints are failures. */
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import puppeteer from 'puppeteer-core';
@@ -13,8 +13,8 @@ export function launch(name) {
   if (name === 'firefox')
     return puppeteer.launch({
       browser: 'firefox', executablePath: FIREFOX, headless: true, protocolTimeout: 300_000,
-      extraPrefsFirefox: {'webgl.force-enabled': true, 'webgl.disable-fail-if-major-performance-caveat': true, 'network.proxy.type': 0,
-                          'security.sandbox.content.level': 0, 'gfx.webrender.software': true},
+      extraPrefsFirefox: { 'webgl.force-enabled': true, 'webgl.disable-fail-if-major-performance-caveat': true, 'network.proxy.type': 0,
+                          'security.sandbox.content.level': 0, 'gfx.webrender.software': true },
     });
   return puppeteer.launch({
     executablePath: CHROMIUM, headless: true, protocolTimeout: 300_000,
@@ -27,9 +27,9 @@ export function launch(name) {
  * Opens a page. `page.complaints` collects errors of scripts, of the console and of the security policy.
  * @param {import('puppeteer-core').Browser} browser @param {string} url @param {{width?: number, height?: number, ready?: string}} [options]
  */
-export async function open(browser, url, {width = 320, height = 180, ready = 'window.voxdag?.viewer'} = {}) {
+export async function open(browser, url, { width = 320, height = 180, ready = 'window.voxdag?.viewer' } = {}) {
   const page = await browser.newPage();
-  await page.setViewport({width, height});
+  await page.setViewport({ width, height });
   /** @type {string[]} */
   const complaints = [];
   page.on('pageerror', (error) => complaints.push(String(error)));
@@ -37,8 +37,8 @@ export async function open(browser, url, {width = 320, height = 180, ready = 'wi
     if (message.type() === 'error') complaints.push(message.text());
   });
   await page.goto(url);
-  if (ready !== '') await page.waitForFunction(ready, {timeout: 60_000});
-  return Object.assign(page, {complaints});
+  if (ready !== '') await page.waitForFunction(ready, { timeout: 60_000 });
+  return Object.assign(page, { complaints });
 }
 
 /** @param {{complaints: string[]}} page */

@@ -1,14 +1,14 @@
-// The hands and the interface: each control, used as a person uses it.
+/** The hands and the interface: each control, used as a person uses it. */
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
-import {after, before, describe, it} from 'node:test';
-import {assertNoComplaints, browsers, launch, open, still} from './browser.mjs';
-import {build, folder, view} from './program.mjs';
+import { after, before, describe, it } from 'node:test';
+import { assertNoComplaints, browsers, launch, open, still } from './browser.mjs';
+import { build, folder, view } from './program.mjs';
 
 /** Light that costs little. */
 const QUICK = '#ao=0&shadows=off';
-const SIZE = {width: 900, height: 600};
+const SIZE = { width: 900, height: 600 };
 
 /** @typedef {import('puppeteer-core').Page & {complaints: string[]}} Page */
 
@@ -19,7 +19,7 @@ const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 /** The camera that is in force. @param {Page} page @returns {Promise<{eye: number[], target: number[], up: number[], fov: number}>} */
 const camera = (page) => page.evaluate(() => {
-  const {viewer} = /** @type {any} */ (window).voxdag;
+  const { viewer } = /** @type {any} */ (window).voxdag;
   return viewer.get().camera ?? viewer.info.view;
 });
 /** @param {Page} page */
@@ -28,7 +28,7 @@ const settings = (page) => page.evaluate(() => /** @type {any} */ (window).voxda
 const pick = (page, x, y) => page.evaluate((x, y) => /** @type {any} */ (window).voxdag.viewer.pick(x, y), x, y);
 /** Where a point is in the picture. @param {Page} page @param {number[]} point */
 const project = (page, point) => page.evaluate(async (point) => {
-  const {viewer} = /** @type {any} */ (window).voxdag, {project} = await import(new URL('hands/pose.js', document.baseURI).href);
+  const { viewer } = /** @type {any} */ (window).voxdag, { project } = await import(new URL('hands/pose.js', document.baseURI).href);
   return project(viewer.get().camera ?? viewer.info.view, point, viewer.canvas.clientWidth, viewer.canvas.clientHeight);
 }, point);
 
@@ -36,9 +36,9 @@ const project = (page, point) => page.evaluate(async (point) => {
 async function rest(page) {
   await pause(50);
   await page.waitForFunction(() => {
-    const {hands} = /** @type {any} */ (window).voxdag;
+    const { hands } = /** @type {any} */ (window).voxdag;
     return !hands.moved && !hands.navigator.flight && hands.frameRequest === 0;
-  }, {timeout: 30_000});
+  }, { timeout: 30_000 });
 }
 
 /** Drags from one pixel to another. @param {Page} page @param {number[]} from @param {number[]} to @param {import('puppeteer-core').MouseOptions} [options] */
@@ -50,20 +50,20 @@ async function drag(page, from, to, options = {}) {
 }
 
 /** Waits until the drawing over the picture shows the settings. @param {Page} page */
-const drawn = (page) => page.waitForFunction(() => /** @type {any} */ (window).voxdag.ui.overlay.request === 0, {timeout: 30_000});
+const drawn = (page) => page.waitForFunction(() => /** @type {any} */ (window).voxdag.ui.overlay.request === 0, { timeout: 30_000 });
 
 /** The middle of an element, in pixels. @param {Page} page @param {string} selector */
 async function middle(page, selector) {
   await drawn(page);
   const box = await page.$eval(selector, (element) => {
-    const {x, y, width, height} = element.getBoundingClientRect();
+    const { x, y, width, height } = element.getBoundingClientRect();
     return [x + width / 2, y + height / 2];
   });
   return box;
 }
 
 for (const browserName of browsers)
-  describe(`hands in ${browserName}`, {timeout: 600_000}, () => {
+  describe(`hands in ${browserName}`, { timeout: 600_000 }, () => {
     /** @type {import('puppeteer-core').Browser} */
     let browser;
     /** @type {{url: string, close: () => Promise<void>}} */
@@ -78,8 +78,8 @@ for (const browserName of browsers)
     });
     /** @param {string} [hash] @param {{width?: number, height?: number}} [size] @returns {Promise<Page>} */
     const load = async (hash = QUICK, size = SIZE) => {
-      const page = await open(browser, server.url + hash, {...size, ready: 'window.voxdag?.viewer?.info && window.voxdag.hands.navigator'});
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.hands.isLoaded, {timeout: 60_000});
+      const page = await open(browser, server.url + hash, { ...size, ready: 'window.voxdag?.viewer?.info && window.voxdag.hands.navigator' });
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.hands.isLoaded, { timeout: 60_000 });
       return /** @type {any} */ (page);
     };
 
@@ -93,21 +93,21 @@ for (const browserName of browsers)
 
       const point = (await pick(page, 420, 320)).position;
       await page.mouse.move(420, 320);
-      for (let i = 0; i < 4; ++i) await page.mouse.wheel({deltaY: -120});
+      for (let i = 0; i < 4; ++i) await page.mouse.wheel({ deltaY: -120 });
       await rest(page);
       const seen = await project(page, point);
       assert.ok(Math.hypot(seen.x - 420, seen.y - 320) < 1, 'the point stays under the pointer');
       assert.ok(apart((await camera(page)).eye, point) < 0.6 * apart(turned.eye, point), 'the eye comes closer');
 
       const before = await camera(page);
-      await drag(page, [450, 300], [480, 280], {button: 'right'});
+      await drag(page, [450, 300], [480, 280], { button: 'right' });
       await rest(page);
       const panned = await camera(page);
       const moved = panned.eye.map((x, i) => x - before.eye[i]), target = panned.target.map((x, i) => x - before.target[i]);
       assert.ok(apart(moved, target) < 1e-3 * Math.hypot(...moved) + 1e-9, 'eye and target move together');
 
       const focus = (await pick(page, 300, 250)).position;
-      await page.mouse.click(300, 250, {count: 2});
+      await page.mouse.click(300, 250, { count: 2 });
       await rest(page);
       assert.ok(apart((await camera(page)).target, focus) < 0.02 * apart(before.eye, focus), 'the double click sets the target');
 
@@ -174,12 +174,12 @@ for (const browserName of browsers)
       await rest(page);
       assert.ok(apart((await camera(page)).eye, flown.eye) < 1e-3 * Math.hypot(...way), 'a drag only looks');
 
-      await page.mouse.wheel({deltaY: -200});
-      await page.waitForFunction(() => /^Speed × 1\.\d/.test(document.querySelector('.toast:not(.tool-hint)')?.textContent ?? ''), {timeout: 20_000});
+      await page.mouse.wheel({ deltaY: -200 });
+      await page.waitForFunction(() => /^Speed × 1\.\d/.test(document.querySelector('.toast:not(.tool-hint)')?.textContent ?? ''), { timeout: 20_000 });
 
       await page.keyboard.press('g');
       await rest(page);
-      const stood = await camera(page), {low} = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.bounds);
+      const stood = await camera(page), { low } = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.bounds);
       await page.keyboard.down('a');
       await pause(400);
       await page.keyboard.up('a');
@@ -191,7 +191,7 @@ for (const browserName of browsers)
       for (const [key, axis, sign] of /** @type {[import('puppeteer-core').KeyInput, number, number][]} */ ([['2', 2, 1], ['3', 0, 1], ['4', 2, -1], ['5', 0, -1], ['6', 1, 1], ['7', 1, -1]])) {
         await page.keyboard.press(key);
         await rest(page);
-        const {eye, target} = await camera(page), line = eye.map((x, i) => x - target[i]);
+        const { eye, target } = await camera(page), line = eye.map((x, i) => x - target[i]);
         assert.ok(line[axis] * sign > 0.999 * Math.hypot(...line), `key ${key} looks along axis ${axis}`);
       }
       assertNoComplaints(page);
@@ -203,23 +203,23 @@ for (const browserName of browsers)
       await drag(page, [400, 300], [330, 350]);
       await rest(page);
       await page.evaluate(() => {
-        const {viewer} = /** @type {any} */ (window).voxdag, {low, high} = viewer.info.bounds;
+        const { viewer } = /** @type {any} */ (window).voxdag, { low, high } = viewer.info.bounds;
         viewer.set({
-          sun: {direction: [0.3, 0.8, -0.5], angle: 1.5}, level: 6, show: 'light', sky: 0.8,
-          section: {box: {low, high: high.map((/** @type {number} */ x, /** @type {number} */ i) => low[i] + (x - low[i]) * 0.7)}},
-          measures: [{from: low, to: high}], annotations: [{text: 'gate & wall', point: low, camera: viewer.get().camera}],
+          sun: { direction: [0.3, 0.8, -0.5], angle: 1.5 }, level: 6, show: 'light', sky: 0.8,
+          section: { box: { low, high: high.map((/** @type {number} */ x, /** @type {number} */ i) => low[i] + (x - low[i]) * 0.7) } },
+          measures: [{ from: low, to: high }], annotations: [{ text: 'gate & wall', point: low, camera: viewer.get().camera }],
         });
       });
-      await page.waitForFunction(() => location.hash.includes('note='), {timeout: 20_000});
+      await page.waitForFunction(() => location.hash.includes('note='), { timeout: 20_000 });
       const hash = await page.evaluate(() => location.hash), wanted = await settings(page);
-      const other = await load(hash, {width: 240, height: 160});
+      const other = await load(hash, { width: 240, height: 160 });
       assert.deepEqual(await settings(other), wanted);
       await still(other);
       assert.deepEqual(await settings(other), wanted, 'nothing moves by itself');
       // A link pasted into the address of an open page.
       await other.evaluate(() => { location.hash = '#mode=fly&eye=1,2,3&target=0,0,0&up=0,1,0&fov=50'; });
-      await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly', {timeout: 20_000});
-      assert.deepEqual(await camera(other), {eye: [1, 2, 3], target: [0, 0, 0], up: [0, 1, 0], fov: 50});
+      await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly', { timeout: 20_000 });
+      assert.deepEqual(await camera(other), { eye: [1, 2, 3], target: [0, 0, 0], up: [0, 1, 0], fov: 50 });
       assertNoComplaints(other);
       await other.close();
       await page.close();
@@ -230,9 +230,9 @@ for (const browserName of browsers)
       await page.keyboard.press('m');
       const [a, b] = [await pick(page, 300, 320), await pick(page, 450, 330)];
       await page.mouse.click(300, 320);
-      await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point', {timeout: 20_000});
+      await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point', { timeout: 20_000 });
       await page.mouse.click(450, 330);
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1, {timeout: 20_000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1, { timeout: 20_000 });
       const [measure] = (await settings(page)).measures;
       const voxel = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxelSize);
       assert.ok(apart(measure.from, a.position) < 0.01 * voxel && apart(measure.to, b.position) < 0.01 * voxel);
@@ -249,7 +249,7 @@ for (const browserName of browsers)
     it('drags the handles of the section', async () => {
       const page = await load();
       await page.keyboard.press('b');
-      const {plane} = (await settings(page)).section;
+      const { plane } = (await settings(page)).section;
       assert.ok(plane);
       const at = await middle(page, '[aria-label="Plane, position along its normal"]');
       const tip = await middle(page, '[aria-label="Plane, direction of its normal"]');
@@ -265,7 +265,7 @@ for (const browserName of browsers)
 
       // The box, by its switch, a handle in the picture and a slider.
       await page.$$eval('[role=switch]', (all) => /** @type {HTMLElement[]} */ (all).find((one) => one.closest('label')?.textContent === 'Box')?.click());
-      const {box} = (await settings(page)).section;
+      const { box } = (await settings(page)).section;
       const face = await middle(page, '[aria-label="Box, high y"]');
       await drag(page, face, [face[0], face[1] + 40]);
       const cut = (await settings(page)).section.box;
@@ -285,7 +285,7 @@ for (const browserName of browsers)
       const page = await load();
       await page.keyboard.press('n');
       await page.mouse.click(400, 330);
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1, {timeout: 20_000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1, { timeout: 20_000 });
       await page.keyboard.type('The gate');
       assert.equal((await settings(page)).annotations[0].text, 'The gate');
       await page.keyboard.press('Escape');
@@ -293,7 +293,7 @@ for (const browserName of browsers)
       await page.keyboard.press('2');
       await rest(page);
       await page.keyboard.press('k');
-      const {path: keys, annotations} = await settings(page);
+      const { path: keys, annotations } = await settings(page);
       assert.deepEqual(keys.map((/** @type {any} */ key) => key.time), [0, 2]);
       await drawn(page);
       await page.click('.marker .disc');
@@ -302,7 +302,7 @@ for (const browserName of browsers)
       await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('film'));
       await page.$$eval('button', (all) => all.find((one) => one.textContent === 'Play')?.click());
       await pause(2600);
-      await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), {timeout: 20_000});
+      await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), { timeout: 20_000 });
       assert.ok(apart((await camera(page)).eye, keys[1].eye) < 1e-9, 'the film ends at its last key');
       assertNoComplaints(page);
       await page.close();
@@ -316,16 +316,16 @@ for (const browserName of browsers)
       fs.writeFileSync(bad, '{"version": 1, "sky": "blue"}');
       const input = /** @type {import('puppeteer-core').ElementHandle<HTMLInputElement>} */ (await page.$('input[type=file]'));
       await input.uploadFile(good);
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5, {timeout: 20_000});
+      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5, { timeout: 20_000 });
       assert.deepEqual((await camera(page)).eye, [3, 2, 1]);
       await input.uploadFile(bad);
-      await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''), {timeout: 20_000});
+      await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''), { timeout: 20_000 });
       assert.equal((await settings(page)).sky, 0.5);
       await page.close();
     });
 
     it('is usable by keyboard, names every control, and fits a phone', async () => {
-      for (const size of [{width: 390, height: 844}, SIZE]) {
+      for (const size of [{ width: 390, height: 844 }, SIZE]) {
         const page = await load(QUICK, size);
         for (const label of ['View', 'Light', 'Section', 'Measure', 'Notes', 'Camera path', 'Save and share', 'Statistics', 'Help']) {
           await page.focus(`.toolbar [aria-label="${label}"]`);
@@ -358,7 +358,7 @@ for (const browserName of browsers)
       const page = await browser.newPage();
       await page.evaluateOnNewDocument(() => { HTMLCanvasElement.prototype.getContext = () => null; });
       await page.goto(server.url);
-      await page.waitForSelector('.failure', {timeout: 20_000});
+      await page.waitForSelector('.failure', { timeout: 20_000 });
       assert.match(await page.$eval('.failure', (card) => card.textContent ?? ''), /WebGL 2/);
       await page.close();
     });

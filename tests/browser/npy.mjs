@@ -1,4 +1,4 @@
-// NumPy files of rays and hits, as `voxdag trace` reads and writes them.
+/** NumPy files of rays and hits, as `voxdag trace` reads and writes them. */
 import fs from 'node:fs';
 
 /** @param {string} path @param {Float32Array} values @param {number} columns */
@@ -22,6 +22,6 @@ export function readHits(path) {
       (header.includes("'|b1'") ? 1 : 0);
   const hits = [];
   for (let at = begin; at + rowBytes <= bytes.length; at += rowBytes)
-    hits.push({t: bytes.readFloatLE(at), voxel: [4, 8, 12].map((o) => bytes.readInt32LE(at + o)), face: bytes.readInt8(at + 16), hit: bytes[at + 17] !== 0});
+    hits.push({ t: bytes.readFloatLE(at), voxel: [4, 8, 12].map((o) => bytes.readInt32LE(at + o)), face: bytes.readInt8(at + 16), hit: bytes[at + 17] !== 0 });
   return hits;
 }

@@ -1,10 +1,10 @@
-// The page's files: types, size, and that they need nothing from elsewhere.
+/** The page's files: types, size, and that they need nothing from elsewhere. */
 import assert from 'node:assert/strict';
-import {spawnSync} from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import {describe, it} from 'node:test';
-import {fileURLToPath} from 'node:url';
+import { describe, it } from 'node:test';
+import { fileURLToPath } from 'node:url';
 import zlib from 'node:zlib';
 
 /** A complete copy of the page, made by the build. */
@@ -14,7 +14,7 @@ const files = list('');
 
 /** @param {string} folder @returns {string[]} */
 function list(folder) {
-  return fs.readdirSync(path.join(PAGE, folder), {withFileTypes: true}).flatMap((entry) =>
+  return fs.readdirSync(path.join(PAGE, folder), { withFileTypes: true }).flatMap((entry) =>
     entry.isDirectory() ? list(path.join(folder, entry.name)) : [path.join(folder, entry.name)]);
 }
 
@@ -22,26 +22,26 @@ function list(folder) {
 function check(name, options, include) {
   const config = path.join(PAGE, '..', `tsconfig.${name}.json`);
   fs.writeFileSync(config, JSON.stringify({
-    compilerOptions: {checkJs: true, allowJs: true, strict: true, noEmit: true, target: 'es2022', module: 'es2022', moduleResolution: 'bundler', types: [], ...options},
+    compilerOptions: { checkJs: true, allowJs: true, strict: true, noEmit: true, target: 'es2022', module: 'es2022', moduleResolution: 'bundler', types: [], ...options },
     include: include.map((pattern) => path.join(PAGE, pattern)), exclude: name === 'page' ? [path.join(PAGE, 'file/worker/*')] : [],
   }));
-  const result = spawnSync(fileURLToPath(new URL('node_modules/.bin/tsc', import.meta.url)), ['-p', config], {encoding: 'utf8'});
+  const result = spawnSync(fileURLToPath(new URL('node_modules/.bin/tsc', import.meta.url)), ['-p', config], { encoding: 'utf8' });
   assert.equal(result.status, 0, result.stdout);
 }
 
 describe('the page', () => {
-  it('has the types that its comments say', () => check('page', {lib: ['es2022', 'dom', 'dom.iterable', 'dom.asynciterable']}, ['**/*.js']));
+  it('has the types that its comments say', () => check('page', { lib: ['es2022', 'dom', 'dom.iterable', 'dom.asynciterable'] }, ['**/*.js']));
 
   it('has a worker with the types that its comments say', () => {
     const constants = fs.readFileSync(path.join(PAGE, 'constants.js'), 'utf8');
     fs.writeFileSync(path.join(PAGE, '..', 'worker_constants.js'), constants.replace(/^export /gm, '') + '\nconst INSTANCE_STEPS = 4;\n');
     const worker = path.join(PAGE, '..', 'worker_constants.js');
-    check('worker', {lib: ['es2022', 'dom'], moduleDetection: 'legacy'},
+    check('worker', { lib: ['es2022', 'dom'], moduleDetection: 'legacy' },
           ['file/worker/*.js', path.relative(PAGE, worker)]);
   });
 
   it('takes less than 150 KB, each file compressed', () => {
-    const bytes = files.reduce((sum, name) => sum + zlib.gzipSync(fs.readFileSync(path.join(PAGE, name)), {level: 9}).length, 0);
+    const bytes = files.reduce((sum, name) => sum + zlib.gzipSync(fs.readFileSync(path.join(PAGE, name)), { level: 9 }).length, 0);
     assert.ok(bytes < 150_000, `${bytes} bytes`);
   });
 

@@ -1,24 +1,24 @@
-// The picture in real browsers: hits and light are those of the command line.
+/** The picture in real browsers: hits and light are those of the command line. */
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
-import {after, before, describe, it} from 'node:test';
-import {assertNoComplaints, browsers, launch, open, still} from './browser.mjs';
-import {readHits, writeNpy} from './npy.mjs';
-import {readPng, spread, ssim} from './pictures.mjs';
-import {build, buildColored, folder, view, voxdag} from './program.mjs';
+import { after, before, describe, it } from 'node:test';
+import { assertNoComplaints, browsers, launch, open, still } from './browser.mjs';
+import { readHits, writeNpy } from './npy.mjs';
+import { readPng, spread, ssim } from './pictures.mjs';
+import { build, buildColored, folder, view, voxdag } from './program.mjs';
 
 const WIDTH = 160, HEIGHT = 90;
 
 /** Views of the court and of the coloured hill: world units. */
 const VIEWS = {
   court: [
-    {eye: [10, 3, 10], target: [0, 2, 0]}, {eye: [-6, 2, 3], target: [5, 1, -4]}, {eye: [0, 30, 40], target: [0, 0, 0]},
-    {eye: [2, 1.5, 2], target: [2, 8, 2.5]}, {eye: [-20, 12, -20], target: [0, 3, 0]},
+    { eye: [10, 3, 10], target: [0, 2, 0] }, { eye: [-6, 2, 3], target: [5, 1, -4] }, { eye: [0, 30, 40], target: [0, 0, 0] },
+    { eye: [2, 1.5, 2], target: [2, 8, 2.5] }, { eye: [-20, 12, -20], target: [0, 3, 0] },
   ],
   hill: [
-    {eye: [0.5, 0.9, 1.9], target: [0.5, 0, 0.5]}, {eye: [-0.4, 0.3, 0.2], target: [0.6, 0, 0.6]}, {eye: [0.5, 2, 0.51], target: [0.5, 0, 0.5]},
-    {eye: [0.3, 0.2, 0.3], target: [0.8, 0.05, 0.7]}, {eye: [1.5, -0.6, 1.2], target: [0.5, 0, 0.5]},
+    { eye: [0.5, 0.9, 1.9], target: [0.5, 0, 0.5] }, { eye: [-0.4, 0.3, 0.2], target: [0.6, 0, 0.6] }, { eye: [0.5, 2, 0.51], target: [0.5, 0, 0.5] },
+    { eye: [0.3, 0.2, 0.3], target: [0.8, 0.05, 0.7] }, { eye: [1.5, -0.6, 1.2], target: [0.5, 0, 0.5] },
   ],
 };
 
@@ -26,7 +26,7 @@ const VIEWS = {
 const fileOf = (name) => (name === 'court' ? build('courtyard', 512) : buildColored(256));
 
 for (const browserName of browsers)
-  describe(`pictures in ${browserName}`, {timeout: 600_000}, () => {
+  describe(`pictures in ${browserName}`, { timeout: 600_000 }, () => {
     /** @type {import('puppeteer-core').Browser} */
     let browser;
     before(async () => {
@@ -39,7 +39,7 @@ for (const browserName of browsers)
       const page = await open(browser, server.url);
       await still(page);
       const shot = path.join(folder, 'first.png');
-      await page.screenshot({path: shot});
+      await page.screenshot({ path: shot });
       assert.ok(spread(readPng(shot)) > 5, 'the picture is not blank');
       assertNoComplaints(page);
       await page.close();
@@ -51,11 +51,11 @@ for (const browserName of browsers)
         const file = fileOf(name), server = await view(file);
         const page = await open(browser, `${server.url}#ao=0&shadows=off`);
         await still(page);
-        for (const {eye, target} of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
-          const camera = {eye, target, up: [0.02, 1, 0.03], fov: 60};
+        for (const { eye, target } of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
+          const camera = { eye, target, up: [0.02, 1, 0.03], fov: 60 };
           const cells = await page.evaluate((camera, width, height) => {
-            const {viewer} = /** @type {any} */ (window).voxdag;
-            viewer.set({camera, lod: 0});
+            const { viewer } = /** @type {any} */ (window).voxdag;
+            viewer.set({ camera, lod: 0 });
             return Array.from(viewer.hits(width, height));
           }, camera, WIDTH, HEIGHT);
           compareHits(file, camera, Uint32Array.from(/** @type {number[]} */ (cells)));
@@ -70,17 +70,17 @@ for (const browserName of browsers)
       it('lights five views of two scenes as `voxdag render` does: SSIM of at least 0.98', async () => {
         for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
           const file = fileOf(name), server = await view(file);
-          const page = await open(browser, server.url, {width: 640, height: 400});
-          for (const [i, {eye, target}] of shots.entries()) {
+          const page = await open(browser, server.url, { width: 640, height: 400 });
+          for (const [i, { eye, target }] of shots.entries()) {
             const picture = path.join(folder, `${name}${i}.png`);
             voxdag('render', file, '-q', '--size', `${WIDTH}x${HEIGHT}`, '--spp', '16', '--fov', '60', '--up', '0,1,0',
                    '--eye', eye.join(','), '--target', target.join(','), '-o', picture);
             const png = await page.evaluate(async (camera, width, height) => {
-              const {viewer} = /** @type {any} */ (window).voxdag;
-              viewer.set({camera, lod: 1, sun: {direction: null}});
-              const blob = await viewer.capture({width, height, samples: 16});
+              const { viewer } = /** @type {any} */ (window).voxdag;
+              viewer.set({ camera, lod: 1, sun: { direction: null } });
+              const blob = await viewer.capture({ width, height, samples: 16 });
               return Array.from(new Uint8Array(await blob.arrayBuffer()));
-            }, {eye, target, up: [0, 1, 0], fov: 60}, WIDTH, HEIGHT);
+            }, { eye, target, up: [0, 1, 0], fov: 60 }, WIDTH, HEIGHT);
             const likeness = ssim(readPng(picture), readPng(Buffer.from(png)));
             assert.ok(likeness >= 0.98, `${name}, view ${i}: SSIM ${likeness}`);
           }
@@ -121,7 +121,7 @@ function compareHits(file, camera, cells) {
     if (!offsets.every((_, o) => same(hits[i], hits[o * pixels + i]))) continue;
     ++compared;
     const x = i % WIDTH, y = Math.floor(i / WIDTH), at = 4 * ((HEIGHT - 1 - y) * WIDTH + x);
-    const shown = {hit: cells[at + 3] >>> 16 === 1, voxel: Array.from(cells.subarray(at, at + 3))};
+    const shown = { hit: cells[at + 3] >>> 16 === 1, voxel: Array.from(cells.subarray(at, at + 3)) };
     assert.ok(same(hits[i], shown), `pixel ${x}, ${y}: ${JSON.stringify(shown)} instead of ${JSON.stringify(hits[i])}`);
   }
   assert.ok(compared > pixels / 2, `only ${compared} of ${pixels} pixels are away from ties`);

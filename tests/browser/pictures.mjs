@@ -1,4 +1,4 @@
-// Compares pictures.
+/** Compares pictures. */
 import fs from 'node:fs';
 import zlib from 'node:zlib';
 
@@ -32,7 +32,7 @@ export function readPng(from) {
     }
   const luma = new Float64Array(width * height);
   for (let i = 0; i < luma.length; ++i) luma[i] = 0.299 * rows[i * channels] + 0.587 * rows[i * channels + 1] + 0.114 * rows[i * channels + 2];
-  return {width, height, luma};
+  return { width, height, luma };
 }
 
 /**
@@ -60,7 +60,7 @@ export function ssim(a, b) {
 }
 
 /** Returns the spread of a picture's brightness: near 0 if it is blank. @param {Picture} picture */
-export function spread({luma}) {
+export function spread({ luma }) {
   const mean = luma.reduce((s, v) => s + v, 0) / luma.length;
   return Math.sqrt(luma.reduce((s, v) => s + (v - mean) ** 2, 0) / luma.length);
 }

@@ -1,6 +1,6 @@
-// Runs voxdag: builds scenes for the tests, and serves them.
+/** Runs voxdag: builds scenes for the tests, and serves them. */
 import assert from 'node:assert/strict';
-import {execFileSync, spawn} from 'node:child_process';
+import { execFileSync, spawn } from 'node:child_process';
 import fs from 'node:fs';
 import http from 'node:http';
 import os from 'node:os';
@@ -12,11 +12,11 @@ assert.ok(fs.existsSync(VOXDAG), 'VOXDAG must name the program');
 
 /** A folder for the files of this run. */
 export const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'voxdag-browser-'));
-process.on('exit', () => fs.rmSync(folder, {recursive: true, force: true}));
+process.on('exit', () => fs.rmSync(folder, { recursive: true, force: true }));
 
 /** Runs voxdag and returns what it prints. @param {...string} args */
 export function voxdag(...args) {
-  return execFileSync(VOXDAG, args, {encoding: 'utf8', cwd: folder});
+  return execFileSync(VOXDAG, args, { encoding: 'utf8', cwd: folder });
 }
 
 /**
@@ -56,7 +56,7 @@ export function buildColored(resolution) {
  * @param {string} file @returns {Promise<{url: string, close: () => Promise<void>}>}
  */
 export async function view(file) {
-  const server = spawn(VOXDAG, ['view', file, '--no-open', '--port', '0'], {cwd: folder});
+  const server = spawn(VOXDAG, ['view', file, '--no-open', '--port', '0'], { cwd: folder });
   let output = '';
   server.stderr.on('data', (text) => (output += text));
   const url = await new Promise((resolve, reject) => {
@@ -72,22 +72,22 @@ export async function view(file) {
     server.on('exit', () => resolve(undefined));
     server.kill('SIGINT');
   });
-  return {url, close: /** @type {any} */ (close)};
+  return { url, close: /** @type {any} */ (close) };
 }
 
 /**
  * Serves another server's pages, and notes each request; may slow them down, or lack Range.
  * @param {string} url @param {{bytesPerSecond?: number, ranges?: boolean}} [options]
  */
-export async function proxy(url, {bytesPerSecond = Infinity, ranges = true} = {}) {
+export async function proxy(url, { bytesPerSecond = Infinity, ranges = true } = {}) {
   /** @type {{path: string, range: string, time: number}[]} */
   const requests = [];
   const server = http.createServer((request, response) => {
-    requests.push({path: request.url ?? '', range: request.headers.range ?? '', time: performance.now()});
-    const headers = {...request.headers, host: new URL(url).host};
+    requests.push({ path: request.url ?? '', range: request.headers.range ?? '', time: performance.now() });
+    const headers = { ...request.headers, host: new URL(url).host };
     if (!ranges) delete headers.range;
-    http.get(new URL(request.url ?? '/', url), {headers}, (answer) => {
-      const kept = {...answer.headers};
+    http.get(new URL(request.url ?? '/', url), { headers }, (answer) => {
+      const kept = { ...answer.headers };
       if (!ranges) delete kept['accept-ranges'];
       response.writeHead(answer.statusCode ?? 500, kept);
       if (bytesPerSecond === Infinity) return answer.pipe(response);
@@ -95,8 +95,8 @@ export async function proxy(url, {bytesPerSecond = Infinity, ranges = true} = {}
     }).on('error', () => response.destroy());
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(undefined)));
-  const {port} = /** @type {import('node:net').AddressInfo} */ (server.address());
-  return {url: `http://127.0.0.1:${port}/`, requests, close: () => server.close()};
+  const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
+  return { url: `http://127.0.0.1:${port}/`, requests, close: () => server.close() };
 }
 
 /**

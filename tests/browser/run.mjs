@@ -1,8 +1,8 @@
-// Runs one file of tests for ctest: node run.mjs FILE. Exit status 77: skipped, with a line that says why.
-import {spawn, spawnSync} from 'node:child_process';
+/** Runs one file of tests for ctest: node run.mjs FILE. Exit status 77: skipped, with a line that says why. */
+import { spawn, spawnSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import {fileURLToPath} from 'node:url';
+import { fileURLToPath } from 'node:url';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 
@@ -18,14 +18,14 @@ if (!['/usr/bin/chromium', '/usr/bin/firefox-esr'].some((file) => fs.existsSync(
 // Firefox finds WebGL only on a display.
 let display = process.env.DISPLAY ?? '', server = null;
 if (display === '' && spawnSync('which', ['Xvfb']).status === 0) {
-  server = spawn('Xvfb', ['-displayfd', '3', '-screen', '0', '1280x1024x24', '-nolisten', 'tcp'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe']});
+  server = spawn('Xvfb', ['-displayfd', '3', '-screen', '0', '1280x1024x24', '-nolisten', 'tcp'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe'] });
   const numbers = /** @type {import('node:stream').Readable} */ (server.stdio[3]);
   display = ':' + (await new Promise((resolve) => {
     numbers.on('data', (text) => resolve(String(text).trim()));
     server?.on('exit', () => resolve(''));
   }));
 }
-const tests = spawn(process.execPath, ['--test', '--test-reporter=spec', process.argv[2]], {cwd: here, stdio: 'inherit', env: {...process.env, DISPLAY: display, NO_AT_BRIDGE: '1'}});
+const tests = spawn(process.execPath, ['--test', '--test-reporter=spec', process.argv[2]], { cwd: here, stdio: 'inherit', env: { ...process.env, DISPLAY: display, NO_AT_BRIDGE: '1' } });
 tests.on('exit', (code) => {
   server?.kill();
   process.exit(code ?? 1);

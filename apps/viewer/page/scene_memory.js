@@ -1,7 +1,8 @@
-// The levels of a scene that have arrived, in memory: for rays on the CPU, and to fill textures
-// again after the graphics card has lost them.
-
-import {finestLevelThatFits} from './gpu/scene_textures.js';
+/**
+ * The levels of a scene that have arrived, in memory: for rays on the CPU, and to fill textures
+ * again after the graphics card has lost them.
+ */
+import { finestLevelThatFits } from './gpu/scene_textures.js';
 
 /** @typedef {import('./file/scene_loader.js').FileInfo} FileInfo */
 /** @typedef {import('./file/scene_loader.js').LoaderMessage} LoaderMessage */
@@ -25,8 +26,8 @@ export class SceneMemory {
 
   /** The DAG for rays on the CPU. @returns {import('./trace.js').Dag} */
   dag() {
-    const {levels, origin, voxelSize} = this.info;
-    return {levels, shown: this.shown, origin, voxelSize, nodes: this.nodes, leaves: this.leaves};
+    const { levels, origin, voxelSize } = this.info;
+    return { levels, shown: this.shown, origin, voxelSize, nodes: this.nodes, leaves: this.leaves };
   }
 
   /** Takes a level or the attributes from the loader, and uploads them. @param {LoaderMessage} message @param {SceneTextures} textures */

@@ -1,5 +1,7 @@
-// Casts rays at the copy of the DAG in memory: for picking, and for walking. The port of
-// trace/cast.hpp; numbers are rounded to float where that file uses floats, so that hits are equal.
+/**
+ * Casts rays at the copy of the DAG in memory: for picking, and for walking. The port of
+ * trace/cast.hpp; numbers are rounded to float where that file uses floats, so that hits are equal.
+ */
 
 /** @typedef {[number, number, number]} Vec3 */
 /**
@@ -161,7 +163,7 @@ export function cast(dag, from, direction, most = Infinity, sizePerDistance = 0)
     });
     const distance = Math.max(0, tStart + t * tScale);
     const position = [0, 1, 2].map((a) => from[a] + direction[a] * distance);
-    return {voxel: /** @type {Vec3} */ (voxel), level, face, distance, position: /** @type {Vec3} */ (position)};
+    return { voxel: /** @type {Vec3} */ (voxel), level, face, distance, position: /** @type {Vec3} */ (position) };
   }
 }
 
@@ -207,5 +209,5 @@ export function bounds(dag, level) {
   if (!(low[0] <= high[0])) return null;
   const side = dag.voxelSize * 2 ** dag.levels;
   const world = (/** @type {number[]} */ p) => /** @type {Vec3} */ (p.map((x, a) => dag.origin[a] + x * side));
-  return {low: world(low), high: world(high)};
+  return { low: world(low), high: world(high) };
 }

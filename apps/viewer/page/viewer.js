@@ -1,18 +1,17 @@
-// The viewer: a canvas that shows a scene. See docs/viewer.md for how to embed it.
-
-import {LIGHT} from './constants.js';
-import {inlineScene} from './file/byte_source.js';
-import {SceneLoader} from './file/scene_loader.js';
-import {Pacer} from './gpu/pacer.js';
-import {Picture} from './gpu/picture.js';
-import {Renderer, loadShaders} from './gpu/renderer.js';
-import {SceneTextures} from './gpu/scene_textures.js';
-import {directionThrough} from './hands/pose.js';
-import {DEFAULTS, mergeSettings} from './settings.js';
-import {SceneMemory} from './scene_memory.js';
-import {castInSection} from './section_ray.js';
-import {bounds, cast, contains} from './trace.js';
-import {defaultView} from './default_view.js';
+/** The viewer: a canvas that shows a scene. See docs/viewer.md for how to embed it. */
+import { LIGHT } from './constants.js';
+import { inlineScene } from './file/byte_source.js';
+import { SceneLoader } from './file/scene_loader.js';
+import { Pacer } from './gpu/pacer.js';
+import { Picture } from './gpu/picture.js';
+import { Renderer, loadShaders } from './gpu/renderer.js';
+import { SceneTextures } from './gpu/scene_textures.js';
+import { directionThrough } from './hands/pose.js';
+import { DEFAULTS, mergeSettings } from './settings.js';
+import { SceneMemory } from './scene_memory.js';
+import { castInSection } from './section_ray.js';
+import { bounds, cast, contains } from './trace.js';
+import { defaultView } from './default_view.js';
 
 /** @typedef {import('./viewer_types.js').Viewer} Viewer */
 /** @typedef {import('./viewer_types.js').SceneInfo} SceneInfo */
@@ -47,7 +46,7 @@ function finerScale(scale) {
 /** @implements {Viewer} */
 class CanvasViewer {
   /** @param {Parameters<typeof createViewer>[0]} options */
-  constructor({container, url, bytes, settings}) {
+  constructor({ container, url, bytes, settings }) {
     this.canvas = document.createElement('canvas');
     this.canvas.className = 'voxdag-canvas';
     this.canvas.style.cssText = 'display:block;width:100%;height:100%;touch-action:none';
@@ -94,7 +93,7 @@ class CanvasViewer {
     /** @type {(() => void)[]} */
     this.stillWaiters = [];
     /** @type {Statistics} */
-    this.stats = {levelsLoaded: 0, levelsShown: 0, bytesLoaded: 0, fileBytes: 0, frameMs: 0, raysPerFrame: 0, stepsPerRay: 0, samples: 0, samplesWanted: STILL_SAMPLES, scale: 1, gpuBytes: 0};
+    this.stats = { levelsLoaded: 0, levelsShown: 0, bytesLoaded: 0, fileBytes: 0, frameMs: 0, raysPerFrame: 0, stepsPerRay: 0, samples: 0, samplesWanted: STILL_SAMPLES, scale: 1, gpuBytes: 0 };
     this.requestedFrame = 0;
     this.loader = new SceneLoader((message) => this.onMessage(message));
     this.observer = new ResizeObserver(() => this.resize());
@@ -107,7 +106,7 @@ class CanvasViewer {
 
   /** @param {string | undefined} url @param {ArrayBuffer | undefined} bytes */
   async start(url, bytes) {
-    this.gl = this.canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance'});
+    this.gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance' });
     if (this.gl === null) return this.fail('This browser shows no WebGL 2', 'Turn on hardware acceleration, or use a current version of Chrome, Edge, Firefox or Safari.', 'webgl');
     this.shaders = await loadShaders();
     if (this.isDestroyed) return;
@@ -115,13 +114,13 @@ class CanvasViewer {
     this.renderer.warmUp();
     this.resize();
     if (url === undefined && bytes === undefined) bytes = (await inlineScene()) ?? undefined;
-    await this.loader.open(bytes !== undefined ? {bytes} : {url: url ?? 'scene.vdag'});
+    await this.loader.open(bytes !== undefined ? { bytes } : { url: url ?? 'scene.vdag' });
   }
 
   /** @param {string} title @param {string} text @param {string} [kind] */
   fail(title, text, kind = 'file') {
     this.isLoaded ||= this.memory === null;
-    this.emit('error', {title, text, kind});
+    this.emit('error', { title, text, kind });
     for (const wake of this.stillWaiters.splice(0)) wake();
   }
 
@@ -153,21 +152,21 @@ class CanvasViewer {
     }
     if (message.type === 'progress') {
       this.stats.bytesLoaded = message.bytes;
-      this.emit('progress', {bytes: message.bytes, total: this.info?.fileBytes ?? 0});
+      this.emit('progress', { bytes: message.bytes, total: this.info?.fileBytes ?? 0 });
     } else if (message.type === 'note') {
       this.emit('note', message.text);
     } else if (message.type === 'done') {
       this.isLoaded = true;
-      this.emit('loaded', {requests: message.requests});
+      this.emit('loaded', { requests: message.requests });
       this.wake();
     } else if (this.memory !== null && this.textures !== null && message.type !== 'loaded') {
       this.memory.add(message, this.textures);
-      const {info, shown} = this.memory;
+      const { info, shown } = this.memory;
       this.stats.levelsLoaded = shown;
       if (message.type !== 'attributes' && this.info !== null) {
         this.info.bounds = bounds(this.memory.dag(), BOUNDS_LEVEL) ?? this.info.bounds;
         this.info.view = defaultView(this.info.bounds, this.aspect());
-        this.emit('level', {level: shown, levels: info.levels, bytes: this.stats.bytesLoaded});
+        this.emit('level', { level: shown, levels: info.levels, bytes: this.stats.bytesLoaded });
       } else {
         this.emit('look', {});
       }
@@ -182,7 +181,7 @@ class CanvasViewer {
     this.memory = new SceneMemory(gl, info);
     this.textures = new SceneTextures(gl, info, this.memory.finest);
     const side = info.voxelSize * info.resolution;
-    const box = {low: info.origin, high: /** @type {Vec3} */ (info.origin.map((x) => x + side))};
+    const box = { low: info.origin, high: /** @type {Vec3} */ (info.origin.map((x) => x + side)) };
     this.info = {
       name: info.source.name, levels: info.levels, resolution: info.resolution, origin: info.origin, voxelSize: info.voxelSize, bounds: box,
       voxels: info.voxels, dagNodesPerLevel: info.dagNodesPerLevel, fileBytes: info.fileBytes, hasColors: info.hasColors, hasNormals: info.hasNormals,
@@ -193,7 +192,7 @@ class CanvasViewer {
     this.emit('info', this.info);
     if (this.memory.finest < info.levels)
       this.emit('note', `This scene is too large for the graphics card: it is shown down to level ${this.memory.finest} of ${info.levels}.`);
-    this.loader.load({shown: this.memory.finest, colors: info.hasColors && this.memory.finest === info.levels, normals: info.hasNormals && this.memory.finest === info.levels});
+    this.loader.load({ shown: this.memory.finest, colors: info.hasColors && this.memory.finest === info.levels, normals: info.hasNormals && this.memory.finest === info.levels });
     this.touch(false);
   }
 
@@ -216,20 +215,20 @@ class CanvasViewer {
 
   /** The camera that is in force. */
   camera() {
-    return this.settings.camera ?? this.info?.view ?? {eye: /** @type {Vec3} */ ([0, 0, 1]), target: /** @type {Vec3} */ ([0, 0, 0]), up: /** @type {Vec3} */ ([0, 1, 0]), fov: 40};
+    return this.settings.camera ?? this.info?.view ?? { eye: /** @type {Vec3} */ ([0, 0, 1]), target: /** @type {Vec3} */ ([0, 0, 0]), up: /** @type {Vec3} */ ([0, 1, 0]), fov: 40 };
   }
 
   /** Shows the whole scene. */
   frame() {
     if (this.info === null) return;
-    this.set({camera: defaultView(this.info.bounds, this.aspect(), this.camera().up)}, 'frame');
+    this.set({ camera: defaultView(this.info.bounds, this.aspect(), this.camera().up) }, 'frame');
   }
 
   // ---- rays on the CPU
 
   /** @param {Vec3} origin @param {Vec3} direction @param {number} [most] */
   castNow(origin, direction, most = Infinity) {
-    const {memory} = this;
+    const { memory } = this;
     if (memory === null) return null;
     return castInSection(this.settings.section, origin, direction, most, (from, along, end) => cast(memory.dag(), from, along, end));
   }
@@ -243,7 +242,7 @@ class CanvasViewer {
     const camera = this.camera();
     const direction = directionThrough(camera, x, y, this.canvas.clientWidth, this.canvas.clientHeight);
     const dag = this.memory.dag();
-    const shown = {...dag, shown: Math.min(dag.shown, this.settings.level ?? dag.shown)};
+    const shown = { ...dag, shown: Math.min(dag.shown, this.settings.level ?? dag.shown) };
     return castInSection(this.settings.section, camera.eye, direction, Infinity, (from, along, end) => cast(shown, from, along, end));
   }
 
@@ -278,15 +277,15 @@ class CanvasViewer {
     this.canvas.height = height;
     this.redraw();
     this.touch(true);
-    this.emit('resize', {width, height});
+    this.emit('resize', { width, height });
   }
 
   /** @param {boolean} quick @returns {Shot} */
   shot(quick) {
     const info = /** @type {import('./file/scene_loader.js').FileInfo} */ (this.memory?.info);
     return {
-      settings: /** @type {any} */ ({...this.settings, camera: this.camera()}),
-      place: {origin: info.origin, side: info.voxelSize * info.resolution},
+      settings: /** @type {any} */ ({ ...this.settings, camera: this.camera() }),
+      place: { origin: info.origin, side: info.voxelSize * info.resolution },
       scene: this.textures, shown: this.memory?.shown ?? 0, mostInstances: this.memory?.mostInstances ?? 1, samples: STILL_SAMPLES, quick,
     };
   }
@@ -300,7 +299,7 @@ class CanvasViewer {
 
   /** Whether the frame that was sent last is still being drawn; if it is done, learns from it. */
   isBusy() {
-    const {gl, pending} = this;
+    const { gl, pending } = this;
     if (gl === null || pending === null) return false;
     const status = gl.clientWaitSync(pending.sync, 0, 0);
     if (status === gl.TIMEOUT_EXPIRED) return true;
@@ -317,15 +316,15 @@ class CanvasViewer {
     const gl = /** @type {WebGL2RenderingContext} */ (this.gl);
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    if (sync !== null) this.pending = {sync, begin, isMoving, pixels};
+    if (sync !== null) this.pending = { sync, begin, isMoving, pixels };
   }
 
   /** @param {number} now */
   tick(now) {
-    const {gl, renderer} = this;
+    const { gl, renderer } = this;
     if (gl === null || renderer === null || this.isLost || this.memory === null || this.memory.shown < 1) return;
     if (this.isBusy()) return this.wake();
-    const {width, height} = this.canvas;
+    const { width, height } = this.canvas;
     const begin = performance.now();
     const isMoving = begin - this.changedAt < REST_MS;
     if (this.quickVersion !== this.version) {
@@ -428,7 +427,7 @@ class CanvasViewer {
   }
 
   statistics() {
-    return {...this.stats};
+    return { ...this.stats };
   }
 
   /** @returns {Promise<void>} */
@@ -448,12 +447,12 @@ class CanvasViewer {
    * @param {{width?: number, height?: number, samples?: number}} [size]
    * @returns {Promise<Blob>}
    */
-  async capture({width = this.canvas.width, height = this.canvas.height, samples = STILL_SAMPLES} = {}) {
+  async capture({ width = this.canvas.width, height = this.canvas.height, samples = STILL_SAMPLES } = {}) {
     await this.whenLoaded();
-    const {gl, renderer} = this;
+    const { gl, renderer } = this;
     if (gl === null || renderer === null || this.memory === null) throw new Error('there is no scene');
     const picture = new Picture(gl, width, height);
-    const shot = {...this.shot(false), samples};
+    const shot = { ...this.shot(false), samples };
     while (picture.samples < samples) {
       renderer.render(picture, shot, this.pacer.rows(width, height));
       gl.finish();

@@ -1,4 +1,4 @@
-// The scene that a page holds itself: base64 of a gzip of the file.
+/** The scene that a page holds itself: base64 of a gzip of the file. */
 
 /** @returns {Promise<ArrayBuffer | null>} the bytes of the file, or null if the page holds none */
 export async function inlineScene() {

@@ -1,8 +1,9 @@
-// Loads a scene through a worker. The worker reads the file root first, checks every level, and
-// sends it.
-
-import {CELL_INDEX, DAG, FILE, PAGES} from '../constants.js';
-import {loadText} from './text_assets.js';
+/**
+ * Loads a scene through a worker. The worker reads the file root first, checks every level, and
+ * sends it.
+ */
+import { CELL_INDEX, DAG, FILE, PAGES } from '../constants.js';
+import { loadText } from './text_assets.js';
 
 /** Codes of instances are this many times the binary logarithm of the number. */
 export const INSTANCE_STEPS = 4;
@@ -44,19 +45,19 @@ export class SceneLoader {
   async open(from) {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
-    const constants = Object.entries({FILE, DAG, PAGES, CELL_INDEX, INSTANCE_STEPS}).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
-    const url = URL.createObjectURL(new Blob(["'use strict';\n", ...constants, ...texts], {type: 'text/javascript'}));
+    const constants = Object.entries({ FILE, DAG, PAGES, CELL_INDEX, INSTANCE_STEPS }).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
+    const url = URL.createObjectURL(new Blob(["'use strict';\n", ...constants, ...texts], { type: 'text/javascript' }));
     this.worker = new Worker(url);
     URL.revokeObjectURL(url);
     this.worker.onmessage = (event) => this.onMessage(event.data);
-    this.worker.onerror = (event) => this.onMessage({type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.'});
-    if (from.bytes !== undefined) this.worker.postMessage({type: 'open', bytes: from.bytes}, [from.bytes]);
-    else this.worker.postMessage({type: 'open', url: new URL(from.url ?? '', document.baseURI).href});
+    this.worker.onerror = (event) => this.onMessage({ type: 'error', title: 'The scene cannot be loaded', text: event.message || 'Its loader failed.' });
+    if (from.bytes !== undefined) this.worker.postMessage({ type: 'open', bytes: from.bytes }, [from.bytes]);
+    else this.worker.postMessage({ type: 'open', url: new URL(from.url ?? '', document.baseURI).href });
   }
 
   /** Loads cells down to level `shown`, and then attributes. @param {{shown: number, colors: boolean, normals: boolean}} wanted */
   load(wanted) {
-    this.worker?.postMessage({type: 'load', ...wanted});
+    this.worker?.postMessage({ type: 'load', ...wanted });
   }
 
   close() {

@@ -1,4 +1,4 @@
-// Text files of the page: shaders, and the parts of the worker's script.
+/** Text files of the page: shaders, and the parts of the worker's script. */
 
 /** The page's folder; a module of a single file has none. */
 const root = () => new URL('../', import.meta.url);

@@ -1,6 +1,5 @@
-// The exposure of a picture: the port of render/exposure.cpp.
-
-import {EXPOSURE} from '../constants.js';
+/** The exposure of a picture: the port of render/exposure.cpp. */
+import { EXPOSURE } from '../constants.js';
 
 /**
  * Returns the factor that brings surfaces to a medium brightness, with few of them white.

@@ -1,8 +1,9 @@
-// The numbers that the shaders need for a view with its settings: the port of render/camera.hpp,
-// light.cpp and render_plan.cpp. Lengths are in units of the grid's side.
-
-import {LIGHT} from '../constants.js';
-import {add, cross, dot, normalized, scale, sub} from '../math.js';
+/**
+ * The numbers that the shaders need for a view with its settings: the port of render/camera.hpp,
+ * light.cpp and render_plan.cpp. Lengths are in units of the grid's side.
+ */
+import { LIGHT } from '../constants.js';
+import { add, cross, dot, normalized, scale, sub } from '../math.js';
 
 /** @typedef {import('../settings.js').Camera} Camera */
 /** @typedef {import('../settings.js').Settings & {camera: Camera}} Settings */
@@ -30,7 +31,7 @@ export function cameraUniforms(place, camera, width, height) {
 /** Returns the unit vector to the sun. @param {Settings} settings @returns {Vec3} */
 export function sunDirection(settings) {
   if (settings.sun.direction !== null) return normalized(settings.sun.direction, [0, 1, 0]);
-  const {eye, target, up} = settings.camera;
+  const { eye, target, up } = settings.camera;
   const upward = normalized(up, [0, 1, 0]);
   const right = normalized(cross(normalized(sub(target, eye), [0, 0, -1]), up), [1, 0, 0]);
   const back = cross(right, upward);
@@ -43,7 +44,7 @@ export function lightUniforms(place, settings) {
   const sign = sun[2] < 0 ? -1 : 1;
   const a = -1 / (sign + sun[2]), b = sun[0] * sun[1] * a;
   const radius = Math.tan((settings.sun.angle * Math.PI) / 360);
-  const {camera, occlusion} = settings;
+  const { camera, occlusion } = settings;
   const forward = normalized(sub(camera.target, camera.eye), [0, 0, -1]);
   return {
     u_sun: sun,

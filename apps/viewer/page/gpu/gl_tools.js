@@ -1,4 +1,4 @@
-// Small tools around WebGL2: programs, textures and framebuffers.
+/** Small tools around WebGL2: programs, textures and framebuffers. */
 
 /** A program and the places of its uniforms. */
 export class Program {
@@ -21,7 +21,7 @@ export class Program {
   /** Checks that it has compiled. Throws Error with the compiler's messages. */
   finish() {
     if (this.isFinished) return;
-    const {gl} = this;
+    const { gl } = this;
     if (!gl.getProgramParameter(this.program, gl.LINK_STATUS) && !gl.isContextLost()) {
       const logs = this.shaders.map((shader) => gl.getShaderInfoLog(shader));
       throw new Error(`shader ${this.name}: ${[gl.getProgramInfoLog(this.program), ...logs].filter(Boolean).join('\n')}`);
@@ -47,7 +47,7 @@ export class Program {
 
   /** Sets float uniforms: numbers, or vectors of 2 to 4. @param {{[name: string]: number | readonly number[]}} values */
   floats(values) {
-    const {gl} = this;
+    const { gl } = this;
     for (const [name, value] of Object.entries(values)) {
       const place = this.place(name);
       if (place === null) continue;
@@ -68,7 +68,7 @@ export class Program {
 
   /** Binds textures to units and uniforms. @param {{[name: string]: WebGLTexture | null}} textures */
   textures(textures) {
-    const {gl} = this;
+    const { gl } = this;
     let unit = 0;
     for (const [name, texture] of Object.entries(textures)) {
       const place = this.place(name);

@@ -1,6 +1,5 @@
-// An array of integers in a 2D texture: element i is in column i mod 2^TEXEL_BITS.
-
-import {makeTexture} from './gl_tools.js';
+/** An array of integers in a 2D texture: element i is in column i mod 2^TEXEL_BITS. */
+import { makeTexture } from './gl_tools.js';
 
 /** @typedef {'R8UI' | 'R32UI' | 'RG32UI'} LongFormat */
 
@@ -33,7 +32,7 @@ export class LongTexture {
    * Sets elements from `begin`. @param {number} begin @param {Uint32Array | Uint8Array} values
    */
   set(begin, values) {
-    const {gl, width, perTexel} = this;
+    const { gl, width, perTexel } = this;
     const kind = this.format === 'R8UI' ? gl.UNSIGNED_BYTE : gl.UNSIGNED_INT;
     const format = perTexel === 2 ? gl.RG_INTEGER : gl.RED_INTEGER;
     gl.bindTexture(gl.TEXTURE_2D, this.texture);

@@ -1,5 +1,7 @@
-// Decides how much the graphics card does at once, so that the page stays smooth: how fine the
-// picture of a moving view is, and how many rows of a still picture are rendered per frame.
+/**
+ * Decides how much the graphics card does at once, so that the page stays smooth: how fine the
+ * picture of a moving view is, and how many rows of a still picture are rendered per frame.
+ */
 
 const MOVING_MS = 28, STILL_MS = 45;
 const LEAST_SCALE = 1 / 16;

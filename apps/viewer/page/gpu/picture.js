@@ -1,7 +1,8 @@
-// The buffers of a picture that is being rendered: the view samples of one sample per pixel, and the
-// sum over samples, twice: one is read while the other is written.
-
-import {makeTarget, makeTexture} from './gl_tools.js';
+/**
+ * The buffers of a picture that is being rendered: the view samples of one sample per pixel, and the
+ * sum over samples, twice: one is read while the other is written.
+ */
+import { makeTarget, makeTexture } from './gl_tools.js';
 
 export class Picture {
   /** @param {WebGL2RenderingContext} gl @param {number} width @param {number} height */
@@ -30,7 +31,7 @@ export class Picture {
   }
 
   delete() {
-    const {gl} = this;
+    const { gl } = this;
     for (const texture of [...this.views, ...this.sums]) gl.deleteTexture(texture);
     for (const target of [this.viewTarget, ...this.sumTargets]) gl.deleteFramebuffer(target);
   }

@@ -1,14 +1,15 @@
-// Renders pictures of a scene with WebGL2: samples are found (sample.glsl), lit and added up
-// (light.glsl), and shown (display.glsl).
-
-import {DAG, GLSL, LIGHT, NORMAL, SAMPLES} from '../constants.js';
-import {INSTANCE_STEPS} from '../file/scene_loader.js';
-import {loadText} from '../file/text_assets.js';
-import {automaticExposure} from './exposure.js';
-import {cameraUniforms, lightUniforms, sectionUniforms} from './frame_uniforms.js';
-import {Program, drawAll, makeTarget, makeTexture} from './gl_tools.js';
-import {texelBits} from './long_texture.js';
-import {discSamples, hemisphereSamples, rotations, samplePlace} from './sample_tables.js';
+/**
+ * Renders pictures of a scene with WebGL2: samples are found (sample.glsl), lit and added up
+ * (light.glsl), and shown (display.glsl).
+ */
+import { DAG, GLSL, LIGHT, NORMAL, SAMPLES } from '../constants.js';
+import { INSTANCE_STEPS } from '../file/scene_loader.js';
+import { loadText } from '../file/text_assets.js';
+import { automaticExposure } from './exposure.js';
+import { cameraUniforms, lightUniforms, sectionUniforms } from './frame_uniforms.js';
+import { Program, drawAll, makeTarget, makeTexture } from './gl_tools.js';
+import { texelBits } from './long_texture.js';
+import { discSamples, hemisphereSamples, rotations, samplePlace } from './sample_tables.js';
 
 /** @typedef {import('./picture.js').Picture} Picture */
 /** @typedef {import('./scene_textures.js').SceneTextures} SceneTextures */
@@ -42,7 +43,7 @@ export class Renderer {
     if (gl.getExtension('EXT_color_buffer_float') === null) throw new Error('the graphics card cannot draw into textures of floats');
     /** @type {Map<string, Program>} */
     this.programs = new Map();
-    this.tables = {light: 0, hemisphere: 0, textures: /** @type {WebGLTexture[]} */ ([])};
+    this.tables = { light: 0, hemisphere: 0, textures: /** @type {WebGLTexture[]} */ ([]) };
     this.vertices = gl.createVertexArray();
     this.small = makeTexture(gl, gl.RGBA32F, EXPOSURE_SIZE[0], EXPOSURE_SIZE[1]);
     this.smallTarget = makeTarget(gl, [this.small]);
@@ -79,19 +80,19 @@ export class Renderer {
   /** Makes tables of at least these numbers of samples per set. @param {number} light @param {number} hemisphere */
   prepareTables(light, hemisphere) {
     if (light <= this.tables.light && hemisphere <= this.tables.hemisphere) return;
-    const {gl} = this;
+    const { gl } = this;
     for (const texture of this.tables.textures) gl.deleteTexture(texture);
     const upload = (/** @type {number} */ format, /** @type {number} */ kind, /** @type {Float32Array} */ values, /** @type {number} */ count) => {
       const texture = makeTexture(gl, format, count, SAMPLES.sets);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, count, SAMPLES.sets, kind, gl.FLOAT, values);
       return texture;
     };
-    this.tables = {light, hemisphere, textures: [
-      upload(gl.RG32F, gl.RG, discSamples(light), light), upload(gl.RGBA32F, gl.RGBA, hemisphereSamples(hemisphere), hemisphere)]};
+    this.tables = { light, hemisphere, textures: [
+      upload(gl.RG32F, gl.RG, discSamples(light), light), upload(gl.RGBA32F, gl.RGBA, hemisphereSamples(hemisphere), hemisphere)] };
   }
 
   /** Returns the rays per view sample of the sun and of occlusion. @param {Shot} shot */
-  raysPerSample({settings, samples}) {
+  raysPerSample({ settings, samples }) {
     return {
       light: settings.sun.angle > 0 ? Math.ceil(LIGHT.shadowSamples / samples) : 1,
       occlusion: Math.ceil(settings.occlusion.samples / samples),
@@ -100,11 +101,11 @@ export class Renderer {
 
   /** Sets what all casts need. @param {Program} program @param {Shot} shot @param {Picture} picture */
   setCast(program, shot, picture) {
-    const {settings, place} = shot;
+    const { settings, place } = shot;
     program.floats(cameraUniforms(place, settings.camera, picture.width, picture.height));
     program.floats(sectionUniforms(place, settings.section));
-    program.floats({u_sample: samplePlace(picture.samples), u_lod: settings.lod});
-    program.ints({u_levels: shot.scene?.info.levels ?? 2, u_shown: Math.min(shot.shown, settings.level ?? DAG.mostLevels), u_show: SHOW.indexOf(settings.show)});
+    program.floats({ u_sample: samplePlace(picture.samples), u_lod: settings.lod });
+    program.ints({ u_levels: shot.scene?.info.levels ?? 2, u_shown: Math.min(shot.shown, settings.level ?? DAG.mostLevels), u_show: SHOW.indexOf(settings.show) });
   }
 
   /**
@@ -112,8 +113,8 @@ export class Renderer {
    * @param {Picture} picture @param {Shot} shot @param {number} rows
    */
   render(picture, shot, rows) {
-    const {gl} = this;
-    const {scene, settings} = shot;
+    const { gl } = this;
+    const { scene, settings } = shot;
     if (scene === null || shot.shown < 1) return;
     const end = Math.min(picture.rows + rows, picture.height);
     const y = picture.height - end;
@@ -126,11 +127,11 @@ export class Renderer {
     const sample = this.program('sample', look);
     sample.use();
     this.setCast(sample, shot, picture);
-    sample.floats({u_cube_pixels: settings.cubes});
-    sample.ints({u_coarser_fits: shot.quick ? 0 : NORMAL.coarser});
-    const sharing = scene.nodeInstances === null ? {} : {u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture};
-    sample.textures({u_node_instances: scene.nodes.texture, u_leaf_instances: scene.nodes.texture, ...scene.walk(), ...sharing,
-                     ...(look ? scene.lookTextures(sample, settings) : {})});
+    sample.floats({ u_cube_pixels: settings.cubes });
+    sample.ints({ u_coarser_fits: shot.quick ? 0 : NORMAL.coarser });
+    const sharing = scene.nodeInstances === null ? {} : { u_node_instances: scene.nodeInstances.texture, u_leaf_instances: /** @type {any} */ (scene.leafInstances).texture };
+    sample.textures({ u_node_instances: scene.nodes.texture, u_leaf_instances: scene.nodes.texture, ...scene.walk(), ...sharing,
+                     ...(look ? scene.lookTextures(sample, settings) : {}) });
     gl.bindFramebuffer(gl.FRAMEBUFFER, picture.viewTarget);
     drawAll(gl);
 
@@ -141,14 +142,14 @@ export class Renderer {
     this.setCast(light, shot, picture);
     light.floats(lightUniforms(shot.place, settings));
     const [least, most] = this.shownRange(shot);
-    light.floats({u_least: least, u_most: most, u_view_distance: this.viewDistance(shot)});
+    light.floats({ u_least: least, u_most: most, u_view_distance: this.viewDistance(shot) });
     light.ints({
       u_first: picture.samples === 0, u_index: picture.samples, u_light_samples: rays.light, u_occlusion_samples: rays.occlusion,
       u_light_first: settings.sun.angle > 0 ? picture.samples * rays.light : 0,
       u_shadows: settings.shadows, u_sky_occluded: rays.occlusion > 0,
     });
-    light.textures({...scene.walk(), u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2], u_sum: picture.sums[picture.current],
-                    u_disc: this.tables.textures[0], u_hemisphere: this.tables.textures[1], u_rotations: this.circle});
+    light.textures({ ...scene.walk(), u_start: picture.views[0], u_normal: picture.views[1], u_face: picture.views[2], u_sum: picture.sums[picture.current],
+                    u_disc: this.tables.textures[0], u_hemisphere: this.tables.textures[1], u_rotations: this.circle });
     gl.bindFramebuffer(gl.FRAMEBUFFER, picture.sumTargets[1 - picture.current]);
     drawAll(gl);
     gl.disable(gl.SCISSOR_TEST);
@@ -162,7 +163,7 @@ export class Renderer {
   }
 
   /** Returns the values that are shown darkest and brightest. @param {Shot} shot @returns {[number, number]} */
-  shownRange({settings, scene, mostInstances}) {
+  shownRange({ settings, scene, mostInstances }) {
     const levels = scene?.info.levels ?? 2;
     if (settings.show === 'level') return [Math.max(0, levels - SHOWN_LEVELS), levels];
     if (settings.show === 'sharing') return [0, Math.log2(Math.max(2, mostInstances))];
@@ -170,19 +171,19 @@ export class Renderer {
   }
 
   /** @param {Shot} shot */
-  viewDistance({settings, place}) {
-    const {eye, target} = settings.camera;
+  viewDistance({ settings, place }) {
+    const { eye, target } = settings.camera;
     return Math.hypot(eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]) / place.side;
   }
 
   /** Returns the mean of a channel-wise small copy of a texture of floats. @param {WebGLTexture} texture @param {Picture} picture @returns {Float32Array} */
   smallCopy(texture, picture) {
-    const {gl} = this;
+    const { gl } = this;
     const width = Math.min(EXPOSURE_SIZE[0], picture.width), height = Math.min(EXPOSURE_SIZE[1], picture.height);
     const reduce = this.program('reduce');
     reduce.use();
-    reduce.floats({u_from: [picture.width, picture.height], u_to: [width, height]});
-    reduce.textures({u_picture: texture});
+    reduce.floats({ u_from: [picture.width, picture.height], u_to: [width, height] });
+    reduce.textures({ u_picture: texture });
     gl.bindVertexArray(this.vertices);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.smallTarget);
     gl.viewport(0, 0, width, height);
@@ -210,12 +211,12 @@ export class Renderer {
    * @param {Picture} picture @param {number} exposure @param {WebGLFramebuffer | null} target @param {number} width @param {number} height
    */
   display(picture, exposure, target, width, height) {
-    const {gl} = this;
+    const { gl } = this;
     const display = this.program('display');
     display.use();
-    display.floats({u_samples: picture.samples, u_canvas: [width, height], u_picture: [picture.width, picture.height],
-                    u_exposure: picture.isDisplay ? 0 : exposure});
-    display.textures({u_sum: picture.sums[picture.current]});
+    display.floats({ u_samples: picture.samples, u_canvas: [width, height], u_picture: [picture.width, picture.height],
+                    u_exposure: picture.isDisplay ? 0 : exposure });
+    display.textures({ u_sum: picture.sums[picture.current] });
     gl.bindVertexArray(this.vertices);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);
@@ -227,11 +228,11 @@ export class Renderer {
    * @param {Shot} shot @param {number} width @param {number} height @returns {Uint32Array}
    */
   hits(shot, width, height) {
-    const {gl} = this;
+    const { gl } = this;
     const texture = makeTexture(gl, gl.RGBA32UI, width, height), target = makeTarget(gl, [texture]);
     const program = this.program('hits');
     program.use();
-    this.setCast(program, shot, /** @type {any} */ ({width, height, samples: 0}));
+    this.setCast(program, shot, /** @type {any} */ ({ width, height, samples: 0 }));
     program.textures(/** @type {SceneTextures} */ (shot.scene).walk());
     gl.bindVertexArray(this.vertices);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);

@@ -1,7 +1,8 @@
-// Sample points of the sun's disc and of hemispheres: the port of render/sample_tables.cpp. The
-// points are those of `voxdag render`, rounded to float.
-
-import {SAMPLES} from '../constants.js';
+/**
+ * Sample points of the sun's disc and of hemispheres: the port of render/sample_tables.cpp. The
+ * points are those of `voxdag render`, rounded to float.
+ */
+import { SAMPLES } from '../constants.js';
 
 /** @param {number} v */
 function hashBits(v) {

@@ -1,7 +1,6 @@
-// The scene in textures of the graphics card.
-
-import {DAG} from '../constants.js';
-import {LongTexture, mostTexels} from './long_texture.js';
+/** The scene in textures of the graphics card. */
+import { DAG } from '../constants.js';
+import { LongTexture, mostTexels } from './long_texture.js';
 
 /** @typedef {import('../file/scene_loader.js').FileInfo} FileInfo */
 /** @typedef {import('../file/scene_loader.js').Attributes} Attributes */
@@ -34,8 +33,8 @@ export class SceneTextures {
   }
 
   /** @param {Attributes} attributes */
-  setLook({index, colors, normals}) {
-    const {gl} = this;
+  setLook({ index, colors, normals }) {
+    const { gl } = this;
     const upload = (/** @type {Uint32Array} */ values) => {
       const texture = new LongTexture(gl, 'R32UI', values.length + 1);
       texture.set(0, values);
@@ -57,7 +56,7 @@ export class SceneTextures {
 
   /** The textures that every cast reads. */
   walk() {
-    return {u_nodes: this.nodes.texture, u_leaves: this.leaves.texture};
+    return { u_nodes: this.nodes.texture, u_leaves: this.leaves.texture };
   }
 
   /**
@@ -66,7 +65,7 @@ export class SceneTextures {
    * @returns {{[name: string]: WebGLTexture}}
    */
   lookTextures(program, wanted) {
-    const {gl, look, info} = this;
+    const { gl, look, info } = this;
     if (look === null) return {};
     const begin = [];
     let at = 0;
@@ -75,13 +74,13 @@ export class SceneTextures {
       const slots = l < info.levels - 2 ? info.levelBegin[l + 1] - info.levelBegin[l] : 0;
       at += 2 * Math.ceil((slots * look.index.width[l]) / 64);
     }
-    const levelBegin = Array.from({length: DAG.mostLevels}, (_, l) => info.levelBegin[l] ?? 0);
+    const levelBegin = Array.from({ length: DAG.mostLevels }, (_, l) => info.levelBegin[l] ?? 0);
     gl.uniform1iv(program.place('u_slot_width'), look.index.width);
     gl.uniform1uiv(program.place('u_slot_begin'), begin);
     gl.uniform1uiv(program.place('u_level_begin'), levelBegin);
-    program.ints({u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1});
+    program.ints({ u_finest: look.index.finest, u_color_bits: wanted.colors ? look.colorBits : -1, u_normal_bits: wanted.normals ? look.normalBits : -1 });
     const [colorWords, colorPages, normalWords, normalPages] = look.values.map((v) => (v ?? look.slots).texture);
-    return {u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages};
+    return { u_slots: look.slots.texture, u_color_words: colorWords, u_color_pages: colorPages, u_normal_words: normalWords, u_normal_pages: normalPages };
   }
 
   bytes() {

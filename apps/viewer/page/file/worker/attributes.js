@@ -1,5 +1,7 @@
-// Reads the numbers of cells, and their colours and normals (docs/format.md, CIDX, COLR and NRML).
-// Part of the worker's script: see scene_loader.js.
+/**
+ * Reads the numbers of cells, and their colours and normals (docs/format.md, CIDX, COLR and NRML).
+ * Part of the worker's script: see scene_loader.js.
+ */
 
 /** @param {Uint8Array} bytes @returns {Uint32Array} */
 function asWords(bytes) {
@@ -15,7 +17,7 @@ function parseCellIndex(bytes, levels) {
   if (finest > levels) throw brokenFile(`Its attributes go down to level ${finest}, but the grid has only ${levels}.`);
   const cells = readSize(view, CELL_INDEX.cells, 'The number of cells in CIDX');
   const width = Array.from(bytes.subarray(CELL_INDEX.width, CELL_INDEX.width + DAG.mostLevels));
-  return {finest, cells, width, words: asWords(bytes.slice(head))};
+  return { finest, cells, width, words: asWords(bytes.slice(head)) };
 }
 
 /** @param {Uint8Array} bytes the chunk @param {string} id @param {number} cells */
@@ -37,5 +39,5 @@ function parseValues(bytes, id, cells) {
     begins[page] = group + view.getUint16(pagesAt + 2 * page, true);
     if (group + 65535 >= 2 ** 32 || begins[page] >= 8 * wordCount) throw brokenFile(`Page ${page} of ${id} begins behind the end of the pages.`);
   }
-  return {precision, begins, words: asWords(bytes.slice(wordsAt, pagesAt))};
+  return { precision, begins, words: asWords(bytes.slice(wordsAt, pagesAt)) };
 }

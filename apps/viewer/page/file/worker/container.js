@@ -1,5 +1,7 @@
-// The header, the chunk table and the metadata of a .vdag file (docs/format.md). Part of the
-// worker's script: see scene_loader.js.
+/**
+ * The header, the chunk table and the metadata of a .vdag file (docs/format.md). Part of the
+ * worker's script: see scene_loader.js.
+ */
 
 /** @typedef {{offset: number, length: number}} Chunk */
 /** @typedef {Map<string, Chunk>} ChunkTable */
@@ -51,7 +53,7 @@ async function readChunkTable(source, head) {
     if (offset + length > size) throw brokenFile(`Chunk ${id} goes on behind the end of the file.`);
     if (chunks.has(id)) throw brokenFile(`It has two chunks ${id}.`);
     if (!known.has(id) && isRequired) throw new SceneError('This file needs a newer page', `It has a chunk ${id}, which this page cannot read.`);
-    chunks.set(id, {offset, length});
+    chunks.set(id, { offset, length });
     end = offset + length;
   }
   return chunks;
@@ -79,7 +81,7 @@ async function readSceneInfo(source, head, chunks) {
   /** @type {any} */
   let parsed;
   try {
-    parsed = JSON.parse(new TextDecoder('utf-8', {fatal: true}).decode(json));
+    parsed = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(json));
   } catch {
     throw brokenFile('Its metadata is not JSON.');
   }
@@ -115,7 +117,7 @@ async function readSceneInfo(source, head, chunks) {
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
     hasColors: chunks.has('COLR') && chunks.has('CIDX'), hasNormals: chunks.has('NRML') && chunks.has('CIDX'),
     attributeBytes: ['CIDX', 'COLR', 'NRML'].reduce((sum, id) => sum + (chunks.get(id)?.length ?? 0), 0),
-    source: {name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0},
+    source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },
     program: String(parsed.program ?? ''),
   };
 }

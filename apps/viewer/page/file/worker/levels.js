@@ -1,5 +1,7 @@
-// Checks levels of a DAG, so that nothing that the graphics card reads leads outside the DAG. Part
-// of the worker's script: see scene_loader.js.
+/**
+ * Checks levels of a DAG, so that nothing that the graphics card reads leads outside the DAG. Part
+ * of the worker's script: see scene_loader.js.
+ */
 
 /** @param {number} mask */
 function countBits8(mask) {
@@ -33,7 +35,7 @@ function codeInstances(counts) {
  * @returns {Float32Array | null}
  */
 function followPointers(above, begin, count, isNode) {
-  const {words, level} = above;
+  const { words, level } = above;
   const instances = above.instances !== null && count <= MOST_COUNTED_WORDS ? new Float32Array(count) : null;
   for (let at = 0; at < words.length; ) {
     const children = countBits8(words[at]);
@@ -66,10 +68,10 @@ function checkLevel(level, begin, words, above) {
   if (at !== words.length) throw brokenFile(`The last node of level ${level} goes on behind the end of the level.`);
   if (above === null) {
     if (words.length > 0 && words.length !== 1 + countBits8(words[0])) throw brokenFile('Level 0 has more than one node.');
-    return {level, words, instances: new Float32Array(words.length).fill(1)};
+    return { level, words, instances: new Float32Array(words.length).fill(1) };
   }
   const instances = followPointers(above, begin, words.length, (i) => ((starts[i >> 3] >> (i & 7)) & 1) !== 0);
-  return {level, words, instances};
+  return { level, words, instances };
 }
 
 /**

@@ -1,4 +1,4 @@
-// Where a worker reads the bytes of a file from. Part of the worker's script: see scene_loader.js.
+/** Where a worker reads the bytes of a file from. Part of the worker's script: see scene_loader.js. */
 
 /** An error that the page shows: a short title, and what happened and what to do. */
 class SceneError extends Error {
@@ -72,7 +72,7 @@ class ServerSource {
     for (let attempt = 0; ; ++attempt) {
       try {
         ++this.requests;
-        const response = await fetch(this.url, {headers: {Range: `bytes=${first}-${last}`}});
+        const response = await fetch(this.url, { headers: { Range: `bytes=${first}-${last}` } });
         if (response.status !== 200 && response.status !== 206)
           throw new SceneError('The scene is not there', `${this.url}: the server answers ${response.status}.`);
         const version = response.headers.get('ETag') || response.headers.get('Last-Modified') || '';
@@ -109,7 +109,7 @@ class ServerSource {
     const pump = async () => {
       try {
         for (;;) {
-          const {done, value} = await reader.read();
+          const { done, value } = await reader.read();
           if (done) break;
           if (this.arrived + value.length > whole.length) throw new Error('more bytes than announced');
           whole.set(value, this.arrived);

@@ -1,5 +1,7 @@
-// The worker that loads a scene: root first, each level checked before it is sent. Part of the
-// worker's script: see scene_loader.js, which also lists the messages.
+/**
+ * The worker that loads a scene: root first, each level checked before it is sent. Part of the
+ * worker's script: see scene_loader.js, which also lists the messages.
+ */
 
 const HEAD_BYTES = 1 << 16, SLICE_BYTES = 1 << 22;
 
@@ -31,7 +33,7 @@ async function readSlices(offset, length) {
     await source.read(bytes.subarray(done, done + size), offset + done);
     done += size;
     bytesLoaded += size;
-    send({type: 'progress', bytes: bytesLoaded});
+    send({ type: 'progress', bytes: bytesLoaded });
   }
   return bytes;
 }
@@ -43,7 +45,7 @@ function chunk(id) {
 
 /** Loads the levels of cells up to `shown`. @param {number} shown */
 async function loadLevels(shown) {
-  const {levels, levelBegin} = info;
+  const { levels, levelBegin } = info;
   if (info.isEmpty) return;
   /** @type {UpperLevel | null} */
   let above = null;
@@ -64,15 +66,15 @@ async function loadLevels(shown) {
     above = checkLevel(level, levelBegin[level], words, above);
     if (above.instances !== null) most = above.instances.reduce((a, b) => Math.max(a, b), most);
     const copy = words.slice(), codes = above.instances === null ? null : codeInstances(above.instances);
-    send({type: 'level', level, shown: level + 1, words: copy, codes, mostInstances: most}, codes === null ? [copy.buffer] : [copy.buffer, codes.buffer]);
+    send({ type: 'level', level, shown: level + 1, words: copy, codes, mostInstances: most }, codes === null ? [copy.buffer] : [copy.buffer, codes.buffer]);
   }
   if (shown < levels - 1) return;
-  const {offset, length} = chunk('LEAF');
+  const { offset, length } = chunk('LEAF');
   const halves = asWords(await readSlices(offset, length));
   const instances = checkLeaves(levels - 2, halves, above);
   if (instances !== null) most = instances.reduce((a, b) => Math.max(a, b), most);
   const codes = instances === null ? null : codeInstances(instances);
-  send({type: 'leaves', shown: Math.min(shown, levels), halves, codes, mostInstances: most}, codes === null ? [halves.buffer] : [halves.buffer, codes.buffer]);
+  send({ type: 'leaves', shown: Math.min(shown, levels), halves, codes, mostInstances: most }, codes === null ? [halves.buffer] : [halves.buffer, codes.buffer]);
 }
 
 /** @param {{colors: boolean, normals: boolean}} wanted */
@@ -80,15 +82,15 @@ async function loadAttributes(wanted) {
   if (info.isEmpty || (!wanted.colors && !wanted.normals)) return;
   const index = parseCellIndex(await readSlices(chunk('CIDX').offset, chunk('CIDX').length), info.levels);
   if (index.cells >= 2 ** 32) {
-    send({type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.'});
+    send({ type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.' });
     return;
   }
   /** @type {{[id: string]: ReturnType<typeof parseValues> | null}} */
-  const values = {COLR: null, NRML: null};
+  const values = { COLR: null, NRML: null };
   for (const [id, isWanted] of [['COLR', wanted.colors], ['NRML', wanted.normals]])
     if (isWanted) values[String(id)] = parseValues(await readSlices(chunk(String(id)).offset, chunk(String(id)).length), String(id), index.cells);
-  const {COLR: colors, NRML: normals} = values;
-  send({type: 'attributes', index, colors, normals},
+  const { COLR: colors, NRML: normals } = values;
+  send({ type: 'attributes', index, colors, normals },
        [index.words.buffer, ...[colors, normals].flatMap((v) => (v === null ? [] : [v.begins.buffer, v.words.buffer]))]);
 }
 
@@ -105,12 +107,12 @@ async function handle(request) {
     bytesLoaded = head.length;
     chunks = await readChunkTable(source, head);
     info = await readSceneInfo(source, head, chunks);
-    send({type: 'info', info, bytes: bytesLoaded});
+    send({ type: 'info', info, bytes: bytesLoaded });
   } else if (request.type === 'load') {
     await loadLevels(request.shown);
-    send({type: 'loaded'});
+    send({ type: 'loaded' });
     await loadAttributes(request);
-    send({type: 'done', requests: source instanceof ServerSource ? source.requests : 0});
+    send({ type: 'done', requests: source instanceof ServerSource ? source.requests : 0 });
   }
 }
 
@@ -118,6 +120,6 @@ self.onmessage = (event) => {
   handle(event.data).catch((error) => {
     const known = error instanceof SceneError;
     const text = error instanceof RangeError ? 'There is not enough memory for it.' : String(error?.message ?? error);
-    send({type: 'error', title: known ? error.title : 'The scene cannot be shown', text});
+    send({ type: 'error', title: known ? error.title : 'The scene cannot be shown', text });
   });
 };
