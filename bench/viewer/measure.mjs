@@ -24,7 +24,7 @@ const plainWalk = fs.readFileSync(fileURLToPath(new URL('plain_walk.glsl', impor
 /** @param {number[]} values */
 const median = (values) => values.slice().sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-/** The times at which pictures appear, in milliseconds since the page was asked for. @param {import('puppeteer-core').Browser} browser @param {string} url @param {number} bandwidth */
+/** Returns the times at which pictures appear, in milliseconds since the page was asked for. @param {import('puppeteer-core').Browser} browser @param {string} url @param {number} bandwidth */
 async function arrival(browser, url, bandwidth) {
   const line = await proxy(url, { bytesPerSecond: bandwidth / 8 });
   const page = await open(browser, `${line.url}#ao=0&shadows=off`, { width: 320, height: 180 });
@@ -42,41 +42,47 @@ async function arrival(browser, url, bandwidth) {
   return { megabits_per_second: bandwidth === Infinity ? null : bandwidth / 1e6, first_picture_ms: times.first, first_picture_bytes: times.firstBytes, all_levels_ms: times.all };
 }
 
-/** The walk of view rays at 1280 x 720, ours and the plain one in turn. @param {import('puppeteer-core').Browser} browser @param {string} url */
+/**
+ * Measures the walks of view rays at 1280 x 720: the page's and the plain one in turn.
+ * @param {import('puppeteer-core').Browser} browser @param {string} url
+ */
 async function walks(browser, url) {
   const page = await open(browser, `${url}#ao=0&shadows=off`, { width: 320, height: 180 });
   await still(page);
   const result = await page.evaluate(async (plainWalk, width, height, repeat) => {
     const { viewer } = /** @type {any} */ (window).voxdag;
     const { Renderer } = await import(new URL('gpu/renderer.js', document.baseURI).href);
-    const dag = viewer.shaders.get('dag'), begin = dag.indexOf('// Ends at cells of at most stop_start'), end = dag.indexOf('// Returns the side through which');
-    const plain = new Renderer(viewer.gl, new Map([...viewer.shaders, ['dag', dag.slice(0, begin) + plainWalk + dag.slice(end)]]));
-    const countSteps = (/** @type {any} */ renderer) => {
-      const texts = new Map(renderer.shaders);
-      texts.set('hits', String(texts.get('hits')).replaceAll('out_hit = uvec4(uvec3(cellOf', 'out_hit = uvec4(uvec3(g_steps)); return; out_hit = uvec4(uvec3(cellOf').replace('hit)) return;', 'hit)) { out_hit = uvec4(uvec3(g_steps), 0u); return; }').replace('uvec4(uvec3(g_steps)); return;', 'uvec4(uvec3(g_steps), 0u); return;'));
-      const cells = new Renderer(viewer.gl, texts).hits(viewer.shot(false), width, height);
-      let sum = 0;
-      for (let i = 0; i < cells.length; i += 4) sum += cells[i];
-      return sum / (cells.length / 4);
-    };
+    const renderers = { ours: viewer.renderer, plain: new Renderer(viewer.gl, new Map([...viewer.shaders, ['walk', plainWalk]])) };
     const times = { ours: /** @type {number[]} */ ([]), plain: /** @type {number[]} */ ([]) };
-    const pictures = [viewer.renderer.hits(viewer.shot(false), width, height), plain.hits(viewer.shot(false), width, height)];
-    const same = pictures[0].every((/** @type {number} */ v, /** @type {number} */ i) => v === pictures[1][i]);
-    for (let i = 0; i < repeat; ++i)
-      for (const [name, renderer] of [['ours', viewer.renderer], ['plain', plain]]) {
+    const steps = { ours: 0, plain: 0 };
+    /** The cells that were hit, as text. @type {Set<string>} */
+    const pictures = new Set();
+    // The first round compiles the shaders and counts.
+    for (let round = 0; round <= repeat; ++round)
+      for (const [name, renderer] of /** @type {['ours' | 'plain', any][]} */ (Object.entries(renderers))) {
         const start = performance.now();
-        renderer.hits(viewer.shot(false), width, height);
-        times[/** @type {'ours'} */ (name)].push(performance.now() - start);
+        /** @type {Uint32Array} */
+        const cells = renderer.hits(viewer.shot(false), width, height);
+        if (round > 0) {
+          times[name].push(performance.now() - start);
+          continue;
+        }
+        for (let i = 3; i < cells.length; i += 4) {
+          steps[name] += (cells[i] >>> 17) / (width * height);
+          cells[i] &= (1 << 17) - 1;
+        }
+        pictures.add(cells.join());
       }
-    const stats = viewer.statistics();
-    return { times, same, steps: { ours: countSteps(viewer.renderer), plain: countSteps(plain) },
-            memory: { graphics_bytes: stats.gpuBytes, copy_bytes: viewer.memory.nodes.byteLength + viewer.memory.leaves.byteLength + viewer.memory.nodeInstances.byteLength + viewer.memory.leafInstances.byteLength } };
+    const { nodes, leaves, nodeInstances, leafInstances } = viewer.arrival.memory;
+    const copyBytes = [nodes, leaves, nodeInstances, leafInstances].reduce((sum, array) => sum + array.byteLength, 0);
+    return { times, steps, isSame: pictures.size === 1, memory: { graphics_bytes: viewer.statistics().gpuBytes, copy_bytes: copyBytes } };
   }, plainWalk, WIDTH, HEIGHT, REPEAT);
   await page.close();
-  if (!result.same) throw new Error('the plain walk hits other cells');
+  if (!result.isSame) throw new Error('the plain walk hits other cells');
+  const { times, steps } = result;
   return {
-    ms: median(result.times.ours), steps_per_ray: result.steps.ours, plain_ms: median(result.times.plain), plain_steps_per_ray: result.steps.plain,
-    ratio: median(result.times.plain.map((ms, i) => ms / result.times.ours[i])), memory: result.memory,
+    ms: median(times.ours), steps_per_ray: steps.ours, plain_ms: median(times.plain), plain_steps_per_ray: steps.plain,
+    ratio: median(times.plain.map((ms, i) => ms / times.ours[i])), memory: result.memory,
   };
 }
 

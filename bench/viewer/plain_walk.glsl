@@ -1,5 +1,8 @@
-// A plain walk of the octree, as the rival of castRay in dag.glsl: from each empty cell it begins
-// again at the root. It hits the same cells.
+// A plain walk of the octree, the rival of walk.glsl: from each empty cell it begins again at the
+// root. It hits the cells that walk.glsl hits.
+
+int g_steps = 0;  // steps of all casts of this invocation
+
 bool castRay(GridRay ray, float stop_start, float stop_per_t, out CellHit hit) {
   hit = CellHit(0.0, uvec3(0u), 0, 0u);
   if (!(ray.t_min <= ray.t_max)) return false;

@@ -28,7 +28,7 @@ const settings = (page) => page.evaluate(() => /** @type {any} */ (window).voxda
 const pick = (page, x, y) => page.evaluate((x, y) => /** @type {any} */ (window).voxdag.viewer.pick(x, y), x, y);
 /** Where a point is in the picture. @param {Page} page @param {number[]} point */
 const project = (page, point) => page.evaluate(async (point) => {
-  const { viewer } = /** @type {any} */ (window).voxdag, { project } = await import(new URL('hands/pose.js', document.baseURI).href);
+  const { viewer } = /** @type {any} */ (window).voxdag, { project } = await import(new URL('lens.js', document.baseURI).href);
   return project(viewer.get().camera ?? viewer.info.view, point, viewer.canvas.clientWidth, viewer.canvas.clientHeight);
 }, point);
 

@@ -1,6 +1,5 @@
 /** The picture in real browsers: hits and light are those of the command line. */
 import assert from 'node:assert/strict';
-import fs from 'node:fs';
 import path from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { assertNoComplaints, browsers, launch, open, still } from './browser.mjs';
@@ -121,7 +120,7 @@ function compareHits(file, camera, cells) {
     if (!offsets.every((_, o) => same(hits[i], hits[o * pixels + i]))) continue;
     ++compared;
     const x = i % WIDTH, y = Math.floor(i / WIDTH), at = 4 * ((HEIGHT - 1 - y) * WIDTH + x);
-    const shown = { hit: cells[at + 3] >>> 16 === 1, voxel: Array.from(cells.subarray(at, at + 3)) };
+    const shown = { hit: (cells[at + 3] >>> 16 & 1) === 1, voxel: Array.from(cells.subarray(at, at + 3)) };
     assert.ok(same(hits[i], shown), `pixel ${x}, ${y}: ${JSON.stringify(shown)} instead of ${JSON.stringify(hits[i])}`);
   }
   assert.ok(compared > pixels / 2, `only ${compared} of ${pixels} pixels are away from ties`);

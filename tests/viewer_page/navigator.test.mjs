@@ -2,9 +2,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { Navigator, NO_INPUT, accelerated, covered } from '../../apps/viewer/page/hands/navigator.js';
-import {
-  STEEPEST, VIEWS, cameraOf, directionThrough, eyeOf, forwardOf, poseOf, project, roundCamera,
-} from '../../apps/viewer/page/hands/pose.js';
+import { STEEPEST, VIEWS, cameraOf, eyeOf, forwardOf, poseOf, roundCamera } from '../../apps/viewer/page/hands/pose.js';
+import { directionThrough, project } from '../../apps/viewer/page/lens.js';
 import { boxScene, room } from './box_scene.mjs';
 import { randomNumbers } from './random.mjs';
 

@@ -13,9 +13,10 @@ export class SceneMemory {
   constructor(gl, info) {
     this.info = info;
     this.finest = finestLevelThatFits(gl, info);
-    const isWhole = this.finest >= info.levels - 1;
-    this.nodes = new Uint32Array(isWhole ? info.words : info.levelBegin[Math.min(this.finest, info.levels - 2)]);
-    this.leaves = new Uint32Array(isWhole ? 2 * info.leafBlocks : 0);
+    /** Whether the card can hold all levels. */
+    this.isWhole = this.finest === info.levels;
+    this.nodes = new Uint32Array(this.isWhole ? info.words : info.levelBegin[this.finest]);
+    this.leaves = new Uint32Array(this.isWhole ? 2 * info.leafBlocks : 0);
     this.nodeInstances = new Uint8Array(this.nodes.length);
     this.leafInstances = new Uint8Array(this.leaves.length / 2);
     this.shown = 0;
@@ -50,7 +51,12 @@ export class SceneMemory {
     }
     this.shown = message.shown;
     this.mostInstances = Math.max(this.mostInstances, message.mostInstances);
-    if (textures.nodeInstances !== null) textures.setInstances(this.nodeInstances, this.leafInstances);
+    if (textures.nodeInstances !== null) this.uploadInstances(textures);
+  }
+
+  /** @param {SceneTextures} textures */
+  uploadInstances(textures) {
+    textures.setInstances(this.nodeInstances, this.leafInstances);
   }
 
   /** Fills new textures. @param {SceneTextures} textures */

@@ -3,15 +3,11 @@
  * trace/cast.hpp; numbers are rounded to float where that file uses floats, so that hits are equal.
  */
 
-/** @typedef {[number, number, number]} Vec3 */
+/** @typedef {import('./math.js').Vec3} Vec3 */
+/** @typedef {import('./viewer_types.js').Hit} Hit */
 /**
  * The DAG in memory: levels of cells that have arrived.
  * @typedef {{levels: number, shown: number, origin: Vec3, voxelSize: number, nodes: Uint32Array, leaves: Uint32Array}} Dag
- */
-/**
- * A cell that a ray hit. `voxel` is the cell's lowest voxel, `face` the side through which the ray
- * enters, as in trace/hit.hpp (-1: the ray starts inside), `distance` in units of the direction.
- * @typedef {{voxel: Vec3, level: number, face: number, distance: number, position: Vec3}} Hit
  */
 
 const floats = new Float32Array(1), bitsOf = new Uint32Array(floats.buffer);
@@ -51,10 +47,9 @@ function childOf(dag, node, level, index) {
 /**
  * Returns the first cell along a ray in world units, or null.
  * @param {Dag} dag @param {Vec3} from @param {Vec3} direction @param {number} [most] longest distance
- * @param {number} [sizePerDistance] ends at cells of at most this size per distance
  * @returns {Hit | null}
  */
-export function cast(dag, from, direction, most = Infinity, sizePerDistance = 0) {
+export function cast(dag, from, direction, most = Infinity) {
   if (dag.shown < 1) return null;
   const side = dag.voxelSize * 2 ** dag.levels;
   const start = [0, 1, 2].map((a) => (from[a] - dag.origin[a]) / side);
@@ -97,7 +92,6 @@ export function cast(dag, from, direction, most = Infinity, sizePerDistance = 0)
   }
   const tStart = enter / length, tScale = 1 / length;
   const tMax = most * length - enter;
-  const stopStart = (sizePerDistance / side) * tStart, stopPerT = (sizePerDistance / side) * tScale;
   const plane = (/** @type {number} */ a, /** @type {number} */ bits) => f32(f32(o[a] - floatOf(bits)) * inverse[a]);
 
   let t = 0;
@@ -121,7 +115,7 @@ export function cast(dag, from, direction, most = Infinity, sizePerDistance = 0)
     const index = child ^ mirrored;
     if ((mask >> index) & 1) {
       const level = 23 - bit;
-      if (level === dag.shown || (level >= 2 && 2 ** -level <= stopStart + stopPerT * exit)) return toHit(level);
+      if (level === dag.shown) return toHit(level);
       stack[level - 1] = node;
       node = childOf(dag, node, level - 1, index);
       mask = childMask(dag, node, level);

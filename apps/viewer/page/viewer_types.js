@@ -6,13 +6,12 @@
  * @typedef {import('./settings.js').PartialSettings} PartialSettings
  * @typedef {import('./settings.js').Camera} Camera
  *
- * @typedef {object} Hit  What a ray meets first.
+ * @typedef {object} Hit  The first cell that a ray meets.
  * @property {Vec3} voxel  The lowest voxel of the cell.
  * @property {number} level  Level of the cell; the root is 0.
- * @property {number} [face]  The face that the ray enters.
+ * @property {number} face  The side through which the ray enters: 2 * axis, plus 1 for the upper side; -1 if it starts inside.
  * @property {Vec3} position  In world units.
- * @property {number} distance  From the ray's origin, in world units.
- * @property {Vec3} [color]
+ * @property {number} distance  From the ray's origin, in units of its direction.
  *
  * @typedef {object} SceneInfo
  * @property {string} name
@@ -30,17 +29,17 @@
  * @property {Camera} view  The suggested view.
  *
  * @typedef {object} Statistics
- * @property {number} levelsLoaded
+ * @property {number} levelsLoaded  Levels of cells that have arrived.
  * @property {number} levelsShown
  * @property {number} bytesLoaded
  * @property {number} fileBytes
- * @property {number} frameMs
+ * @property {number} frameMs  Milliseconds that a frame takes, smoothed.
  * @property {number} raysPerFrame
- * @property {number} stepsPerRay
- * @property {number} samples
- * @property {number} samplesWanted
- * @property {number} scale
- * @property {number} gpuBytes
+ * @property {number} stepsPerRay  Mean steps of the view rays.
+ * @property {number} samples  View samples per pixel of the picture; 0 while it has larger pixels.
+ * @property {number} samplesWanted  Of the finished picture.
+ * @property {number} scale  Side of the picture in its own pixels, relative to the canvas's.
+ * @property {number} gpuBytes  Bytes of all textures.
  *
  * @typedef {object} Viewer
  * @property {HTMLCanvasElement} canvas
@@ -49,12 +48,14 @@
  * @property {(event: string, handler: (...values: any[]) => void) => void} off
  * @property {(settings: PartialSettings, by?: string) => void} set
  * @property {() => Settings} get
+ * @property {() => Camera} camera  The camera in force: that of the settings, else the suggested view.
  * @property {(x: number, y: number) => Promise<Hit | null>} pick  CSS pixels from the canvas's corner.
  * @property {(origin: Vec3, direction: Vec3, distance: number) => Hit | null} castNow  Unit direction.
  * @property {(point: Vec3) => boolean} contains  Whether a point lies in a set voxel.
  * @property {(options: {width?: number, height?: number, samples?: number}) => Promise<Blob>} capture
  * @property {() => Promise<void>} whenStill
  * @property {() => Statistics} statistics
+ * @property {() => [number, number] | null} shownRange  The values that the views level, steps and sharing show darkest and brightest; binary logarithms for sharing.
  * @property {() => void} frame
  * @property {() => void} destroy
  */

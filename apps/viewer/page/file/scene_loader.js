@@ -27,7 +27,7 @@ const PARTS = ['source', 'container', 'levels', 'attributes', 'worker'];
  *   | {type: 'level', level: number, shown: number, words: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | {type: 'leaves', shown: number, halves: Uint32Array, codes: Uint8Array | null, mostInstances: number}
  *   | ({type: 'attributes'} & Attributes)
- *   | {type: 'note', text: string} | {type: 'loaded'} | {type: 'done', requests: number}
+ *   | {type: 'note', text: string} | {type: 'done', requests: number}
  *   | {type: 'error', title: string, text: string}} LoaderMessage
  */
 

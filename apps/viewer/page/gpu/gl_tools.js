@@ -111,3 +111,13 @@ export function makeTarget(gl, textures) {
 export function drawAll(gl) {
   gl.drawArrays(gl.TRIANGLES, 0, 3);
 }
+
+/** Waits until the graphics card has drawn all that was sent, or is lost. @param {WebGL2RenderingContext} gl */
+export async function finished(gl) {
+  const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  if (sync === null) return;
+  do await new Promise((resolve) => setTimeout(resolve, 0));
+  while (gl.clientWaitSync(sync, 0, 0) === gl.TIMEOUT_EXPIRED);
+  gl.deleteSync(sync);
+}

@@ -48,8 +48,4 @@ export class LongTexture {
       done += size;
     }
   }
-
-  delete() {
-    this.gl.deleteTexture(this.texture);
-  }
 }

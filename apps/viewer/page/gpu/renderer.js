@@ -5,6 +5,9 @@
 import { DAG, GLSL, LIGHT, NORMAL, SAMPLES } from '../constants.js';
 import { INSTANCE_STEPS } from '../file/scene_loader.js';
 import { loadText } from '../file/text_assets.js';
+import { distance } from '../math.js';
+import { SHOWS } from '../settings.js';
+import { shownRange } from './color_scale.js';
 import { automaticExposure } from './exposure.js';
 import { cameraUniforms, lightUniforms, sectionUniforms } from './frame_uniforms.js';
 import { Program, drawAll, makeTarget, makeTexture } from './gl_tools.js';
@@ -14,14 +17,15 @@ import { discSamples, hemisphereSamples, rotations, samplePlace } from './sample
 /** @typedef {import('./picture.js').Picture} Picture */
 /** @typedef {import('./scene_textures.js').SceneTextures} SceneTextures */
 /** @typedef {import('../settings.js').Settings & {camera: import('../settings.js').Camera}} Settings */
-/** @typedef {{origin: import('../math.js').Vec3, side: number}} Place */
+/** @typedef {import('./frame_uniforms.js').Place} Place */
 
-const SHADERS = ['quad.vert', 'dag', 'camera', 'look', 'surface', 'sample', 'light', 'display', 'hits', 'reduce'];
-const SHOW = ['light', 'level', 'steps', 'sharing', 'normal', 'depth', 'occlusion'];
-const EXPOSURE_SIZE = [256, 144], MOST_STEPS = 16384;
-
-/** The steps that are shown brightest, and how many levels differ in colour. */
-const BRIGHTEST_STEPS = 160, SHOWN_LEVELS = 7;
+/** Parts of every shader that casts rays. */
+const CAST = ['dag', 'grid_ray', 'walk', 'camera'];
+const SHADERS = ['quad.vert', ...CAST, 'look', 'surface', 'sample', 'light', 'display', 'hits', 'reduce'];
+/** Pixels from which exposure and steps are taken. */
+const EXPOSURE_SIZE = [256, 144];
+/** Steps after which a cast ends without a hit, so that the graphics card never hangs. */
+const MOST_STEPS = 16384;
 
 /** Loads the texts of all shaders. @returns {Promise<Map<string, string>>} */
 export async function loadShaders() {
@@ -31,7 +35,7 @@ export async function loadShaders() {
 
 /**
  * What a picture shows, besides its size.
- * @typedef {{settings: Settings, place: Place, scene: SceneTextures | null, shown: number, mostInstances: number,
+ * @typedef {{settings: Settings, place: Place, scene: SceneTextures, shown: number, mostInstances: number,
  *   samples: number, quick: boolean}} Shot
  */
 
@@ -57,20 +61,20 @@ export class Renderer {
     for (const name of ['sample', 'light', 'display', 'reduce']) this.program(name);
   }
 
-  /** @param {string} name @param {boolean} [look] */
+  /** Returns a program, which begins to compile with the first call. @param {string} name @param {boolean} [look]  With colours and normals. */
   program(name, look = false) {
     const key = look ? `${name} with colours` : name;
     let program = this.programs.get(key);
     if (program === undefined) {
       const text = (/** @type {string} */ part) => this.shaders.get(part) ?? '';
       const parts = {
-        sample: ['dag', 'camera', ...(look ? ['look'] : []), 'uniforms', 'surface', 'sample'], light: ['dag', 'camera', 'light'],
-        hits: ['dag', 'camera', 'hits'], display: ['display'], reduce: ['reduce'],
+        sample: [...CAST, ...(look ? ['look'] : []), 'surface', 'sample'], light: [...CAST, 'light'],
+        hits: [...CAST, 'hits'], display: ['display'], reduce: ['reduce'],
       }[name] ?? [];
       const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
-          `#define CUT_ALBEDO vec3(0.72, 0.27, 0.16)\n${SHOW.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
+          `#define CUT_ALBEDO vec3(0.72, 0.27, 0.16)\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
           (look ? '#define HAS_LOOK\n' : '');
-      const fragment = head + parts.map((part) => (part === 'uniforms' ? 'uniform int u_coarser_fits;\n' : text(part))).join('\n');
+      const fragment = head + parts.map(text).join('\n');
       program = new Program(this.gl, `#version 300 es\n${text('quad.vert')}`, fragment, key);
       this.programs.set(key, program);
     }
@@ -105,7 +109,7 @@ export class Renderer {
     program.floats(cameraUniforms(place, settings.camera, picture.width, picture.height));
     program.floats(sectionUniforms(place, settings.section));
     program.floats({ u_sample: samplePlace(picture.samples), u_lod: settings.lod });
-    program.ints({ u_levels: shot.scene?.info.levels ?? 2, u_shown: Math.min(shot.shown, settings.level ?? DAG.mostLevels), u_show: SHOW.indexOf(settings.show) });
+    program.ints({ u_levels: shot.scene.info.levels, u_shown: Math.min(shot.shown, settings.level ?? DAG.mostLevels), u_show: SHOWS.indexOf(settings.show) });
   }
 
   /**
@@ -115,7 +119,6 @@ export class Renderer {
   render(picture, shot, rows) {
     const { gl } = this;
     const { scene, settings } = shot;
-    if (scene === null || shot.shown < 1) return;
     const end = Math.min(picture.rows + rows, picture.height);
     const y = picture.height - end;
     gl.bindVertexArray(this.vertices);
@@ -141,8 +144,8 @@ export class Renderer {
     light.use();
     this.setCast(light, shot, picture);
     light.floats(lightUniforms(shot.place, settings));
-    const [least, most] = this.shownRange(shot);
-    light.floats({ u_least: least, u_most: most, u_view_distance: this.viewDistance(shot) });
+    const [least, most] = shownRange(settings.show, scene.info.levels, shot.mostInstances) ?? [0, 1];
+    light.floats({ u_least: least, u_most: most, u_view_distance: distance(settings.camera.eye, settings.camera.target) / shot.place.side });
     light.ints({
       u_first: picture.samples === 0, u_index: picture.samples, u_light_samples: rays.light, u_occlusion_samples: rays.occlusion,
       u_light_first: settings.sun.angle > 0 ? picture.samples * rays.light : 0,
@@ -162,21 +165,8 @@ export class Renderer {
     ++picture.samples;
   }
 
-  /** Returns the values that are shown darkest and brightest. @param {Shot} shot @returns {[number, number]} */
-  shownRange({ settings, scene, mostInstances }) {
-    const levels = scene?.info.levels ?? 2;
-    if (settings.show === 'level') return [Math.max(0, levels - SHOWN_LEVELS), levels];
-    if (settings.show === 'sharing') return [0, Math.log2(Math.max(2, mostInstances))];
-    return [0, BRIGHTEST_STEPS];
-  }
 
-  /** @param {Shot} shot */
-  viewDistance({ settings, place }) {
-    const { eye, target } = settings.camera;
-    return Math.hypot(eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]) / place.side;
-  }
-
-  /** Returns the mean of a channel-wise small copy of a texture of floats. @param {WebGLTexture} texture @param {Picture} picture @returns {Float32Array} */
+  /** Returns evenly spread pixels of a texture, 4 numbers each: at most EXPOSURE_SIZE. @param {WebGLTexture} texture @param {Picture} picture @returns {Float32Array} */
   smallCopy(texture, picture) {
     const { gl } = this;
     const width = Math.min(EXPOSURE_SIZE[0], picture.width), height = Math.min(EXPOSURE_SIZE[1], picture.height);
@@ -233,7 +223,7 @@ export class Renderer {
     const program = this.program('hits');
     program.use();
     this.setCast(program, shot, /** @type {any} */ ({ width, height, samples: 0 }));
-    program.textures(/** @type {SceneTextures} */ (shot.scene).walk());
+    program.textures(shot.scene.walk());
     gl.bindVertexArray(this.vertices);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);

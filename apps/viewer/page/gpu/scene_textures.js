@@ -15,15 +15,12 @@ export function finestLevelThatFits(gl, info) {
 }
 
 export class SceneTextures {
-  /** @param {WebGL2RenderingContext} gl @param {FileInfo} info @param {number} finest the finest level that will be loaded */
-  constructor(gl, info, finest) {
+  /** @param {WebGL2RenderingContext} gl @param {FileInfo} info @param {number} words of the levels that will be loaded @param {number} leafBlocks */
+  constructor(gl, info, words, leafBlocks) {
     this.gl = gl;
     this.info = info;
-    const words = finest >= info.levels - 1 ? info.words : info.levelBegin[Math.min(finest, info.levels - 2)];
-    this.nodeCount = words;
-    this.leafCount = finest >= info.levels - 1 ? info.leafBlocks : 0;
     this.nodes = new LongTexture(gl, 'R32UI', words);
-    this.leaves = new LongTexture(gl, 'RG32UI', this.leafCount);
+    this.leaves = new LongTexture(gl, 'RG32UI', leafBlocks);
     /** @type {LongTexture | null} */
     this.nodeInstances = null;
     /** @type {LongTexture | null} */
@@ -48,10 +45,10 @@ export class SceneTextures {
 
   /** Uploads how many cells each node stands for. @param {Uint8Array} nodes @param {Uint8Array} leaves */
   setInstances(nodes, leaves) {
-    this.nodeInstances ??= new LongTexture(this.gl, 'R8UI', this.nodeCount);
-    this.leafInstances ??= new LongTexture(this.gl, 'R8UI', this.leafCount);
-    this.nodeInstances.set(0, nodes.subarray(0, this.nodeCount));
-    this.leafInstances.set(0, leaves.subarray(0, this.leafCount));
+    this.nodeInstances ??= new LongTexture(this.gl, 'R8UI', nodes.length);
+    this.leafInstances ??= new LongTexture(this.gl, 'R8UI', leaves.length);
+    this.nodeInstances.set(0, nodes);
+    this.leafInstances.set(0, leaves);
   }
 
   /** The textures that every cast reads. */
@@ -86,9 +83,5 @@ export class SceneTextures {
   bytes() {
     const all = [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots ?? null, ...(this.look?.values ?? [])];
     return all.reduce((sum, texture) => sum + (texture?.bytes ?? 0), 0);
-  }
-
-  delete() {
-    for (const texture of [this.nodes, this.leaves, this.nodeInstances, this.leafInstances, this.look?.slots, ...(this.look?.values ?? [])]) texture?.delete();
   }
 }

@@ -1,7 +1,7 @@
 /** Hands: they move the camera of a viewer by pointer, keys and gamepad. */
 import { clamp } from '../math.js';
 import { MODES, sameCamera } from '../settings.js';
-import { Events, listeners } from './events.js';
+import { Events, listeners } from '../events.js';
 import { Pad } from './gamepad.js';
 import { Keys } from './keys.js';
 import { Navigator, NO_INPUT } from './navigator.js';

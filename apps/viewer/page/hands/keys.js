@@ -35,7 +35,7 @@ export function movingKey(event) {
 
 export class Keys {
   /** @param {EventTarget} target @param {() => void} wake
-   *  @param {ReturnType<typeof import('./events.js').listeners>['listen']} listen */
+   *  @param {ReturnType<typeof import('../events.js').listeners>['listen']} listen */
   constructor(target, wake, listen) {
     /** Keys that are down: what they mean, by their place. @type {Map<string, string>} */
     this.held = new Map();

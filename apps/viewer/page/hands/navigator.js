@@ -5,10 +5,10 @@
  */
 import { RADIANS, add, addScaled, clamp, cross, distance as distanceOf, dot, length, mix, normalized, scale, sub, wrapped }
   from '../math.js';
+import { directionThrough, lensOf } from '../lens.js';
 import { Flight } from './flight.js';
 import {
-  STEEPEST, VIEWS, apart, between, cameraOf, compassOf, directionThrough, eyeOf, forwardOf, framed, isFinitePose, lensOf,
-  poseOf, roundCamera, withEye,
+  STEEPEST, VIEWS, apart, between, cameraOf, eyeOf, forwardOf, framed, isFinitePose, poseOf, roundCamera, turnedTo, withEye,
 } from './pose.js';
 import { Walker } from './walker.js';
 
@@ -240,10 +240,7 @@ export class Navigator {
   /** Shows the scene from a side. @param {string} name */
   view(name) {
     if (name === 'home') return this.flyTo(this.scene.home);
-    const [yaw, pitch] = VIEWS[name];
-    const compass = compassOf(this.goal.compass.up);
-    const pose = { ...this.goal, compass, yaw: yaw * RADIANS, pitch: clamp(pitch * RADIANS, -STEEPEST, STEEPEST) };
-    this.#flyTo(framed(pose, this.scene.bounds, this.width / this.height));
+    this.#flyTo(framed(turnedTo(this.goal, VIEWS[name]), this.scene.bounds, this.width / this.height));
   }
 
   /** Turns to a point and comes closer to it. @param {Vec3} point */

@@ -27,7 +27,7 @@ const STICK_REACH = 90;
 
 export class Pointers {
   /** @param {HTMLElement} element @param {Navigator} navigator @param {PointerOwner} owner
-   *  @param {ReturnType<typeof import('./events.js').listeners>['listen']} listen */
+   *  @param {ReturnType<typeof import('../events.js').listeners>['listen']} listen */
   constructor(element, navigator, owner, listen) {
     this.element = element;
     this.navigator = navigator;

@@ -6,10 +6,12 @@ import {
   RADIANS, add, addScaled, clamp, cross, dot, isFinite3, length, mix, mix3, normalized, roundTo, roundTo3, scale,
   stepBelow, sub, wrapped,
 } from '../math.js';
+import { lensOf } from '../lens.js';
 
 /**
  * @typedef {import('../math.js').Vec3} Vec3
  * @typedef {import('../settings.js').Camera} Camera
+ * @typedef {import('../settings.js').Box} Box
  * @typedef {{east: Vec3, north: Vec3, up: Vec3}} Compass  Unit vectors.
  *
  * @typedef {object} Pose
@@ -125,45 +127,8 @@ export function roundCamera(camera) {
 }
 
 /**
- * The camera's unit vectors and the tangents of half its angles.
- * @param {Camera} camera @param {number} aspect  Width / height.
- */
-export function lensOf(camera, aspect) {
-  const forward = normalized(sub(camera.target, camera.eye));
-  const right = normalized(cross(forward, camera.up), compassOf(camera.up).east);
-  const tanY = Math.tan(camera.fov * RADIANS / 2);
-  return { eye: camera.eye, forward, right, up: cross(right, forward), tanX: tanY * aspect, tanY };
-}
-
-/**
- * Returns the unit direction of the ray through a point of the picture, in pixels from the top left.
- * @param {Camera} camera @param {number} x @param {number} y @param {number} width @param {number} height
- * @returns {Vec3}
- */
-export function directionThrough(camera, x, y, width, height) {
-  const lens = lensOf(camera, width / height);
-  const across = addScaled(lens.forward, lens.right, (2 * x / width - 1) * lens.tanX);
-  return normalized(addScaled(across, lens.up, (1 - 2 * y / height) * lens.tanY));
-}
-
-/**
- * Returns where a point is in the picture, in pixels, and its depth along the view; x and y have no
- * meaning unless the depth is positive.
- * @param {Camera} camera @param {Vec3} point @param {number} width @param {number} height
- */
-export function project(camera, point, width, height) {
-  const lens = lensOf(camera, width / height);
-  const v = sub(point, lens.eye), depth = dot(v, lens.forward);
-  return {
-    x: (dot(v, lens.right) / (depth * lens.tanX) + 1) * width / 2,
-    y: (1 - dot(v, lens.up) / (depth * lens.tanY)) * height / 2,
-    depth,
-  };
-}
-
-/**
- * Returns the pose, turned as `pose`, in which the box fills the picture but for a margin.
- * @param {Pose} pose @param {{low: Vec3, high: Vec3}} box @param {number} aspect @returns {Pose}
+ * Returns the pose with the direction of `pose` in which the box fills the picture except for a margin.
+ * @param {Pose} pose @param {Box} box @param {number} aspect  Width / height. @returns {Pose}
  */
 export function framed(pose, box, aspect) {
   const size = length(sub(box.high, box.low));
@@ -189,7 +154,22 @@ export function framed(pose, box, aspect) {
   return withEye({ ...pose, distance: -z }, eye);
 }
 
+/** Returns the camera, moved so that the box fills the picture. @param {Camera} camera @param {Box} box @param {number} aspect */
+export const framedCamera = (camera, box, aspect) => cameraOf(framed(poseOf(camera), box, aspect));
+
 /** The named views: yaw and pitch in degrees. @type {{[name: string]: [number, number]}} */
 export const VIEWS = {
   front: [0, 0], right: [-90, 0], back: [180, 0], left: [90, 0], top: [0, -90], bottom: [0, 90],
 };
+
+/** Returns the pose, turned to a named view. @param {Pose} pose @param {[number, number]} view */
+export const turnedTo = (pose, [yaw, pitch]) => ({ ...pose, yaw: yaw * RADIANS, pitch: clamp(pitch * RADIANS, -STEEPEST, STEEPEST) });
+
+/** Yaw, pitch and field of view of the first view, in degrees: from outside, above a corner. */
+const HOME = /** @type {[number, number]} */ ([51.3, -23.6]), HOME_FOV = 35;
+
+/** Returns the view that a scene suggests. @param {Box} box @param {number} aspect  Width / height. */
+export function homeView(box, aspect) {
+  const pose = turnedTo(poseOf({ eye: [0, 0, 0], target: [0, 0, -1], up: [0, 1, 0], fov: HOME_FOV }), HOME);
+  return cameraOf(framed(pose, box, Math.max(aspect, 1e-3)));
+}

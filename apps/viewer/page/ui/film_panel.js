@@ -12,7 +12,7 @@ import { download, h, say } from './dom.js';
 /** @param {Ui} ui */
 export function filmPanel(ui) {
   const { viewer, hands } = ui;
-  const camera = () => roundCamera(viewer.get().camera ?? ui.home());
+  const camera = () => roundCamera(viewer.camera());
   const seconds = h('input', { type: 'number', min: 0.1, max: 600, step: 0.1, value: 2, id: 'seconds-per-key', inputmode: 'decimal' });
   /** Milliseconds of the page at which the film began; 0: it does not play. */
   let began = 0;

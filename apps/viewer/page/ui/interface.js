@@ -60,8 +60,6 @@ const PANELS = [
   ['film', 'Camera path', 'K'], ['share', 'Save and share'], ['statistics', 'Statistics', 'I'], ['help', 'Help', 'H'],
 ];
 
-/** @type {Camera} */
-const ANY_CAMERA = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
 /** Milliseconds between refreshes of numbers that change with every frame. */
 const NUMBERS_MS = 250;
 
@@ -105,7 +103,7 @@ export function createInterface(viewer, hands, container) {
       viewer.set({ ...structuredClone(DEFAULTS), annotations, measures, path }, 'ui');
       ui.toast('Settings reset; measures, notes and the camera path stay');
     },
-    home: () => viewer.info?.view ?? ANY_CAMERA,
+    home: () => viewer.info?.view ?? viewer.camera(),
     name: () => (viewer.info?.name ?? 'scene').replace(/^.*\//, '').replace(/\.\w+$/, '').replace(/[^\w.-]+/g, '_') || 'scene',
     command(line) {
       const act = async () => ui.toast((await copy(line)) ? 'Command copied' : 'The browser did not allow copying');

@@ -1,10 +1,13 @@
 /** The panel "Light": the sun, the sky, shadows and exposure. */
 import { RADIANS } from '../math.js';
-import { anglesOf, compassOf, lensOf } from '../hands/pose.js';
+import { LIGHT } from '../constants.js';
+import { anglesOf, compassOf } from '../hands/pose.js';
+import { lensOf } from '../lens.js';
+import { sunDirection } from '../sun.js';
 import { group, logarithmic, refreshAll, slider, toggle } from './controls.js';
 import { h } from './dom.js';
 import { degrees } from './numbers.js';
-import { skyAngles, skyDirection, sunDirection } from './sun.js';
+import { skyAngles, skyDirection } from './sky_angles.js';
 import { sunDome } from './sun_dome.js';
 
 /**
@@ -17,13 +20,12 @@ import { sunDome } from './sun_dome.js';
 export function lightPanel(ui) {
   const { viewer } = ui;
   const set = (/** @type {PartialSettings} */ settings) => viewer.set(settings, 'ui');
-  const camera = () => viewer.get().camera ?? ui.home();
-  const angles = () => skyAngles(sunDirection(viewer.get().sun.direction, camera()), camera().up);
+  const angles = () => skyAngles(sunDirection(viewer.get().sun.direction, viewer.camera(), LIGHT.defaultSun), viewer.camera().up);
   const aim = (/** @type {number} */ azimuth, /** @type {number} */ elevation) =>
-    set({ sun: { direction: skyDirection(azimuth, elevation, camera().up) } });
+    set({ sun: { direction: skyDirection(azimuth, elevation, viewer.camera().up) } });
   /** The azimuth in which the viewer looks: up in the picture, if that is straight down. */
   const heading = () => {
-    const { forward, up } = lensOf(camera(), 1), compass = compassOf(camera().up);
+    const { forward, up } = lensOf(viewer.camera(), 1), compass = compassOf(viewer.camera().up);
     const isSteep = Math.abs(anglesOf(compass, forward).pitch) > 89 * RADIANS;
     return anglesOf(compass, isSteep ? up : forward).yaw / RADIANS;
   };
@@ -63,7 +65,7 @@ export function lightPanel(ui) {
   const reach = slider({
     label: 'Its distance', hint: 'How far surfaces darken each other, in parts of the grid', min: 0.005, max: 0.5,
     text: (x) => `${(x * 100).toPrecision(2)}%`,
-    get: (s) => (s.occlusion.distance || 0.15 * side()) / side(),
+    get: (s) => (s.occlusion.distance || LIGHT.occlusionDistance * side()) / side(),
     set: (value) => set({ occlusion: { distance: +(value * side()).toPrecision(3) } }),
   });
   const exposure = slider({

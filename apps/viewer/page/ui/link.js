@@ -35,7 +35,7 @@ export function keepLink(ui) {
     if (hash === written) return;
     written = hash;
     const { settings, problems } = settingsFromHash(hash, DEFAULTS);
-    viewer.set({ ...settings, camera: settings.camera ?? ui.home() }, 'link');
+    viewer.set(settings, 'link');
     if (problems.length) ui.toast(capitalized(problems[0]), true);
   });
 }

@@ -60,7 +60,7 @@ export function notesPanel(ui) {
     name: 'note',
     hint: () => 'Click the place of the note',
     click(hit) {
-      const camera = roundCamera(viewer.get().camera ?? ui.home()), { annotations } = viewer.get();
+      const camera = roundCamera(viewer.camera()), { annotations } = viewer.get();
       // A little towards the viewer, so that the marker is not in the surface.
       const out = addScaled(hit.position, normalized(sub(camera.eye, hit.position)), (viewer.info?.voxelSize ?? 0) * 0.5);
       const note = { text: `Note ${annotations.length + 1}`, point: roundTo3(out, stepBelow(viewer.info?.voxelSize ?? 1, 0.01)), camera };
@@ -86,7 +86,7 @@ export function notesPanel(ui) {
       h('span', { class: 'stack' },
         button(`Fly to note ${i + 1}`, () => go(i), { icon: 'fly', bare: true }),
         button(`Let note ${i + 1} remember this view`, () => {
-          change(i, { camera: roundCamera(viewer.get().camera ?? ui.home()) });
+          change(i, { camera: roundCamera(viewer.camera()) });
           ui.toast('The note remembers this view');
         }, { icon: 'camera', bare: true }),
         button(`Delete note ${i + 1}`, remove, { icon: 'trash', bare: true })));

@@ -3,7 +3,7 @@
  * keep their elements and only move them, so that focus and drags survive.
  */
 import { addScaled, dot, mix, normalized, scale, sub } from '../math.js';
-import { directionThrough, lensOf, project } from '../hands/pose.js';
+import { directionThrough, lensOf, project } from '../lens.js';
 import { svg, update } from './dom.js';
 
 /**
@@ -110,9 +110,8 @@ export class Overlay {
 
   /** @returns {Projection | null} */
   get projection() {
-    const settings = this.viewer.get(), camera = settings.camera ?? this.viewer.info?.view;
     const { clientWidth: width, clientHeight: height } = this.viewer.canvas;
-    return camera && width > 0 && height > 0 ? new Projection(camera, width, height) : null;
+    return this.viewer.info && width > 0 && height > 0 ? new Projection(this.viewer.camera(), width, height) : null;
   }
 
   /** Draws in this frame, so that the drawing never lags behind the picture. */

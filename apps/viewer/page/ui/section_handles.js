@@ -96,7 +96,6 @@ export function sectionHandles(ui) {
   const setPlane = (/** @type {Plane | null} */ plane) =>
     viewer.set({ section: { plane: plane && { point: rounded(plane.point), normal: roundTo3(plane.normal, -5) } } }, 'ui');
   const text = (/** @type {number} */ x) => lengthText(x, voxel());
-  const camera = () => viewer.get().camera ?? ui.home();
 
   /** Moves the plane along its normal; it stays where it can cut. @param {Plane} plane @param {number} way */
   const movePlane = ({ point, normal }, way) => {
@@ -200,7 +199,7 @@ export function sectionHandles(ui) {
         setPlane({ point: plane.point, normal: snapped(turned) });
       },
       key(aside, up) {
-        const { plane } = viewer.get().section, compass = compassOf(camera().up), step = KEY_TURN * RADIANS;
+        const { plane } = viewer.get().section, compass = compassOf(viewer.camera().up), step = KEY_TURN * RADIANS;
         if (!plane) return;
         const { yaw, pitch } = anglesOf(compass, normalized(plane.normal));
         setPlane({ ...plane, normal: directionOf(compass, yaw + aside * step, clamp(pitch + up * step, -Math.PI / 2, Math.PI / 2)) });
@@ -224,5 +223,5 @@ export function sectionHandles(ui) {
     update(tip, { 'aria-valuenow': String(Math.round(yaw / RADIANS)), 'aria-valuetext': n.map((x) => x.toFixed(2)).join(', ') });
   }, planeGroup);
 
-  return { voxel, bounds, wholeBox, setBox, setPlane, movePlane, camera, text };
+  return { voxel, bounds, wholeBox, setBox, setPlane, movePlane, text };
 }

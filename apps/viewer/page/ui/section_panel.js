@@ -6,7 +6,7 @@ import { addScaled, dot, length, normalized, scale, sub } from '../math.js';
 import { button, group, refreshAll, slider, toggle } from './controls.js';
 import { h } from './dom.js';
 import { degrees } from './numbers.js';
-import { skyAngles, skyDirection } from './sun.js';
+import { skyAngles, skyDirection } from './sky_angles.js';
 import { AXES, axisVector, faceValue, middleOf, rangeAlong, sectionHandles, withFace } from './section_handles.js';
 
 /**
@@ -18,12 +18,12 @@ import { AXES, axisVector, faceValue, middleOf, rangeAlong, sectionHandles, with
 /** @param {Ui} ui */
 export function sectionPanel(ui) {
   const { viewer } = ui;
-  const { voxel, bounds, wholeBox, setBox, setPlane, movePlane, camera, text } = sectionHandles(ui);
+  const { voxel, bounds, wholeBox, setBox, setPlane, movePlane, text } = sectionHandles(ui);
   const section = () => viewer.get().section;
 
   /** Returns a plane through the middle, across the axis that points at the viewer best: one looks into the scene. */
   const firstPlane = () => {
-    const { eye, target } = camera(), up = normalized(camera().up), line = sub(eye, target);
+    const { eye, target } = viewer.camera(), up = normalized(viewer.camera().up), line = sub(eye, target);
     const flat = addScaled(line, up, -dot(line, up)), away = length(flat) > 0.2 * length(line) ? flat : line;
     const sizes = away.map(Math.abs), axis = sizes.indexOf(Math.max(...sizes));
     return { point: middleOf(bounds()), normal: axisVector(axis, Math.sign(away[axis]) || 1) };
@@ -52,10 +52,10 @@ export function sectionPanel(ui) {
     },
   });
   /** The direction of the arrow, as angles. */
-  const arrow = () => skyAngles(section().plane?.normal ?? [0, 1, 0], camera().up);
+  const arrow = () => skyAngles(section().plane?.normal ?? [0, 1, 0], viewer.camera().up);
   const aim = (/** @type {number} */ azimuth, /** @type {number} */ elevation) => {
     const { plane } = section();
-    if (plane) setPlane({ point: plane.point, normal: skyDirection(azimuth, elevation, camera().up) });
+    if (plane) setPlane({ point: plane.point, normal: skyDirection(azimuth, elevation, viewer.camera().up) });
   };
   const azimuth = slider({
     label: 'Azimuth of the arrow', min: 0, max: 360, step: 1, text: degrees,
@@ -67,7 +67,7 @@ export function sectionPanel(ui) {
     get: () => arrow().elevation, set: (value) => aim(arrow().azimuth, Math.max(-89.99, Math.min(value, 89.99))),
   });
   const across = (/** @type {number} */ axis) => button(`⟂ ${AXES[axis]}`, () => {
-    const { plane } = section(), { eye, target } = camera();
+    const { plane } = section(), { eye, target } = viewer.camera();
     if (plane) setPlane({ point: plane.point, normal: axisVector(axis, Math.sign(eye[axis] - target[axis]) || 1) });
   }, { title: `Across the ${AXES[axis]} axis` });
   const flip = button('Flip', () => {

@@ -49,7 +49,7 @@ export function sharePanel(ui) {
       : address.length > LONG_LINK ? 'Link copied. It is long: save the settings as a file instead, if it arrives cut' : 'Link copied');
   };
   const save = () => {
-    const text = settingsToJson({ ...viewer.get(), camera: viewer.get().camera ?? ui.home() });
+    const text = settingsToJson({ ...viewer.get(), camera: viewer.camera() });
     download(`${ui.name()}.settings.json`, new Blob([text], { type: 'application/json' }));
   };
   /** Loads settings or a camera path. @param {File} file */

@@ -69,20 +69,17 @@ export function viewPanel(ui) {
     label: 'Cubes from', min: 0, max: 100, step: 1, get: (s) => s.cubes, set: (value) => viewer.set({ cubes: value }, 'ui'),
     text: (x) => (x ? `${x} px` : 'always'), hint: 'Voxels of at least this size look like cubes, smaller ones smooth',
   });
-  const camera = (/** @type {Settings} */ s) => s.camera ?? ui.home();
   const change = (/** @type {Partial<import('../settings.js').Camera>} */ part) => {
-    const settings = viewer.get();
-    if (viewer.info) viewer.set({ camera: { ...camera(settings), ...part } }, 'ui');
+    if (viewer.info) viewer.set({ camera: { ...viewer.camera(), ...part } }, 'ui');
   };
   const fov = slider({
-    label: 'Field of view', min: 10, max: 110, step: 1, get: (s) => camera(s).fov, set: (value) => change({ fov: value }),
+    label: 'Field of view', min: 10, max: 110, step: 1, get: () => viewer.camera().fov, set: (value) => change({ fov: value }),
     text: (x) => `${+x.toFixed(1)}°`,
   });
-  const axisOf = (/** @type {Settings} */ s) =>
-    Object.keys(AXES).find((name) => AXES[name].every((x, i) => Math.abs(x - camera(s).up[i]) < 1e-6)) ?? 'own';
+  const axisOf = () => Object.keys(AXES).find((name) => AXES[name].every((x, i) => Math.abs(x - viewer.camera().up[i]) < 1e-6)) ?? 'own';
   const up = choice({
     label: 'Up', options: [...AXIS_NAMES, ['own', 'other']], get: axisOf,
-    set: (name) => { if (AXES[name]) change(withUp(camera(viewer.get()), AXES[name])); },
+    set: (name) => { if (AXES[name]) change(withUp(viewer.camera(), AXES[name])); },
   });
   const lock = button('Look around with the mouse', () => hands.lockPointer(), { title: 'Hides the pointer until Escape (key L)' });
   const refresh = refreshAll([mode, show, level, colors, normals, lod, cubes, fov, up]);

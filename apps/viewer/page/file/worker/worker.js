@@ -110,7 +110,6 @@ async function handle(request) {
     send({ type: 'info', info, bytes: bytesLoaded });
   } else if (request.type === 'load') {
     await loadLevels(request.shown);
-    send({ type: 'loaded' });
     await loadAttributes(request);
     send({ type: 'done', requests: source instanceof ServerSource ? source.requests : 0 });
   }

@@ -2,6 +2,8 @@
 // shadow and occlusion rays start. The port of render/surface_normal.hpp, trace/cell_blocks.hpp and
 // render/surface_point.hpp, whose comments explain the method.
 
+uniform int u_coarser_fits;  // coarser levels that smooth the normal
+
 float smoothStep(float low, float high, float x) {
   float t = clamp((x - low) / (high - low), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);

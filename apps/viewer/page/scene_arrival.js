@@ -1,0 +1,139 @@
+/**
+ * A scene on its way: puts what the loader sends into memory and textures, and reports it by the
+ * viewer's events.
+ */
+import { inlineScene } from './file/byte_source.js';
+import { SceneLoader } from './file/scene_loader.js';
+import { SceneTextures } from './gpu/scene_textures.js';
+import { homeView } from './hands/pose.js';
+import { SceneMemory } from './scene_memory.js';
+import { bounds } from './trace.js';
+
+/**
+ * @typedef {import('./file/scene_loader.js').FileInfo} FileInfo
+ * @typedef {import('./file/scene_loader.js').LoaderMessage} LoaderMessage
+ * @typedef {import('./viewer_types.js').SceneInfo} SceneInfo
+ * @typedef {import('./math.js').Vec3} Vec3
+ */
+
+/** The scene's bounds are those of its cells of this level: finer ones would take long to visit. */
+const BOUNDS_LEVEL = 9;
+
+export class SceneArrival {
+  /**
+   * @param {WebGL2RenderingContext} gl @param {() => number} aspect  Width / height of the picture.
+   * @param {(event: string, ...values: any[]) => void} report
+   */
+  constructor(gl, aspect, report) {
+    this.gl = gl;
+    this.aspect = aspect;
+    this.report = report;
+    /** @type {SceneInfo | null} */
+    this.info = null;
+    /** @type {SceneMemory | null} */
+    this.memory = null;
+    /** @type {SceneTextures | null} */
+    this.textures = null;
+    this.bytesLoaded = 0;
+    /** Whether the loader has sent all that it can: it has finished or failed. */
+    this.hasEnded = false;
+    /** @type {Promise<void>} */
+    this.ended = new Promise((resolve) => { this.#resolve = resolve; });
+    this.loader = new SceneLoader((message) => this.#take(message));
+  }
+  /** @type {() => void} */
+  #resolve = () => {};
+
+  /**
+   * Begins to load: from bytes, from an address, or else from the page itself or the file beside it.
+   * @param {string | undefined} url @param {ArrayBuffer | undefined} bytes
+   */
+  async open(url, bytes) {
+    if (url === undefined && bytes === undefined) bytes = (await inlineScene()) ?? undefined;
+    await this.loader.open(bytes !== undefined ? { bytes } : { url: url ?? 'scene.vdag' });
+  }
+
+  /** Levels of cells that have arrived. */
+  get shown() {
+    return this.memory?.shown ?? 0;
+  }
+
+  /** @param {LoaderMessage} message */
+  #take(message) {
+    switch (message.type) {
+      case 'info':
+        return this.#begin(message.info, message.bytes);
+      case 'progress':
+        this.bytesLoaded = message.bytes;
+        return this.report('progress', { bytes: message.bytes, total: this.info?.fileBytes ?? 0 });
+      case 'note':
+        return this.report('note', message.text);
+      case 'done':
+        this.end();
+        return this.report('loaded', { requests: message.requests });
+      case 'error':
+        this.end();
+        return this.report('error', { title: message.title, text: message.text, kind: message.title === 'No connection' ? 'network' : 'file' });
+      default:
+        return this.#add(message);
+    }
+  }
+
+  /** Makes room for the scene, and asks for its levels. @param {FileInfo} info @param {number} bytes  Loaded so far. */
+  #begin(info, bytes) {
+    this.memory = new SceneMemory(this.gl, info);
+    this.textures = this.#newTextures(this.memory);
+    const { finest, isWhole } = this.memory;
+    const { levels, resolution, origin, voxelSize, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, source } = info;
+    const side = voxelSize * resolution;
+    const box = { low: origin, high: /** @type {Vec3} */ (origin.map((x) => x + side)) };
+    this.info = {
+      name: source.name, levels, resolution, origin, voxelSize, bounds: box, voxels, dagNodesPerLevel, fileBytes, hasColors, hasNormals, source,
+      view: homeView(box, this.aspect()),
+    };
+    this.bytesLoaded = bytes;
+    this.report('info', this.info);
+    if (info.isEmpty) this.report('note', 'This scene has no voxels.');
+    if (!isWhole) this.report('note', `This scene is too large for the graphics card: it is shown down to level ${finest} of ${levels}.`);
+    this.loader.load({ shown: finest, colors: hasColors && isWhole, normals: hasNormals && isWhole });
+  }
+
+  /** Takes a level or the attributes. @param {LoaderMessage} message */
+  #add(message) {
+    const { info, memory, textures } = this;
+    if (info === null || memory === null || textures === null) return;
+    memory.add(message, textures);
+    if (message.type === 'attributes') return this.report('look', {});
+    info.bounds = bounds(memory.dag(), BOUNDS_LEVEL) ?? info.bounds;
+    info.view = homeView(info.bounds, this.aspect());
+    this.report('level', { level: memory.shown, levels: info.levels, bytes: this.bytesLoaded });
+  }
+
+  /** Uploads how often nodes are used, unless the textures hold it: they follow each level from then on. */
+  showInstances() {
+    if (this.memory !== null && this.textures?.nodeInstances === null) this.memory.uploadInstances(this.textures);
+  }
+
+  /** Fills new textures, after the graphics card has lost the old ones. */
+  restore() {
+    if (this.memory === null) return;
+    this.textures = this.#newTextures(this.memory);
+    this.memory.restore(this.textures);
+  }
+
+  /** @param {SceneMemory} memory */
+  #newTextures({ info, nodes, leaves }) {
+    return new SceneTextures(this.gl, info, nodes.length, leaves.length / 2);
+  }
+
+  /** Ends the wait for the scene. */
+  end() {
+    this.hasEnded = true;
+    this.#resolve();
+  }
+
+  close() {
+    this.loader.close();
+    this.end();
+  }
+}
