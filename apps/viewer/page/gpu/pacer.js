@@ -3,16 +3,19 @@
  * picture of a moving view is, and how many rows of a still picture are rendered per frame.
  */
 
+/** Milliseconds that a frame of a moving view, and of a still one, may take. */
 const MOVING_MS = 28, STILL_MS = 45;
-const LEAST_SCALE = 1 / 16;
+const LEAST_SCALE = 1 / 16, LEAST_ROWS = 4;
 
 export class Pacer {
   constructor() {
-    this.movingNs = 60;  // estimated cost of a pixel of a quick picture
-    this.stillNs = 120;  // and of a full one
+    /** Estimated cost of a pixel of a quick picture, in nanoseconds. */
+    this.movingNs = 60;
+    /** Estimated cost of a sample of a pixel of a full picture, in nanoseconds. */
+    this.stillNs = 120;
   }
 
-  /** Returns the side of a quick picture's pixels^-1, relative to the canvas: 1/16 to 1. @param {number} pixels of the canvas */
+  /** Returns the side of a quick picture relative to the canvas, from 1/16 to 1. @param {number} pixels  Of the canvas. */
   scale(pixels) {
     const affordable = (MOVING_MS * 1e6) / this.movingNs;
     const scale = Math.sqrt(affordable / pixels);
@@ -23,15 +26,19 @@ export class Pacer {
 
   /** Returns the rows of a full picture to render in this frame. @param {number} width @param {number} height */
   rows(width, height) {
-    const rows = Math.floor((STILL_MS * 1e6) / (this.stillNs * width));
-    return Math.min(height, Math.max(4, rows));
+    const affordable = Math.max(LEAST_ROWS, Math.floor((STILL_MS * 1e6) / (this.stillNs * width)));
+    // Equal parts: a small rest would look like slow pixels.
+    return Math.ceil(height / Math.ceil(height / affordable));
   }
 
-  /** Learns from a frame. @param {boolean} isMoving @param {number} pixels @param {number} ms */
-  learn(isMoving, pixels, ms) {
+  /** Learns from a frame. @param {boolean} isQuick @param {number} pixels @param {number} ms  The time that they took. */
+  learn(isQuick, pixels, ms) {
     const ns = Math.max(0.2, (ms * 1e6) / pixels);
-    const key = isMoving ? 'movingNs' : 'stillNs';
-    // Slower at once, faster bit by bit.
-    this[key] = ns > this[key] ? 0.3 * this[key] + 0.7 * ns : 0.85 * this[key] + 0.15 * ns;
+    if (isQuick) this.movingNs = ns > this.movingNs ? slower(this.movingNs, ns) : 0.85 * this.movingNs + 0.15 * ns;
+    // A frame of few rows takes as long as one of many: each may have twice as many as the one before.
+    else this.stillNs = ns > this.stillNs ? slower(this.stillNs, ns) : Math.max(ns, this.stillNs / 2);
   }
 }
+
+/** Returns an estimate that trusts a frame that took longer. @param {number} estimate @param {number} ns */
+const slower = (estimate, ns) => 0.3 * estimate + 0.7 * ns;
