@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { cameraAt, completeKeys, pathToJson, withKey, withoutKey } from '../../apps/viewer/page/hands/camera_path.js';
+import { cameraAt, completeKeys, pathToJson, withKey, withTime, withoutKey } from '../../apps/viewer/page/hands/camera_path.js';
 import { DEFAULTS, mergeSettings } from '../../apps/viewer/page/settings.js';
 
 const FIRST = { eye: [0, 0, 9], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
@@ -52,6 +52,14 @@ test('recorded keys leave out what does not change, and mean what was recorded',
     const rest = completeKeys(withoutKey(keys, i), FIRST);
     assert.deepEqual(rest, completeKeys(keys, FIRST).filter((_, k) => k !== i));
   }
+});
+
+test('a key at another time takes the later keys along, and stays behind the key before', () => {
+  const times = (keys) => keys.map((key) => key.time);
+  assert.deepEqual(times(withTime(KEYS, 1, 3.25)), [0, 3.25, 3.75, 6.75]);
+  assert.deepEqual(times(withTime(KEYS, 2, -4)), [0, 1.5, 1.501, 4.501]);
+  assert.deepEqual(times(withTime(KEYS, 0, -1)), [-1, 0.5, 1, 4]);
+  assert.deepEqual(mergeSettings(DEFAULTS, { path: withTime(KEYS, 3, 0) }).path, [...KEYS.slice(0, 3), { ...KEYS[3], time: 2.001 }]);
 });
 
 test('a path file has one line per key and only keys that `render --path` reads', () => {

@@ -13,6 +13,47 @@ import { DEFAULTS, SettingsError, mergeSettings, sameCamera } from './settings.j
 
 /** @param {Vec3[]} vectors */
 const words = (...vectors) => vectors.map((v) => v.join(',')).join(';');
+/** @param {string} value */
+const toNumber = (value) => (value.trim() === '' ? NaN : Number(value));
+/** @param {string} value */
+const toVector = (value) => /** @type {any} */ (value.split(',').map(toNumber));
+
+/**
+ * How values of one kind are written and read.
+ * @typedef {{write: (value: any) => string | number, read: (text: string) => any}} Kind
+ */
+/** @type {{[name: string]: Kind}} */
+const KINDS = {
+  number: { write: (value) => value, read: toNumber },
+  text: { write: (value) => value, read: (text) => text },
+  onOff: { write: (on) => (on ? 'on' : 'off'), read: (text) => (text === 'on' ? true : text === 'off' ? false : text) },
+  vector: { write: (v) => words(v), read: toVector },
+};
+
+/** Settings with one value: the key in a link, the key in the settings, the key in a part of them. @type {[string, Kind, keyof Settings, string?][]} */
+const SIMPLE = [
+  ['mode', KINDS.text, 'mode'],
+  ['show', KINDS.text, 'show'],
+  ['level', KINDS.number, 'level'],
+  ['colors', KINDS.onOff, 'colors'],
+  ['normals', KINDS.onOff, 'normals'],
+  ['sun', KINDS.vector, 'sun', 'direction'],
+  ['sunlight', KINDS.onOff, 'sun', 'on'],
+  ['angle', KINDS.number, 'sun', 'angle'],
+  ['sky', KINDS.number, 'sky'],
+  ['exposure', KINDS.number, 'exposure'],
+  ['shadows', KINDS.onOff, 'shadows'],
+  ['ao', KINDS.number, 'occlusion', 'samples'],
+  ['aodistance', KINDS.number, 'occlusion', 'distance'],
+  ['aocone', KINDS.number, 'occlusion', 'cone'],
+  ['lod', KINDS.number, 'lod'],
+  ['cubes', KINDS.number, 'cubes'],
+];
+/** The camera: its keys count together. @type {[keyof Camera, Kind][]} */
+const CAMERA = [['eye', KINDS.vector], ['target', KINDS.vector], ['up', KINDS.vector], ['fov', KINDS.number]];
+
+/** @param {any} settings @param {string} key @param {string} [part] */
+const valueAt = (settings, key, part) => (part === undefined ? settings[key] : settings[key][part]);
 
 /**
  * Returns the hash for settings, without '#': only what differs from the defaults. A camera that is
@@ -24,33 +65,13 @@ export function settingsToHash(settings, home = null) {
   const parts = [];
   /** @param {string} key @param {string | number} value */
   const put = (key, value) => parts.push(`${key}=${value}`);
-  /** @param {string} key @param {string | number | boolean | null} value @param {any} usual */
-  const differ = (key, value, usual) => {
-    if (value !== usual) put(key, value === true ? 'on' : value === false ? 'off' : String(value));
-  };
-  const { camera, sun, occlusion, section } = settings, usual = DEFAULTS;
-  if (camera && !sameCamera(camera, home)) {
-    put('eye', words(camera.eye));
-    put('target', words(camera.target));
-    put('up', words(camera.up));
-    put('fov', camera.fov);
+  const { camera, section } = settings;
+  if (camera && !sameCamera(camera, home))
+    for (const [key, kind] of CAMERA) put(key, kind.write(camera[key]));
+  for (const [key, kind, ...place] of SIMPLE) {
+    const value = valueAt(settings, ...place);
+    if (value !== valueAt(DEFAULTS, ...place)) put(key, kind.write(value));
   }
-  differ('mode', settings.mode, usual.mode);
-  differ('show', settings.show, usual.show);
-  differ('level', settings.level, usual.level);
-  differ('colors', settings.colors, usual.colors);
-  differ('normals', settings.normals, usual.normals);
-  if (sun.direction) put('sun', words(sun.direction));
-  differ('sunlight', sun.on, usual.sun.on);
-  differ('angle', sun.angle, usual.sun.angle);
-  differ('sky', settings.sky, usual.sky);
-  differ('exposure', settings.exposure, usual.exposure);
-  differ('shadows', settings.shadows, usual.shadows);
-  differ('ao', occlusion.samples, usual.occlusion.samples);
-  differ('aodistance', occlusion.distance, usual.occlusion.distance);
-  differ('aocone', occlusion.cone, usual.occlusion.cone);
-  differ('lod', settings.lod, usual.lod);
-  differ('cubes', settings.cubes, usual.cubes);
   if (section.box) put('box', words(section.box.low, section.box.high));
   if (section.plane) put('plane', words(section.plane.point, section.plane.normal));
   for (const { from, to } of settings.measures) put('measure', words(from, to));
@@ -63,35 +84,8 @@ export function settingsToHash(settings, home = null) {
   return parts.join('&');
 }
 
-/** @param {string} value */
-const toNumber = (value) => (value.trim() === '' ? NaN : Number(value));
-/** @param {string} value */
-const toVector = (value) => /** @type {any} */ (value.split(',').map(toNumber));
-/** @param {string} value */
-const toSwitch = (value) => (value === 'on' ? true : value === 'off' ? false : value);
-
-/** @type {{[key: string]: (value: string, all: any) => any}} */
-const hashReaders = {
-  eye: (v) => ({ camera: { eye: toVector(v) } }),
-  target: (v) => ({ camera: { target: toVector(v) } }),
-  up: (v) => ({ camera: { up: toVector(v) } }),
-  fov: (v) => ({ camera: { fov: toNumber(v) } }),
-  mode: (v) => ({ mode: v }),
-  show: (v) => ({ show: v }),
-  level: (v) => ({ level: toNumber(v) }),
-  colors: (v) => ({ colors: toSwitch(v) }),
-  normals: (v) => ({ normals: toSwitch(v) }),
-  sun: (v) => ({ sun: { direction: toVector(v) } }),
-  sunlight: (v) => ({ sun: { on: toSwitch(v) } }),
-  angle: (v) => ({ sun: { angle: toNumber(v) } }),
-  sky: (v) => ({ sky: toNumber(v) }),
-  exposure: (v) => ({ exposure: toNumber(v) }),
-  shadows: (v) => ({ shadows: toSwitch(v) }),
-  ao: (v) => ({ occlusion: { samples: toNumber(v) } }),
-  aodistance: (v) => ({ occlusion: { distance: toNumber(v) } }),
-  aocone: (v) => ({ occlusion: { cone: toNumber(v) } }),
-  lod: (v) => ({ lod: toNumber(v) }),
-  cubes: (v) => ({ cubes: toNumber(v) }),
+/** Readers of the other keys: each returns changes of the settings `all`. @type {{[key: string]: (value: string, all: any) => any}} */
+const READERS = {
   box: (v) => {
     const [low, high] = v.split(';').map(toVector);
     return { section: { box: { low, high } } };
@@ -121,13 +115,13 @@ const hashReaders = {
 };
 
 /**
- * Reads a hash, with or without '#', on top of `base`. A pair that is wrong is left out and
- * described in `problems`; the camera counts as one pair.
- * @param {string} hash @param {Settings} [base]
+ * Reads a hash, with or without '#'; keys that it lacks have their defaults. A pair that is wrong is
+ * left out and described in `problems`; the camera counts as one pair.
+ * @param {string} hash
  * @returns {{settings: Settings, problems: string[]}}
  */
-export function settingsFromHash(hash, base = DEFAULTS) {
-  let settings = base;
+export function settingsFromHash(hash) {
+  let settings = DEFAULTS;
   /** @type {string[]} */
   const problems = [];
   /** @param {string} key @param {() => any} changes */
@@ -144,12 +138,13 @@ export function settingsFromHash(hash, base = DEFAULTS) {
   for (const pair of hash.replace(/^#/, '').split('&')) {
     if (pair === '') continue;
     const at = pair.indexOf('='), key = at < 0 ? pair : pair.slice(0, at), value = at < 0 ? '' : pair.slice(at + 1);
-    if (!Object.hasOwn(hashReaders, key)) {
-      problems.push(`the link's "${key.slice(0, 40)}" is unknown`);
-      continue;
-    }
-    if (['eye', 'target', 'up', 'fov'].includes(key)) camera = { ...camera, ...hashReaders[key](value, settings).camera };
-    else apply(key, () => hashReaders[key](value, settings));
+    const ofCamera = CAMERA.find(([name]) => name === key), simple = SIMPLE.find(([name]) => name === key);
+    if (ofCamera) camera = { ...camera, [key]: ofCamera[1].read(value) };
+    else if (simple) {
+      const [, kind, name, part] = simple;
+      apply(key, () => ({ [name]: part === undefined ? kind.read(value) : { [part]: kind.read(value) } }));
+    } else if (Object.hasOwn(READERS, key)) apply(key, () => READERS[key](value, settings));
+    else problems.push(`the link's "${key.slice(0, 40)}" is unknown`);
   }
   if (camera) apply('eye', () => ({ camera }));
   return { settings, problems };

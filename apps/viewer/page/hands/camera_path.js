@@ -113,6 +113,16 @@ export function withoutKey(keys, index) {
 }
 
 /**
+ * Returns the keys with one at another time, at least a millisecond after the key before; the later
+ * keys keep their distance from it.
+ * @param {PathKey[]} keys @param {number} index @param {number} time  Seconds. @returns {PathKey[]}
+ */
+export function withTime(keys, index, time) {
+  const least = index > 0 ? keys[index - 1].time + 0.001 : -Infinity, shift = Math.max(time, least) - keys[index].time;
+  return keys.map((key, i) => (i < index ? key : { ...key, time: Math.round((key.time + shift) * 1000) / 1000 }));
+}
+
+/**
  * Returns the text of a path file: one line per key, as `voxdag scene --path` prints it.
  * @param {PathKey[]} keys @param {Vec3 | null} [sun]
  */

@@ -53,6 +53,12 @@ export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** Gives a list this many items; those that stay keep their focus. @param {Element} list @param {number} count @param {(i: number) => Element} newItem */
+export function resize(list, count, newItem) {
+  while (list.children.length > count) list.lastElementChild?.remove();
+  while (list.children.length < count) list.append(newItem(list.children.length));
+}
+
 /** Saves a file through the browser. @param {string} name @param {Blob} blob */
 export function download(name, blob) {
   const link = h('a', { href: URL.createObjectURL(blob), download: name });

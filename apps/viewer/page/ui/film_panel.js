@@ -1,8 +1,8 @@
 /** The panel "Camera path": records views as keys, plays them, and saves the file of `render --path`. */
-import { cameraAt, completeKeys, pathToJson, withKey, withoutKey } from '../hands/camera_path.js';
+import { cameraAt, completeKeys, pathToJson, withKey, withTime, withoutKey } from '../hands/camera_path.js';
 import { roundCamera } from '../hands/pose.js';
 import { button, group } from './controls.js';
-import { download, h, say } from './dom.js';
+import { download, h, resize, say } from './dom.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -54,8 +54,22 @@ export function filmPanel(ui) {
   });
   const clear = button('Clear', () => { stop(); viewer.set({ path: [] }, 'ui'); });
   const list = h('ol', { class: 'list keys' });
+  const newItem = (/** @type {number} */ i) => {
+    const fly = () => {
+      const { eye, target, up, fov } = completeKeys(viewer.get().path, ui.home())[i];
+      hands.flyTo({ eye, target, up, fov });
+    };
+    const setTime = () => {
+      if (Number.isFinite(time.valueAsNumber)) viewer.set({ path: withTime(viewer.get().path, i, time.valueAsNumber) }, 'ui');
+    };
+    const time = h('input', { type: 'number', step: 0.1, 'aria-label': `Seconds of key ${i + 1}`, inputmode: 'decimal', on: { change: setTime } });
+    const remove = () => viewer.set({ path: withoutKey(viewer.get().path, i) }, 'ui');
+    const go = button(`Key ${i + 1}`, fly, { title: 'Fly there' });
+    go.className = 'item';
+    return h('li', {}, go, time, h('span', {}, 's'),
+      button(`Delete key ${i + 1}`, remove, { icon: 'trash', bare: true }));
+  };
   const acts = h('div', { class: 'buttons' }, player, save, clear, clock);
-  let shown = '';
   return {
     element: h('div', {},
       group('', add, h('div', { class: 'row' }, h('label', { for: seconds.id }, 'Seconds to the next key'), seconds)),
@@ -67,18 +81,11 @@ export function filmPanel(ui) {
       clock.hidden = !began;
       acts.hidden = path.length === 0;
       player.disabled = path.length < 2;
-      const state = JSON.stringify(path);
-      if (state === shown) return;
-      shown = state;
-      const complete = completeKeys(path, ui.home());
-      list.replaceChildren(...path.map((key, i) => {
-        const { eye, target, up, fov } = complete[i];
-        const go = button('', () => hands.flyTo({ eye, target, up, fov }), { title: 'Fly there' });
-        go.className = 'item';
-        go.append(h('strong', {}, `${i + 1}`), h('span', {}, `${key.time} s`));
-        const remove = () => viewer.set({ path: withoutKey(viewer.get().path, i) }, 'ui');
-        return h('li', {}, go, button(`Delete key ${i + 1}`, remove, { icon: 'trash', bare: true }));
-      }));
+      resize(list, path.length, newItem);
+      path.forEach((key, i) => {
+        const time = list.children[i].querySelector('input');
+        if (time && time.valueAsNumber !== key.time) time.value = String(key.time);
+      });
     },
     record,
     play,

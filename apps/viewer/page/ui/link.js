@@ -1,5 +1,4 @@
 /** Keeps the address of the page in step with the settings. */
-import { DEFAULTS } from '../settings.js';
 import { settingsFromHash } from '../settings_link.js';
 
 /**
@@ -34,7 +33,7 @@ export function keepLink(ui) {
     const hash = location.hash.replace(/^#/, '');
     if (hash === written) return;
     written = hash;
-    const { settings, problems } = settingsFromHash(hash, DEFAULTS);
+    const { settings, problems } = settingsFromHash(hash);
     viewer.set(settings, 'link');
     if (problems.length) ui.toast(capitalized(problems[0]), true);
   });

@@ -2,7 +2,7 @@
 import { addScaled, distance, normalized, roundTo3, stepBelow, sub } from '../math.js';
 import { roundCamera } from '../hands/pose.js';
 import { button, group } from './controls.js';
-import { h, say, svg, update } from './dom.js';
+import { h, resize, say, svg, update } from './dom.js';
 import { place } from './overlay.js';
 
 /**
@@ -97,8 +97,7 @@ export function notesPanel(ui) {
         'A click on a marker flies to the view in which the note was written. Notes are part of the link and of saved settings.')),
     refresh(/** @type {Settings} */ { annotations }) {
       start.setAttribute('aria-pressed', String(tool.active));
-      while (list.children.length > annotations.length) list.lastElementChild?.remove();
-      while (list.children.length < annotations.length) list.append(newItem(list.children.length));
+      resize(list, annotations.length, newItem);
       annotations.forEach((note, i) => {
         const area = list.children[i].querySelector('textarea');
         if (area && area.value !== note.text) area.value = note.text;

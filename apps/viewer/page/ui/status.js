@@ -2,6 +2,7 @@
 import { button } from './controls.js';
 import { h, say } from './dom.js';
 import { icon } from './icons.js';
+import { legend } from './legend.js';
 import { bytesText, countText } from './numbers.js';
 
 /** @typedef {import('../viewer_types.js').Viewer} Viewer */
@@ -30,7 +31,7 @@ export class Status {
     this.message = h('div', { class: 'toast', hidden: true });
     this.pill = h('div', { class: 'toast tool-hint', hidden: true });
     this.live = h('div', { class: 'offscreen', role: 'status', 'aria-live': 'polite' });
-    container.append(this.bar, h('header', { class: 'title' }, this.name, this.detail), this.pill, this.message, this.live);
+    container.append(this.bar, h('header', { class: 'title' }, this.name, this.detail, legend(viewer)), this.pill, this.message, this.live);
     this.timer = 0;
     /** @type {HTMLElement | null} */
     this.failure = null;
