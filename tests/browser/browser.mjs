@@ -1,14 +1,15 @@
 /** Starts browsers, and opens pages whose complaints are failures. */
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
+import { after, before, describe } from 'node:test';
 import puppeteer from 'puppeteer-core';
 
 const CHROMIUM = '/usr/bin/chromium', FIREFOX = '/usr/bin/firefox-esr';
 
 /** The browsers that are installed. */
-export const browsers = [['chromium', CHROMIUM], ['firefox', FIREFOX]].filter(([, path]) => fs.existsSync(path)).map(([name]) => name);
+const browsers = [['chromium', CHROMIUM], ['firefox', FIREFOX]].filter(([, path]) => fs.existsSync(path)).map(([name]) => name);
 
-/** @param {string} name chromium or firefox */
+/** Starts a browser without a window. @param {string} name  chromium or firefox */
 export function launch(name) {
   if (name === 'firefox')
     return puppeteer.launch({
@@ -21,6 +22,23 @@ export function launch(name) {
     args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
            '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
+}
+
+/**
+ * Describes tests that run in each browser. `browser()` is the one that has started.
+ * @param {string} title @param {(name: string, browser: () => import('puppeteer-core').Browser) => void} body
+ */
+export function describeInBrowsers(title, body) {
+  for (const name of browsers)
+    describe(`${title} in ${name}`, { timeout: 600_000 }, () => {
+      /** @type {import('puppeteer-core').Browser} */
+      let browser;
+      before(async () => {
+        browser = await launch(name);
+      });
+      after(() => browser?.close());
+      body(name, () => browser);
+    });
 }
 
 /**
@@ -41,7 +59,7 @@ export async function open(browser, url, { width = 320, height = 180, ready = 'w
   return Object.assign(page, { complaints });
 }
 
-/** @param {{complaints: string[]}} page */
+/** Asserts that a page had no errors. @param {{complaints: string[]}} page */
 export function assertNoComplaints(page) {
   assert.deepEqual(page.complaints, []);
 }

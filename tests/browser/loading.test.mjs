@@ -3,162 +3,154 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
-import { after, before, describe, it } from 'node:test';
+import { it } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { assertNoComplaints, browsers, launch, open, still } from './browser.mjs';
+import { assertNoComplaints, describeInBrowsers, open, still } from './browser.mjs';
 import { readPng, spread } from './pictures.mjs';
 import { build, buildColored, folder, proxy, view, voxdag } from './program.mjs';
 
 /** Light that costs little. */
 const QUICK = '#ao=0&shadows=off';
 
-for (const browserName of browsers)
-  describe(`loading in ${browserName}`, { timeout: 600_000 }, () => {
-    /** @type {import('puppeteer-core').Browser} */
-    let browser;
-    before(async () => {
-      browser = await launch(browserName);
-    });
-    after(() => browser?.close());
-
-    it('asks for the root first, and shows a picture before the last level has arrived', async () => {
-      const file = build('courtyard', 1024), server = await view(file);
-      const slow = await proxy(server.url, { bytesPerSecond: 2_000_000 });
-      const page = await open(browser, slow.url + QUICK);
-      const levels = await page.evaluate(() => new Promise((resolve) => {
-        const { viewer } = /** @type {any} */ (window).voxdag;
-        /** @type {any[]} */
-        const seen = [];
-        viewer.on('level', (/** @type {any} */ e) => seen.push({ ...e, at: performance.now() }));
-        viewer.on('loaded', () => resolve(seen));
-        if (viewer.statistics().levelsLoaded === viewer.info?.levels) resolve(seen);
-      }));
-      const ranges = slow.requests.filter(({ path }) => path === '/scene.vdag').map(({ range }) => /bytes=(\d+)-(\d+)/.exec(range)?.slice(1).map(Number) ?? []);
-      assert.equal(ranges[0][0], 0);
-      assert.ok(ranges[0][1] < 100_000, 'the first request is small');
-      for (let i = 1; i < ranges.length; ++i) assert.ok(ranges[i][0] > ranges[i - 1][0], `request ${i} follows the one before it`);
-      assert.ok(ranges.length >= 2 && ranges.length <= 30, `${ranges.length} requests`);
-      const last = levels.at(-1);
-      assert.equal(last.level, last.levels);
-      await still(page);
-      assertNoComplaints(page);
-      await page.close();
-      slow.close();
-      await server.close();
-    });
-
-    it('loads from a server that knows no ranges', async () => {
-      const server = await view(buildColored(128)), whole = await proxy(server.url, { ranges: false });
-      const page = await open(browser, whole.url + QUICK);
-      await still(page);
-      assert.equal(whole.requests.filter(({ path }) => path === '/scene.vdag').length, 1);
-      assertNoComplaints(page);
-      await page.close();
-      whole.close();
-      await server.close();
-    });
-
-    it('shows a static folder of a plain server, and a single file from disk', async () => {
-      const file = buildColored(128), site = path.join(folder, `site-${browserName}`), single = path.join(folder, `single-${browserName}.html`);
-      voxdag('export', file, '-o', `${site}/`, '-q');
-      voxdag('export', file, '-o', single, '-q');
-      const plain = http.createServer((request, response) => {
-        const name = path.join(site, new URL(request.url ?? '/', 'http://x').pathname.replace(/\/$/, '/index.html'));
-        const kinds = { '.js': 'text/javascript', '.html': 'text/html', '.css': 'text/css' };
-        if (!fs.existsSync(name)) return response.writeHead(404).end();
-        response.writeHead(200, { 'Content-Type': kinds[/** @type {'.js'} */ (path.extname(name))] ?? 'application/octet-stream' });
-        fs.createReadStream(name).pipe(response);
-      });
-      await new Promise((resolve) => plain.listen(0, '127.0.0.1', () => resolve(undefined)));
-      const { port } = /** @type {import('node:net').AddressInfo} */ (plain.address());
-      for (const url of [`http://127.0.0.1:${port}/`, pathToFileURL(single).href]) {
-        const page = await open(browser, url + QUICK);
-        await still(page);
-        const shot = path.join(folder, `site-${browserName}.png`);
-        await page.screenshot({ path: shot });
-        assert.ok(spread(readPng(shot)) > 5, `${url} is not blank`);
-        assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.statistics().levelsLoaded), 7);
-        assertNoComplaints(page);
-        await page.close();
-      }
-      plain.close();
-    });
-
-    it('says what is wrong with broken files, and never hangs', async () => {
-      const file = buildColored(128), server = await view(file);
-      const page = await open(browser, server.url + QUICK);
-      await still(page);
-      const bytes = fs.readFileSync(file);
-      const outcomes = await page.evaluate(async (base64, cuts, flips) => {
-        const { SceneLoader } = await import(new URL('file/scene_loader.js', document.baseURI).href);
-        const whole = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-        /** @param {Uint8Array} broken */
-        const load = (broken) => new Promise((resolve) => {
-          const timer = setTimeout(() => finish('hangs'), 20_000);
-          const loader = new SceneLoader((/** @type {any} */ message) => {
-            if (message.type === 'info') loader.load({ shown: message.info.levels, colors: true, normals: true });
-            if (message.type === 'error') finish(`${message.title}: ${message.text}`);
-            if (message.type === 'done') finish('shown');
-          });
-          /** @param {string} outcome */
-          const finish = (outcome) => {
-            clearTimeout(timer);
-            loader.close();
-            resolve(outcome);
-          };
-          loader.open({ bytes: broken.slice().buffer });
-        });
-        const results = { whole: await load(whole), cuts: /** @type {any[]} */ ([]), flips: /** @type {any[]} */ ([]) };
-        for (const cut of cuts) results.cuts.push(await load(whole.subarray(0, cut)));
-        for (const bit of flips) {
-          const broken = whole.slice();
-          broken[bit >> 3] ^= 1 << (bit & 7);
-          results.flips.push(await load(broken));
-        }
-        return results;
-      }, bytes.toString('base64'), Array.from({ length: 24 }, (_, i) => Math.floor((bytes.length * i) / 24)),
-         Array.from({ length: 60 }, (_, i) => (i < 30 ? Math.floor(i * 67.3) * 8 + (i % 8) : Math.floor((bytes.length * 8 * (i - 30)) / 30) + 3)));
-      assert.equal(outcomes.whole, 'shown');
-      for (const outcome of outcomes.cuts) assert.match(outcome, /^This .*: ./, 'a file that was cut off is refused');
-      for (const outcome of outcomes.flips) assert.match(outcome, /^shown$|^This .*: ./);
-      assert.ok(outcomes.flips.filter((outcome) => outcome !== 'shown').length > 10, 'flipped bits of headers and nodes are found');
-      await page.close();
-      await server.close();
-    });
-
-    it('draws again after the graphics card was lost', async () => {
-      const server = await view(build('courtyard', 256));
-      const page = await open(browser, server.url + QUICK);
-      await still(page);
-      const before = path.join(folder, 'before.png'), after = path.join(folder, 'after.png');
-      const canvas = await page.$('canvas');
-      assert.ok(canvas);
-      await canvas.screenshot({ path: before });
-      await page.evaluate(() => new Promise((resolve) => {
-        const { viewer } = /** @type {any} */ (window).voxdag;
-        const extension = viewer.canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
-        viewer.on('restored', resolve);
-        viewer.on('lost', () => setTimeout(() => extension.restoreContext(), 50));
-        extension.loseContext();
-      }));
-      await still(page);
-      await canvas.screenshot({ path: after });
-      const [a, b] = [before, after].map((file) => readPng(file).luma);
-      const difference = a.reduce((sum, v, i) => sum + Math.abs(v - b[i]), 0) / a.length;
-      assert.ok(difference < 1, `the pictures differ by ${difference}`);
-      await page.close();
-      await server.close();
-    });
-
-    it('follows the size of its container', async () => {
-      const server = await view(build('courtyard', 256));
-      const page = await open(browser, server.url + QUICK, { width: 200, height: 300 });
-      await still(page);
-      await page.setViewport({ width: 330, height: 140 });
-      await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.canvas.width === 330, { timeout: 10_000 });
-      await still(page);
-      assertNoComplaints(page);
-      await page.close();
-      await server.close();
-    });
+describeInBrowsers('loading', (browserName, browser) => {
+  it('asks for the root first, and shows a picture before the last level has arrived', async () => {
+    const file = build('courtyard', 1024), server = await view(file);
+    const slow = await proxy(server.url, { bytesPerSecond: 2_000_000 });
+    const page = await open(browser(), slow.url + QUICK);
+    const levels = await page.evaluate(() => new Promise((resolve) => {
+      const { viewer } = /** @type {any} */ (window).voxdag;
+      /** @type {any[]} */
+      const seen = [];
+      viewer.on('level', (/** @type {any} */ e) => seen.push({ ...e, at: performance.now() }));
+      viewer.on('loaded', () => resolve(seen));
+      if (viewer.statistics().levelsLoaded === viewer.info?.levels) resolve(seen);
+    }));
+    const ranges = slow.requests.filter(({ path }) => path === '/scene.vdag').map(({ range }) => /bytes=(\d+)-(\d+)/.exec(range)?.slice(1).map(Number) ?? []);
+    assert.equal(ranges[0][0], 0);
+    assert.ok(ranges[0][1] < 100_000, 'the first request is small');
+    for (let i = 1; i < ranges.length; ++i) assert.ok(ranges[i][0] > ranges[i - 1][0], `request ${i} follows the one before it`);
+    assert.ok(ranges.length >= 2 && ranges.length <= 30, `${ranges.length} requests`);
+    const last = levels.at(-1);
+    assert.equal(last.level, last.levels);
+    await still(page);
+    assertNoComplaints(page);
+    await page.close();
+    slow.close();
+    await server.close();
   });
+
+  it('loads from a server that knows no ranges', async () => {
+    const server = await view(buildColored(128)), whole = await proxy(server.url, { ranges: false });
+    const page = await open(browser(), whole.url + QUICK);
+    await still(page);
+    assert.equal(whole.requests.filter(({ path }) => path === '/scene.vdag').length, 1);
+    assertNoComplaints(page);
+    await page.close();
+    whole.close();
+    await server.close();
+  });
+
+  it('shows a static folder of a plain server, and a single file from disk', async () => {
+    const file = buildColored(128), site = path.join(folder, `site-${browserName}`), single = path.join(folder, `single-${browserName}.html`);
+    voxdag('export', file, '-o', `${site}/`, '-q');
+    voxdag('export', file, '-o', single, '-q');
+    const plain = http.createServer((request, response) => {
+      const name = path.join(site, new URL(request.url ?? '/', 'http://x').pathname.replace(/\/$/, '/index.html'));
+      const kinds = { '.js': 'text/javascript', '.html': 'text/html', '.css': 'text/css' };
+      if (!fs.existsSync(name)) return response.writeHead(404).end();
+      response.writeHead(200, { 'Content-Type': kinds[/** @type {'.js'} */ (path.extname(name))] ?? 'application/octet-stream' });
+      fs.createReadStream(name).pipe(response);
+    });
+    await new Promise((resolve) => plain.listen(0, '127.0.0.1', () => resolve(undefined)));
+    const { port } = /** @type {import('node:net').AddressInfo} */ (plain.address());
+    for (const url of [`http://127.0.0.1:${port}/`, pathToFileURL(single).href]) {
+      const page = await open(browser(), url + QUICK);
+      await still(page);
+      const shot = path.join(folder, `site-${browserName}.png`);
+      await page.screenshot({ path: shot });
+      assert.ok(spread(readPng(shot)) > 5, `${url} is not blank`);
+      assert.equal(await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.statistics().levelsLoaded), 7);
+      assertNoComplaints(page);
+      await page.close();
+    }
+    plain.close();
+  });
+
+  it('says what is wrong with broken files, and never hangs', async () => {
+    const file = buildColored(128), server = await view(file);
+    const page = await open(browser(), server.url + QUICK);
+    await still(page);
+    const bytes = fs.readFileSync(file);
+    const outcomes = await page.evaluate(async (base64, cuts, flips) => {
+      const { SceneLoader } = await import(new URL('file/scene_loader.js', document.baseURI).href);
+      const whole = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+      /** @param {Uint8Array} broken */
+      const load = (broken) => new Promise((resolve) => {
+        const timer = setTimeout(() => finish('hangs'), 20_000);
+        const loader = new SceneLoader((/** @type {any} */ message) => {
+          if (message.type === 'info') loader.load({ shown: message.info.levels, colors: true, normals: true });
+          if (message.type === 'error') finish(`${message.title}: ${message.text}`);
+          if (message.type === 'done') finish('shown');
+        });
+        /** @param {string} outcome */
+        const finish = (outcome) => {
+          clearTimeout(timer);
+          loader.close();
+          resolve(outcome);
+        };
+        loader.open({ bytes: broken.slice().buffer });
+      });
+      const results = { whole: await load(whole), cuts: /** @type {any[]} */ ([]), flips: /** @type {any[]} */ ([]) };
+      for (const cut of cuts) results.cuts.push(await load(whole.subarray(0, cut)));
+      for (const bit of flips) {
+        const broken = whole.slice();
+        broken[bit >> 3] ^= 1 << (bit & 7);
+        results.flips.push(await load(broken));
+      }
+      return results;
+    }, bytes.toString('base64'), Array.from({ length: 24 }, (_, i) => Math.floor((bytes.length * i) / 24)),
+       Array.from({ length: 60 }, (_, i) => (i < 30 ? Math.floor(i * 67.3) * 8 + (i % 8) : Math.floor((bytes.length * 8 * (i - 30)) / 30) + 3)));
+    assert.equal(outcomes.whole, 'shown');
+    for (const outcome of outcomes.cuts) assert.match(outcome, /^This .*: ./, 'a file that was cut off is refused');
+    for (const outcome of outcomes.flips) assert.match(outcome, /^shown$|^This .*: ./);
+    assert.ok(outcomes.flips.filter((outcome) => outcome !== 'shown').length > 10, 'flipped bits of headers and nodes are found');
+    await page.close();
+    await server.close();
+  });
+
+  it('draws again after the graphics card was lost', async () => {
+    const server = await view(build('courtyard', 256));
+    const page = await open(browser(), server.url + QUICK);
+    await still(page);
+    const before = path.join(folder, 'before.png'), after = path.join(folder, 'after.png');
+    const canvas = await page.$('canvas');
+    assert.ok(canvas);
+    await canvas.screenshot({ path: before });
+    await page.evaluate(() => new Promise((resolve) => {
+      const { viewer } = /** @type {any} */ (window).voxdag;
+      const extension = viewer.canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+      viewer.on('restored', resolve);
+      viewer.on('lost', () => setTimeout(() => extension.restoreContext(), 50));
+      extension.loseContext();
+    }));
+    await still(page);
+    await canvas.screenshot({ path: after });
+    const [a, b] = [before, after].map((file) => readPng(file).luma);
+    const difference = a.reduce((sum, v, i) => sum + Math.abs(v - b[i]), 0) / a.length;
+    assert.ok(difference < 1, `the pictures differ by ${difference}`);
+    await page.close();
+    await server.close();
+  });
+
+  it('follows the size of its container', async () => {
+    const server = await view(build('courtyard', 256));
+    const page = await open(browser(), server.url + QUICK, { width: 200, height: 300 });
+    await still(page);
+    await page.setViewport({ width: 330, height: 140 });
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.canvas.width === 330, { timeout: 10_000 });
+    await still(page);
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
+  });
+});

@@ -4,7 +4,7 @@ import { spawnSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import { describe, it } from 'node:test';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import zlib from 'node:zlib';
 
 /** A complete copy of the page, made by the build. */
@@ -12,13 +12,13 @@ const PAGE = process.env.VOXDAG_PAGE ?? '';
 
 const files = list('');
 
-/** @param {string} folder @returns {string[]} */
+/** Returns the files below a folder of the page. @param {string} folder @returns {string[]} */
 function list(folder) {
   return fs.readdirSync(path.join(PAGE, folder), { withFileTypes: true }).flatMap((entry) =>
     entry.isDirectory() ? list(path.join(folder, entry.name)) : [path.join(folder, entry.name)]);
 }
 
-/** @param {string} name @param {object} options @param {string[]} include */
+/** Checks types with tsc. @param {string} name @param {object} options  Of the compiler. @param {string[]} include */
 function check(name, options, include) {
   const config = path.join(PAGE, '..', `tsconfig.${name}.json`);
   fs.writeFileSync(config, JSON.stringify({
@@ -38,6 +38,17 @@ describe('the page', () => {
     const worker = path.join(PAGE, '..', 'worker_constants.js');
     check('worker', { lib: ['es2022', 'dom'], moduleDetection: 'legacy' },
           ['file/worker/*.js', path.relative(PAGE, worker)]);
+  });
+
+  it('has the defaults of `voxdag render`', async () => {
+    const load = (/** @type {string} */ name) => import(pathToFileURL(path.join(PAGE, name)).href);
+    const { LIGHT, VIEW } = await load('constants.js'), { DEFAULTS, mergeSettings } = await load('settings.js');
+    const { sun, sky, occlusion, lod, cubes } = DEFAULTS;
+    assert.deepEqual([sun.angle, sky, occlusion.samples, occlusion.cone, lod, cubes],
+      [LIGHT.sunDegrees, LIGHT.sky, LIGHT.occlusionSamples, LIGHT.occlusionCone, LIGHT.lodPixels, LIGHT.cubePixels]);
+    const { camera } = mergeSettings(DEFAULTS, { camera: { eye: [0, 0, 1], target: [0, 0, 0] } });
+    assert.equal(camera.fov, VIEW.fovDegrees);
+    assert.doesNotThrow(() => mergeSettings(DEFAULTS, { camera: { ...camera, fov: VIEW.leastFovDegrees } }));
   });
 
   it('takes less than 150 KB, each file compressed', () => {

@@ -1,8 +1,8 @@
 /** The picture in real browsers: hits and light are those of the command line. */
 import assert from 'node:assert/strict';
 import path from 'node:path';
-import { after, before, describe, it } from 'node:test';
-import { assertNoComplaints, browsers, launch, open, still } from './browser.mjs';
+import { it } from 'node:test';
+import { assertNoComplaints, describeInBrowsers, open, still } from './browser.mjs';
 import { readHits, writeNpy } from './npy.mjs';
 import { readPng, spread, ssim } from './pictures.mjs';
 import { build, buildColored, folder, view, voxdag } from './program.mjs';
@@ -24,71 +24,63 @@ const VIEWS = {
 /** @param {string} name */
 const fileOf = (name) => (name === 'court' ? build('courtyard', 512) : buildColored(256));
 
-for (const browserName of browsers)
-  describe(`pictures in ${browserName}`, { timeout: 600_000 }, () => {
-    /** @type {import('puppeteer-core').Browser} */
-    let browser;
-    before(async () => {
-      browser = await launch(browserName);
-    });
-    after(() => browser?.close());
+describeInBrowsers('pictures', (browserName, browser) => {
+  it('shows a scene without complaints of the console or the security policy', async () => {
+    const server = await view(build('courtyard', 256));
+    const page = await open(browser(), server.url);
+    await still(page);
+    const shot = path.join(folder, 'first.png');
+    await page.screenshot({ path: shot });
+    assert.ok(spread(readPng(shot)) > 5, 'the picture is not blank');
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
+  });
 
-    it('shows a scene without complaints of the console or the security policy', async () => {
-      const server = await view(build('courtyard', 256));
-      const page = await open(browser, server.url);
+  it('hits the same voxels as `voxdag trace`, away from ties', async () => {
+    for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
+      const file = fileOf(name), server = await view(file);
+      const page = await open(browser(), `${server.url}#ao=0&shadows=off`);
       await still(page);
-      const shot = path.join(folder, 'first.png');
-      await page.screenshot({ path: shot });
-      assert.ok(spread(readPng(shot)) > 5, 'the picture is not blank');
+      for (const { eye, target } of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
+        const camera = { eye, target, up: [0.02, 1, 0.03], fov: 60 };
+        const cells = await page.evaluate((camera, width, height) => {
+          const { viewer } = /** @type {any} */ (window).voxdag;
+          viewer.set({ camera, lod: 0 });
+          return Array.from(viewer.hits(width, height));
+        }, camera, WIDTH, HEIGHT);
+        compareHits(file, camera, Uint32Array.from(/** @type {number[]} */ (cells)));
+      }
       assertNoComplaints(page);
       await page.close();
       await server.close();
-    });
+    }
+  });
 
-    it('hits the same voxels as `voxdag trace`, away from ties', async () => {
+  if (browserName === 'chromium')
+    it('lights five views of two scenes as `voxdag render` does: SSIM of at least 0.98', async () => {
       for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
         const file = fileOf(name), server = await view(file);
-        const page = await open(browser, `${server.url}#ao=0&shadows=off`);
-        await still(page);
-        for (const { eye, target } of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
-          const camera = { eye, target, up: [0.02, 1, 0.03], fov: 60 };
-          const cells = await page.evaluate((camera, width, height) => {
+        const page = await open(browser(), server.url, { width: 640, height: 400 });
+        for (const [i, { eye, target }] of shots.entries()) {
+          const picture = path.join(folder, `${name}${i}.png`);
+          voxdag('render', file, '-q', '--size', `${WIDTH}x${HEIGHT}`, '--spp', '16', '--fov', '60', '--up', '0,1,0',
+                 '--eye', eye.join(','), '--target', target.join(','), '-o', picture);
+          const png = await page.evaluate(async (camera, width, height) => {
             const { viewer } = /** @type {any} */ (window).voxdag;
-            viewer.set({ camera, lod: 0 });
-            return Array.from(viewer.hits(width, height));
-          }, camera, WIDTH, HEIGHT);
-          compareHits(file, camera, Uint32Array.from(/** @type {number[]} */ (cells)));
+            viewer.set({ camera, lod: 1, sun: { direction: null } });
+            const blob = await viewer.capture({ width, height, samples: 16 });
+            return Array.from(new Uint8Array(await blob.arrayBuffer()));
+          }, { eye, target, up: [0, 1, 0], fov: 60 }, WIDTH, HEIGHT);
+          const likeness = ssim(readPng(picture), readPng(Buffer.from(png)));
+          assert.ok(likeness >= 0.98, `${name}, view ${i}: SSIM ${likeness}`);
         }
         assertNoComplaints(page);
         await page.close();
         await server.close();
       }
     });
-
-    if (browserName === 'chromium')
-      it('lights five views of two scenes as `voxdag render` does: SSIM of at least 0.98', async () => {
-        for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
-          const file = fileOf(name), server = await view(file);
-          const page = await open(browser, server.url, { width: 640, height: 400 });
-          for (const [i, { eye, target }] of shots.entries()) {
-            const picture = path.join(folder, `${name}${i}.png`);
-            voxdag('render', file, '-q', '--size', `${WIDTH}x${HEIGHT}`, '--spp', '16', '--fov', '60', '--up', '0,1,0',
-                   '--eye', eye.join(','), '--target', target.join(','), '-o', picture);
-            const png = await page.evaluate(async (camera, width, height) => {
-              const { viewer } = /** @type {any} */ (window).voxdag;
-              viewer.set({ camera, lod: 1, sun: { direction: null } });
-              const blob = await viewer.capture({ width, height, samples: 16 });
-              return Array.from(new Uint8Array(await blob.arrayBuffer()));
-            }, { eye, target, up: [0, 1, 0], fov: 60 }, WIDTH, HEIGHT);
-            const likeness = ssim(readPng(picture), readPng(Buffer.from(png)));
-            assert.ok(likeness >= 0.98, `${name}, view ${i}: SSIM ${likeness}`);
-          }
-          assertNoComplaints(page);
-          await page.close();
-          await server.close();
-        }
-      });
-  });
+});
 
 /**
  * Casts the rays of a camera by `voxdag trace`, and again at four places around the middle of each
