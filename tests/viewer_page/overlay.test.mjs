@@ -34,7 +34,7 @@ test('a line that points at the camera has no place for the pointer', () => {
   assert.equal(projection.along(camera.target, sub(camera.eye, camera.target), 640, 360), null);
 });
 
-test('what lies behind the camera is clipped, and nothing else', () => {
+test('points behind the camera are clipped, and no others', () => {
   const ahead = [[1, 0, 0], [0, 2, 1], [-1, 1, 2]];
   assert.deepEqual(projection.clipped(ahead, true), ahead.map((point) => { const { x, y } = projection.at(point); return { x, y }; }));
   const behind = [[12, 8, 18], [13, 8, 18], [12, 9, 19]];

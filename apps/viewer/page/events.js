@@ -1,4 +1,4 @@
-/** Named events with handlers. */
+/** Events with handlers: the viewer's own, and listeners of the page. */
 export class Events {
   constructor() {
     /** @type {Map<string, Set<(...values: any[]) => void>>} */
@@ -20,7 +20,7 @@ export class Events {
 }
 
 /**
- * Listeners that end together.
+ * Returns a function that adds listeners, and one that ends all of them.
  * @returns {{listen: (target: EventTarget, type: string, handler: (event: any) => void,
  *   options?: AddEventListenerOptions) => void, end: () => void}}
  */

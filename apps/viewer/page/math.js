@@ -52,9 +52,6 @@ export const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 /** @param {Vec3} a */
 export const isFinite3 = (a) => a.every(Number.isFinite);
 
-/** @param {Vec3} a @param {Vec3} b */
-export const equal3 = (a, b) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
-
 export const RADIANS = Math.PI / 180;
 
 /**

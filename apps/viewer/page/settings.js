@@ -78,7 +78,7 @@ export class SettingsError extends Error {
 
 /**
  * A check returns the value to store, or throws SettingsError with the key. `before` is the value
- * that is in force; `ignored` collects keys that no one knows.
+ * in force; `ignored` collects unknown keys.
  * @typedef {(value: any, key: string, before: any, ignored: string[]) => any} Check
  */
 
@@ -141,7 +141,7 @@ const list = (check, most) => (value, key, _, ignored) => {
 };
 
 /**
- * An object. Fields that the value lacks keep the value before, or the default.
+ * Checks an object. Fields that the value lacks keep the value before, or the default.
  * @param {{[key: string]: Check}} fields
  * @param {{[key: string]: any}} [defaults]  Of fields that may be missing if there is none before.
  * @param {(value: any, key: string) => any} [finish]  Checks the whole object.
@@ -164,7 +164,7 @@ const record = (fields, defaults = {}, finish = (value) => value) => (value, key
   return finish(result, key);
 };
 
-/** An object whose fields are all replaced. @type {typeof record} */
+/** Checks an object whose fields are all replaced. @type {typeof record} */
 const whole = (fields, defaults, finish) => (value, key, _, ignored) =>
   record(fields, defaults, finish)(value, key, null, ignored);
 
@@ -255,12 +255,11 @@ export function settingsFromJson(json, ignored = []) {
   return mergeSettings(DEFAULTS, value, ignored);
 }
 
-/** @param {Settings} settings */
+/** Returns the settings as JSON, with arrays of numbers on one line each. @param {Settings} settings */
 export function settingsToJson(settings) {
-  // Arrays of numbers on one line each.
   return JSON.stringify(settings, null, 2).replace(/\[\s+(-?[\d.e+-]+(?:,\s+-?[\d.e+-]+)*)\s+\]/g,
     (_, numbers) => '[' + numbers.replace(/\s+/g, ' ') + ']') + '\n';
 }
 
-/** @param {Camera | null} a @param {Camera | null} b */
+/** Returns whether two cameras have the same numbers. @param {Camera | null} a @param {Camera | null} b */
 export const sameCamera = (a, b) => a === b || JSON.stringify(a) === JSON.stringify(b);

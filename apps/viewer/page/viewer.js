@@ -82,7 +82,7 @@ class CanvasViewer extends Events {
   async #start(url, bytes) {
     const gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance' });
     if (gl === null)
-      return this.#fail('This browser shows no WebGL 2', 'Turn on hardware acceleration, or use a current version of Chrome, Edge, Firefox or Safari.', 'webgl');
+      return this.#fail('This browser has no WebGL 2', 'Turn on hardware acceleration, or use a current version of Chrome, Edge, Firefox or Safari.', 'webgl');
     this.gl = gl;
     this.shaders = await loadShaders();
     if (this.isDestroyed) return;

@@ -13,7 +13,7 @@ try {
   const { settings, problems } = settingsFromHash(location.hash);
   const viewer = createViewer({ container: picture, settings });
   const hands = new Hands(viewer);
-  const { ui } = createInterface(viewer, hands, container);
+  const ui = createInterface(viewer, hands, container);
   keepLink(ui);
   for (const problem of problems) console.warn(problem);
   if (problems.length) ui.toast(capitalized(problems[0]), true);

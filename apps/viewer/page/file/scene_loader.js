@@ -11,12 +11,12 @@ export const INSTANCE_STEPS = 4;
 const PARTS = ['source', 'container', 'levels', 'attributes', 'worker'];
 
 /**
- * What a file holds. `levelBegin` are the first words of the levels in NODE.
+ * Contents of a file. `levelBegin` are the first words of the levels in NODE.
  * @typedef {{
  *   levels: number, resolution: number, origin: [number, number, number], voxelSize: number, voxels: number,
- *   dagNodesPerLevel: number[], svoNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
- *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean, attributeBytes: number,
- *   source: {name: string, vertices: number, triangles: number}, program: string}} FileInfo
+ *   dagNodesPerLevel: number[], fileBytes: number, isEmpty: boolean,
+ *   words: number, leafBlocks: number, levelBegin: number[], hasColors: boolean, hasNormals: boolean,
+ *   source: {name: string, vertices: number, triangles: number}}} FileInfo
  */
 /** @typedef {{precision: number, begins: Uint32Array, words: Uint32Array}} ValuePages */
 /** @typedef {{index: {finest: number, cells: number, width: number[], words: Uint32Array}, colors: ValuePages | null, normals: ValuePages | null}} Attributes */

@@ -148,7 +148,8 @@ export class PictureSchedule {
   /** Counts the work of a picture that is shown. @param {Picture} picture @param {Shot} shot */
   #count(picture, shot) {
     const { show } = shot.settings, rays = this.renderer.raysPerSample(shot), { numbers } = this;
-    numbers.raysPerFrame = picture.width * picture.height * (1 + (show === 'light' ? rays.light + rays.occlusion : 0));
+    const lightRays = show === 'light' ? rays.light + rays.occlusion : show === 'occlusion' ? rays.occlusion : 0;
+    numbers.raysPerFrame = picture.width * picture.height * (1 + lightRays);
     if (show === 'light' || show === 'steps') numbers.stepsPerRay = this.renderer.stepsOf(picture);
     numbers.scale = picture.width / this.canvas.width;
     numbers.samples = numbers.scale === 1 ? picture.samples : 0;

@@ -12,7 +12,7 @@ import { add, addScaled, scale, sub } from '../math.js';
  * @typedef {Required<PathKey>} Key
  */
 
-/** @param {number} s  From 0 to 1. Returns the weights of a, b, and of their slopes per `width`. @param {number} width */
+/** Returns the weights of a, b, and of their slopes per `width`. @param {number} s  From 0 to 1. @param {number} width */
 function weights(s, width) {
   const s2 = s * s, s3 = s2 * s;
   return [2 * s3 - 3 * s2 + 1, 3 * s2 - 2 * s3, (s3 - 2 * s2 + s) * width, (s3 - s2) * width];
@@ -37,7 +37,7 @@ function monotoneCubic(keys, i, time, values) {
   return values(i) * a + values(i + 1) * b + slope(i) * da + slope(i + 1) * db;
 }
 
-/** @param {Key[]} keys @param {number} i @param {number} time @param {'eye' | 'target'} name @returns {Vec3} */
+/** Returns the eye or the target between keys i and i + 1. @param {Key[]} keys @param {number} i @param {number} time @param {'eye' | 'target'} name @returns {Vec3} */
 function alongCurve(keys, i, time, name) {
   const point = (/** @type {number} */ k) => keys[k][name];
   const gap = (/** @type {number} */ k) => Math.max(Math.sqrt(Math.hypot(...sub(point(k + 1), point(k)))), 1e-9);
@@ -56,7 +56,7 @@ function alongCurve(keys, i, time, name) {
 }
 
 /**
- * Fills in what keys leave out: the values of the key before, those of `first` for the first key.
+ * Fills in the values that keys leave out: those of the key before; for the first key those of `first`.
  * @param {PathKey[]} keys @param {Camera} first @returns {Key[]}
  */
 export function completeKeys(keys, first) {
@@ -65,8 +65,8 @@ export function completeKeys(keys, first) {
 }
 
 /**
- * Returns the camera at a time; before the first key it is that key's, after the last one the last
- * one's. The keys' times increase.
+ * Returns the camera at a time: the first key's before it, the last key's after it. The keys' times
+ * increase.
  * @param {Key[]} keys @param {number} time @returns {Camera}
  */
 export function cameraAt(keys, time) {
@@ -101,7 +101,7 @@ export function withKey(keys, camera, seconds) {
 }
 
 /**
- * Returns the keys without one; the next key gets the values that it had from it.
+ * Returns the keys without one. The next key keeps the values that it took from the one before it.
  * @param {PathKey[]} keys @param {number} index @returns {PathKey[]}
  */
 export function withoutKey(keys, index) {

@@ -4,8 +4,8 @@ import { distance as distanceOf } from '../math.js';
 
 /** @typedef {import('./pose.js').Pose} Pose */
 
-/** Returns a curve from 0 to 1 without jumps of its speed or acceleration. @param {number} t */
-export const eased = (t) => t * t * t * (t * (6 * t - 15) + 10);
+/** Returns the place on a curve from 0 to 1 whose speed and acceleration have no jumps. @param {number} t */
+const eased = (t) => t * t * t * (t * (6 * t - 15) + 10);
 
 export class Flight {
   /** @param {Pose} from @param {Pose} to @param {number} seconds */

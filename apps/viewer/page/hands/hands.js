@@ -1,4 +1,4 @@
-/** Hands: they move the camera of a viewer by pointer, keys and gamepad. */
+/** Moves the camera of a viewer by pointer, keys and gamepad. */
 import { clamp } from '../math.js';
 import { MODES, sameCamera } from '../settings.js';
 import { Events, listeners } from '../events.js';
@@ -16,9 +16,9 @@ import { cameraOf, poseOf } from './pose.js';
  */
 
 /**
- * Events: 'click' (x, y), 'double' (x, y), 'hover' (x, y, down), 'leave', 'gesture' (a person moves the camera),
- * 'rest' (the camera stands still again), 'speed' (the factor on the speed). Pixels are CSS pixels
- * of the picture.
+ * Moves the camera. Events: 'click' (x, y), 'hover' (x, y, down), 'leave', 'gesture' (a person moves
+ * the camera), 'rest' (the camera stands still again), 'speed' (the factor on the speed). x and y are
+ * CSS pixels of the picture.
  */
 export class Hands extends Events {
   /** @param {Viewer} viewer @param {{keyboard?: EventTarget}} [options]  `keyboard`: whose keys count. */
@@ -53,10 +53,12 @@ export class Hands extends Events {
   }
   isLoaded = false;
   onLoaded = () => { this.isLoaded = true; };
+  /** Takes a double click for something else; returns whether it did. @type {(x: number, y: number) => boolean} */
+  takesDoubleClick = () => false;
   /** @type {ReturnType<typeof listeners>} */
   #listeners;
 
-  /** Takes over the scene when its header is known, and follows the home view. */
+  /** Begins when the scene's header is known; later follows the home view. */
   #meet() {
     const { viewer } = this, { info, canvas } = viewer;
     if (!info) return;
@@ -80,9 +82,9 @@ export class Hands extends Events {
     this.#follow(this.viewer.get());
   }
 
-  /** Turns around the point, unless someone else takes double clicks. @param {number} x @param {number} y */
+  /** Turns to the point of a double click, unless it is taken. @param {number} x @param {number} y */
   async #double(x, y) {
-    if (this.handlers.get('double')?.size) return this.emit('double', x, y);
+    if (this.takesDoubleClick(x, y)) return;
     const hit = await this.viewer.pick(x, y);
     if (hit) this.focus(hit.position);
   }
@@ -93,11 +95,11 @@ export class Hands extends Events {
     this.navigator.height = Math.max(1, this.viewer.canvas.clientHeight);
   }
 
-  /** Takes the mode and the camera that someone else has set. @param {Settings} settings */
+  /** Takes the mode and the camera that a program, a panel or a link has set. @param {Settings} settings */
   #follow(settings) {
     const { navigator } = this;
     if (!navigator) return;
-    // Nobody falls through levels that are still on their way.
+    // A walker would fall through levels that have not arrived.
     const isComplete = this.isLoaded || this.viewer.statistics().levelsLoaded >= (this.viewer.info?.levels ?? 0);
     const mode = settings.mode === 'walk' && !isComplete ? 'fly' : settings.mode;
     const camera = settings.camera ?? navigator.scene.home;
@@ -151,13 +153,13 @@ export class Hands extends Events {
     this.frameRequest ||= requestAnimationFrame((next) => this.#tick(next));
   }
 
-  /** @param {Camera} camera */
+  /** Sets the viewer's camera. @param {Camera} camera */
   #show(camera) {
     this.lastCamera = camera;
     this.viewer.set({ camera }, 'hands');
   }
 
-  /** @param {Gamepad | null} pad @returns {Input} */
+  /** Adds up what keys, fingers and gamepad ask for. @param {Gamepad | null} pad @returns {Input} */
   #input(pad) {
     const keys = this.keys.input, [aside, ahead] = this.pointers?.stick ?? [0, 0];
     let other = NO_INPUT;
@@ -198,18 +200,15 @@ export class Hands extends Events {
   view(name) {
     this.#act((navigator) => navigator.view(name));
   }
-  /** Flies to a camera. @param {Camera} camera @param {number} [seconds] */
-  flyTo(camera, seconds) {
-    this.#act((navigator) => navigator.flyTo(camera, seconds));
+  /** Flies to a camera. @param {Camera} camera */
+  flyTo(camera) {
+    this.#act((navigator) => navigator.flyTo(camera));
   }
   /** Turns to a point. @param {import('../math.js').Vec3} point */
   focus(point) {
     this.#act((navigator) => navigator.focus(point));
   }
-  /** Changes the speed of flying and walking. @param {number} factor */
-  changeSpeed(factor) {
-    this.navigator?.changeSpeed(factor);
-  }
+  /** Hides the pointer and lets it look around, until Escape. */
   lockPointer() {
     this.pointers?.lock();
   }

@@ -1,6 +1,6 @@
 /**
- * The motion of the camera, without pages and pointers: hands.js calls it for every gesture and
- * every frame. Gestures set a goal; the camera approaches it exponentially, so that motion does not
+ * Moves the camera; knows no page and no pointers. hands.js calls it for every gesture and every
+ * frame. Gestures set a goal; the camera approaches it exponentially, so that motion does not
  * depend on the frame rate.
  */
 import { RADIANS, add, addScaled, clamp, cross, distance as distanceOf, dot, length, mix, normalized, scale, sub, wrapped }
@@ -19,7 +19,7 @@ import { Walker } from './walker.js';
  * @typedef {import('../viewer_types.js').Hit} Hit
  * @typedef {import('./pose.js').Pose} Pose
  *
- * @typedef {object} Surroundings  The scene, as hands feel it.
+ * @typedef {object} Surroundings  The parts of the viewer that the camera's motion depends on.
  * @property {{low: Vec3, high: Vec3}} bounds
  * @property {number} voxelSize
  * @property {Camera} home
@@ -42,12 +42,14 @@ const ORBIT_LAG = 0.07, LOOK_LAG = 0.035, SPEED_LAG = 0.12;
 const TURN_SPEED = 1.6;
 /** Heights of the picture below which a goal is reached. */
 const REACHED = 1e-4;
+const FLIGHT_SECONDS = 0.7;
 
-/** @param {number} time @param {number} lag  Returns the part of the way that is covered. */
+/** Returns the part of the way that is covered in a time. @param {number} time @param {number} lag */
 export const covered = (time, lag) => (lag > 0 ? 1 - Math.exp(-time / lag) : 1);
 
 /**
- * Moves with a speed that approaches `wish` exponentially. Exact for any length of the step.
+ * Returns the speed after a time, and the way in it, if the speed approaches `wish` exponentially:
+ * exact for any length of the step.
  * @param {Vec3} speed @param {Vec3} wish @param {number} time @param {number} lag
  * @returns {{speed: Vec3, way: Vec3}}
  */
@@ -83,6 +85,7 @@ export class Navigator {
   get size() {
     return Math.max(distanceOf(this.scene.bounds.low, this.scene.bounds.high), this.scene.voxelSize) || 1;
   }
+  /** The least and the greatest distance of the target, in world units. */
   get least() {
     return Math.max(this.scene.voxelSize * 0.5, this.size * 1e-9);
   }
@@ -101,14 +104,14 @@ export class Navigator {
     return cameraOf(this.shown);
   }
 
-  /** Takes a camera that others chose, at once. @param {Camera} camera */
+  /** Takes a camera at once, without a flight. @param {Camera} camera */
   setCamera(camera) {
     this.stop();
     this.goal = this.shown = poseOf(camera);
     if (this.mode === 'walk') this.walker = new Walker(this.scene, this.goal);
   }
 
-  /** @param {Mode} mode */
+  /** Changes the mode; the picture stays. @param {Mode} mode */
   setMode(mode) {
     if (mode === this.mode) return;
     this.stop();
@@ -126,7 +129,7 @@ export class Navigator {
     this.zoomSpeed = 0;
   }
 
-  /** After flying, sets the target to the surface in the middle of the picture, or in its distance. */
+  /** Sets the target to the surface in the middle of the picture; without one, as far as the scene's middle. */
   #anchor() {
     const hit = this.scene.cast(eyeOf(this.goal), forwardOf(this.goal), this.most);
     const { low, high } = this.scene.bounds;
@@ -185,7 +188,7 @@ export class Navigator {
     this.#shift(add(scale(lens.right, -dx * pixel), scale(lens.up, dy * pixel)));
   }
 
-  /** @param {Vec3} way */
+  /** Moves eye and target. @param {Vec3} way */
   #shift(way) {
     if (this.walker) return;
     this.#setGoal({ ...this.goal, target: add(this.goal.target, way) });
@@ -201,7 +204,7 @@ export class Navigator {
     this.zoomAbout(this.pointUnder(x, y), factor);
   }
 
-  /** @param {Vec3} point @param {number} factor */
+  /** Scales the distance to a point. @param {Vec3} point @param {number} factor  Below 1: closer. */
   zoomAbout(point, factor) {
     if (this.walker || !(factor > 0)) return;
     const near = Math.min(distanceOf(eyeOf(this.goal), point), this.goal.distance);
@@ -214,22 +217,22 @@ export class Navigator {
     });
   }
 
-  /** The wheel in fly and walk: the speed. @param {number} factor */
+  /** Changes the speed of flying and walking. @param {number} factor */
   changeSpeed(factor) {
     this.speedFactor = clamp(this.speedFactor * factor, 0.01, 100);
   }
 
-  /** Flies to a camera. @param {Camera} camera @param {number} [seconds] */
-  flyTo(camera, seconds = 0.7) {
-    this.#flyTo(poseOf(camera), seconds);
+  /** Flies to a camera. @param {Camera} camera */
+  flyTo(camera) {
+    this.#flyTo(poseOf(camera));
   }
 
-  /** @param {Pose} pose @param {number} [seconds] */
-  #flyTo(pose, seconds = 0.7) {
+  /** @param {Pose} pose */
+  #flyTo(pose) {
     this.stop();
     if (this.mode === 'walk') this.setMode('fly');
-    if (this.reducedMotion || seconds === 0 || apart(this.shown, pose) < REACHED) this.goal = this.shown = pose;
-    else this.flight = new Flight(this.shown, pose, seconds);
+    if (this.reducedMotion || apart(this.shown, pose) < REACHED) this.goal = this.shown = pose;
+    else this.flight = new Flight(this.shown, pose, FLIGHT_SECONDS);
   }
 
   /** Shows the whole scene from the present direction. */
@@ -250,12 +253,12 @@ export class Navigator {
     this.#flyTo({ ...this.shown, target: point, distance });
   }
 
-  /** A gesture takes over from a flight. */
+  /** Ends a flight, because a gesture takes over. */
   #gesture() {
     if (this.flight) this.stop();
   }
 
-  /** @param {Pose} pose */
+  /** Sets a goal, unless it is too far away or not finite. @param {Pose} pose */
   #setGoal(pose) {
     const { low, high } = this.scene.bounds;
     const away = distanceOf(pose.target, scale(add(low, high), 0.5));
@@ -316,7 +319,7 @@ export class Navigator {
     const start = this.goal.target;
     this.#shift(way);
     this.speed = !wished && length(speed) < this.goal.distance * 1e-3 ? [0, 0, 0] : speed;
-    // What moves by keys needs no lag of its own: the speed is smooth.
+    // Keys need no second lag: the speed is smooth already.
     this.shown = { ...this.shown, target: add(this.shown.target, sub(this.goal.target, start)) };
     return true;
   }

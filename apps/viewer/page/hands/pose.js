@@ -1,5 +1,5 @@
 /**
- * A camera as a point, two angles and a distance: what hands turn, move and scale. The angles
+ * A camera as a target, two angles and a distance, which gestures turn, move and scale. The angles
  * are those of a frame east, north, up, so that the horizon stays level with any up axis.
  */
 import {
@@ -39,13 +39,13 @@ export function compassOf(upwards) {
   return { east: cross(north, up), north, up };
 }
 
-/** @param {Compass} compass @param {number} yaw @param {number} pitch @returns {Vec3} */
+/** Returns the unit vector with these angles. @param {Compass} compass @param {number} yaw @param {number} pitch  Radians. @returns {Vec3} */
 export function directionOf(compass, yaw, pitch) {
   const flat = add(scale(compass.north, Math.cos(yaw)), scale(compass.east, Math.sin(yaw)));
   return add(scale(flat, Math.cos(pitch)), scale(compass.up, Math.sin(pitch)));
 }
 
-/** @param {Compass} compass @param {Vec3} forward  Unit length. */
+/** Returns the angles of a unit vector, in radians. @param {Compass} compass @param {Vec3} forward */
 export function anglesOf(compass, forward) {
   const x = dot(forward, compass.east), y = dot(forward, compass.north);
   return { yaw: Math.hypot(x, y) > 1e-9 ? Math.atan2(x, y) : 0, pitch: Math.asin(clamp(dot(forward, compass.up), -1, 1)) };

@@ -1,6 +1,6 @@
 /**
  * Controls of the panels. Each is { element, refresh }: `get` reads the settings, `set` changes
- * them, and `refresh` shows settings that someone else has changed.
+ * them, and `refresh` shows settings that have changed elsewhere.
  */
 import { clamp } from '../math.js';
 import { h, say } from './dom.js';
@@ -15,7 +15,7 @@ let ids = 0;
 const newId = () => `c${++ids}`;
 
 /**
- * A number on a slider. `to` and `from` map the value to the slider's position, from `min` to `max`.
+ * Makes a slider of a number. `to` and `from` map the value to the slider's position, from `min` to `max`.
  * @param {{label: string, min: number, max: number, step?: number | 'any', get: (settings: Settings) => number,
  *   set: (value: number) => void, text?: (value: number) => string, to?: (value: number) => number,
  *   from?: (position: number) => number, hint?: string}} options
@@ -42,7 +42,7 @@ export function slider(options) {
     element: h('div', { class: 'row slider' }, h('label', { for: id, title: hint }, label), output, input),
     refresh(settings) {
       const value = get(settings), position = to(value);
-      // A hand on the slider is not disturbed by roundings.
+      // Rounding must not move a slider that is being dragged.
       if (Math.abs(Number(input.value) - position) > 1e-6 * Math.abs(position)) input.value = String(position);
       show(value);
     },
@@ -52,13 +52,14 @@ export function slider(options) {
   };
 }
 
-/** A slider whose position is a logarithm, with zero at its left end. @param {number} least */
+/** Returns options of a slider whose position is a logarithm, with zero at its left end. @param {number} least */
 export const logarithmic = (least) => ({
   to: (/** @type {number} */ x) => Math.log2(Math.max(x, least)),
   from: (/** @type {number} */ x) => (x <= Math.log2(least) ? 0 : +(2 ** x).toPrecision(3)),
 });
 
 /**
+ * Makes a switch.
  * @param {{label: string, get: (settings: Settings) => boolean, set: (on: boolean) => void, hint?: string}} options
  * @returns {Control & {input: HTMLInputElement}}
  */
@@ -72,7 +73,7 @@ export function toggle({ label, get, set, hint }) {
 }
 
 /**
- * One of several, in a list that opens.
+ * Makes a list that opens, to choose one of several.
  * @template {string} T
  * @param {{label: string, options: [T, string][], get: (settings: Settings) => T, set: (value: T) => void}} options
  * @returns {Control}
@@ -88,7 +89,7 @@ export function choice({ label, options, get, set }) {
 }
 
 /**
- * One of a few, side by side.
+ * Makes radio buttons side by side, to choose one of a few.
  * @template {string} T
  * @param {{label: string, options: [T, string, string?][], get: (settings: Settings) => T, set: (value: T) => void,
  *   bare?: boolean}} options  Values, names and icons; `bare`: only icons.
@@ -110,6 +111,7 @@ export function segments({ label, options, get, set, bare }) {
 }
 
 /**
+ * Makes a button.
  * @param {string} label @param {() => void} act
  * @param {{icon?: string, bare?: boolean, primary?: boolean, title?: string, keys?: string}} [options]
  */
@@ -120,11 +122,11 @@ export function button(label, act, { icon: image, bare, primary, title, keys } =
   }, image && icon(image), !bare && label);
 }
 
-/** @param {string} title @param {...import('./dom.js').Child} children */
+/** Makes a part of a panel; a title may be empty. @param {string} title @param {...import('./dom.js').Child} children */
 export const group = (title, ...children) =>
   h('section', { class: 'group' }, title && h('h3', {}, title), ...children);
 
-/** Controls that are shown and refreshed together. @param {Control[]} controls */
+/** Returns a function that refreshes several controls. @param {Control[]} controls */
 export const refreshAll = (controls) => (/** @type {Settings} */ settings) => {
   for (const control of controls) control.refresh(settings);
 };

@@ -7,7 +7,7 @@
  * @typedef {Node | string | null | undefined | false} Child
  */
 
-/** @param {Element} element @param {Attributes} attributes @param {Child[]} children */
+/** Gives an element attributes, listeners and children. @param {Element} element @param {Attributes} attributes @param {Child[]} children */
 function fill(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (name === 'on') for (const [event, handler] of Object.entries(value)) element.addEventListener(event, handler);
@@ -19,6 +19,7 @@ function fill(element, attributes, children) {
 }
 
 /**
+ * Makes an element of HTML.
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag @param {Attributes} [attributes] @param {...Child} children
  * @returns {HTMLElementTagNameMap[K]}
@@ -30,6 +31,7 @@ export function h(tag, attributes = {}, ...children) {
 }
 
 /**
+ * Makes an element of SVG.
  * @template {keyof SVGElementTagNameMap} K
  * @param {K} tag @param {Attributes} [attributes] @param {...Child} children
  * @returns {SVGElementTagNameMap[K]}
@@ -72,7 +74,7 @@ export async function copy(text) {
     await navigator.clipboard.writeText(text);
     return true;
   } catch {
-    // Pages without https have no clipboard: an old command may still do it.
+    // Pages without https have no clipboard; an old command may still copy.
     const area = h('textarea', { class: 'offscreen' });
     area.value = text;
     document.body.append(area);

@@ -3,7 +3,7 @@ import { group } from './controls.js';
 import { h } from './dom.js';
 
 /** @type {[string, [string, string][]][]} */
-export const HELP = [
+const HELP = [
   ['Mouse and touch', [
     ['Drag · one finger', 'turn; look around when flying or walking'],
     ['Right drag · Shift drag · two fingers', 'move sideways'],

@@ -32,7 +32,6 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {boolean} [followsCamera]  Refresh it when the camera has moved.
  *
  * @typedef {object} Tool  What a click on the picture does.
- * @property {string} name
  * @property {() => string} hint
  * @property {(hit: Hit) => void} click
  * @property {(hit: Hit | null) => void} [hover]
@@ -64,8 +63,8 @@ const PANELS = [
 const NUMBERS_MS = 250;
 
 /**
- * Adds the interface to a container, in which an element holds just the viewer's canvas.
- * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container
+ * Adds the interface to a container, in which an element holds only the viewer's canvas.
+ * @param {Viewer} viewer @param {Hands} hands @param {HTMLElement} container @returns {Ui}
  */
 export function createInterface(viewer, hands, container) {
   const status = new Status(viewer, container);
@@ -187,11 +186,10 @@ export function createInterface(viewer, hands, container) {
     if (tool === mine) showTool();
   };
   hands.on('click', (x, y) => { if (tool) use(x, y); else readout.look(x, y, true); });
-  hands.on('double', async (x, y) => {
-    if (tool) return use(x, y);
-    const hit = await viewer.pick(x, y);
-    if (hit) hands.focus(hit.position);
-  });
+  hands.takesDoubleClick = (x, y) => {
+    if (tool) use(x, y);
+    return tool !== null;
+  };
   hands.on('hover', (x, y, down) => {
     if (!down) readout.look(x, y);
   });
@@ -268,5 +266,5 @@ export function createInterface(viewer, hands, container) {
   hands.on('rest', () => { if (opened === 'view') refresh(); });
   refresh();
   overlay.redraw();
-  return { ui, status, toggle, destroy: () => window.removeEventListener('keydown', onKey) };
+  return ui;
 }

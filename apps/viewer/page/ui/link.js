@@ -1,20 +1,17 @@
 /** Keeps the address of the page in step with the settings. */
 import { settingsFromHash } from '../settings_link.js';
 
-/**
- * @typedef {import('./interface.js').Ui} Ui
- * @typedef {import('../settings.js').Settings} Settings
- */
+/** @typedef {import('./interface.js').Ui} Ui */
 
 /** Milliseconds without a change before the address follows: browsers limit such changes. */
 const PAUSE_MS = 400;
 
-/** @param {Ui} ui */
+/** Writes changes into the address, and reads links that are pasted there. @param {Ui} ui */
 export function keepLink(ui) {
   const { viewer } = ui;
   let timer = 0, written = location.hash.replace(/^#/, '');
   const write = () => {
-    if (ui.hands.moved) return later();  // slow frames
+    if (ui.hands.moved) return later();  // the camera still moves: frames are slow
     const hash = ui.hash();
     if (hash === written) return;
     written = hash;
@@ -39,5 +36,5 @@ export function keepLink(ui) {
   });
 }
 
-/** @param {string} text */
+/** Returns a text with a capital letter first. @param {string} text */
 export const capitalized = (text) => text.charAt(0).toUpperCase() + text.slice(1);

@@ -12,10 +12,10 @@ import { pathOf, place, show } from './overlay.js';
  * @typedef {import('../settings.js').Measure} Measure
  */
 
-/** @param {Measure} measure */
-export const componentsOf = ({ from, to }) => to.map((x, i) => Math.abs(x - from[i]));
+/** Returns the lengths along x, y and z. @param {Measure} measure */
+const componentsOf = ({ from, to }) => to.map((x, i) => Math.abs(x - from[i]));
 
-/** A length with its ends and its label. */
+/** Makes the drawing of a measure: its line, ends, components and label. */
 function drawnMeasure() {
   const line = svg('path', { class: 'measure-line' }), halo = svg('path', { class: 'halo' });
   const steps = ['x', 'y', 'z'].map((axis) => svg('path', { class: `measure-step axis-${axis}` }));
@@ -63,7 +63,6 @@ export function measurePanel(ui) {
   }, layer);
 
   const tool = ui.tool({
-    name: 'measure',
     hint: () => (open ? 'Click the second point' : 'Click the first point'),
     click(hit) {
       const point = rounded(hit.position);

@@ -57,7 +57,6 @@ export function notesPanel(ui) {
   }, layer);
 
   const tool = ui.tool({
-    name: 'note',
     hint: () => 'Click the place of the note',
     click(hit) {
       const camera = roundCamera(viewer.camera()), { annotations } = viewer.get();

@@ -1,6 +1,6 @@
-/** Numbers as people read them. */
+/** Formats numbers for people. */
 
-/** @param {number} bytes */
+/** Returns a size with its unit; 1 KB is 1000 bytes. @param {number} bytes */
 export function bytesText(bytes) {
   if (!Number.isFinite(bytes)) return '–';
   const units = ['bytes', 'KB', 'MB', 'GB', 'TB'];
@@ -9,7 +9,7 @@ export function bytesText(bytes) {
   return `${unit === 0 || bytes >= 100 ? Math.round(bytes) : bytes.toPrecision(3)} ${units[unit]}`;
 }
 
-/** @param {number} count */
+/** Returns a count: exact below a million. @param {number} count */
 export function countText(count) {
   if (!Number.isFinite(count)) return '–';
   if (count < 1e4) return String(Math.round(count));
@@ -27,5 +27,5 @@ export function lengthText(x, step) {
   return text.replace('-', '\u2212');
 }
 
-/** @param {number} x */
+/** Returns an angle in whole degrees. @param {number} x */
 export const degrees = (x) => `${Math.round(x)}°`.replace('-', '\u2212');

@@ -13,7 +13,7 @@ import { svg, update } from './dom.js';
  * @typedef {{x: number, y: number}} Spot  CSS pixels.
  */
 
-/** One state of the picture, to project with. */
+/** The projection of a camera on a picture of a size. */
 export class Projection {
   /** @param {Camera} camera @param {number} width @param {number} height */
   constructor(camera, width, height) {
@@ -28,11 +28,11 @@ export class Projection {
     const spot = project(this.camera, point, this.width, this.height);
     return spot.depth > this.near && Math.abs(spot.x) < 1e6 && Math.abs(spot.y) < 1e6 ? spot : null;
   }
-  /** @param {Vec3} point */
+  /** Returns the depth of a point along the view. @param {Vec3} point */
   depth(point) {
     return dot(sub(point, this.lens.eye), this.lens.forward);
   }
-  /** World units per pixel at a point. @param {Vec3} point */
+  /** Returns the world units per pixel at a point. @param {Vec3} point */
   pixel(point) {
     return 2 * this.lens.tanY * Math.max(this.depth(point), this.near) / this.height;
   }
@@ -53,7 +53,7 @@ export class Projection {
     });
     return spots;
   }
-  /** @param {Vec3} point @returns {Spot} */
+  /** Returns the pixel of a point, within what SVG can draw. @param {Vec3} point @returns {Spot} */
   #far(point) {
     const { x, y } = project(this.camera, point, this.width, this.height);
     return { x: Math.max(-1e5, Math.min(1e5, x)), y: Math.max(-1e5, Math.min(1e5, y)) };
@@ -75,7 +75,7 @@ export class Projection {
   }
 }
 
-/** @param {Spot[]} spots @param {boolean} [closed] */
+/** Returns the path of SVG through pixels. @param {Spot[]} spots @param {boolean} [closed] */
 export const pathOf = (spots, closed) =>
   spots.length < 2 ? '' : 'M' + spots.map(({ x, y }) => `${x.toFixed(1)} ${y.toFixed(1)}`).join('L') + (closed ? 'Z' : '');
 
@@ -102,7 +102,7 @@ export class Overlay {
     new ResizeObserver(() => this.redraw()).observe(this.element);
   }
 
-  /** @param {(projection: Projection, settings: Settings) => void} draw @param {...Element} elements */
+  /** Adds a layer: its elements, and the function that moves them. @param {(projection: Projection, settings: Settings) => void} draw @param {...Element} elements */
   add(draw, ...elements) {
     this.layers.push(draw);
     this.element.append(...elements);
@@ -114,7 +114,7 @@ export class Overlay {
     return this.viewer.info && width > 0 && height > 0 ? new Projection(this.viewer.camera(), width, height) : null;
   }
 
-  /** Draws in this frame, so that the drawing never lags behind the picture. */
+  /** Draws before the next picture, so that the drawing never lags behind it. */
   redraw() {
     this.request ||= requestAnimationFrame(() => {
       this.request = 0;

@@ -1,4 +1,4 @@
-/** The corner that says what is under the pointer. */
+/** Shows the voxel under the pointer and its position, in a corner of the picture. */
 import { roundTo3, stepBelow } from '../math.js';
 import { copy, h, say } from './dom.js';
 import { lengthText } from './numbers.js';
@@ -44,12 +44,13 @@ export class Readout {
     }
   }
 
+  /** Shows nothing. */
   clear() {
     this.wanted = null;
     this.#show(null);
   }
 
-  /** @param {Hit} hit */
+  /** Returns the two lines that are shown. @param {Hit} hit */
   #words(hit) {
     const { info } = this.ui.viewer, step = (info?.voxelSize ?? 1) * 0.1;
     const level = info && hit.level < info.levels ? ` · level ${hit.level}` : '';
@@ -66,6 +67,7 @@ export class Readout {
     say(this.position, position);
   }
 
+  /** Copies the voxel under the pointer and its position. */
   async copy() {
     const { hit } = this;
     if (!hit) return this.ui.toast('Nothing is under the pointer');

@@ -1,4 +1,4 @@
-/** Loading, short messages and failures: drawn, never a blank page. */
+/** Shows the progress of loading, short messages and failures. */
 import { button } from './controls.js';
 import { h, say } from './dom.js';
 import { icon } from './icons.js';
@@ -10,13 +10,14 @@ import { bytesText, countText } from './numbers.js';
 const TOAST_MS = 2600, ERROR_MS = 9000;
 
 /**
- * A card that says what failed and what to do.
+ * Makes a card that says what failed and what to do.
  * @param {string} title @param {string} text @param {HTMLElement[]} [actions]
  */
 export const failureCard = (title, text, actions = []) =>
   h('div', { class: 'failure', role: 'alert' }, icon('warning'), h('h2', {}, title), h('p', {}, text),
     actions.length > 0 && h('div', { class: 'buttons' }, ...actions));
 
+/** Makes a button that loads the page again. */
 export const tryAgain = () => button('Try again', () => location.reload(), { primary: true });
 
 export class Status {
@@ -77,7 +78,7 @@ export class Status {
     this.bar.setAttribute('aria-hidden', String(done));
   }
 
-  /** @param {string} text @param {boolean} [isError] @param {boolean} [stays]  Until the next message. */
+  /** Shows a short message. @param {string} text @param {boolean} [isError] @param {boolean} [stays]  Until the next message. */
   toast(text, isError = false, stays = false) {
     say(this.message, text);
     this.announce(text);
@@ -95,13 +96,13 @@ export class Status {
     this.pill.hidden = text === '';
   }
 
-  /** @param {string} text */
+  /** Tells screen readers a text. @param {string} text */
   announce(text) {
     this.live.textContent = '';
     this.live.textContent = text;
   }
 
-  /** @param {{title: string, text: string, isLost?: boolean}} error */
+  /** Shows a failure. @param {{title: string, text: string, isLost?: boolean}} error */
   fail({ title, text, isLost = false }) {
     document.getElementById('start')?.remove();
     this.#mend();
@@ -109,7 +110,7 @@ export class Status {
     const shows = !isLost && this.viewer.info !== null && this.viewer.statistics().levelsLoaded > 0;
     const goOn = button('Go on with what is here', () => this.#mend());
     this.failure = failureCard(title, text, isLost ? [] : shows ? [tryAgain(), goOn] : [tryAgain()]);
-    // A picture that is there stays in sight.
+    // A picture that has been drawn stays in sight.
     this.failure.classList.toggle('aside', shows);
     this.container.append(this.failure);
     this.container.classList.toggle('failed', !shows);

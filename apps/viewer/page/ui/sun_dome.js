@@ -1,8 +1,8 @@
-/** The sky seen from above, on which one drags the sun: the zenith is in the middle, the viewer below. */
+/** The sky seen from above, on which the sun is dragged: the zenith is in the middle, the viewer at the bottom. */
 import { RADIANS, clamp } from '../math.js';
 import { svg, update } from './dom.js';
 
-/** Of the horizon; the dome is drawn from -64 to 64. */
+/** Radius of the horizon; the dome is drawn from -64 to 64. */
 const RADIUS = 56;
 /** Degrees that an arrow key turns. */
 const STEP = 5;
@@ -10,7 +10,7 @@ const STEP = 5;
 const ARROWS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] };
 
 /**
- * Angles are in degrees; `heading` is the azimuth in which the viewer looks.
+ * Makes the dome. Angles are in degrees; `heading` is the azimuth in which the viewer looks.
  * @param {{angles: () => {azimuth: number, elevation: number}, heading: () => number,
  *   aim: (azimuth: number, elevation: number) => void}} sky
  */

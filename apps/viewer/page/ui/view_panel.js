@@ -39,7 +39,7 @@ const AXIS_NAMES = Object.keys(AXES).map((name) => [name, name.replace('-', '\u2
  * aside.
  * @param {import('../settings.js').Camera} camera @param {Vec3} up
  */
-export function withUp(camera, up) {
+function withUp(camera, up) {
   const line = sub(camera.eye, camera.target), size = length(line), isAlong = length(cross(line, up)) < 0.01 * size;
   return { ...camera, up, eye: isAlong ? addScaled(camera.eye, compassOf(up).east, 0.5 * size) : camera.eye };
 }

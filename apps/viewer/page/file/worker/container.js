@@ -23,7 +23,7 @@ async function readChunkTable(source, head) {
   if (size < FILE.headerBytes || head.length < FILE.headerBytes)
     throw brokenFile(`It has ${size} bytes; a .vdag file begins with a header of ${FILE.headerBytes} bytes.`);
   FILE.magic.forEach((byte, i) => {
-    if (head[i] !== byte) throw new SceneError('This is not a .vdag file', 'It does not begin like one.');
+    if (head[i] !== byte) throw new SceneError('This is not a .vdag file', 'It does not begin with the bytes of a .vdag file.');
   });
   let view = new DataView(head.buffer, head.byteOffset, head.length);
   const version = view.getUint32(FILE.header.version, true), count = view.getUint32(FILE.header.chunkCount, true);
@@ -113,12 +113,10 @@ async function readSceneInfo(source, head, chunks) {
   return {
     levels, resolution: 2 ** levels, origin: /** @type {[number, number, number]} */ (origin.slice()), voxelSize,
     voxels: Number(counts.voxels) || 0,
-    dagNodesPerLevel: list(counts.dag_nodes_per_level), svoNodesPerLevel: list(counts.svo_nodes_per_level),
+    dagNodesPerLevel: list(counts.dag_nodes_per_level),
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
     hasColors: chunks.has('COLR') && chunks.has('CIDX'), hasNormals: chunks.has('NRML') && chunks.has('CIDX'),
-    attributeBytes: ['CIDX', 'COLR', 'NRML'].reduce((sum, id) => sum + (chunks.get(id)?.length ?? 0), 0),
     source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },
-    program: String(parsed.program ?? ''),
   };
 }
 

@@ -1,4 +1,4 @@
-/** Where a worker reads the bytes of a file from. Part of the worker's script: see scene_loader.js. */
+/** Sources of a file's bytes: memory or a server. Part of the worker's script: see scene_loader.js. */
 
 /** An error that the page shows: a short title, and what happened and what to do. */
 class SceneError extends Error {
@@ -55,7 +55,7 @@ class ServerSource {
     if (response.status === 206) {
       const range = /^bytes 0-(\d+)\/(\d+)$/.exec(response.headers.get('Content-Range') || '');
       const bytes = new Uint8Array(await this.body(response));
-      if (range === null) throw new SceneError('The server answers wrongly', `${this.url}: no valid Content-Range.`);
+      if (range === null) throw new SceneError('The answer of the server is wrong', `${this.url}: no valid Content-Range.`);
       this.size = Number(range[2]);
       return bytes;
     }
@@ -74,7 +74,7 @@ class ServerSource {
         ++this.requests;
         const response = await fetch(this.url, { headers: { Range: `bytes=${first}-${last}` } });
         if (response.status !== 200 && response.status !== 206)
-          throw new SceneError('The scene is not there', `${this.url}: the server answers ${response.status}.`);
+          throw new SceneError('The scene was not found', `${this.url}: the server answers ${response.status}.`);
         const version = response.headers.get('ETag') || response.headers.get('Last-Modified') || '';
         if (this.version !== '' && version !== this.version)
           throw new SceneError('The file has changed', 'It changed on the server while it was being loaded. Load the page again.');
@@ -157,7 +157,7 @@ class ServerSource {
       return;
     }
     if (bytes.length !== target.length)
-      throw new SceneError('The server answers wrongly', `${this.url}: ${bytes.length} bytes instead of ${target.length}.`);
+      throw new SceneError('The answer of the server is wrong', `${this.url}: ${bytes.length} bytes instead of ${target.length}.`);
     target.set(bytes);
   }
 }
