@@ -1,4 +1,4 @@
-/** A scene of solid boxes with exact rays: what hands feel of a viewer. */
+/** Makes a scene of solid boxes with exact rays, as the navigator sees it. */
 export function boxScene(boxes, { bounds, home, voxelSize }) {
   const enter = (box, origin, direction) => {
     let near = 0, far = Infinity;

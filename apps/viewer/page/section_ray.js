@@ -4,15 +4,15 @@ import { addScaled, dot, sub } from './math.js';
 /** @typedef {import('./math.js').Vec3} Vec3 */
 
 /**
- * Returns where a ray enters and leaves what the section keeps, in units of the direction; null if it
- * passes by.
+ * Returns where a ray enters and leaves the part that the section keeps, in units of the direction;
+ * null if the ray misses it.
  * @param {import('./settings.js').Settings['section']} section @param {Vec3} origin @param {Vec3} direction
  * @param {number} most  The end of the ray.
  * @returns {[number, number] | null}
  */
 export function partInSection({ box, plane }, origin, direction, most) {
   let near = 0, far = most;
-  // What is kept lies below each face: height + t * rise <= 0.
+  // The kept part lies below each face: height + t * rise <= 0.
   const below = (/** @type {number} */ height, /** @type {number} */ rise) => {
     if (rise > 0) far = Math.min(far, -height / rise);
     else if (rise < 0) near = Math.max(near, -height / rise);
@@ -27,7 +27,7 @@ export function partInSection({ box, plane }, origin, direction, most) {
 }
 
 /**
- * Casts a ray at what the section keeps.
+ * Casts a ray at the part of the scene that the section keeps.
  * @template {{distance: number}} H
  * @param {import('./settings.js').Settings['section']} section @param {Vec3} origin @param {Vec3} direction
  * @param {number} most @param {(origin: Vec3, direction: Vec3, most: number) => H | null} cast

@@ -1,6 +1,6 @@
 /** Text files of the page: shaders, and the parts of the worker's script. */
 
-/** The page's folder; a module of a single file has none. */
+/** Returns the page's folder. A page in a single file has none: new URL() throws there. */
 const root = () => new URL('../', import.meta.url);
 
 /**

@@ -20,7 +20,7 @@ export class Picture {
     this.isDisplay = false;  // the sums hold display colours
   }
 
-  /** Begins anew. */
+  /** Begins again without samples. */
   reset() {
     this.samples = 0;
     this.rows = 0;

@@ -51,7 +51,7 @@ export class PictureSchedule {
     this.numbers = { frameMs: 0, raysPerFrame: 0, stepsPerRay: 0, samples: 0, samplesWanted: STILL_SAMPLES, scale: 1 };
   }
 
-  /** Begins anew: the view or the scene has changed. @param {boolean} isMoving  Whether it may go on changing. */
+  /** Begins new pictures: the view or the scene has changed. @param {boolean} isMoving  Whether it may go on changing. */
   touch(isMoving) {
     this.hasQuick = this.hasFull = this.isFinished = false;
     this.changedAt = isMoving ? performance.now() : -Infinity;

@@ -34,7 +34,7 @@ export async function loadShaders() {
 }
 
 /**
- * What a picture shows, besides its size.
+ * The contents of a picture: all but its size.
  * @typedef {{settings: Settings, place: Place, scene: SceneTextures, shown: number, mostInstances: number,
  *   samples: number, quick: boolean}} Shot
  */
@@ -84,6 +84,8 @@ export class Renderer {
   /** Makes tables of at least these numbers of samples per set. @param {number} light @param {number} hemisphere */
   prepareTables(light, hemisphere) {
     if (light <= this.tables.light && hemisphere <= this.tables.hemisphere) return;
+    light = Math.max(light, this.tables.light);
+    hemisphere = Math.max(hemisphere, this.tables.hemisphere);
     const { gl } = this;
     for (const texture of this.tables.textures) gl.deleteTexture(texture);
     const upload = (/** @type {number} */ format, /** @type {number} */ kind, /** @type {Float32Array} */ values, /** @type {number} */ count) => {

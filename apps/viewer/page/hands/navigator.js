@@ -25,7 +25,7 @@ import { Walker } from './walker.js';
  * @property {Camera} home
  * @property {(origin: Vec3, direction: Vec3, distance: number) => Hit | null} cast
  *
- * @typedef {object} Input  What keys and sticks ask for, each number from -1 to 1.
+ * @typedef {object} Input  The motion that keys and sticks ask for, each number from -1 to 1.
  * @property {Vec3} move  Right, up, forward.
  * @property {[number, number]} turn  Right, up.
  * @property {number} zoom  Positive: closer.

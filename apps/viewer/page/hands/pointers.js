@@ -42,7 +42,7 @@ export class Pointers {
     this.pans = false;
     /** @type {{x: number, y: number} | null} */
     this.stickAt = null;
-    /** What three fingers ask for: right, forward. @type {[number, number]} */
+    /** The motion that three fingers ask for: right, forward. @type {[number, number]} */
     this.stick = [0, 0];
     this.locked = false;
     element.style.touchAction = 'none';

@@ -31,6 +31,7 @@ export function filmPanel(ui) {
     if (began) return stop();
     const keys = completeKeys(viewer.get().path, ui.home());
     if (keys.length < 2) return ui.toast('A film needs two keys or more');
+    if (viewer.get().mode === 'walk') viewer.set({ mode: 'fly' }, 'ui');  // a walker would fall
     const start = keys[0].time, end = keys[keys.length - 1].time;
     const mine = (began = performance.now());
     const frame = (/** @type {number} */ now) => {

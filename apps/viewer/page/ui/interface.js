@@ -31,13 +31,13 @@ import { SIDES, viewPanel } from './view_panel.js';
  * @property {boolean} [everyFrame]  Refresh it when a frame was drawn.
  * @property {boolean} [followsCamera]  Refresh it when the camera has moved.
  *
- * @typedef {object} Tool  What a click on the picture does.
+ * @typedef {object} Tool  The use of a click on the picture.
  * @property {() => string} hint
  * @property {(hit: Hit) => void} click
  * @property {(hit: Hit | null) => void} [hover]
  * @property {() => void} [end]
  *
- * @typedef {object} Ui  What panels may use.
+ * @typedef {object} Ui  Parts of the interface that panels may use.
  * @property {Viewer} viewer
  * @property {Hands} hands
  * @property {Overlay} overlay
@@ -245,7 +245,7 @@ export function createInterface(viewer, hands, container) {
     if (file) share.load(file);
   });
 
-  // What the viewer reports.
+  // Events of the viewer.
   viewer.on('settings', (settings, by) => {
     overlay.redraw();
     if (by !== 'hands' && by !== 'film') refresh();
