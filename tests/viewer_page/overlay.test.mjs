@@ -2,8 +2,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { bytesText, countText, lengthText } from '../../apps/viewer/page/ui/numbers.js';
-import { EDGES, Projection, cornerOf, cutPolygon, pathOf } from '../../apps/viewer/page/ui/overlay.js';
-import { axisVector, ballVector, rangeAlong, withFace } from '../../apps/viewer/page/ui/section_handles.js';
+import { EDGES, cornerOf, cutPolygon, rangeAlong, withFace } from '../../apps/viewer/page/box.js';
+import { Projection, pathOf } from '../../apps/viewer/page/ui/overlay.js';
+import { axisVector, ballVector } from '../../apps/viewer/page/ui/section_handles.js';
 import { sunDirection } from '../../apps/viewer/page/sun.js';
 import { skyAngles, skyDirection } from '../../apps/viewer/page/ui/sky_angles.js';
 import { randomNumbers } from './random.mjs';

@@ -4,13 +4,14 @@ import { Picture } from './picture.js';
 
 /**
  * Renders all samples of a picture, in parts between which the page can breathe. The shot's `samples`
- * tell how many there are. Throws Error if the size is not possible or the graphics card is lost.
+ * tell how many there are. Throws Error if size or samples are not possible, or the graphics card is lost.
  * @param {import('./renderer.js').Renderer} renderer @param {import('./pacer.js').Pacer} pacer
  * @param {import('./renderer.js').Shot} shot @param {number} width @param {number} height  Pixels.
  * @returns {Promise<Blob>}
  */
 export async function capture(renderer, pacer, shot, width, height) {
   const { gl } = renderer, most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+  if (!(Number.isInteger(shot.samples) && shot.samples >= 1)) throw new Error('a picture has a whole number of samples, at least 1');
   for (const side of [width, height])
     if (!(Number.isInteger(side) && side >= 1 && side <= most)) throw new Error(`a picture's sides are whole numbers from 1 to ${most}`);
   const picture = new Picture(gl, width, height);

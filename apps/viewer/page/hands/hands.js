@@ -70,7 +70,7 @@ export class Hands extends Events {
       cast: (origin, direction, distance) => viewer.castNow(origin, direction, distance),
     });
     this.navigator.reducedMotion = this.reducedMotion;
-    this.#resize();
+    this.navigator.measure(canvas);
     this.pointers = new Pointers(canvas, this.navigator, {
       wake: () => { this.emit('gesture'); this.wake(); },
       click: (x, y) => this.emit('click', x, y),
@@ -87,12 +87,6 @@ export class Hands extends Events {
     if (this.takesDoubleClick(x, y)) return;
     const hit = await this.viewer.pick(x, y);
     if (hit) this.focus(hit.position);
-  }
-
-  #resize() {
-    if (!this.navigator) return;
-    this.navigator.width = Math.max(1, this.viewer.canvas.clientWidth);
-    this.navigator.height = Math.max(1, this.viewer.canvas.clientHeight);
   }
 
   /** Takes the mode and the camera that a program, a panel or a link has set. @param {Settings} settings */
@@ -132,7 +126,7 @@ export class Hands extends Events {
     if (!navigator) return;
     const time = this.lastTime ? clamp((now - this.lastTime) / 1000, 0, 0.25) : 1 / 60;
     const pad = this.pad.connected;
-    this.#resize();
+    navigator.measure(this.viewer.canvas);
     const input = this.#input(pad);
     if (input.move.some(Boolean) || input.turn.some(Boolean) || input.zoom) this.emit('gesture');
     const moving = navigator.step(time, input);
@@ -184,7 +178,7 @@ export class Hands extends Events {
   /** Runs a motion of the navigator. @param {(navigator: Navigator) => void} act */
   #act(act) {
     if (!this.navigator) return;
-    this.#resize();
+    this.navigator.measure(this.viewer.canvas);
     const { mode } = this.navigator;
     act(this.navigator);
     this.moved = true;

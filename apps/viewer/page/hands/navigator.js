@@ -5,6 +5,7 @@
  */
 import { RADIANS, add, addScaled, clamp, cross, distance as distanceOf, dot, length, mix, normalized, scale, sub, wrapped }
   from '../math.js';
+import { middleOf } from '../box.js';
 import { directionThrough, lensOf } from '../lens.js';
 import { Flight } from './flight.js';
 import {
@@ -81,6 +82,12 @@ export class Navigator {
     this.goal = this.shown = poseOf(scene.home);
   }
 
+  /** Takes the size of the picture. @param {HTMLElement} canvas */
+  measure(canvas) {
+    this.width = Math.max(1, canvas.clientWidth);
+    this.height = Math.max(1, canvas.clientHeight);
+  }
+
   /** Length of the scene's diagonal, in world units. */
   get size() {
     return Math.max(distanceOf(this.scene.bounds.low, this.scene.bounds.high), this.scene.voxelSize) || 1;
@@ -132,9 +139,7 @@ export class Navigator {
   /** Sets the target to the surface in the middle of the picture; without one, as far as the scene's middle. */
   #anchor() {
     const hit = this.scene.cast(eyeOf(this.goal), forwardOf(this.goal), this.most);
-    const { low, high } = this.scene.bounds;
-    const middle = scale(add(low, high), 0.5);
-    const along = dot(sub(middle, eyeOf(this.goal)), forwardOf(this.goal));
+    const along = dot(sub(middleOf(this.scene.bounds), eyeOf(this.goal)), forwardOf(this.goal));
     const distance = clamp(hit ? hit.distance : along > 0 ? along : this.goal.distance, this.least, this.most);
     this.goal = this.shown = withEye({ ...this.goal, distance }, eyeOf(this.goal));
   }
@@ -260,9 +265,8 @@ export class Navigator {
 
   /** Sets a goal, unless it is too far away or not finite. @param {Pose} pose */
   #setGoal(pose) {
-    const { low, high } = this.scene.bounds;
-    const away = distanceOf(pose.target, scale(add(low, high), 0.5));
-    if (isFinitePose(pose) && away < 2 * this.most + length(low) * 1e-9) this.goal = pose;
+    const { bounds } = this.scene, away = distanceOf(pose.target, middleOf(bounds));
+    if (isFinitePose(pose) && away < 2 * this.most + length(bounds.low) * 1e-9) this.goal = pose;
   }
 
   /**

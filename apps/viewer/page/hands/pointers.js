@@ -56,7 +56,7 @@ export class Pointers {
     listen(document, 'pointerlockchange', () => { this.locked = document.pointerLockElement === element; });
     listen(document, 'mousemove', (event) => {
       if (!this.locked) return;
-      this.#resized();
+      this.navigator.measure(this.element);
       this.navigator.look(clamp(event.movementX, -300, 300), clamp(event.movementY, -300, 300));
       this.owner.wake();
     });
@@ -74,11 +74,6 @@ export class Pointers {
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  #resized() {
-    this.navigator.width = Math.max(1, this.element.clientWidth);
-    this.navigator.height = Math.max(1, this.element.clientHeight);
-  }
-
   /** The centre of the pointers that are down, and their mean distance from it. */
   #hand() {
     let x = 0, y = 0, spread = 0;
@@ -90,7 +85,7 @@ export class Pointers {
   /** @param {PointerEvent} event */
   #pressed(event) {
     if (this.locked) return;
-    this.#resized();
+    this.navigator.measure(this.element);
     this.element.focus({ preventScroll: true });
     const at = this.#at(event);
     this.element.setPointerCapture(event.pointerId);
@@ -112,7 +107,7 @@ export class Pointers {
     const at = this.#at(event);
     if (event.pointerType !== 'touch') this.owner.hover(at.x, at.y, this.down.size > 0);
     if (!this.down.has(event.pointerId)) return;
-    this.#resized();
+    this.navigator.measure(this.element);
     const before = this.#hand();
     this.down.set(event.pointerId, at);
     const now = this.#hand(), dx = now.x - before.x, dy = now.y - before.y;
@@ -172,7 +167,7 @@ export class Pointers {
   /** @param {WheelEvent} event */
   #wheel(event) {
     event.preventDefault();
-    this.#resized();
+    this.navigator.measure(this.element);
     const unit = event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1;
     const turned = clamp((event.deltaY || event.deltaX) * unit, -300, 300);
     const factor = Math.exp(turned * (event.ctrlKey ? 0.01 : 0.0017));  // a pinch on a touchpad sets ctrlKey

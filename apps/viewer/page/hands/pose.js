@@ -6,6 +6,7 @@ import {
   RADIANS, add, addScaled, clamp, cross, dot, isFinite3, length, mix, mix3, normalized, roundTo, roundTo3, scale,
   stepBelow, sub, wrapped,
 } from '../math.js';
+import { cornerOf, middleOf } from '../box.js';
 import { lensOf } from '../lens.js';
 
 /**
@@ -132,7 +133,7 @@ export function roundCamera(camera) {
  */
 export function framed(pose, box, aspect) {
   const size = length(sub(box.high, box.low));
-  const middle = scale(add(box.low, box.high), 0.5);
+  const middle = middleOf(box);
   if (!(size > 0)) return { ...pose, target: middle };
   const lens = lensOf(cameraOf({ ...pose, target: [0, 0, 0], distance: 1 }), aspect);
   const tanX = lens.tanX / 1.08, tanY = lens.tanY / 1.08;
@@ -140,7 +141,7 @@ export function framed(pose, box, aspect) {
   // and |y - ey| <= tanY (z - ez): half-spaces, whose farthest corners give the eye.
   let left = -Infinity, right = -Infinity, bottom = -Infinity, top = -Infinity, near = Infinity;
   for (let i = 0; i < 8; ++i) {
-    const corner = sub([box[i & 1 ? 'high' : 'low'][0], box[i & 2 ? 'high' : 'low'][1], box[i & 4 ? 'high' : 'low'][2]], middle);
+    const corner = sub(cornerOf(box, i), middle);
     const x = dot(corner, lens.right), y = dot(corner, lens.up), z = dot(corner, lens.forward);
     right = Math.max(right, x - z * tanX);
     left = Math.max(left, -x - z * tanX);

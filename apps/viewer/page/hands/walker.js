@@ -3,6 +3,7 @@
  * with rays, in steps of a fixed length, so that a walk does not depend on the frame rate.
  */
 import { add, addScaled, clamp, cross, dot, length, mix3, normalized, scale, sub } from '../math.js';
+import { rangeAlong } from '../box.js';
 import { eyeOf, forwardOf } from './pose.js';
 
 /**
@@ -23,9 +24,11 @@ export class Walker {
   constructor(scene, pose) {
     this.scene = scene;
     this.compass = pose.compass;
-    this.floor = this.#lowest();
+    const [lowest, highest] = rangeAlong(scene.bounds, pose.compass.up);
+    /** Height of the lowest point of the scene: the body falls no deeper. */
+    this.floor = lowest;
     const eye = eyeOf(pose);
-    const size = Math.max(this.#extent(), scene.voxelSize * 8);
+    const size = Math.max(highest - lowest, scene.voxelSize * 8);
     const below = scene.cast(eye, scale(this.compass.up, -1), size);
     /** Height of the eye above the feet: that of the eye now, if it could be a person's. */
     this.eyeHeight = Math.max(clamp(below ? below.distance : 0, size * 0.03, size * 0.1), scene.voxelSize * 4);
@@ -60,17 +63,6 @@ export class Walker {
     /** @param {number} i */
     const limited = (i) => clamp(point[i], low[i] - room, high[i] + room);
     return [limited(0), limited(1), limited(2)];
-  }
-
-  #extent() {
-    const { low, high } = this.scene.bounds, up = this.compass.up;
-    return Math.abs(up[0]) * (high[0] - low[0]) + Math.abs(up[1]) * (high[1] - low[1]) + Math.abs(up[2]) * (high[2] - low[2]);
-  }
-
-  /** Returns the height of the lowest point of the scene: nobody falls deeper. */
-  #lowest() {
-    const { low, high } = this.scene.bounds, up = this.compass.up;
-    return up.reduce((sum, x, i) => sum + Math.min(x * low[i], x * high[i]), 0);
   }
 
   /** Rises until the head is free, if the walk starts inside voxels. */

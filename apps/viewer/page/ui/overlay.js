@@ -2,7 +2,7 @@
  * The drawing over the picture: handles, lengths and markers, projected with the camera. Layers
  * keep their elements and only move them, so that focus and drags survive.
  */
-import { addScaled, dot, mix, normalized, scale, sub } from '../math.js';
+import { distance, dot, length, mix3, normalized, sub } from '../math.js';
 import { directionThrough, lensOf, project } from '../lens.js';
 import { svg, update } from './dom.js';
 
@@ -21,7 +21,7 @@ export class Projection {
     this.width = width;
     this.height = height;
     this.lens = lensOf(camera, width / height);
-    this.near = 1e-4 * Math.hypot(...sub(camera.target, camera.eye));
+    this.near = 1e-4 * distance(camera.target, camera.eye);
   }
   /** Returns the pixel of a point, or null behind the camera. @param {Vec3} point */
   at(point) {
@@ -49,7 +49,7 @@ export class Projection {
       const next = points[(i + 1) % points.length], after = this.depth(next);
       if ((depth < near) === (after < near)) return;
       const t = (near - depth) / (after - depth);
-      spots.push(this.#far([mix(point[0], next[0], t), mix(point[1], next[1], t), mix(point[2], next[2], t)]));
+      spots.push(this.#far(mix3(point, next, t)));
     });
     return spots;
   }
@@ -68,7 +68,7 @@ export class Projection {
    * @param {Vec3} point @param {Vec3} axis @param {number} x @param {number} y
    */
   along(point, axis, x, y) {
-    const { origin, direction } = this.ray(x, y), unit = normalized(axis), size = Math.hypot(...axis);
+    const { origin, direction } = this.ray(x, y), unit = normalized(axis), size = length(axis);
     const b = dot(unit, direction), away = sub(point, origin);
     if (1 - b * b < 0.004) return null;
     return (b * dot(direction, away) - dot(unit, away)) / (1 - b * b) / size;
@@ -170,35 +170,4 @@ export function makeHandle(element, { label, start, drag, key }) {
     element.classList.remove('active');
   };
   for (const [type, handler] of Object.entries(handlers)) element.addEventListener(type, /** @type {any} */ (handler));
-}
-
-/**
- * Returns a corner of a box: bit 0 is set for high x, bit 1 for high y, bit 2 for high z.
- * @param {{low: Vec3, high: Vec3}} box @param {number} bits @returns {Vec3}
- */
-export const cornerOf = (box, bits) => [
-  (bits & 1 ? box.high : box.low)[0], (bits & 2 ? box.high : box.low)[1], (bits & 4 ? box.high : box.low)[2]];
-
-/** The twelve edges of a box, as corners. */
-export const EDGES = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
-
-/**
- * Returns the polygon in which a plane cuts a box.
- * @param {{low: Vec3, high: Vec3}} box @param {{point: Vec3, normal: Vec3}} plane @returns {Vec3[]}
- */
-export function cutPolygon(box, { point, normal }) {
-  /** @type {Vec3[]} */
-  const corners = [];
-  for (const [a, b] of EDGES) {
-    const from = cornerOf(box, a), to = cornerOf(box, b);
-    const x = dot(normal, sub(from, point)), y = dot(normal, sub(to, point));
-    if ((x < 0) !== (y < 0)) corners.push(addScaled(from, sub(to, from), x / (x - y)));
-  }
-  if (corners.length < 3) return [];
-  const middle = scale(corners.reduce((sum, corner) => addScaled(sum, corner, 1), /** @type {Vec3} */ ([0, 0, 0])), 1 / corners.length);
-  const u = normalized(sub(corners[0], middle)), n = normalized(normal);
-  /** @type {Vec3} */
-  const v = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]];
-  const angle = (/** @type {Vec3} */ corner) => Math.atan2(dot(sub(corner, middle), v), dot(sub(corner, middle), u));
-  return corners.sort((a, b) => angle(a) - angle(b));
 }

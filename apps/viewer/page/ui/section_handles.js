@@ -2,10 +2,11 @@
 import {
   RADIANS, addScaled, clamp, cross, dot, length, normalized, rotated, roundTo3, scale, stepBelow, sub,
 } from '../math.js';
+import { EDGES, cornerOf, cutPolygon, faceMiddle, faceValue, rangeAlong, withFace } from '../box.js';
 import { anglesOf, compassOf, directionOf } from '../hands/pose.js';
 import { svg, update } from './dom.js';
 import { lengthText } from './numbers.js';
-import { EDGES, cornerOf, cutPolygon, makeHandle, pathOf, place, show } from './overlay.js';
+import { makeHandle, pathOf, place, show } from './overlay.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
@@ -23,42 +24,11 @@ const KEY_STEP = 0.005;
 /** Degrees that an arrow key turns, and within which the normal snaps to an axis. */
 const KEY_TURN = 2, SNAP = 3;
 
-/**
- * Returns a box with one of its six faces moved: it keeps at least the size `least`.
- * @param {Box} box @param {number} face  2 × axis, and 1 for the high one. @param {number} value
- * @param {number} least @returns {Box}
- */
-export function withFace(box, face, value, least) {
-  const axis = face >> 1, low = /** @type {Vec3} */ ([...box.low]), high = /** @type {Vec3} */ ([...box.high]);
-  if (face & 1) high[axis] = Math.max(value, low[axis] + least);
-  else low[axis] = Math.min(value, high[axis] - least);
-  return { low, high };
-}
-
-/** @param {Box} box @param {number} face */
-export const faceValue = (box, face) => (face & 1 ? box.high : box.low)[face >> 1];
-
-/** @param {Box} box @param {number} face @returns {Vec3} */
-function faceMiddle(box, face) {
-  const middle = middleOf(box);
-  middle[face >> 1] = faceValue(box, face);
-  return middle;
-}
-
-/** @param {Box} box @returns {Vec3} */
-export const middleOf = ({ low, high }) => scale([low[0] + high[0], low[1] + high[1], low[2] + high[2]], 0.5);
-
 /** @param {number} axis @param {number} [sign] @returns {Vec3} */
 export function axisVector(axis, sign = 1) {
   const v = /** @type {Vec3} */ ([0, 0, 0]);
   v[axis] = sign;
   return v;
-}
-
-/** Returns the lowest and the highest place of a box along a unit vector. @param {Box} box @param {Vec3} unit */
-export function rangeAlong(box, unit) {
-  const places = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => dot(unit, cornerOf(box, corner)));
-  return [Math.min(...places), Math.max(...places)];
 }
 
 /**

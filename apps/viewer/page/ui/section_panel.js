@@ -3,11 +3,12 @@
  * its arrow points.
  */
 import { addScaled, dot, length, normalized, scale, sub } from '../math.js';
+import { faceValue, middleOf, rangeAlong, withFace } from '../box.js';
 import { button, group, refreshAll, slider, toggle } from './controls.js';
 import { h } from './dom.js';
 import { degrees } from './numbers.js';
 import { skyAngles, skyDirection } from './sky_angles.js';
-import { AXES, axisVector, faceValue, middleOf, rangeAlong, sectionHandles, withFace } from './section_handles.js';
+import { AXES, axisVector, sectionHandles } from './section_handles.js';
 
 /**
  * @typedef {import('./interface.js').Ui} Ui
