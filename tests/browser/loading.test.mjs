@@ -62,6 +62,7 @@ describeInBrowsers('loading', (browserName, browser) => {
       fs.createReadStream(name).pipe(response);
     });
     await new Promise((resolve) => plain.listen(0, '127.0.0.1', () => resolve(undefined)));
+    plain.unref();
     const { port } = /** @type {import('node:net').AddressInfo} */ (plain.address());
     for (const url of [`http://127.0.0.1:${port}/`, pathToFileURL(single).href]) {
       const page = await open(browser(), url + QUICK);

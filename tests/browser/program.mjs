@@ -67,7 +67,11 @@ export async function view(file) {
     });
     server.on('exit', (code) => reject(new Error(`voxdag view ended with ${code}: ${output}`)));
   });
+  // A test that fails leaves its server behind: it must not keep this process alive.
+  for (const handle of /** @type {any[]} */ ([server, server.stdout, server.stderr])) handle.unref();
+  process.on('exit', () => server.kill());
   const close = () => new Promise((resolve) => {
+    server.ref();
     server.removeAllListeners('exit');
     server.on('exit', () => resolve(undefined));
     server.kill('SIGINT');
@@ -95,6 +99,7 @@ export async function proxy(url, { bytesPerSecond = Infinity, ranges = true } = 
     }).on('error', () => response.destroy());
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(undefined)));
+  server.unref();
   const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
   return { url: `http://127.0.0.1:${port}/`, requests, close: () => server.close() };
 }

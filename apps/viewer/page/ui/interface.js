@@ -4,6 +4,7 @@ import { settingsToHash } from '../settings_link.js';
 import { isTyping, movingKey } from '../hands/keys.js';
 import { button, segments } from './controls.js';
 import { copy, h } from './dom.js';
+import { acceptFiles } from './file_drop.js';
 import { filmPanel } from './film_panel.js';
 import { helpPanel } from './help_panel.js';
 import { icon } from './icons.js';
@@ -229,21 +230,7 @@ export function createInterface(viewer, hands, container) {
   };
   window.addEventListener('keydown', onKey);
 
-  // Files dropped on the page.
-  container.addEventListener('dragover', (event) => {
-    if (![...(event.dataTransfer?.items ?? [])].some((item) => item.kind === 'file')) return;
-    event.preventDefault();
-    container.classList.add('dropping');
-  });
-  container.addEventListener('dragleave', (event) => {
-    if (!container.contains(/** @type {Node | null} */ (event.relatedTarget))) container.classList.remove('dropping');
-  });
-  container.addEventListener('drop', (event) => {
-    event.preventDefault();
-    container.classList.remove('dropping');
-    const file = event.dataTransfer?.files[0];
-    if (file) share.load(file);
-  });
+  acceptFiles(container, (file) => share.load(file));
 
   // Events of the viewer.
   viewer.on('settings', (settings, by) => {
