@@ -297,6 +297,21 @@ describeInBrowsers('hands', (_, browser) => {
     await pause(2600);
     await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), { timeout: 20_000 });
     assert.ok(apart((await camera(page)).eye, keys[1].eye) < 1e-9, 'the film ends at its last key');
+    await page.$eval('[aria-label="Seconds of key 2"]', (input) => /** @type {HTMLInputElement} */ (input).select());
+    await page.keyboard.type('3.5\n');
+    assert.deepEqual((await settings(page)).path.map((/** @type {any} */ key) => key.time), [0, 3.5]);
+    assertNoComplaints(page);
+    await page.close();
+  });
+
+  it('names the ends of the colours of levels, steps and sharing', async () => {
+    const page = await load(`${QUICK}&show=level`);
+    const shown = () => page.$eval('.legend', (legend) => (/** @type {HTMLElement} */ (legend).hidden ? null : [...legend.querySelectorAll('span')].map((end) => end.textContent)));
+    assert.deepEqual(await shown(), ['level 1', 'level 8']);
+    for (const [show, ends] of /** @type {[string, RegExp][]} */ ([['steps', /^0 steps,160 or more$/], ['sharing', /^used 1×,\d+×$/], ['light', /^$/]])) {
+      await page.evaluate((show) => /** @type {any} */ (window).voxdag.viewer.set({ show }), show);
+      assert.match(String((await shown()) ?? ''), ends);
+    }
     assertNoComplaints(page);
     await page.close();
   });

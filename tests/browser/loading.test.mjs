@@ -143,6 +143,30 @@ describeInBrowsers('loading', (browserName, browser) => {
     await server.close();
   });
 
+  it('ends every wait after a load that failed, and refuses pictures of impossible sizes', async () => {
+    const server = await view(buildColored(128));
+    const page = await open(browser(), server.url + QUICK);
+    await still(page);
+    const [title, none, size, samples] = await page.evaluate(async () => {
+      const { createViewer } = await import(new URL('viewer.js', document.baseURI).href);
+      const viewer = createViewer({ container: document.body.appendChild(document.createElement('div')), url: 'missing.vdag' });
+      const error = await new Promise((resolve) => viewer.on('error', resolve));
+      await viewer.whenStill();
+      /** @param {any} from @param {any} [options] */
+      const failure = (from, options) => from.capture(options).then(() => 'a picture', (/** @type {Error} */ reason) => reason.message);
+      const none = await failure(viewer);
+      viewer.destroy();
+      const { viewer: shown } = /** @type {any} */ (window).voxdag;
+      return [error.title, none, await failure(shown, { width: 1e7, height: 1 }), await failure(shown, { samples: 0 })];
+    });
+    assert.equal(title, 'The scene was not found');
+    assert.equal(none, 'there is no scene');
+    assert.match(size, /sides are whole numbers from 1 to/);
+    assert.match(samples, /whole number of samples/);
+    await page.close();
+    await server.close();
+  });
+
   it('follows the size of its container', async () => {
     const server = await view(build('courtyard', 256));
     const page = await open(browser(), server.url + QUICK, { width: 200, height: 300 });
