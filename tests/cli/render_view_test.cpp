@@ -1,4 +1,4 @@
-/// render --view: settings of the viewer.
+/// Tests render --view, which reads the settings of the viewer.
 #include "colored_waves.hpp"
 #include "sponge.hpp"
 
@@ -98,7 +98,7 @@ TEST_F(RenderView, ColoursAndNormalsAreLeftOut) {
   EXPECT_NE(render(colored, R"({"colors": false})"), plain);
 }
 
-TEST_F(RenderView, WhatAPictureCannotShowIsSaid) {
+TEST_F(RenderView, SettingsThatAPictureCannotShowAreNamed) {
   write_text(path("view.json"), R"({"level": 3, "show": "steps"})");
   const ProcessResult result = run_voxdag({"render", path("in.vdag"), "-o", path("a.png"), "--size",
                                            "8x8", "-q", "--view", path("view.json")});
