@@ -1,5 +1,5 @@
 #pragma once
-/// What the server answers: the files of the page, and one scene.
+/// Answers requests for the files of the page and for one scene.
 #include <httplib.h>
 
 #include <map>

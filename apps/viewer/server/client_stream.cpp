@@ -31,7 +31,7 @@ const char* status_line(int status) {
 }  // namespace
 
 bool ClientStream::wait_until(Event event, Clock::time_point deadline) const {
-  constexpr milliseconds kStep{100};  // the time after which a stop is noticed
+  constexpr milliseconds kStep{100};  // A stop is noticed after this time.
   for (;;) {
     if (is_stopping_) return false;
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());

@@ -54,11 +54,11 @@ class ClientStream final : public httplib::Stream {
   int socket_;
   const ServerLimits& limits_;
   const std::atomic<bool>& is_stopping_;
-  std::string received_;        // the head, and what the client sent behind it
-  std::size_t head_bytes_ = 0;  // in received_; 0 until it is complete
-  std::size_t at_ = 0;          // the next byte of the head for read()
+  std::string received_;        // The head, and the bytes that the client sent behind it.
+  std::size_t head_bytes_ = 0;  // Bytes of the head in received_; 0 until it is complete.
+  std::size_t at_ = 0;          // The next byte of the head for read().
   Clock::time_point response_start_ = Clock::now();
-  std::uint64_t sent_ = 0;  // bytes of the response
+  std::uint64_t sent_ = 0;  // Bytes of the response.
 };
 
 }  // namespace voxdag
