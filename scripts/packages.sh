@@ -18,7 +18,7 @@ voxdag_test_packages=(
 
 # The tests of the viewer in browsers skip themselves without these.
 voxdag_browser_packages=(chromium firefox-esr xvfb)
-# Node from elsewhere brings its own npm, with which Debian's cannot be installed.
+# A Node from elsewhere brings its own npm, which conflicts with Debian's package.
 command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packages+=(nodejs npm)
 
 # install_packages PACKAGE...

@@ -20,16 +20,16 @@ esac
 install_packages "${voxdag_packages[@]}" "${voxdag_test_packages[@]}"
 jobs=$(nproc)
 
-# What the tests of the viewer in browsers need. They skip themselves without it.
+# Installs what the tests of the viewer in browsers need. Without it they skip themselves.
 prepare_browser_tests() {
   install_packages "${voxdag_browser_packages[@]}" || return
   cd tests/browser || return
-  # npm writes this copy of the list when it has installed all of it.
+  # npm writes its copy of package-lock.json when it has installed all packages.
   [ node_modules/.package-lock.json -nt package-lock.json ] ||
     npm ci --no-audit --no-fund --loglevel=error
 }
 (prepare_browser_tests) ||
-  echo "No browsers, or no packages from the npm registry: the tests of the viewer in browsers are skipped"
+  echo "Skipping the tests of the viewer in browsers: the browsers or the npm packages could not be installed"
 
 echo "== clang-format"
 find . -name '*.[ch]pp' -not -path './build*' -print0 |

@@ -7,7 +7,7 @@
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/cpu_scene.hpp"
-#include "voxdag/cpu/packets/in_place_dag.hpp"
+#include "voxdag/cpu/packets/in_place_nodes.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 
@@ -81,7 +81,7 @@ class Bench {
       throw Error("the compact form does not give the DAG back");
     point.decode_seconds = decoding.seconds();
     point.bytes = compact_head(compact).size() + compact.words().size() * 4;
-    // Each has caches of its own.
+    // Single rays and packets get caches of their own.
     const Watch opening;
     const InPlaceDag for_single(compact.view());
     point.open_seconds = opening.seconds();

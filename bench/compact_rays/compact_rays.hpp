@@ -30,16 +30,16 @@ inline constexpr std::size_t kCompactRayClassCount = std::size(kCompactRayClasse
 struct CompactRaysTimes {
   double plain_seconds = 0, plain_packet_seconds = 0;  ///< At the plain form.
   double seconds = 0, packet_seconds = 0;              ///< At the compact form.
-  double units_per_ray = 0, packet_units_per_ray = 0;  ///< Units that were decoded.
+  double units_per_ray = 0, packet_units_per_ray = 0;  ///< Decoded units.
 };
 
 /// The compact form with one number of tables.
 struct CompactRaysPoint {
   int tables = 0;
   std::uint64_t bytes = 0;
-  /// Wall-clock, on all threads. Opening is what rays at the compact form need once.
+  /// Wall-clock times on all threads. Rays at the compact form need an open InPlaceDag.
   double encode_seconds = 0, decode_seconds = 0, open_seconds = 0;
-  std::uint64_t open_bytes = 0;  ///< What an open DAG takes beyond its bytes, without caches.
+  std::uint64_t open_bytes = 0;  ///< Bytes of an open DAG beyond the compact form, without caches.
   CompactRaysTimes times[kCompactRayClassCount];
 };
 
@@ -47,7 +47,7 @@ struct CompactRaysResults {
   std::string scene;
   int levels = 0;
   std::uint64_t plain_bytes = 0, nodes = 0;
-  std::uint64_t cache_bytes = 0;  ///< Of a thread.
+  std::uint64_t cache_bytes = 0;  ///< Bytes of one thread's cache.
   std::size_t rays[kCompactRayClassCount] = {};
   std::vector<CompactRaysPoint> points;
 };

@@ -17,6 +17,19 @@ double part(const CompactRaysPoint& point, const CompactRaysResults& results) {
   return static_cast<double>(point.bytes) / static_cast<double>(results.plain_bytes);
 }
 
+/// Returns a point with the fastest times at the plain form of all points.
+CompactRaysPoint fastest_at_plain(const CompactRaysResults& results) {
+  CompactRaysPoint plain = results.points.at(0);
+  for (const CompactRaysPoint& point : results.points)
+    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
+      const CompactRaysTimes& times = point.times[c];
+      CompactRaysTimes& best = plain.times[c];
+      best.plain_seconds = std::min(best.plain_seconds, times.plain_seconds);
+      best.plain_packet_seconds = std::min(best.plain_packet_seconds, times.plain_packet_seconds);
+    }
+  return plain;
+}
+
 }  // namespace
 
 nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
@@ -76,20 +89,10 @@ std::string compact_rays_table(const CompactRaysResults& results) {
     }
     text += '\n';
   };
-  const auto fastest = [&](double CompactRaysTimes::*seconds) {
-    CompactRaysPoint point = results.points.at(0);
-    for (const CompactRaysPoint& other : results.points)
-      for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
-        point.times[c].*seconds = std::min(point.times[c].*seconds, other.times[c].*seconds);
-    return point;
-  };
   if (results.points.empty()) return text;
-  CompactRaysPoint plain = fastest(&CompactRaysTimes::plain_seconds);
+  const CompactRaysPoint plain = fastest_at_plain(results);
   row("plain", fmt::format("{:>10}{:>8.3f}", human_bytes(results.plain_bytes), 1.0), plain,
       &CompactRaysTimes::plain_seconds);
-  for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
-    plain.times[c].plain_packet_seconds =
-        fastest(&CompactRaysTimes::plain_packet_seconds).times[c].plain_packet_seconds;
   row("  in packets", "", plain, &CompactRaysTimes::plain_packet_seconds);
   for (const CompactRaysPoint& point : results.points) {
     row(fmt::format("{} tables", point.tables),

@@ -71,7 +71,7 @@ TEST_F(Convert, TraceInPlaceFindsTheHitsOfThePlainForm) {
   refused({plain_}, 1, "plain.vdag: does not have the compact form, which --in-place needs");
   refused({small_, "--device", "cuda"}, 2, "--in-place");
   convert({small_, "--levels", "3", "-o", dir_ / "tiny.vdag"});
-  refused({dir_ / "tiny.vdag"}, 1, "has fewer than 16³ voxels, too few for --in-place");
+  refused({dir_ / "tiny.vdag"}, 1, "has a grid of fewer than 16³ voxels, too few for --in-place");
 }
 
 TEST_F(Convert, EveryCommandTakesACompactDag) {

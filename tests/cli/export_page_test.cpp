@@ -1,23 +1,10 @@
-#include <gtest/gtest.h>
-
-#include "process.hpp"
-#include "support/temp_dir.hpp"
+#include "city_dag.hpp"
+#include "colored_waves.hpp"
 
 namespace voxdag {
 namespace {
 
-class ExportPage : public testing::Test {
- protected:
-  ExportPage() {
-    const std::string mesh = dir_ / "mesh.ply";
-    EXPECT_EQ(run_voxdag({"scene", "city", "--size", "1", "-o", mesh, "--quiet"}).status, 0);
-    EXPECT_EQ(run_voxdag({"build", mesh, "-r", "256", "-o", plain_, "--quiet"}).status, 0);
-    EXPECT_EQ(run_voxdag({"convert", plain_, "--compact", "-o", small_, "--quiet"}).status, 0);
-  }
-
-  TempDir dir_;
-  std::string plain_ = dir_ / "plain.vdag", small_ = dir_ / "small.vdag";
-};
+using ExportPage = CityDag;
 
 TEST_F(ExportPage, AFolderAndAFile) {
   const ProcessResult folder = run_voxdag({"export", plain_, "-o", dir_ / "site/"});
@@ -35,9 +22,28 @@ TEST_F(ExportPage, LevelsMakeItCoarser) {
   ASSERT_EQ(run_voxdag({"export", plain_, "--levels", "5", "-o", dir_ / "site/"}).status, 0);
   EXPECT_EQ(read_text(dir_ / "site/scene.vdag"), read_text(dir_ / "5.vdag"));
   expect_failure(run_voxdag({"export", plain_, "--levels", "9", "-o", dir_ / "b/"}), 1,
-                 "has 8 levels, so that it cannot get 9");
+                 "has 8 levels, 256 voxels a side: it cannot get 9");
   expect_failure(run_voxdag({"export", plain_, "--levels", "5", "-o", dir_ / "a.npy"}), 2,
                  "--levels");
+}
+
+TEST_F(ExportPage, LevelsKeepTheColours) {
+  const std::string mesh = dir_ / "waves.obj", colored = dir_ / "colored.vdag",
+                    coarse = dir_ / "coarse.vdag";
+  write_text(mesh, colored_waves());
+  ASSERT_EQ(
+      run_voxdag({"build", mesh, "-r", "32", "--color", "--normal", "-o", colored, "-q"}).status,
+      0);
+  const std::vector<std::string> reduction = {"--levels", "4", "--color-bound", "0.02"};
+  const auto write = [&](std::vector<std::string> words) {
+    words.insert(words.end(), reduction.begin(), reduction.end());
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  write({"convert", colored, "-o", coarse, "-q"});
+  write({"export", colored, "-o", dir_ / "site/", "-q"});
+  EXPECT_EQ(read_text(dir_ / "site/scene.vdag"), read_text(coarse));
+  EXPECT_NE(run_voxdag({"info", coarse, "--json"}).out.find("\"color\""), std::string::npos);
 }
 
 TEST_F(ExportPage, WrongOutputsAreRefused) {

@@ -1,4 +1,4 @@
-/// render --view: settings of the viewer.
+/// Tests render --view, which reads the settings of the viewer.
 #include "colored_waves.hpp"
 #include "sponge.hpp"
 
@@ -98,7 +98,23 @@ TEST_F(RenderView, ColoursAndNormalsAreLeftOut) {
   EXPECT_NE(render(colored, R"({"colors": false})"), plain);
 }
 
-TEST_F(RenderView, WhatAPictureCannotShowIsSaid) {
+TEST_F(RenderView, MaterialsWinOverTheFile) {
+  const std::string mesh = path("strips.obj"), dag = path("strips.vdag"), out = path("strips.png"),
+                    view = path("view.json");
+  write_text(mesh, colored_waves(true));
+  ASSERT_EQ(run_voxdag({"build", mesh, "-r", "32", "--material-ids", "-o", dag, "-q"}).status, 0);
+  const auto render = [&](const std::string& settings, std::vector<std::string> more) {
+    write_text(view, settings);
+    more.insert(more.begin(), {"render", dag, "-o", out, "--size", "48x32", "-q", "--view", view});
+    EXPECT_EQ(run_voxdag(more).status, 0);
+    return read_text(out);
+  };
+  const std::string shown = render("{}", {"--materials"});
+  EXPECT_EQ(render(R"({"colors": false})", {"--materials"}), shown);
+  EXPECT_NE(render("{}", {}), shown);
+}
+
+TEST_F(RenderView, SettingsThatAPictureCannotShowAreNamed) {
   write_text(path("view.json"), R"({"level": 3, "show": "steps"})");
   const ProcessResult result = run_voxdag({"render", path("in.vdag"), "-o", path("a.png"), "--size",
                                            "8x8", "-q", "--view", path("view.json")});

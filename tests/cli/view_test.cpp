@@ -5,31 +5,20 @@
 #include <filesystem>
 #include <thread>
 
-#include "process.hpp"
-#include "support/temp_dir.hpp"
+#include "city_dag.hpp"
 #include "viewer/http_client.hpp"
 
 namespace voxdag {
 namespace {
 
-class View : public testing::Test {
+class View : public CityDag {
  protected:
-  View() {
-    const std::string mesh = dir_ / "mesh.ply";
-    EXPECT_EQ(run_voxdag({"scene", "city", "--size", "1", "-o", mesh, "--quiet"}).status, 0);
-    EXPECT_EQ(run_voxdag({"build", mesh, "-r", "256", "-o", plain_, "--quiet"}).status, 0);
-    EXPECT_EQ(run_voxdag({"convert", plain_, "--compact", "-o", small_, "--quiet"}).status, 0);
-  }
-
   /// Returns the port of the address that the program prints, or 0.
   static int port_of(const Process& program) {
     const std::string url = program.wait_for_line(), start = "http://127.0.0.1:";
     EXPECT_TRUE(url.starts_with(start) && url.ends_with("/")) << url;
     return url.size() > start.size() ? std::atoi(url.c_str() + start.size()) : 0;
   }
-
-  TempDir dir_;
-  std::string plain_ = dir_ / "plain.vdag", small_ = dir_ / "small.vdag";
 };
 
 TEST_F(View, ServesTheSceneInThePlainForm) {
@@ -57,7 +46,7 @@ TEST_F(View, ASignalEndsItWhileAClientIsConnected) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
-/// Returns the text of a file as soon as it is a line, or what it is after some seconds.
+/// Waits until the file has a line, for 10 seconds at most. Returns its text.
 std::string line_in(const std::string& file) {
   for (int i = 0; i < 400 && !read_text(file).ends_with("\n"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(25));
@@ -95,15 +84,14 @@ TEST_F(View, OpensThePageWhereThereIsADisplay) {
 }
 
 TEST_F(View, AFileItCannotShowIsRefusedBeforeItListens) {
-  const std::string broken = dir_ / "broken.vdag", mesh = dir_ / "mesh.ply",
-                    esvo = dir_ / "scene.esvo";
+  const std::string broken = dir_ / "broken.vdag", esvo = dir_ / "scene.esvo";
   std::string bytes = read_text(plain_);
   bytes[bytes.size() / 2] ^= 1;
   write_text(broken, bytes);
-  ASSERT_EQ(run_voxdag({"build", mesh, "-r", "64", "-o", esvo, "--quiet"}).status, 0);
+  ASSERT_EQ(run_voxdag({"build", mesh_, "-r", "64", "-o", esvo, "--quiet"}).status, 0);
   expect_failure(run_voxdag({"view", broken}), 1, broken + ": chunk ");
   expect_failure(run_voxdag({"view", dir_ / "none.vdag"}), 1, "cannot open");
-  expect_failure(run_voxdag({"view", mesh}), 1, "not a .vdag file");
+  expect_failure(run_voxdag({"view", mesh_}), 1, "not a .vdag file");
   expect_failure(run_voxdag({"view", esvo}), 1, "is an ESVO, which the viewer cannot show");
 }
 

@@ -7,6 +7,7 @@
 #include "support/test_rays.hpp"
 #include "support/voxel_sets.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/cpu/packets/in_place_nodes.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/compact_svdag_nodes.hpp"
@@ -84,7 +85,7 @@ TEST(CompactRays, EndAtAnyStream) {
 }
 
 /// Expects packets and single rays at the compact form to meet what single rays meet at the plain
-/// form. A cache of two units loses them all the time.
+/// form. A cache of two units decodes units again and again.
 void expect_same_results(int levels, unsigned seed, const std::vector<CastRay>& rays) {
   for (const NamedVoxels& set : voxel_sets(levels, seed)) {
     const Svdag dag = brute_svdag(levels, set.voxels);

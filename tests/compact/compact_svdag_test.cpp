@@ -129,7 +129,8 @@ TEST(CompactSvdag, AnyStreamIsSafeToRead) {
       ++refused;
     }
   }
-  // Most streams of any bits break off somewhere; a changed bit often codes other voxels.
+  // Most random streams break off somewhere. A stream with one changed bit often codes other
+  // voxels.
   EXPECT_GT(refused, 300);
 }
 
@@ -152,7 +153,7 @@ TEST(CompactSvdag, EveryTruncatedOrChangedHeadIsRefusedOrHarmless) {
   }
 }
 
-/// Memory of zeros that the system provides where it is written.
+/// Zeroed memory. The system provides only the pages that are written.
 class SparseWords {
  public:
   explicit SparseWords(std::size_t words) : bytes_(words * 4) {

@@ -92,7 +92,8 @@ TEST(SymbolCoder, OpenRecordsDoNotNeedTheirEnd) {
 }
 
 TEST(SymbolCoder, CarriesReachAllBitsBefore) {
-  // The first half of the last part, again and again, is a number of ones only.
+  // Halves that begin at part 2047 of 4096 make the digits a run of ones. The last symbol sends a
+  // carry through all of them.
   for (int symbols = 1; symbols < 300; ++symbols) {
     SymbolWriter writer;
     BitWriter bits;
@@ -157,7 +158,7 @@ TEST(SymbolCoder, AnyBitsAreSafeToRead) {
     words.back() = 0;
     const std::uint64_t end = random() % 193, begin = random() % (end + 1);
     SymbolReader reader(words.data(), begin, end);
-    // No sanitizer, and no other check, may report anything.
+    // Sanitizers report reads outside the words.
     for (int i = 0; i < 100; ++i) {
       if (random() % 3 == 0) {
         reader.take_raw(static_cast<int>(random() % 33));

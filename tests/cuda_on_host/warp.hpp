@@ -10,8 +10,9 @@
 
 namespace voxdag {
 
-/// Up to 32 threads that take turns. A thread that waits for the others keeps its stack; until
-/// then, one thread after the other runs on the same stack, because changing stacks takes long.
+/// Up to 32 threads that take turns. Threads run one after the other on one stack, because changing
+/// stacks takes long, until one of them waits for the others: that one keeps the stack, and the
+/// next threads run on a new one.
 class Warp {
  public:
   static constexpr unsigned kSize = 32;
@@ -29,6 +30,7 @@ class Warp {
 
   /// Runs the threads that did not start yet on a new stack, until one of them waits.
   void start_stack(unsigned stack);
+  /// Runs on the new stack.
   static void run_threads();
   /// Makes `lane` the running thread.
   void enter(unsigned lane);
@@ -36,13 +38,14 @@ class Warp {
   std::unique_ptr<std::byte[]> stacks_;
   const std::function<void()>* thread_ = nullptr;
   dim3 block_{};
-  unsigned first_ = 0;
+  unsigned first_ = 0;  ///< The number of the warp's first thread in the block.
   ucontext_t caller_{};
   std::array<ucontext_t, kSize> contexts_{};
   std::array<bool, kSize> is_done_{};
-  std::array<unsigned, kSize> stack_of_{};
+  std::array<unsigned, kSize> stack_of_{};  ///< The number of each thread's stack.
   std::array<std::array<unsigned long long, kSize>, 2> values_{};
-  unsigned size_ = 0, started_ = 0, lane_ = 0, round_ = 0;
+  unsigned size_ = 0, started_ = 0;  ///< Threads of the warp; threads that started.
+  unsigned lane_ = 0, round_ = 0;    ///< The running thread; exchanges of values so far.
 };
 
 }  // namespace voxdag

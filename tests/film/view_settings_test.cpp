@@ -25,7 +25,7 @@ class Settings : public testing::Test {
   const std::string file_ = dir_ / "view.json";
 };
 
-TEST_F(Settings, WhatIsMissingHasTheDefaultsOfRender) {
+TEST_F(Settings, MissingKeysHaveTheDefaultsOfRender) {
   const ViewSettings settings = read("{}");
   const RenderOptions usual;
   EXPECT_FALSE(settings.options.view.eye);
@@ -74,7 +74,7 @@ TEST_F(Settings, ACameraHasTheDefaultsOfTheViewer) {
   EXPECT_EQ(view.vertical_fov_degrees, 40);
 }
 
-TEST_F(Settings, WhatAPictureCannotShowIsNamed) {
+TEST_F(Settings, SettingsThatAPictureCannotShowAreNamed) {
   const auto ignored = [this](const std::string& json) { return read(json).ignored.at(0); };
   EXPECT_EQ(ignored(R"({"level": 5})"), "\"level\" is ignored: a picture shows the finest level");
   EXPECT_TRUE(ignored(R"({"show": "steps"})").starts_with("\"show\" is ignored: "));
@@ -90,7 +90,7 @@ TEST_F(Settings, ErrorsNameTheKey) {
   EXPECT_EQ(error(R"({"shadows": 1})"), "\"shadows\" is not true or false");
   EXPECT_EQ(error(R"({"sun": true})"), "\"sun\" is not an object");
   EXPECT_EQ(error(R"({"sun": {"direction": [0, 0, 0]}})"),
-            "\"sun.direction\" must be a direction, not zero");
+            "\"sun.direction\" must be a direction: finite and not zero");
   EXPECT_EQ(error(R"({"sun": {"angle": 90}})"), "\"sun.angle\" is 90; allowed are 0 to 89");
   EXPECT_EQ(error(R"({"camera": {"eye": [1, 2]}})"),
             "\"camera.eye\" is not an array of three numbers");

@@ -31,7 +31,7 @@ class FailingScene final : public SceneBytes {
   PatternScene scene_{10'000'000};
 };
 
-/// Decodes base64 and gzip, independently of what made them.
+/// Decodes base64 and gzip without the code that encodes them.
 std::string unpacked(const std::string& text) {
   std::string bytes;
   std::uint32_t bits = 0;
@@ -117,7 +117,7 @@ TEST(ExportSite, AFailureLeavesNothing) {
   EXPECT_NE(error_of([&] { export_site(dir / "no/site", PatternScene(1000), nullptr); }),
             "no error");
   EXPECT_EQ(dir.count(), 0);
-  // What was there stays.
+  // An existing page stays as it was.
   export_site(dir / "site", PatternScene(1000), nullptr);
   EXPECT_NE(error_of([&] { export_site(dir / "site", FailingScene(), nullptr); }), "no error");
   EXPECT_EQ(fs::file_size(dir / "site/scene.vdag"), 1000u);

@@ -1,5 +1,5 @@
 #pragma once
-/// A plain HTTP client over a socket, which sends exactly what a test says.
+/// A plain HTTP client over a socket. It sends exactly the bytes of the test.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -71,7 +71,7 @@ class HttpClient {
     return true;
   }
 
-  /// Reads an answer and takes it from `received`.
+  /// Reads an answer and removes its bytes from `received`.
   HttpAnswer answer(bool is_head = false) {
     HttpAnswer answer;
     std::size_t end = std::string::npos;
@@ -96,7 +96,7 @@ class HttpClient {
     return is_closed_;
   }
 
-  std::string received;  ///< What the server has sent and no answer has taken.
+  std::string received;  ///< Bytes that the server sent and that no answer has taken yet.
 
  private:
   static void parse_head(const std::string& head, HttpAnswer& answer) {

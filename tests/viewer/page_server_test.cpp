@@ -103,7 +103,7 @@ TEST_F(Server, SeveralRangesComeInParts) {
                 std::to_string(first) + "-" + std::to_string(last) + "/100000\r\n\r\n" +
                 scene_.text(static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last));
   EXPECT_EQ(answer.body, expected + "\r\n" + boundary + "--\r\n");
-  // Larger than the pieces in which the server sends it.
+  // These ranges are larger than the pieces in which the server sends them.
   const HttpAnswer large = get(port(), "/scene.vdag", "Range: bytes=0-69999,70000-99998\r\n");
   EXPECT_NE(large.body.find(scene_.text(0, 69'999)), std::string::npos);
   EXPECT_NE(large.body.find(scene_.text(70'000, 99'998)), std::string::npos);

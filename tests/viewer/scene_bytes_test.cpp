@@ -87,7 +87,7 @@ TEST(SceneBytes, ADamagedFileIsRefused) {
   }
 }
 
-TEST(SceneBytes, OfALargeFileTheOutlineIsChecked) {
+TEST(SceneBytes, TheOutlineOfALargeFileIsChecked) {
   const TempDir dir;
   std::string bytes = large_file(kWholeCheckBytes), name = dir / "a.vdag";
   write_text(dir / "a.vdag", bytes);

@@ -6,7 +6,7 @@
 
 namespace voxdag {
 
-/// A scene whose bytes follow from their places.
+/// A scene whose bytes are a function of their offsets.
 class PatternScene final : public SceneBytes {
  public:
   explicit PatternScene(std::uint64_t size) : size_(size) {}

@@ -1,4 +1,4 @@
-/// Slow, hostile and many clients.
+/// Tests the server with slow clients, hostile clients and many clients.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -6,13 +6,12 @@
 namespace voxdag {
 
 struct PageFile {
-  std::string_view
-      path;  ///< From the page's folder: "app/app.js". The page itself is "index.html".
+  std::string_view path;  ///< Path from the page's folder: "app/app.js", or "index.html".
   std::string_view type;  ///< Content-Type.
   std::string_view bytes;
 };
 
-/// Returns the files, by path. They live as long as the program.
+/// Returns the files, sorted by path. They live as long as the program.
 std::span<const PageFile> page_files();
 
 /// Returns the file with this path, or null.

@@ -21,9 +21,35 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 template <class T>
-Json vector(Vec3<T> v) {
+Json json_of(T value) {
+  return value;
+}
+template <class T>
+Json json_of(Vec3<T> v) {
   return Json::array({v.x, v.y, v.z});
 }
+
+/// Returns the name in JavaScript: "chunkCount" for "chunk_count", "outlineCosine" for
+/// "kOutlineCosine".
+std::string camel_case(std::string name) {
+  if (name.size() > 1 && name[0] == 'k' && std::isupper(static_cast<unsigned char>(name[1])) != 0) {
+    name.erase(0, 1);
+    name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+  }
+  for (std::size_t at; (at = name.find('_')) != name.npos;) {
+    name.erase(at, 1);
+    name[at] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[at])));
+  }
+  return name;
+}
+
+// Each makes a pair of the name in JavaScript and the value.
+#define VOXDAG_OFFSET(type, member) \
+  { camel_case(#member), offsetof(type, member) }
+#define VOXDAG_CONSTANT(type, name) \
+  { camel_case(#name), json_of(type::name) }
+#define VOXDAG_MEMBER(object, member) \
+  { camel_case(#member), json_of(object.member) }
 
 /// The container of .vdag files; offsets are in bytes.
 Json file_constants() {
@@ -40,35 +66,18 @@ Json file_constants() {
           {"requiredFlag", kVdagChunkRequired},
           {"headerBytes", sizeof(VdagHeader)},
           {"header",
-           {{"version", offsetof(VdagHeader, version)},
-            {"chunkCount", offsetof(VdagHeader, chunk_count)},
-            {"fileBytes", offsetof(VdagHeader, file_bytes)},
-            {"checksum", offsetof(VdagHeader, checksum)},
-            {"reserved", offsetof(VdagHeader, reserved)}}},
+           {VOXDAG_OFFSET(VdagHeader, version), VOXDAG_OFFSET(VdagHeader, chunk_count),
+            VOXDAG_OFFSET(VdagHeader, file_bytes), VOXDAG_OFFSET(VdagHeader, checksum),
+            VOXDAG_OFFSET(VdagHeader, reserved)}},
           {"chunkEntryBytes", sizeof(VdagChunkEntry)},
           {"chunkEntry",
-           {{"id", offsetof(VdagChunkEntry, id)},
-            {"flags", offsetof(VdagChunkEntry, flags)},
-            {"offset", offsetof(VdagChunkEntry, offset)},
-            {"length", offsetof(VdagChunkEntry, length)},
-            {"checksum", offsetof(VdagChunkEntry, checksum)}}},
+           {VOXDAG_OFFSET(VdagChunkEntry, id), VOXDAG_OFFSET(VdagChunkEntry, flags),
+            VOXDAG_OFFSET(VdagChunkEntry, offset), VOXDAG_OFFSET(VdagChunkEntry, length),
+            VOXDAG_OFFSET(VdagChunkEntry, checksum)}},
           {"ids", ids}};
 }
 
-Json dag_constants() {
-  return {{"leastLevels", kMinLevels},
-          {"mostLevels", kMaxLevels},
-          {"leafLevels", 2},  // A leaf block is 4³ voxels.
-          {"subvoxels", kSubvoxels}};
-}
-
-Json cell_index_constants() {
-  return {{"headerBytes", sizeof(CellIndexHeader)},
-          {"finestLevel", offsetof(CellIndexHeader, finest_level)},
-          {"cells", offsetof(CellIndexHeader, cells)},
-          {"width", offsetof(CellIndexHeader, width)}};
-}
-
+/// The stored words of a DAG's colours and normals; offsets are in bytes.
 Json pages_constants() {
   Json channel_bits = Json::array();
   for (int code = 0; code <= 3; ++code) {
@@ -77,89 +86,86 @@ Json pages_constants() {
         {precision.channel_bits(0), precision.channel_bits(1), precision.channel_bits(2)});
   }
   return {{"headerBytes", sizeof(ValuePagesHeader)},
-          {"precision", offsetof(ValuePagesHeader, precision)},
-          {"values", offsetof(ValuePagesHeader, values)},
-          {"words", offsetof(ValuePagesHeader, words)},
+          VOXDAG_OFFSET(ValuePagesHeader, precision),
+          VOXDAG_OFFSET(ValuePagesHeader, values),
+          VOXDAG_OFFSET(ValuePagesHeader, words),
           {"pageValues", kPageValues},
           {"groupPages", kGroupPages},
           {"blockUnit", kBlockUnit},
-          {"headerBits", ValueBlock::kHeaderBits},
+          VOXDAG_CONSTANT(ValueBlock, kHeaderBits),
           {"typeBits", 3},
-          {"stepBits", ValueBlock::kStepBits},
-          {"stepUnit", ValueBlock::kStepUnit},
+          VOXDAG_CONSTANT(ValueBlock, kStepBits),
+          VOXDAG_CONSTANT(ValueBlock, kStepUnit),
           {"flat", static_cast<int>(ValueBlock::kFlat)},
           {"raw", static_cast<int>(ValueBlock::kRaw)},
           {"channelBits", channel_bits}};
 }
 
-Json samples_constants() {
-  return {{"sets", SampleTables::kSets}, {"rotations", SampleTables::kRotations}};
-}
-
+/// The light, and the options of a picture whose defaults the page shares.
 Json light_constants() {
   const Sky sky;
   const RenderOptions options;
-  return {{"sunLight", vector(sky.sun_light)},
-          {"zenith", vector(sky.zenith)},
-          {"horizon", vector(sky.horizon)},
-          {"ground", vector(sky.ground)},
-          {"glow", SkyShape::kGlow},
+  return {VOXDAG_MEMBER(sky, sun_light),
+          VOXDAG_MEMBER(sky, zenith),
+          VOXDAG_MEMBER(sky, horizon),
+          VOXDAG_MEMBER(sky, ground),
+          VOXDAG_CONSTANT(SkyShape, kGlow),
           {"groundSeen", SkyShape::kGround},
-          {"groundBegins", SkyShape::kGroundBegins},
-          {"groundIsFull", SkyShape::kGroundIsFull},
-          {"horizonInDome", SkyShape::kHorizonInDome},
-          {"open", SkyShape::kOpen},
-          {"fill", SkyShape::kFill},
-          {"fillFacing", SkyShape::kFillFacing},
-          {"fillAside", SkyShape::kFillAside},
-          {"defaultSun", vector(kDefaultSun)},
-          {"sunDegrees", options.sun_degrees},
-          {"sky", options.sky},
-          {"shadowSamples", options.shadow_samples},
-          {"occlusionSamples", options.occlusion_samples},
+          VOXDAG_CONSTANT(SkyShape, kGroundBegins),
+          VOXDAG_CONSTANT(SkyShape, kGroundIsFull),
+          VOXDAG_CONSTANT(SkyShape, kHorizonInDome),
+          VOXDAG_CONSTANT(SkyShape, kOpen),
+          VOXDAG_CONSTANT(SkyShape, kFill),
+          VOXDAG_CONSTANT(SkyShape, kFillFacing),
+          VOXDAG_CONSTANT(SkyShape, kFillAside),
+          {"defaultSun", json_of(kDefaultSun)},
+          VOXDAG_MEMBER(options, sun_degrees),
+          VOXDAG_MEMBER(options, sky),
+          VOXDAG_MEMBER(options, shadow_samples),
+          VOXDAG_MEMBER(options, occlusion_samples),
           {"occlusionDistance", kOcclusionDistance},
-          {"occlusionCone", options.occlusion_cone},
-          {"lodPixels", options.lod_pixels},
-          {"cubePixels", options.cube_pixels},
-          {"albedo", vector(options.albedo)}};
+          VOXDAG_MEMBER(options, occlusion_cone),
+          VOXDAG_MEMBER(options, lod_pixels),
+          VOXDAG_MEMBER(options, cube_pixels),
+          VOXDAG_MEMBER(options, albedo)};
 }
 
-Json exposure_constants() {
-  return {{"middle", ExposureRule::kMiddle},       {"bright", ExposureRule::kBright},
-          {"white", ExposureRule::kWhite},         {"least", ExposureRule::kLeast},
-          {"ofNothing", ExposureRule::kOfNothing}, {"luminance", vector(ExposureRule::kLuminance)}};
-}
-
-Json tone_constants() {
-  return {{"a", ToneCurve::kA},
-          {"b", ToneCurve::kB},
-          {"c", ToneCurve::kC},
-          {"d", ToneCurve::kD},
-          {"e", ToneCurve::kE}};
-}
-
-Json normal_constants() {
-  return {{"radius", LayerRule::kRadius},
-          {"power", LayerRule::kPower},
-          {"thin", LayerRule::kThin},
-          {"thick", LayerRule::kThick},
-          {"plane", LayerRule::kPlane},
-          {"edge", LayerRule::kEdge},
-          {"outlineCosine", LayerRule::kOutlineCosine},
-          {"coarser", LayerRule::kCoarser},
-          {"leaning", BackRule::kLeaning},
-          {"opposite", BackRule::kOpposite}};
-}
-
-Json start_constants() {
-  return {{"slack", StartRule::kSlack},
-          {"hidden", StartRule::kHidden},
-          {"tries", StartRule::kTries},
-          {"farthest", StartRule::kFarthest}};
-}
-
-Json view_constants() {
-  return {{"leastFovDegrees", kLeastFovDegrees}, {"fovDegrees", View{}.vertical_fov_degrees}};
+/// Returns all groups of constants by name.
+Json all_constants() {
+  return {{"FILE", file_constants()},
+          {"DAG",
+           {{"leastLevels", kMinLevels},
+            {"mostLevels", kMaxLevels},
+            {"leafLevels", 2},  // A leaf block is 4³ voxels.
+            {"subvoxels", kSubvoxels}}},
+          {"CELL_INDEX",
+           {{"headerBytes", sizeof(CellIndexHeader)},
+            VOXDAG_OFFSET(CellIndexHeader, finest_level),
+            VOXDAG_OFFSET(CellIndexHeader, cells),
+            VOXDAG_OFFSET(CellIndexHeader, width)}},
+          {"PAGES", pages_constants()},
+          {"SAMPLES",
+           {VOXDAG_CONSTANT(SampleTables, kSets), VOXDAG_CONSTANT(SampleTables, kRotations)}},
+          {"LIGHT", light_constants()},
+          {"EXPOSURE",
+           {VOXDAG_CONSTANT(ExposureRule, kMiddle), VOXDAG_CONSTANT(ExposureRule, kBright),
+            VOXDAG_CONSTANT(ExposureRule, kWhite), VOXDAG_CONSTANT(ExposureRule, kLeast),
+            VOXDAG_CONSTANT(ExposureRule, kOfNothing), VOXDAG_CONSTANT(ExposureRule, kLuminance)}},
+          {"TONE",
+           {VOXDAG_CONSTANT(ToneCurve, kA), VOXDAG_CONSTANT(ToneCurve, kB),
+            VOXDAG_CONSTANT(ToneCurve, kC), VOXDAG_CONSTANT(ToneCurve, kD),
+            VOXDAG_CONSTANT(ToneCurve, kE)}},
+          {"NORMAL",
+           {VOXDAG_CONSTANT(LayerRule, kRadius), VOXDAG_CONSTANT(LayerRule, kPower),
+            VOXDAG_CONSTANT(LayerRule, kThin), VOXDAG_CONSTANT(LayerRule, kThick),
+            VOXDAG_CONSTANT(LayerRule, kPlane), VOXDAG_CONSTANT(LayerRule, kEdge),
+            VOXDAG_CONSTANT(LayerRule, kOutlineCosine), VOXDAG_CONSTANT(LayerRule, kCoarser),
+            VOXDAG_CONSTANT(BackRule, kLeaning), VOXDAG_CONSTANT(BackRule, kOpposite)}},
+          {"START",
+           {VOXDAG_CONSTANT(StartRule, kSlack), VOXDAG_CONSTANT(StartRule, kHidden),
+            VOXDAG_CONSTANT(StartRule, kTries), VOXDAG_CONSTANT(StartRule, kFarthest)}},
+          {"VIEW",
+           {{"leastFovDegrees", kLeastFovDegrees}, {"fovDegrees", View{}.vertical_fov_degrees}}}};
 }
 
 /// Returns "PAGE_VALUES" for "pageValues".
@@ -199,17 +205,7 @@ std::string glsl_definitions(const Json& groups) {
 }
 
 void print_module() {
-  const Json groups = {{"FILE", file_constants()},
-                       {"DAG", dag_constants()},
-                       {"CELL_INDEX", cell_index_constants()},
-                       {"PAGES", pages_constants()},
-                       {"SAMPLES", samples_constants()},
-                       {"LIGHT", light_constants()},
-                       {"EXPOSURE", exposure_constants()},
-                       {"TONE", tone_constants()},
-                       {"NORMAL", normal_constants()},
-                       {"START", start_constants()},
-                       {"VIEW", view_constants()}};
+  const Json groups = all_constants();
   std::printf(
       "// Made from the headers of voxdag by apps/viewer/generate/constants.cpp. Do not edit.\n"
       "export const VERSION = %s;\n",

@@ -45,7 +45,8 @@ std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Writes the file unless it has these bytes already, so that nothing is built again.
+/// Writes the file unless it has these bytes already: a file that did not change is not compiled
+/// again.
 void write(const fs::path& file, const std::string& bytes) {
   if (fs::exists(file) && read(file) == bytes) return;
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
@@ -116,7 +117,7 @@ void embed(int argc, char** argv) {
     check_can_be_inlined(file);
     write(copy / file.path, file.bytes);
   }
-  // Files that the page no longer has.
+  // Removes copies of files that the page no longer has.
   std::vector<fs::path> stale;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(copy)) {
     const std::string path = entry.path().lexically_relative(copy).generic_string();

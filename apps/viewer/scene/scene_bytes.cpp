@@ -28,7 +28,7 @@ std::string tag_of(const VdagHeader& header) {
   return text;
 }
 
-/// A file as it was when it was opened.
+/// The size and the time of the last change of an open file.
 struct FileState {
   off_t size = 0;
   timespec changed{};
@@ -44,13 +44,17 @@ struct FileState {
   }
 };
 
+/// The bytes of a file on the disk.
 class FileBytes final : public SceneBytes {
  public:
   explicit FileBytes(const std::filesystem::path& path)
       : input_(open_input(path)), state_(FileState::of(input_.descriptor.get())) {
-    const bool is_small = size() <= kWholeCheckBytes;
     try {
-      is_small ? check_all() : check_outline(path);
+      if (state_.size < 0) throw Error("", "", "cannot read: " + system_reason());
+      if (size() <= kWholeCheckBytes)
+        check_all();
+      else
+        check_outline(path);
     } catch (const Error& error) {
       throw error.in_file(path.string());
     }
@@ -76,16 +80,21 @@ class FileBytes final : public SceneBytes {
     return true;
   }
 
+  /// Reads the file and checks all of it.
   void check_all() {
-    // Words, because the parser needs bytes that are aligned to 8.
+    // The parser needs bytes that are aligned to 8.
     std::vector<std::uint64_t> words((size() + 7) / 8);
     const std::span<std::byte> bytes =
         std::as_writable_bytes(std::span(words)).first(static_cast<std::size_t>(size()));
-    if (!read_all(0, bytes)) throw Error("", "", "cannot read: " + system_reason());
+    errno = 0;
+    if (!read_all(0, bytes))
+      throw Error("", "",
+                  errno == 0 ? "changed while it was opened" : "cannot read: " + system_reason());
     parse_vdag(bytes);
     std::memcpy(&header_, bytes.data(), sizeof header_);
   }
 
+  /// Checks the header, the chunk table and META, and reads no more.
   void check_outline(const std::filesystem::path& path) {
     const MappedFile mapping(path, MappedFile::Access::kRandom);
     const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
@@ -105,6 +114,7 @@ class FileBytes final : public SceneBytes {
   VdagHeader header_{};
 };
 
+/// The bytes of the file for a DAG in memory.
 class DagBytes final : public SceneBytes {
  public:
   DagBytes(const SvdagView& dag, const VdagMetadata& metadata, const DagAttributesView& attributes)
@@ -135,7 +145,7 @@ class DagBytes final : public SceneBytes {
  private:
   PlainVdagBytes bytes_;
   VdagHeader header_{};
-  std::vector<std::uint64_t> begins_;  // of the parts
+  std::vector<std::uint64_t> begins_;  // The offset of each part.
   std::uint64_t end_ = 0;
 };
 

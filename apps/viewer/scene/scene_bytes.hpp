@@ -12,7 +12,7 @@
 
 namespace voxdag {
 
-/// Thread-safe.
+/// The bytes, wherever they are. Thread-safe.
 class SceneBytes {
  public:
   virtual ~SceneBytes() = default;
@@ -21,25 +21,24 @@ class SceneBytes {
   /// Returns a text that differs for different bytes: the checksum of the header and the chunk
   /// table, which hold the checksums of all chunks.
   virtual std::string tag() const = 0;
-  /// Returns whether the bytes are still those of which tag() tells.
+  /// Returns whether the bytes are still those of tag().
   virtual bool is_unchanged() const = 0;
   /// Reads the bytes from `offset` on into all of `out`, within size(). Returns false if the file
   /// has changed or cannot be read any more.
   virtual bool read(std::uint64_t offset, std::span<std::byte> out) const = 0;
 };
 
-/// Files up to this size are checked completely before they are shown. Of larger ones only the
-/// header, the chunk table and META are read; the page checks all that it uses.
+/// Files up to this size are checked completely before they are shown. For larger files, only the
+/// header, the chunk table and META are checked; the page checks the levels that it uses.
 inline constexpr std::uint64_t kWholeCheckBytes = std::uint64_t{32} << 20;
 
-/// Opens a .vdag file in the plain form. Keeps its descriptor, so that it shows the file that was
-/// opened also when another takes its name. Reads by pread(), never through a mapping: a file that
-/// another program truncates is an error of read() and no signal. Throws Error(path, place,
-/// reason).
+/// Opens a .vdag file in the plain form, and keeps it open: if another file takes its name, the
+/// bytes stay those of the first. read() uses pread(), not a mapping: if another program truncates
+/// the file, read() fails and no signal ends the program. Throws Error(path, place, reason).
 std::unique_ptr<SceneBytes> open_scene_bytes(const std::filesystem::path& path);
 
-/// Returns the bytes of the file for a DAG in memory, which must outlive the result. Throws Error
-/// as write_vdag() does.
+/// Returns the bytes that write_vdag() would write for a DAG in memory, which must outlive the
+/// result. Throws what write_vdag() throws.
 std::unique_ptr<SceneBytes> make_scene_bytes(const SvdagView& dag, const VdagMetadata& metadata,
                                              const DagAttributesView& attributes = {});
 

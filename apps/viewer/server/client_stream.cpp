@@ -4,7 +4,6 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 
 namespace voxdag {
@@ -13,24 +12,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::string_view kHeadEnd = "\r\n\r\n";
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20 && c != '\t') || byte == 0x7F;
-}
 
 const char* status_line(int status) {
   switch (status) {
@@ -49,44 +30,8 @@ const char* status_line(int status) {
 
 }  // namespace
 
-RequestHead check_head(std::string_view head, const ServerLimits& limits) {
-  RequestHead result;
-  int fields = 0, hosts = 0, ranges = 0;
-  std::size_t begin = 0;
-  for (bool is_first = true;; is_first = false) {
-    const std::size_t end = head.find("\r\n", begin);
-    const std::string_view line = head.substr(begin, end - begin);
-    if (line.empty() && !is_first) break;
-    begin = end + 2;
-    if (std::any_of(line.begin(), line.end(), is_control)) return {400, true};
-    if (is_first) {
-      const std::string_view method = line.substr(0, line.find(' '));
-      result.may_have_body = method != "GET" && method != "HEAD";
-      continue;
-    }
-    if (++fields > limits.most_fields) return {431, true};
-    const std::size_t colon = line.find(':');
-    // A name with a space before its colon, or a continued line, means different things to
-    // different programs.
-    if (colon == 0 || colon == line.npos || line.substr(0, colon).find_first_of(" \t") != line.npos)
-      return {400, true};
-    const std::string name = lower_case(line.substr(0, colon));
-    const std::string_view value = trimmed(line.substr(colon + 1));
-    if (name == "host") ++hosts;
-    if (name == "transfer-encoding" || (name == "content-length" && value != "0") ||
-        name == "expect" || name == "upgrade")
-      result.may_have_body = true;
-    if (name != "range") continue;
-    if (++ranges > 1 || value.size() > limits.most_range_bytes ||
-        std::count(value.begin(), value.end(), ',') >= limits.most_ranges)
-      result.refusal = 416;
-  }
-  if (hosts > 1) return {400, true};
-  return result;
-}
-
 bool ClientStream::wait_until(Event event, Clock::time_point deadline) const {
-  constexpr milliseconds kStep{100};  // the time after which a stop is noticed
+  constexpr milliseconds kStep{100};  // A stop is noticed after this time.
   for (;;) {
     if (is_stopping_) return false;
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());

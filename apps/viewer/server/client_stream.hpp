@@ -1,6 +1,5 @@
 #pragma once
-/// One client's connection, bounded in time and size. The only source of bytes for the HTTP
-/// library.
+/// A client's connection, limited in time and size. The HTTP library reads and writes through it.
 #include <httplib.h>
 
 #include <atomic>
@@ -8,47 +7,35 @@
 #include <string>
 #include <string_view>
 
-#include "viewer/server/page_server.hpp"
+#include "viewer/server/server_limits.hpp"
 
 namespace voxdag {
 
 /// How the wait for the head of a request ended.
 enum class HeadResult {
   kComplete,
-  kClosed,   ///< The client is gone, sent nothing in time, or the server stops.
-  kTooSlow,  ///< A part of it came in time.
+  kClosed,   ///< The client left or sent nothing in time, or the server stops.
+  kTooSlow,  ///< Only a part of the head came in time.
   kTooLarge,
 };
 
-/// The head of a request: its first line and its header fields.
-struct RequestHead {
-  /// Returns the problem of a head that the HTTP library must not see: the status 400, 416 or 431;
-  /// 0 if there is none.
-  int refusal = 0;
-  bool may_have_body = false;  ///< Its connection is closed afterwards: nobody reads the body.
-};
-
-/// Checks a complete head before the HTTP library parses it: the number of fields, Range, control
-/// characters. (Version 0.11 matches Range by a recursive std::regex.)
-RequestHead check_head(std::string_view head, const ServerLimits& limits);
-
 class ClientStream final : public httplib::Stream {
  public:
-  /// The caller keeps the socket open. Everything fails soon after `is_stopping` becomes true.
+  /// The caller keeps the socket open. All calls fail soon after `is_stopping` becomes true.
   ClientStream(int socket, const ServerLimits& limits, const std::atomic<bool>& is_stopping)
       : socket_(socket), limits_(limits), is_stopping_(is_stopping) {}
 
-  /// Waits for the next head, which read() then gives.
+  /// Waits for the next head; read() then returns its bytes.
   HeadResult receive_head();
   std::string_view head() const { return std::string_view(received_).substr(0, head_bytes_); }
-  /// Restarts the time of the response.
+  /// Starts the time limits of a response.
   void begin_response();
   /// Sends a response without the HTTP library.
   void send_status(int status);
 
   bool is_readable() const override { return at_ < head_bytes_; }
   bool is_writable() const override { return wait_until(kWrite, deadline()); }
-  /// Gives the rest of the head, and then no more.
+  /// Copies the next bytes of the head. Returns their number; 0 after the head.
   ssize_t read(char* out, std::size_t size) override;
   ssize_t write(const char* bytes, std::size_t size) override;
   void get_remote_ip_and_port(std::string& ip, int& port) const override;
@@ -67,11 +54,11 @@ class ClientStream final : public httplib::Stream {
   int socket_;
   const ServerLimits& limits_;
   const std::atomic<bool>& is_stopping_;
-  std::string received_;        // the head, and what the client sent behind it
-  std::size_t head_bytes_ = 0;  // in received_; 0 until it is complete
-  std::size_t at_ = 0;          // the next byte of the head for read()
+  std::string received_;        // The head, and the bytes that the client sent behind it.
+  std::size_t head_bytes_ = 0;  // Bytes of the head in received_; 0 until it is complete.
+  std::size_t at_ = 0;          // The next byte of the head for read().
   Clock::time_point response_start_ = Clock::now();
-  std::uint64_t sent_ = 0;  // bytes of the response
+  std::uint64_t sent_ = 0;  // Bytes of the response.
 };
 
 }  // namespace voxdag

@@ -25,14 +25,14 @@ void ConnectionThreads::join_done() {
 }
 
 bool ConnectionThreads::make_way() {
-  // Connections that end, or that are about to wait for their next request, need a moment.
+  // Connections that are ending, or about to wait for their next request, need a moment.
   constexpr int kTries = 40;
   constexpr std::chrono::milliseconds kMoment{5};
   for (int i = 0; i < kTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kMoment);
     join_done();
     if (workers_.size() < most_) return true;
-    // One that was ended to make way may still be in the list.
+    // A connection that was ended may still be in the list.
     if (workers_.size() < 2 * most_ && connections_.end_longest_waiting()) return true;
   }
   return false;

@@ -11,8 +11,8 @@
 
 namespace voxdag {
 
-/// The HTTP library's queue of connections. If there are too many, one that waits for its next
-/// request makes way; if none waits, the new one is refused: it runs at once, with is_refused().
+/// The HTTP library's queue of connections. If there are too many, it ends one that waits for its
+/// next request. If none waits, it refuses the new one: it runs it at once, with is_refused().
 class ConnectionThreads final : public httplib::TaskQueue {
  public:
   ConnectionThreads(Connections& connections, int most)
@@ -32,7 +32,8 @@ class ConnectionThreads final : public httplib::TaskQueue {
   };
 
   void join_done();
-  /// Returns whether there is room for one more connection, if need be by ending one that waits.
+  /// Makes room for one more connection, if need be by ending one that waits. Returns false if
+  /// there is none.
   bool make_way();
 
   Connections& connections_;

@@ -1,6 +1,6 @@
 #pragma once
 /// The body of an answer with several ranges of a scene: multipart/byteranges, RFC 9110, section
-/// 14.6. (That of the HTTP library gives a wrong size of the whole.)
+/// 14.6. The HTTP library has one, too, but writes a wrong size of the whole.
 #include <span>
 #include <string>
 #include <vector>

@@ -24,17 +24,4 @@ bool resolve_ranges(std::vector<ByteRange>& ranges, std::uint64_t size) {
   return !ranges.empty();
 }
 
-bool has_tag(std::string_view list, std::string_view tag) {
-  while (!list.empty()) {
-    const std::size_t comma = std::min(list.find(','), list.size());
-    std::string_view item = list.substr(0, comma);
-    list.remove_prefix(std::min(comma + 1, list.size()));
-    while (!item.empty() && item.front() == ' ') item.remove_prefix(1);
-    while (!item.empty() && item.back() == ' ') item.remove_suffix(1);
-    if (item.starts_with("W/")) item.remove_prefix(2);
-    if (item == tag || item == "*") return true;
-  }
-  return false;
-}
-
 }  // namespace voxdag

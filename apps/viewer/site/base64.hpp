@@ -19,6 +19,7 @@ class Base64 {
   int count_ = 0;  // bytes in bits_
 };
 
+/// Returns the text of all bytes.
 inline std::string base64(std::string_view bytes) {
   Base64 encoder;
   std::string text = encoder.add(bytes);

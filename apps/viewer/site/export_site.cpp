@@ -25,7 +25,7 @@ constexpr char kSceneName[] = "scene.vdag";
   throw Error(path.string(), "", what + ": " + error.message());
 }
 
-/// Throws Error if a folder has anything but the files of a page.
+/// Throws Error if a folder has files that are not of a page.
 void check_replaceable(const fs::path& folder) {
   std::set<fs::path> ours = {kSceneName};
   for (const PageFile& file : page_files())
@@ -41,7 +41,7 @@ void check_replaceable(const fs::path& folder) {
   if (error) fail(folder, "cannot read", error);
 }
 
-/// A folder that is removed with its files, unless take_name() gives it its name.
+/// A folder that its destructor removes, unless take_name() gave it the name of the target.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const fs::path& target)
@@ -58,11 +58,11 @@ class TemporaryFolder {
 
   const fs::path& path() const { return path_; }
 
-  /// Gives the folder its name. A folder that has the name is then removed.
+  /// Gives the folder the target's name. Replaces a folder that has this name.
   void take_name() const {
     std::error_code error;
     if (fs::exists(target_, error)) {
-      // Both names stay taken at all times. The destructor removes the old folder.
+      // The exchange leaves no moment without a folder. The destructor removes the old one.
       if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
         fail(target_, "cannot replace", std::error_code(errno, std::system_category()));
       return;

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes the page with its scene for other servers, or as one file that needs none.
+/// Writes the page with its scene: a folder for any web server, or one file that needs no server.
 #include <cstdint>
 #include <filesystem>
 
@@ -8,18 +8,18 @@
 
 namespace voxdag {
 
-/// A page in one file is easy to open and to send up to about this size.
+/// A page in one file of more bytes is slow to open and to send.
 inline constexpr std::uint64_t kHandyPageBytes = std::uint64_t{64} << 20;
 
-/// Writes a folder with the page's files and "scene.vdag", complete or not at all: a folder beside
-/// it gets its name at last. An existing folder is replaced if it has no other files than these.
+/// Writes a folder with the page's files and "scene.vdag", completely or not at all: it fills a
+/// temporary folder, then renames it. Replaces an existing folder if that has no files but these.
 /// Returns the bytes of all files. Throws Error, and Cancelled; `progress` may be null.
 std::uint64_t export_site(const std::filesystem::path& folder, const SceneBytes& scene,
                           Progress* progress);
 
-/// Writes the page of make_single_page() with the scene, complete or not at all. The file depends
-/// on the scene's bytes alone. Returns its size. Throws Error, and Cancelled; `progress` may be
-/// null.
+/// Writes the page of make_single_page() with the scene, completely or not at all. The bytes of the
+/// file depend on the scene's bytes alone. Returns its size. Throws Error, and Cancelled;
+/// `progress` may be null.
 std::uint64_t export_single_page(const std::filesystem::path& file, const SceneBytes& scene,
                                  Progress* progress);
 

@@ -10,8 +10,8 @@
 
 namespace voxdag {
 
-/// Calls body(std::span<const std::byte>) for pieces that follow each other. Throws Error if the
-/// scene changes, and Cancelled; `progress` may be null.
+/// Calls body(std::span<const std::byte>) for one piece of the bytes after the other. Throws Error
+/// if the scene changes, and Cancelled; `progress` may be null.
 template <class Body>
 void for_each_piece(const SceneBytes& scene, Progress* progress, const Body& body) {
   constexpr std::size_t kPiece = std::size_t{1} << 20;

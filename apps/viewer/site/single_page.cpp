@@ -101,7 +101,7 @@ class PageBuilder {
     text_.append(html.substr(at));
     if (entry_.empty()) throw Error("index.html", "", "has no module");
     add_policy();
-    // At the end of the body: a browser shows the rest while it reads the scene.
+    // The scene stands at the end of the body: a browser shows the rest while it reads the scene.
     const std::size_t end = std::min(text_.rfind("</body>"), text_.size());
     const std::string tail = text_.substr(end);
     text_.erase(end);
@@ -113,13 +113,14 @@ class PageBuilder {
  private:
   const PageFile& find(std::string_view path) const { return file_at(files_, path, "index.html"); }
 
+  /// Takes the page's module out of the text.
   void take_module(const Tag& tag) {
     if (tag.attribute("type") != "module" || !entry_.empty())
       throw Error("index.html", "", "must have one script with src=, a module");
     entry_ = tag.attribute("src");
   }
 
-  /// Adds the module with all that it imports, the other texts, and the start of the scene.
+  /// Adds the texts that no module imports, the import map, and the start tag of the scene.
   void add_assets() {
     const std::set<std::string> modules = reachable_modules(files_, entry_);
     for (const PageFile& file : files_)
@@ -142,6 +143,7 @@ class PageBuilder {
     text_ += "}}</script>\n<script type=\"text/plain\" id=\"scene\">";
   }
 
+  /// Adds the style sheet or the picture that the tag refers to.
   void add_link(const Tag& tag) {
     const bool is_link = tag.text.starts_with("<link ");
     const std::string_view target = tag.attribute(is_link ? "href" : "src");
@@ -163,7 +165,7 @@ class PageBuilder {
     return file.path.ends_with(".js") || file.path.ends_with(".glsl");
   }
 
-  /// Adds the policy behind <head>, or behind the declaration of the characters.
+  /// Adds the policy behind <meta charset>; if there is none, behind <head>.
   void add_policy() {
     std::size_t at = text_.find("<meta charset");
     at = text_.find('>', at == std::string::npos ? text_.find("<head") : at);

@@ -1,5 +1,5 @@
 #pragma once
-/// The page and all that it needs in one HTML text.
+/// Makes one HTML text of the page and all that it needs.
 #include <span>
 #include <string>
 
@@ -12,14 +12,14 @@ struct SinglePage {
   std::string before, after;
 };
 
-/// Makes the page from its files, among which are "index.html" and its one module. In the result
-///   the modules are data: URLs in an import map, which names them "voxdag/PATH";
-///   files that no module imports (shaders, the worker) are elements
-///     <script type="text/plain" data-path="PATH">;
-///   style sheets are elements, and pictures are data: URLs;
-///   the scene is the element <script type="text/plain" id="scene">.
-/// It makes no connection, and its policy forbids any. Throws Error for a page that cannot become
-/// one file: an import of a file that it lacks, a reference that is none of these.
+/// Makes the page from its files, which include "index.html" and its one module. The result holds
+///   modules      as data: URLs in an import map, which names them "voxdag/PATH"
+///   texts that no module imports (shaders, the worker)
+///                as elements <script type="text/plain" data-path="PATH">
+///   style sheets as elements <style>, and pictures as data: URLs
+///   the scene    as the element <script type="text/plain" id="scene">
+/// It makes no connection, and its policy forbids all. Throws Error for a page that cannot become
+/// one file: it lacks a file that a module imports, or refers to a file of another type.
 SinglePage make_single_page(std::span<const PageFile> files);
 
 }  // namespace voxdag

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/look_input.hpp"
@@ -51,22 +52,14 @@ void export_file(ExportArguments& arguments, Session& session) {
 }
 
 void add_page_options(const Command& command, ExportArguments& arguments) {
-  const auto is_page = [&arguments] { return arguments.is_page(); };
-  const std::string why_not = "on an output that is neither .html nor a folder";
-  command
-      .optional_number<int>("--levels", arguments.page.levels,
-                            NumberRange::whole(kMinLevels, kMaxLevels), "L",
-                            "With a page: show a coarser grid, of 2^L voxels a side")
-      .only_if(is_page, why_not);
-  command
-      .flag("--drop-attributes", arguments.page.drop_attributes,
-            "With a page: leave out the colours and normals")
-      .only_if(is_page, why_not);
-  command
-      .parsed("--memory", arguments.page.memory_limit, parse_memory, "LIMIT",
-              "With a page: maximum memory, including the program (default: three quarters of the "
-              "available memory)")
-      .only_if(is_page, why_not);
+  std::vector<Option> options = add_reduction_options(command, arguments.page.reduction);
+  options.push_back(command.parsed(
+      "--memory", arguments.page.memory_limit, parse_memory, "LIMIT",
+      "Maximum memory, including the program (default: three quarters of the available memory)"));
+  for (const Option& option : options)
+    option.in_group("Options for pages only (.html, FOLDER/)")
+        .only_if([&arguments] { return arguments.is_page(); },
+                 "on an output that is neither .html nor a folder");
 }
 
 void check_outputs(const ExportArguments& arguments, const Session& session) {

@@ -30,7 +30,8 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
   std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   const LookOnDevice look_on_device(arguments.device, look ? *look : file, !look, device_scene);
   options.look = look_on_device.view();
-  if (!arguments.view.colors) options.look.dag.attributes.colors = {};
+  // --materials, which shows materials as colours, wins over the file of --view.
+  if (!arguments.view.colors && !arguments.materials) options.look.dag.attributes.colors = {};
   if (!arguments.view.normals) options.look.dag.attributes.normals = {};
   std::optional<CpuScene> cpu_scene;
   if (!device_scene) cpu_scene.emplace(scene);

@@ -89,7 +89,7 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   const auto take = [&](const char* option, auto& value, const auto& from_file) {
     if (!view.has(option)) value = from_file;
   };
-  // A camera path has the views of a film.
+  // The views of a film come from its camera path.
   if (arguments.path.file.empty()) {
     take("--eye", options.view.eye, saved.view.eye);
     take("--target", options.view.target, saved.view.target);
@@ -98,7 +98,7 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   }
   take("--sun", options.sun, saved.sun);
   take("--sun-angle", options.sun_degrees, saved.sun_degrees);
-  // Who gives a sun wants to see it.
+  // An option that describes the sun also turns it on.
   if (!view.has("--sun") && !view.has("--sun-angle"))
     take("--no-sun", options.with_sun, saved.with_sun);
   take("--sky", options.sky, saved.sky);

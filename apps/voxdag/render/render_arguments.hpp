@@ -30,19 +30,20 @@ struct PathArguments {
   double frames_per_second = 30;
 };
 
-/// The option --view: settings of the viewer.
+/// The option --view, which names settings of the viewer.
 struct ViewFileArguments {
   std::string file;                    ///< Empty: none.
-  std::vector<Option> winners;         ///< The options that win over the file if they are given.
-  bool colors = true, normals = true;  ///< Show those of a DAG.
+  std::vector<Option> winners;         ///< Options that win over the file if they are given.
+  bool colors = true, normals = true;  ///< Show the colours, the normals that a DAG stores.
 
-  bool has(const std::string& option) const;  ///< Whether this option of `winners` is given.
+  /// Returns whether this option of `winners`, such as "--eye", is given.
+  bool has(const std::string& option) const;
 };
 
 struct RenderArguments {
   std::string output, depth, normal;
   ViewFileArguments view;
-  std::string look;                 ///< The ESVO with the look of a DAG's voxels; empty: none.
+  std::string look;                 ///< The file of --look; empty: none.
   bool materials = false;           ///< Show each material in a colour of its own.
   std::vector<PicturePass> passes;  ///< Values of --pass.
   ImageSize size{1920, 1080};
@@ -62,8 +63,9 @@ void add_render_options(const Command& command, Session& session, RenderArgument
 /// outputs.
 void check_render_arguments(RenderArguments& arguments, Session& session);
 
-/// Reads the file of --view, if there is one, into the options that are not given. Prints a line
-/// for each setting that it ignores. Throws Error with the file and the key.
+/// Reads the file of --view, if there is one, and sets the options that the command line does not
+/// give. Prints a warning for each setting that it ignores. Throws what read_view_settings()
+/// throws.
 void apply_view_file(RenderArguments& arguments, Session& session);
 
 /// Returns all passes to write: the picture, --depth, --normal and --pass.

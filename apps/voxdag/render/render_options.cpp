@@ -62,9 +62,10 @@ struct ViewOptions {
   Option eye, target;
 };
 
-using Options = std::vector<Option>;
+/// Options that win over the file of --view.
+using Winners = std::vector<Option>;
 
-ViewOptions add_view_options(const Command& command, ViewRequest& view, Options& winners) {
+ViewOptions add_view_options(const Command& command, ViewRequest& view, Winners& winners) {
   const Option eye = command.parsed("--eye", view.eye, parse_vec3, "X,Y,Z",
                                     "Position of the camera (default: chosen to show the scene)");
   const Option target =
@@ -80,7 +81,7 @@ ViewOptions add_view_options(const Command& command, ViewRequest& view, Options&
   return {eye, target};
 }
 
-void add_sun_options(const Command& command, RenderOptions& options, Options& winners) {
+void add_sun_options(const Command& command, RenderOptions& options, Winners& winners) {
   const auto has_sun = [&options] { return options.with_sun; };
   winners.push_back(
       command
@@ -88,20 +89,21 @@ void add_sun_options(const Command& command, RenderOptions& options, Options& wi
                   "Direction towards the sun (default: over the viewer's left shoulder)")
           .only_if(has_sun, "with --no-sun"));
   winners.push_back(command
-                        .number("--sun-angle", options.sun_degrees, NumberRange::from(0, 89),
-                                "DEGREES", "Angular diameter of the sun; 0: hard shadows")
+                        .number("--sun-angle", options.sun_degrees,
+                                NumberRange::from(0, RenderLimits::kSunDegrees), "DEGREES",
+                                "Angular diameter of the sun; 0: hard shadows")
                         .only_if(has_sun, "with --no-sun"));
   winners.push_back(command.off_switch("--no-sun", options.with_sun, "Turn the sun off"));
 }
 
-void add_light_options(const Command& command, RenderOptions& options, Options& winners) {
+void add_light_options(const Command& command, RenderOptions& options, Winners& winners) {
   add_sun_options(command, options, winners);
   command.repeated(
       "--light", options.lights, parse_light, "KIND:...",
       "Add a light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
       "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
-  winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, 1e6), "FACTOR",
-                                   "Factor that scales the light of the sky; 0: black"));
+  winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, RenderLimits::kSky),
+                                   "FACTOR", "Factor that scales the light of the sky; 0: black"));
   const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
   winners.push_back(command
                         .off_switch("--no-shadows", options.shadows,
@@ -119,10 +121,11 @@ void add_light_options(const Command& command, RenderOptions& options, Options& 
       .only_if([&options] { return has_soft_light(options); }, "without a light with soft edges");
 }
 
-void add_occlusion_options(const Command& command, RenderOptions& options, Options& winners) {
+void add_occlusion_options(const Command& command, RenderOptions& options, Winners& winners) {
   const auto has_occlusion = [&options] { return options.occlusion_samples > 0; };
-  winners.push_back(command.number("--ao", options.occlusion_samples, NumberRange::whole(0, 4096),
-                                   "N", "Ambient occlusion rays per pixel; 0: none"));
+  winners.push_back(command.number("--ao", options.occlusion_samples,
+                                   NumberRange::whole(0, RenderLimits::kOcclusionSamples), "N",
+                                   "Ambient occlusion rays per pixel; 0: none"));
   winners.push_back(
       command
           .parsed(
@@ -131,17 +134,18 @@ void add_occlusion_options(const Command& command, RenderOptions& options, Optio
           .only_if(has_occlusion, "with --ao 0"));
   winners.push_back(
       command
-          .number("--ao-cone", options.occlusion_cone, NumberRange::from(0, 6), "SR",
+          .number("--ao-cone", options.occlusion_cone,
+                  NumberRange::from(0, RenderLimits::kOcclusionCone), "SR",
                   "End ambient occlusion rays at cells of this solid angle, such as 0.07; 0: never")
           .only_if(has_occlusion, "with --ao 0"));
 }
 
-void add_quality_options(const Command& command, RenderOptions& options, Options& winners) {
+void add_quality_options(const Command& command, RenderOptions& options, Winners& winners) {
   command.number("--spp,--samples", options.samples_per_pixel, NumberRange::whole(1, 4096), "N",
                  "Samples per pixel");
-  winners.push_back(
-      command.number("--lod", options.lod_pixels, NumberRange::from(0, 1000), "PIXELS",
-                     "End rays at cells of this size in the picture; 0: always at voxels"));
+  winners.push_back(command.number(
+      "--lod", options.lod_pixels, NumberRange::from(0, RenderLimits::kLodPixels), "PIXELS",
+      "End rays at cells of this size in the picture; 0: always at voxels"));
   command.off_switch("--no-beams", options.beams,
                      "Do not shorten rays by beams: slower, the same picture");
   winners.push_back(command.optional_number<float>(
@@ -170,7 +174,8 @@ void add_filter_options(const Command& command, RenderArguments& arguments) {
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
   arguments.view.winners.push_back(
       command
-          .number("--cubes", arguments.options.cube_pixels, NumberRange::from(0, 1e6), "PIXELS",
+          .number("--cubes", arguments.options.cube_pixels,
+                  NumberRange::from(0, RenderLimits::kCubePixels), "PIXELS",
                   "Show voxels as cubes if they are larger in the picture, and as smooth surfaces "
                   "below half of that; 0: always cubes")
           .only_if(shows_voxels, "with --mesh"));
@@ -216,7 +221,7 @@ void add_render_options(const Command& command, Session& session, RenderArgument
       .required();
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
                  "Width and height in pixels (default: 1920x1080)");
-  Options& winners = arguments.view.winners;
+  Winners& winners = arguments.view.winners;
   const ViewOptions view = add_view_options(command, options.view, winners);
   add_light_options(command, options, winners);
   add_occlusion_options(command, options, winners);

@@ -31,8 +31,8 @@ struct TraceArguments {
   DeviceChoice device;
 };
 
-/// Casts all rays of the file with cast(rays, hits) and writes the hits. Returns the line that says
-/// so.
+/// Casts all rays of the file with cast(rays, hits) and writes the hits. Returns a line with the
+/// numbers of rays and hits.
 template <class Cast>
 std::string trace_rays(const TraceArguments& arguments, const HitRows& hit_rows, NpyReader& reader,
                        const std::string& device, Session& session, const Cast& cast) {
@@ -91,7 +91,7 @@ CompactFile compact_file(const std::string& path) {
     throw Error(path, "", "does not have the compact form, which --in-place needs");
   CompactFile file(path);
   if (file.view().levels < 4)
-    throw Error(path, "", "has fewer than 16³ voxels, too few for --in-place");
+    throw Error(path, "", "has a grid of fewer than 16³ voxels, too few for --in-place");
   return file;
 }
 
@@ -144,8 +144,8 @@ void add_trace_command(const Command& program, Session& session) {
   const Option look = add_look_option(command, arguments->look);
   command
       .flag("--in-place", arguments->in_place,
-            "Cast at a file in the compact form without decoding it, on the CPU: less memory, more "
-            "time; no normals and colours")
+            "Cast at a file in the compact form without decoding it, on the CPU: takes less memory "
+            "and more time, and writes no normals, colours and materials")
       .not_with(look);
   add_device_option(command, arguments->device);
   add_threads_option(command, session);

@@ -46,7 +46,7 @@ void export_page(const std::string& output, const ShownSceneArguments& arguments
                human_bytes(scene.bytes().size()));
   if (is_single_file(output) && bytes > kHandyPageBytes)
     print_warnings(
-        {fmt::format("{}: {} are slow to open and to send: --levels makes it smaller, or "
+        {fmt::format("{}: has {}, which browsers open slowly: use --levels to make it smaller, or "
                      "export to a folder",
                      output, human_bytes(bytes))},
         session);

@@ -1,5 +1,5 @@
 #pragma once
-/// `voxdag export` to a page of the viewer: a folder or one .html file.
+/// Exports a scene as a page of the viewer: a folder or one .html file.
 #include <string>
 
 #include "cli/session.hpp"
@@ -10,11 +10,11 @@ namespace voxdag {
 /// Returns whether `output` names a page: it ends in ".html" or "/", or is a folder.
 bool is_page_output(const std::string& output);
 
-/// Throws UsageError if the page would replace the folder of an input.
+/// Throws UsageError if the page would replace an input, or the folder of an input.
 void check_page_output(const std::string& output, const Session& session);
 
-/// Writes the page with the scene of session.subject. Prints the size, and a warning if it is
-/// large.
+/// Writes the page with the scene of session.subject. Prints its size, and a warning if it is one
+/// large file.
 void export_page(const std::string& output, const ShownSceneArguments& arguments, Session& session);
 
 }  // namespace voxdag

@@ -1,4 +1,4 @@
-/// The program without the server.
+/// Replaces serve_scene.cpp in a program that is built without the server.
 #include "view/serve_scene.hpp"
 #include "voxdag/core/error.hpp"
 
@@ -6,9 +6,8 @@ namespace voxdag {
 
 void require_page_server() {
   throw Error(
-      "this voxdag was built without its server, which needs cpp-httplib 0.11: `voxdag export FILE "
-      "-o "
-      "FOLDER/` writes a page for any other server");
+      "this voxdag was built without its server, which needs cpp-httplib 0.11: use `voxdag export "
+      "FILE -o FOLDER/`, which writes a page for any web server");
 }
 
 void serve_scene(const SceneBytes&, const ServeArguments&, Session&) { require_page_server(); }

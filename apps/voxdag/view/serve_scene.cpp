@@ -23,8 +23,8 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// Opens the address with the program that the desktop has for it. Does not wait for it, and says
-/// nothing if there is none: the address is on stdout.
+/// Starts xdg-open with the address if there is a display. Does not wait for it, and ignores its
+/// errors, because the address is also on stdout.
 void open_in_browser(const std::string& url) {
   if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) return;
   posix_spawn_file_actions_t files;
@@ -35,7 +35,7 @@ void open_in_browser(const std::string& url) {
     posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
   // The browser must not keep the server's sockets open.
   posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
-  // A session of its own: Ctrl-C does not end the browser.
+  // The browser gets a session of its own, so that Ctrl-C does not end it.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
   std::string program = "xdg-open", argument = url;
   char* const arguments[] = {program.data(), argument.data(), nullptr};

@@ -16,8 +16,8 @@ struct ServeArguments {
 /// Throws Error if this program was built without the server.
 void require_page_server();
 
-/// Prints the page's address as one line on stdout, and serves it. Throws Error if it cannot
-/// listen, and Cancelled when a signal ends it.
+/// Prints the page's address as one line on stdout, and serves the page until the user ends the
+/// program. Throws Error if it cannot listen, and Cancelled at a signal.
 void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session);
 
 }  // namespace voxdag

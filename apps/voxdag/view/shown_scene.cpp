@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include "voxdag/compact/coarsen.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/io/process_memory.hpp"
@@ -27,8 +26,8 @@ ShownScene ShownScene::open(const std::string& path, const ShownSceneArguments& 
     ShownScene scene = read(path, arguments, session);
     session.bar.clear();
     if (!session.quiet)
-      print_line(fmt::format("{}: is compact, and is decoded to {}", path,
-                             human_bytes(scene.bytes().size())));
+      print_line(
+          fmt::format("{}: is compact; decoded to {}", path, human_bytes(scene.bytes().size())));
     return scene;
   }
   ShownScene scene;
@@ -40,29 +39,13 @@ ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& 
                             Session& session) {
   refuse_esvo(path);
   ShownScene scene;
-  scene.memory_ =
-      std::unique_ptr<MemoryBudget>(new MemoryBudget(command_budget(arguments.memory_limit)));
+  // make_unique() would need to move the budget, which cannot be moved.
+  scene.memory_.reset(new MemoryBudget(command_budget(arguments.memory_limit)));
   scene.file_ = std::make_unique<DagInput>(path, &session.progress, scene.memory_.get());
-  SvdagView dag = scene.file_->view();
-  VdagMetadata metadata = scene.file_->metadata();
-  const DagAttributesView attributes =
-      arguments.drop_attributes ? DagAttributesView{} : scene.file_->attributes();
-  if (arguments.levels && *arguments.levels > dag.levels)
-    throw Error(
-        path, "",
-        fmt::format("has {} levels, so that it cannot get {}", dag.levels, *arguments.levels));
-  if (arguments.levels && *arguments.levels < dag.levels) {
-    if (!attributes.is_empty())
-      throw Error(path, "",
-                  "has colours or normals, which a coarser grid cannot keep: use "
-                  "--drop-attributes");
-    scene.coarse_ = std::make_unique<Svdag>(
-        coarsen(dag, *arguments.levels, scene.memory_.get(), &session.progress));
-    dag = scene.coarse_->view();
-    metadata = coarser_metadata(metadata, dag);
-  }
-  if (attributes.is_empty()) metadata.attributes = {};
-  scene.bytes_ = make_scene_bytes(dag, metadata, attributes);
+  scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction,
+                                            scene.memory_.get(), &session.progress);
+  scene.bytes_ =
+      make_scene_bytes(scene.dag_->dag(), scene.dag_->metadata(), scene.dag_->attributes());
   return scene;
 }
 

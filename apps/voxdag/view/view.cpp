@@ -30,10 +30,10 @@ void add_view_command(const Command& program, Session& session) {
   command.number("--port", arguments->serve.port, NumberRange::whole(0, 65535), "N",
                  "Port of the server; 0: any free one");
   command.text("--listen", arguments->serve.address, "ADDRESS",
-               "Address of the server (default: 127.0.0.1, for this machine only). On others, "
-               "everyone who reaches it can read the scene");
+               "Address of the server (default: 127.0.0.1, for this machine only). With another "
+               "address, everyone who reaches it can read the scene");
   command.off_switch("--no-open", arguments->serve.open,
-                     "Print the page's address only, and open no browser");
+                     "Only print the page's address, without opening a browser");
   command.parsed("--memory", arguments->scene.memory_limit, parse_memory, "LIMIT",
                  "Maximum memory to decode a compact DAG, including the program (default: three "
                  "quarters of the available memory)");

@@ -1,9 +1,8 @@
 #pragma once
-/// The symbols of many nodes with their tables, kept from the pass that counts them for the pass
+/// Keeps the symbols of many nodes, with their tables, from the pass that counts them to the pass
 /// that writes them.
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "voxdag/compact/symbol_batch.hpp"
@@ -19,9 +18,12 @@ class CodedSymbols {
 
   struct Part {
     std::vector<std::uint32_t> words;
-    std::vector<std::uint32_t> ends;  ///< The words of the nodes up to each one, of the part's.
+    std::vector<std::uint32_t> ends;  ///< For each node of the part: the word behind its last one.
     MemoryReservation memory;
 
+    std::uint64_t bytes() const { return (words.capacity() + ends.capacity()) * sizeof words[0]; }
+
+    /// Appends a symbol whose table is known.
     void put(const BatchedSymbol& symbol) {
       const std::uint32_t kind = std::uint32_t{symbol.kind} << 12;
       if (symbol.kind == BatchedSymbol::kRaw) {
@@ -33,8 +35,8 @@ class CodedSymbols {
     }
   };
 
-  /// Makes the parts for `nodes` nodes, if the memory is there: it may take a quarter of what is
-  /// left of the budget, which may be null. About `words` words are needed.
+  /// Makes the parts for `nodes` nodes with about `words` words, if these take at most a quarter of
+  /// what is left of the budget. `budget` may be null.
   void begin(std::uint64_t nodes, std::uint64_t words, MemoryBudget* budget) {
     if (budget != nullptr &&
         words * 4 > (budget->limit() - std::min(budget->limit(), budget->used())) / 4)
@@ -45,11 +47,24 @@ class CodedSymbols {
   Part& part(std::size_t i) { return parts_[i]; }
   void clear() { parts_.clear(); }
 
-  /// Returns the words of node i.
-  std::span<const std::uint32_t> of(std::size_t i) const {
+  /// Calls use(BatchedSymbol) for the symbols of node i in their order.
+  template <class Use>
+  void visit(std::size_t i, const Use& use) const {
     const Part& part = parts_[i / kPart];
-    const std::size_t at = i % kPart, begin = at == 0 ? 0 : part.ends[at - 1];
-    return std::span(part.words).subspan(begin, part.ends[at] - begin);
+    const std::size_t node = i % kPart;
+    for (std::size_t at = node == 0 ? 0 : part.ends[node - 1]; at < part.ends[node]; ++at) {
+      const std::uint32_t word = part.words[at];
+      BatchedSymbol symbol;
+      symbol.kind = static_cast<std::uint8_t>(word >> 12 & 15u);
+      if (symbol.kind == BatchedSymbol::kRaw) {
+        symbol.bits = static_cast<std::uint8_t>(word >> 16);
+        symbol.value = part.words[++at];
+      } else {
+        symbol.table = word & 0xFFFu;
+        symbol.value = word >> 16;
+      }
+      use(symbol);
+    }
   }
 
  private:

@@ -14,8 +14,8 @@ namespace {
 /// About this many bricks are samples for the trees.
 constexpr std::uint64_t kSampledBricks = 40000;
 
-/// Returns whether the item is a sample. One in `stride` items is one, on average and without a
-/// period.
+/// Returns whether the item is a sample. About one in `stride` items is a sample, at irregular
+/// distances.
 bool is_sample(std::uint64_t item, std::uint64_t stride) {
   std::uint64_t x = item * 0x9E3779B97F4A7C15ull;
   x = (x ^ x >> 32) * 0xD6E8FEB86659FD93ull;
@@ -48,15 +48,16 @@ class CountSink {
     words_ += 2;
   }
 
-  /// Starts a part; `kept` may be null.
+  /// Starts a part. `kept`, which may be null, gets its symbols.
   void begin(CodedSymbols::Part* kept) {
     kept_ = kept;
     words_ = 0;
   }
+  /// Ends the symbols of a node of the part.
   void end_node() {
     if (kept_ != nullptr) kept_->ends.push_back(words_);
   }
-  /// Ends a part: counts its last symbols.
+  /// Counts the symbols of the batch. The last call of a part counts its last symbols.
   void count() {
     batch_.flush([&](const BatchedSymbol& symbol) {
       if (symbol.kind != BatchedSymbol::kRaw) counts_[symbol.kind].add(symbol.table, symbol.value);
@@ -72,7 +73,7 @@ class CountSink {
   SymbolBatch batch_;
   std::vector<SymbolCounts> counts_;
   CodedSymbols::Part* kept_ = nullptr;
-  std::uint32_t words_ = 0;  ///< Of the symbols of the part so far.
+  std::uint32_t words_ = 0;  ///< Words of the symbols since begin().
 };
 
 /// The nodes that have symbols, in one sequence: units, shared bricks, nodes above the units.
@@ -171,7 +172,7 @@ CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBud
       sink.end_node();
     }
     sink.count();
-    if (kept != nullptr) kept->memory = MemoryReservation(budget, kept->words.capacity() * 4);
+    if (kept != nullptr) kept->memory = MemoryReservation(budget, kept->bytes());
   });
   for (std::size_t s = 0; s < trees.size(); ++s) {
     SymbolCounts sum(trees[s].tables());

@@ -11,11 +11,11 @@ namespace voxdag {
 
 using CompactTrees = std::array<ContextTree, kCompactSymbols>;
 
-/// Returns the trees and frequencies of all symbols but kUnitBits: lengths are not known yet, so
-/// that its tree is one table without symbols. `most_tables` limits the tables of cell masks, half
-/// of it those of leaf masks, and an eighth those of other symbols. `coded` gets the symbols of all
-/// units, then those of all shared bricks, if the budget has room for them. Throws OverMemory and
-/// Cancelled.
+/// Returns the trees and frequencies of all symbols. The tree of kUnitBits is one table without
+/// symbols, because the lengths are not known yet. `most_tables` limits the tables of cell masks,
+/// half of it those of leaf masks, and an eighth those of other symbols. If the budget has room,
+/// `coded` gets the symbols of all units, then those of all shared bricks, then those of the nodes
+/// above the units. Throws OverMemory and Cancelled.
 CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
                           Progress* progress, CodedSymbols& coded);
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "voxdag/compact/encode_svdag.hpp"
-#include "voxdag/core/error.hpp"
+#include "voxdag/layout/compact/compact_errors.hpp"
 #include "voxdag/layout/compact/compact_top.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 
@@ -71,7 +71,7 @@ class Decoder {
     CompactTop top = expand_top(compact_, memory_, [this] { poll(progress_); });
     words_ = std::move(top.levels);
     units_ = std::move(top.units);
-    for (int i = 0; i < 2; ++i) words_.emplace_back(memory_);
+    for (int i = 0; i < 2; ++i) words_.emplace_back(memory_);  // of the units and of the bricks
     read_shared_bricks();
     place_units();
     return assemble();
@@ -101,7 +101,7 @@ class Decoder {
           static_cast<std::uint32_t>(std::upper_bound(first, first + 257, i) - first - 1);
       if (read_shared_brick(compact_, shared_node(compact_, level, i), mask, bricks_[i].leaves) !=
           CompactFault::kNone)
-        fail();
+        fail_broken_stream();
     });
   }
 
@@ -115,7 +115,8 @@ class Decoder {
       parallel_for((count + 255) / 256, [&](std::size_t part) {
         poll(progress_);
         for (std::size_t i = part * 256; i < std::min(count, part * 256 + 256); ++i)
-          if (read_unit(compact_, units_[first + i], batch[i]) != CompactFault::kNone) fail();
+          if (read_unit(compact_, units_[first + i], batch[i]) != CompactFault::kNone)
+            fail_broken_stream();
       });
       for (std::size_t i = 0; i < count; ++i) place_unit(batch[i]);
       if (progress_ != nullptr)
@@ -185,11 +186,6 @@ class Decoder {
     return dag;
   }
 
-  [[noreturn]] static void fail() { throw Error("the stream of the compact DAG is broken"); }
-  [[noreturn]] static void fail_too_large() {
-    throw Error("the DAG is too large: its nodes have more words than 32-bit pointers can address");
-  }
-
   struct Brick {
     std::uint64_t leaves[8];
   };
@@ -197,11 +193,11 @@ class Decoder {
   const CompactSvdagView& compact_;
   MemoryBudget* memory_;
   Progress* progress_;
-  int levels_;  ///< C
+  int levels_;  ///< The coded levels.
   std::vector<CountedVector<std::uint32_t>>
       words_;  ///< By level; pointers count from the level's first word.
   CountedVector<CompactRange> units_;
-  CountedVector<std::uint32_t> shared_places_;  ///< Of the shared bricks.
+  CountedVector<std::uint32_t> shared_places_;  ///< First words of the shared bricks.
   std::vector<std::uint32_t> unit_places_;
   std::vector<Brick> bricks_;  ///< The shared ones.
   MemoryReservation bricks_memory_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
-#include <span>
 
 #include "voxdag/compact/compact_model.hpp"
 #include "voxdag/compact/encoded_records.hpp"
@@ -57,41 +56,32 @@ class RecordWriter {
   }
   void raw(std::uint32_t value, int count) { batch_.raw(value, count); }
 
-  /// Appends the record of the symbols so far to `bits`.
+  /// Appends the record of the symbols so far to `bits`, closed.
   void close() {
     put_symbols();
     coder_.close(bits);
   }
+  /// Appends the record of the symbols so far to `bits`, open.
   void leave_open() {
     put_symbols();
     coder_.leave_open(bits);
   }
 
-  /// Adds symbols of CodedSymbols.
-  void put(std::span<const std::uint32_t> coded) {
-    for (std::size_t i = 0; i < coded.size(); ++i) {
-      const std::uint32_t kind = coded[i] >> 12 & 15u, value = coded[i] >> 16;
-      if (kind == BatchedSymbol::kRaw) {
-        coder_.put_raw(coded[++i], static_cast<int>(value));
-        continue;
-      }
-      const SymbolInterval interval = (*intervals_)[kind].of(coded[i] & 0xFFFu, value);
-      coder_.put(interval.start, interval.frequency);
+  /// Adds a symbol whose table is known.
+  void put(const BatchedSymbol& symbol) {
+    if (symbol.kind == BatchedSymbol::kRaw) {
+      coder_.put_raw(symbol.value, symbol.bits);
+      return;
     }
+    const SymbolInterval interval = (*intervals_)[symbol.kind].of(symbol.table, symbol.value);
+    coder_.put(interval.start, interval.frequency);
   }
 
   BitWriter bits;
 
  private:
   void put_symbols() {
-    batch_.flush([&](const BatchedSymbol& symbol) {
-      if (symbol.kind == BatchedSymbol::kRaw) {
-        coder_.put_raw(symbol.value, symbol.bits);
-        return;
-      }
-      const SymbolInterval interval = (*intervals_)[symbol.kind].of(symbol.table, symbol.value);
-      coder_.put(interval.start, interval.frequency);
-    });
+    batch_.flush([&](const BatchedSymbol& symbol) { put(symbol); });
   }
 
   const std::vector<Intervals>* intervals_;
@@ -130,11 +120,14 @@ class Encoder {
     const auto& bricks = nodes_.shared(nodes_.brick_level());
     const int level = nodes_.unit_level();
     const auto& units = nodes_.nodes(level);
+    const auto put_kept = [&](std::size_t i, RecordWriter& out) {
+      coded_.visit(i, [&](const BatchedSymbol& symbol) { out.put(symbol); });
+    };
     shared_bricks_.write(
         bricks.size(), progress_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
           if (coded_.are_kept())
-            out.put(coded_.of(units.size() + i));
+            put_kept(units.size() + i, out);
           else
             visit_shared_brick(nodes_, bricks[i], out);
           out.close();
@@ -143,7 +136,7 @@ class Encoder {
         units.size(), progress_, [&] { return writer(); },
         [&](std::size_t i, RecordWriter& out) {
           if (coded_.are_kept())
-            out.put(coded_.of(i));
+            put_kept(i, out);
           else
             visit_unit(nodes_, units[i], out);
           out.close();

@@ -19,7 +19,7 @@ struct BatchedSymbol {
   /// The table of a symbol's tree. Until find_tables() is called, the first step of the walk to it.
   std::uint32_t table = 0;
   std::uint8_t kind = 0;  ///< A CompactSymbol, or kRaw.
-  std::uint8_t bits = 0;  ///< Of a number.
+  std::uint8_t bits = 0;  ///< The number of bits of a number without context.
 
   static constexpr std::uint8_t kRaw = kCompactSymbols;
 };
@@ -66,7 +66,7 @@ class TableFinder {
         const std::uint32_t next =
             nodes[(step >> 8) +
                   static_cast<std::uint32_t>(symbols[k].features >> (step & 63u) & 1u)];
-        // Without a branch, which would often be predicted wrongly.
+        // A branch would often be predicted wrongly.
         const std::uint32_t is_finished = 0u - (step / kLeafNode & 1u);
         steps[k] = next ^ ((next ^ step) & is_finished);
       }

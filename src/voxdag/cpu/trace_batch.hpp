@@ -16,8 +16,8 @@ namespace voxdag {
 void trace_batch(const CpuScene& scene, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress = nullptr);
 
-/// Casts at a compact DAG in place: it takes less memory than a CpuScene, and more time. The hits
-/// are the same.
+/// Casts at a compact DAG in place. It takes less memory and more time than a CpuScene of the same
+/// voxels, and gives equal hits.
 void trace_batch(const InPlaceDag& dag, const Grid& grid, std::span<const Ray> rays,
                  std::span<Hit> hits, Progress* progress = nullptr);
 

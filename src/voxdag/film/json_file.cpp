@@ -36,4 +36,12 @@ Vec3d json_vector(const Json& json, const JsonPlace& place, const std::string& m
   return v;
 }
 
+Vec3d json_direction(const Json& json, const JsonPlace& place, const std::string& member) {
+  const Vec3d v = json_vector(json, place, member);
+  const double length2 = dot(v, v);
+  if (!(length2 > 0 && length2 < HUGE_VAL))
+    place.refuse("\"" + member + "\" must be a direction: finite and not zero");
+  return v;
+}
+
 }  // namespace voxdag

@@ -1,5 +1,5 @@
 #pragma once
-/// Reads JSON files that people write; errors name the key.
+/// Reads JSON files that people write. Errors name the key.
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -25,5 +25,8 @@ double json_number(const nlohmann::json& json, const JsonPlace& place, const std
 
 /// Returns a vector from an array of three finite numbers.
 Vec3d json_vector(const nlohmann::json& json, const JsonPlace& place, const std::string& member);
+
+/// Returns a vector that is not zero and has a finite length.
+Vec3d json_direction(const nlohmann::json& json, const JsonPlace& place, const std::string& member);
 
 }  // namespace voxdag

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "voxdag/film/json_file.hpp"
 
 namespace voxdag {
@@ -48,10 +46,7 @@ PathFile read_path_file(const std::string& path) {
   file.name = path;
   for (const auto& [member, value] : json.items()) {
     if (member == "sun") {
-      file.sun = json_vector(value, place, member);
-      const double length2 = dot(*file.sun, *file.sun);
-      if (!(length2 > 0 && length2 < HUGE_VAL))
-        place.refuse("\"sun\" must be a direction: finite and not zero");
+      file.sun = json_direction(value, place, member);
     } else if (member != "keys")
       place.refuse("unknown key \"" + member + "\": the keys are keys and sun");
   }

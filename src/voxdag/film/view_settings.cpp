@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
 constexpr int kVersion = 1;
 
-/// Reads values of the file. `key` is the whole key, such as "sun.angle".
+/// Reads the settings. `key` is the whole key of a value, such as "sun.angle".
 class Reader {
  public:
   explicit Reader(const std::string& file) : file_(file) {}
@@ -29,13 +29,20 @@ class Reader {
         {{"version", [&](const Json& value) { check_version(value); }},
          {"camera", [&](const Json& value) { read_camera(value); }},
          {"sun", [&](const Json& value) { read_sun(value); }},
-         {"sky", [&](const Json& value) { options.sky = real(value, "sky", 0, 1e6); }},
+         {"sky",
+          [&](const Json& value) { options.sky = real(value, "sky", 0, RenderLimits::kSky); }},
          {"exposure",
           [&](const Json& value) { options.exposure = real(value, "exposure", 0, 1e30); }},
          {"shadows", [&](const Json& value) { options.shadows = flag(value, "shadows"); }},
          {"occlusion", [&](const Json& value) { read_occlusion(value); }},
-         {"lod", [&](const Json& value) { options.lod_pixels = real(value, "lod", 0, 1000); }},
-         {"cubes", [&](const Json& value) { options.cube_pixels = real(value, "cubes", 0, 1e6); }},
+         {"lod",
+          [&](const Json& value) {
+            options.lod_pixels = real(value, "lod", 0, RenderLimits::kLodPixels);
+          }},
+         {"cubes",
+          [&](const Json& value) {
+            options.cube_pixels = real(value, "cubes", 0, RenderLimits::kCubePixels);
+          }},
          {"level",
           [&](const Json& value) {
             if (!value.is_null()) ignore("level", "a picture shows the finest level");
@@ -66,7 +73,7 @@ class Reader {
     settings_.ignored.push_back("\"" + key + "\" is ignored: " + why);
   }
 
-  /// Calls the function of each member of an object. `key` is that of the object.
+  /// Calls the function of each member of an object, whose key is `key`.
   void each_member(const Json& json, const std::string& key, const Members& members) {
     if (!json.is_object()) refuse(key, key.empty() ? "must be an object" : "is not an object");
     for (const auto& [name, value] : json.items()) {
@@ -91,10 +98,7 @@ class Reader {
     return json_vector(json, {file_, ""}, key);
   }
   Vec3d direction(const Json& json, const std::string& key) const {
-    const Vec3d v = vector(json, key);
-    const double length2 = dot(v, v);
-    if (!(length2 > 0 && length2 < HUGE_VAL)) refuse(key, "must be a direction, not zero");
-    return v;
+    return json_direction(json, {file_, ""}, key);
   }
   bool flag(const Json& json, const std::string& key) const {
     if (!json.is_boolean()) refuse(key, "is not true or false");
@@ -129,15 +133,16 @@ class Reader {
 
   void read_sun(const Json& json) {
     RenderOptions& options = settings_.options;
-    each_member(
-        json, "sun",
-        {{"direction",
-          [&](const Json& value) {
-            if (!value.is_null()) options.sun = direction(value, "sun.direction");
-          }},
-         {"angle",
-          [&](const Json& value) { options.sun_degrees = number(value, "sun.angle", 0, 89); }},
-         {"on", [&](const Json& value) { options.with_sun = flag(value, "sun.on"); }}});
+    each_member(json, "sun",
+                {{"direction",
+                  [&](const Json& value) {
+                    if (!value.is_null()) options.sun = direction(value, "sun.direction");
+                  }},
+                 {"angle",
+                  [&](const Json& value) {
+                    options.sun_degrees = number(value, "sun.angle", 0, RenderLimits::kSunDegrees);
+                  }},
+                 {"on", [&](const Json& value) { options.with_sun = flag(value, "sun.on"); }}});
   }
 
   void read_occlusion(const Json& json) {
@@ -145,7 +150,8 @@ class Reader {
     each_member(json, "occlusion",
                 {{"samples",
                   [&](const Json& value) {
-                    const double samples = number(value, "occlusion.samples", 0, 4096);
+                    const double samples =
+                        number(value, "occlusion.samples", 0, RenderLimits::kOcclusionSamples);
                     if (samples != std::floor(samples))
                       refuse("occlusion.samples", "is not a whole number");
                     options.occlusion_samples = static_cast<int>(samples);
@@ -155,7 +161,8 @@ class Reader {
                     options.occlusion_distance = number(value, "occlusion.distance", 0, 1e30);
                   }},
                  {"cone", [&](const Json& value) {
-                    options.occlusion_cone = number(value, "occlusion.cone", 0, 6);
+                    options.occlusion_cone =
+                        number(value, "occlusion.cone", 0, RenderLimits::kOcclusionCone);
                   }}});
   }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The settings that the viewer saves as JSON: `render --view` reads them.
+/// Reads the settings that the viewer saves as JSON, for `render --view`.
 #include <string>
 #include <vector>
 
@@ -10,14 +10,15 @@ namespace voxdag {
 struct ViewSettings {
   /// The camera, the light and the level of detail of the view; other members have their defaults.
   RenderOptions options;
-  bool colors = true, normals = true;  ///< Show those of the file.
-  /// What a picture cannot show, and keys that nobody knows: "\"level\" is ignored: ...".
+  bool colors = true, normals = true;  ///< Show the colours, the normals that the scene stores.
+  /// A warning for each setting that a picture cannot show and for each unknown key, such as
+  /// "\"level\" is ignored: a picture shows the finest level".
   std::vector<std::string> ignored;
 };
 
-/// Reads at most 16 MiB of JSON. docs/viewer.md lists the keys; those that are missing have their
-/// defaults. Throws Error(file, key, reason) for a value of the wrong type or out of range, for
-/// another version, and for a section, which a picture cannot show.
+/// Reads at most 16 MiB of JSON. docs/viewer.md lists the keys; missing keys have their defaults.
+/// Throws Error for a value of the wrong type or out of range, for another version, and for a
+/// section, which a picture cannot show. The reason names the key.
 ViewSettings read_view_settings(const std::string& file);
 
 }  // namespace voxdag

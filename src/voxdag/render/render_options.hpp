@@ -13,8 +13,17 @@ namespace voxdag {
 /// The longest occlusion ray by default, as a fraction of the grid's side.
 inline constexpr double kOcclusionDistance = 0.15;
 
-/// The direction towards the sun by default: right, up and back in the picture.
+/// The default direction towards the sun, as factors of the picture's right, up and back.
 inline constexpr Vec3d kDefaultSun{-0.6, 0.9, 0.25};
+
+/// The largest values that programs accept from users; the smallest are 0.
+struct RenderLimits {
+  static constexpr double kSunDegrees = 89;
+  static constexpr double kSky = 1e6;
+  static constexpr int kOcclusionSamples = 4096;
+  static constexpr double kOcclusionCone = 6;  ///< Steradians.
+  static constexpr double kLodPixels = 1000, kCubePixels = 1e6;
+};
 
 struct RenderOptions {
   int width = 1920, height = 1080;  ///< Pixels; at least 1 each.

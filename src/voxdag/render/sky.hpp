@@ -16,17 +16,18 @@ struct Sky {
   Vec3f ground{0.43f, 0.41f, 0.39f};  ///< Radiance of the ground, below the horizon.
 };
 
-/// The shares and edges of sky_radiance(), sky_ambient() and sky_light().
+/// The numbers of sky_radiance(), sky_ambient() and sky_light().
 struct SkyShape {
-  static constexpr float kGlow = 0.10f;          ///< Part of the sun's light in the glow around it.
-  static constexpr float kGround = 1.3f;         ///< Brightness of the ground as it is seen.
-  static constexpr float kGroundBegins = 0.03f;  ///< Sines of the angle above the horizon between
-  static constexpr float kGroundIsFull = -0.75f;  ///< which sky becomes ground.
-  static constexpr float kHorizonInDome = 0.7f;   ///< Part of the horizon in the dome's mean light.
-  /// Part of the sky behind near surfaces: far surfaces hide the rest.
+  static constexpr float kGlow = 0.10f;   ///< Part of the sun's light in the glow around it.
+  static constexpr float kGround = 1.3f;  ///< Factor on the ground's radiance in the picture.
+  /// Sky becomes ground between these sines of the angle above the horizon.
+  static constexpr float kGroundBegins = 0.03f, kGroundIsFull = -0.75f;
+  static constexpr float kHorizonInDome = 0.7f;  ///< Part of the horizon in the dome's mean light.
+  /// Part of the sky that a surface sees where no near surface hides it: far surfaces hide the
+  /// rest.
   static constexpr float kOpen = 0.7f;
-  /// Without occlusion: the light of the sky on every surface, the part from the viewer, and the
-  /// part from the viewer's right.
+  /// Light without ambient occlusion: a constant part, a part from the viewer, and a part from the
+  /// viewer's right.
   static constexpr float kFill = 0.40f, kFillFacing = 0.35f, kFillAside = 0.25f;
 };
 

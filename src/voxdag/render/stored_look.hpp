@@ -7,6 +7,8 @@ namespace voxdag {
 
 /// The cosines of is_of_back().
 struct BackRule {
+  /// A normal belongs to the back if it points away from the viewer by more than kLeaning, or at
+  /// all if it points into the cube by more than kOpposite.
   static constexpr float kLeaning = 0.2f, kOpposite = 0.8f;
 };
 

@@ -46,14 +46,19 @@ struct LayerFit {
   float outwards = 0;   ///< Distance of the cell from the layer's mean along the normal, in cells.
 };
 
-/// The numbers of fit_layer() and surface_normal(). The variance of planes is 0.1 to 0.2 near an
-/// axis and at most 0.34, that of right-angled edges is 0.5.
+/// The numbers of fit_layer() and surface_normal(). Thicknesses are variances along the normal, in
+/// cells²: those of planes are 0.1 to 0.2 near an axis and at most 0.34, that of right-angled edges
+/// is 0.5.
 struct LayerRule {
-  static constexpr float kRadius = 4.5f;  ///< Cells farther away do not count.
-  static constexpr int kPower = 4;        ///< Of the inverse of the covariance.
-  static constexpr float kThin = 0.20f, kThick = 0.30f, kPlane = 0.36f, kEdge = 0.50f;
+  static constexpr float kRadius = 4.5f;  ///< Farther cells do not count.
+  static constexpr int kPower = 4;        ///< Steps of the power iteration that finds the normal.
+  /// The normal of a coarser level counts fully up to kThin, and not at all from kThick on.
+  static constexpr float kThin = 0.20f, kThick = 0.30f;
+  /// A layer is a plane up to kPlane, and an edge from kEdge on.
+  static constexpr float kPlane = 0.36f, kEdge = 0.50f;
+  /// Edges whose normal has a smaller cosine with the view are outlines.
   static constexpr float kOutlineCosine = 0.25f;
-  static constexpr int kCoarser = 2;  ///< Coarser levels that refine the normal.
+  static constexpr int kCoarser = 2;  ///< Number of coarser levels that refine the normal.
 };
 
 /// Fits the layer around a point of `cell` of `level` (2..L); `offset`, in cells, leads from the

@@ -30,12 +30,13 @@ VOXDAG_HD inline float cube_height(Vec3f normal) {
   return std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
 }
 
-/// The numbers of is_hidden() and make_surface_point(); distances are in cells.
+/// The numbers of is_hidden() and make_surface_point(), in cells.
 struct StartRule {
-  static constexpr float kSlack =
-      0.25f;                           ///< Above the cells: normals are estimates, surfaces bend.
+  /// Rays start this far above the cells, because normals are estimates and surfaces bend.
+  static constexpr float kSlack = 0.25f;
   static constexpr float kHidden = 4;  ///< A cell this near in front of a point hides it.
-  static constexpr int kTries = 3, kFarthest = 9;  ///< Steps along the line of sight.
+  /// Where a point can be moved along the line of sight: the number of tries, and the farthest one.
+  static constexpr int kTries = 3, kFarthest = 9;
 };
 
 /// Returns whether a cell of the surface's own size lies at the point, or right in front of it as
@@ -89,13 +90,12 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   // cell of another surface: the viewer sees the sample, but not the point. So the point is moved
   // along the line of sight, which is free: of voxels everywhere, of a mesh's cells after a few
   // cells.
-  constexpr int kTries = StartRule::kTries, kFarthest = StartRule::kFarthest;
   const double depth = static_cast<double>(sample.depth);
   const double cell_depth = cell_size / std::sqrt(dot(direction, direction));
   const auto cells_before = [&](int cells) {
     return setup.camera.eye + direction * (depth - cells * cell_depth);
   };
-  for (int i = 1; i <= kTries; ++i)
+  for (int i = 1; i <= StartRule::kTries; ++i)
     if (can_start_at(cells_before(i))) return point;
   // The line of sight may graze the other surface of a corner. Steps along the axes do not; the
   // axis of the longest component comes first.
@@ -111,7 +111,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
     left[axis] = 0;
   }
   // In geometry finer than cells, light at a point slightly in front of it is better than no light.
-  for (int i = kTries + 1; i <= kFarthest; i += i / 2)
+  for (int i = StartRule::kTries + 1; i <= StartRule::kFarthest; i += i / 2)
     if (can_start_at(cells_before(i))) return point;
   return point;
 }

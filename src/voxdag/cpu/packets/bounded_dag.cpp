@@ -38,23 +38,13 @@ void prefetch(const SvdagView& dag, int level, std::uint64_t at, const std::uint
 /// words in the DAG.
 std::uint64_t make_node(const SvdagView& dag, int level, std::uint64_t at, std::uint32_t* words) {
   const std::uint32_t mask = child_mask(dag.nodes + at);
-  const auto children = static_cast<std::uint64_t>(popcount8(mask));
-  std::uint32_t* const node = words + 2 * at;
-  std::uint32_t* const pointers = node + 2;
-  std::uint32_t* const boxes = pointers + children;
-  CellExtent extent;
-  std::uint32_t rest = mask;
-  for (std::uint64_t i = 0; i < children; ++i, rest &= rest - 1) {
+  write_bounded_node(mask, words + 2 * at, [&](std::uint32_t i, std::uint32_t) {
     const std::uint32_t child = dag.nodes[at + 1 + i];
-    const CellBox box = level == dag.levels - 3 ? box_of(dag.leaf_blocks[child])
-                                                : CellBox{words[2 * std::uint64_t{child} + 1]};
-    extent.add(box, static_cast<std::uint32_t>(lowest_bit64(rest)));
-    pointers[i] = child;
-    boxes[i] = box.bits;
-  }
-  node[0] = mask;
-  node[1] = extent.box().bits;
-  return 1 + children;
+    return BoundedChild{child, level == dag.levels - 3
+                                   ? box_of(dag.leaf_blocks[child])
+                                   : bounded_node_box(words + 2 * std::uint64_t{child})};
+  });
+  return 1 + static_cast<std::uint64_t>(popcount8(mask));
 }
 
 }  // namespace

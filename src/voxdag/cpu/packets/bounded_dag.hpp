@@ -3,17 +3,14 @@
 #include <cstdint>
 #include <memory>
 
-#include "voxdag/cpu/packets/cell_box.hpp"
+#include "voxdag/cpu/packets/bounded_node.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 
-/// Built once from a DAG, to which it points. It holds the nodes above the leaf blocks; a node's
-/// index is twice its word index in the DAG:
-///
-///   child mask | box of the node | pointer, ... | box of the child, ...      32-bit words
-///
-/// The pointers are those of the DAG. Copies share the words.
+/// Built once from a DAG, to which it points. It holds the nodes above the leaf blocks as
+/// bounded_node.hpp lays them out. A node's index is twice its word index in the DAG; the pointers
+/// are those of the DAG. Copies share the words.
 class BoundedDag {
  public:
   /// Builds on all threads in O(words) time.

@@ -29,6 +29,7 @@
 #include "voxdag/cpu/packets/dag_packet_boxes-inl.hpp"
 #include "voxdag/cpu/packets/dag_packet_starts-inl.hpp"
 #include "voxdag/cpu/packets/dag_packet_walk-inl.hpp"
+#include "voxdag/cpu/packets/in_place_nodes.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {
@@ -70,7 +71,7 @@ inline std::size_t DagPacketWalk::begin(Rays all, Visit* stack) {
       visit.skipped = descends ? 1u << index : stop_level_ < levels_ ? kOctantsMayEnd : 0u;
     }
     if (!descends) return top;
-    node = words[2 + popcount8(words[0] & ((1u << stored) - 1))];
+    node = bounded_node_child(words, stored);
   }
 }
 

@@ -42,7 +42,7 @@ struct CellExtent {
   }
 };
 
-/// Returns the box of the voxels of a leaf block.
+/// Returns the box of the voxels of a leaf block, which must have voxels.
 inline CellBox box_of(std::uint64_t block) {
   constexpr std::uint64_t kOdd[3] = {0xAAAAAAAAAAAAAAAAu, 0xCCCCCCCCCCCCCCCCu, 0xF0F0F0F0F0F0F0F0u};
   constexpr std::uint64_t kUpper[3] = {0xFF00FF00FF00FF00u, 0xFFFF0000FFFF0000u,
@@ -59,6 +59,14 @@ inline CellBox box_of(std::uint64_t block) {
     extent.first[axis] = static_cast<std::uint32_t>(lowest_bit64(slices)) * kVoxel;
     extent.last[axis] = static_cast<std::uint32_t>(highest_bit(slices) + 1) * kVoxel - 1;
   }
+  return extent.box();
+}
+
+/// Returns the box of a brick of eight leaf blocks; blocks without voxels are 0.
+inline CellBox box_of(const std::uint64_t (&leaves)[8]) {
+  CellExtent extent;
+  for (std::uint32_t octant = 0; octant < 8; ++octant)
+    if (leaves[octant] != 0) extent.add(box_of(leaves[octant]), octant);
   return extent.box();
 }
 

@@ -25,7 +25,8 @@ void cast_packet(const BoundedDag& dag, const RayPacket& packet, PacketHits& hit
 /// Returns which of the rays meet anything, in the form of PacketHits::met.
 std::uint64_t cast_packet_any(const BoundedDag& dag, const RayPacket& packet);
 
-/// These functions at a compact DAG. They use the calling thread's cache of units.
+/// Casts the packet's rays at a compact DAG, with the results of the functions above. Uses the
+/// calling thread's cache of units.
 void cast_packet(const InPlaceDag& dag, const RayPacket& packet, PacketHits& hits);
 std::uint64_t cast_packet_any(const InPlaceDag& dag, const RayPacket& packet);
 

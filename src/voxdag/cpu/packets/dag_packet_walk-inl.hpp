@@ -120,7 +120,7 @@ class DagPacketWalk : PacketRays {
   HWY_INLINE const std::uint32_t* words_of(std::uint32_t node, int level) const {
     return (level < unit_level_ ? words_ : unit_words_) + 2 * std::size_t{node};
   }
-  /// Makes the unit of this number the one whose nodes are visited. Its own words come first.
+  /// Decodes the unit with this number: words_of() then finds the nodes in it. The unit is node 0.
   HWY_NOINLINE void open_unit(std::uint32_t number) {
     const DecodedUnit& unit = units_->unit(*in_place_, number);
     unit_words_ = unit.words;
@@ -169,14 +169,14 @@ class DagPacketWalk : PacketRays {
   }
   void set_hit_t();
 
-  const std::uint32_t* words_;                  ///< Of the nodes above the units.
-  const std::uint64_t* leaf_blocks_ = nullptr;  ///< Of the DAG, or of the open unit.
+  const std::uint32_t* words_;                  ///< Words of the nodes above the units.
+  const std::uint64_t* leaf_blocks_ = nullptr;  ///< Leaf blocks of the DAG, or of the open unit.
   int levels_;
   bool is_empty_;
-  int unit_level_ = kMaxLevels;  ///< In a DAG that is not compact no node is of this level.
+  int unit_level_ = kMaxLevels;  ///< Finer than all nodes if the DAG is not compact.
   const InPlaceDag* in_place_ = nullptr;
   UnitCache* units_ = nullptr;
-  const std::uint32_t* unit_words_ = nullptr;  ///< Of the open unit.
+  const std::uint32_t* unit_words_ = nullptr;  ///< Words of the open unit.
   PacketHits* hits_;
   Rays searching_ = 0;              ///< Rays that have not met anything yet.
   alignas(64) float planes_[6][8];  ///< The planes of the current boxes: the lower ones by axis,

@@ -1,59 +1,40 @@
 #pragma once
-/// Decoded units of a compact DAG, in the form that BoundedDag has for the nodes of a plain one.
+/// Decoded units of a compact DAG, with the boxes that packets of rays need.
 #include <cstdint>
 
-#include "voxdag/cpu/packets/cell_box.hpp"
+#include "voxdag/cpu/packets/bounded_node.hpp"
 #include "voxdag/trace/compact_svdag_nodes.hpp"
 
 namespace voxdag {
 
-/// A unit and its bricks, shared ones too, at most nine nodes with eight children each.
+/// A unit and its bricks, shared ones too, as bounded_node.hpp lays nodes out: at most nine nodes
+/// with eight children each.
 struct DecodedUnit {
-  /// The unit is at word 0. See BoundedDag; the pointers of bricks are places in `leaf_blocks`.
-  /// Eight more words are safe to read.
+  /// The unit is at word 0. A pointer is half the word index of a brick, or the place of a leaf
+  /// block in `leaf_blocks`. Eight more words are safe to read.
   std::uint32_t words[2 * (9 + 8 * 8 + 8) + 8] = {};
   std::uint64_t leaf_blocks[64] = {};
-
-  CellBox box() const { return {words[1]}; }
 };
 
 /// Fills in `decoded`. shared_brick(number, mask) returns the DecodedBrick of a shared brick.
 template <class SharedBrick>
 void set_unit(const CompactUnit& unit, const SharedBrick& shared_brick, DecodedUnit& decoded) {
-  std::uint32_t brick_at = 1 + static_cast<std::uint32_t>(popcount8(unit.mask)), leaf_at = 0;
-  std::uint32_t* const pointers = decoded.words + 2;
-  std::uint32_t* const boxes = pointers + popcount8(unit.mask);
-  CellExtent of_unit;
-  std::uint32_t child = 0;
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    if ((unit.mask >> i & 1) == 0) continue;
-    const std::uint32_t mask = unit.brick_masks[i];
-    const std::uint64_t(&leaves)[8] = (unit.inline_mask >> i & 1) != 0
-                                          ? unit.bricks[i]
-                                          : shared_brick(unit.shared[i], mask).leaves;
-    std::uint32_t* const brick = decoded.words + 2 * brick_at;
-    const auto count = static_cast<std::uint32_t>(popcount8(mask));
-    CellExtent of_brick;
-    std::uint32_t leaf = 0;
-    for (std::uint32_t q = 0; q < 8; ++q) {
-      if ((mask >> q & 1u) == 0) continue;
-      const CellBox box = box_of(leaves[q]);
-      of_brick.add(box, q);
-      brick[2 + leaf] = leaf_at;
-      brick[2 + count + leaf] = box.bits;
-      decoded.leaf_blocks[leaf_at++] = leaves[q];
-      ++leaf;
-    }
-    brick[0] = mask;
-    brick[1] = of_brick.box().bits;
-    of_unit.add({brick[1]}, i);
-    pointers[child] = brick_at;
-    boxes[child] = brick[1];
-    brick_at += 1 + count;
-    ++child;
-  }
-  decoded.words[0] = unit.mask;
-  decoded.words[1] = of_unit.box().bits;
+  std::uint64_t brick_at = bounded_node_words(unit.mask) / 2;
+  std::uint32_t leaf_at = 0;
+  write_bounded_node(unit.mask, decoded.words, [&](std::uint32_t, std::uint32_t octant) {
+    const std::uint32_t mask = unit.brick_masks[octant];
+    const std::uint64_t(&leaves)[8] = (unit.inline_mask >> octant & 1) != 0
+                                          ? unit.bricks[octant]
+                                          : shared_brick(unit.shared[octant], mask).leaves;
+    const auto pointer = static_cast<std::uint32_t>(brick_at);
+    brick_at += bounded_node_words(mask) / 2;
+    const CellBox box = write_bounded_node(mask, decoded.words + 2 * pointer,
+                                           [&](std::uint32_t, std::uint32_t leaf) {
+                                             decoded.leaf_blocks[leaf_at] = leaves[leaf];
+                                             return BoundedChild{leaf_at++, box_of(leaves[leaf])};
+                                           });
+    return BoundedChild{pointer, box};
+  });
 }
 
 }  // namespace voxdag

@@ -55,7 +55,7 @@ class BitWriter {
 
  private:
   std::vector<std::uint32_t> words_;
-  std::uint64_t pending_ = 0;  ///< Its lowest bits % 32 bits are not in a word yet.
+  std::uint64_t pending_ = 0;  ///< The lowest (bits_ % 32) bits are not in a word yet.
   std::uint64_t bits_ = 0;
 };
 

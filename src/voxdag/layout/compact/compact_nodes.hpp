@@ -49,7 +49,7 @@ class TailReader {
   VOXDAG_HD TailReader(const std::uint32_t* words, std::uint64_t begin, std::uint64_t end)
       : words_(words), at_(begin < end ? begin : end), end_(end), is_past_end_(begin > end) {}
 
-  /// Reads a number of `bits` bits, 0 to 63. Returns 0 if they do not end before the end.
+  /// Reads a number of `bits` bits, 0 to 63. Returns 0 if fewer bits are left.
   VOXDAG_HD std::uint64_t read(int bits) {
     if (end_ - at_ < static_cast<std::uint64_t>(bits)) {
       is_past_end_ = true;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "voxdag/core/error.hpp"
+#include "voxdag/layout/compact/compact_errors.hpp"
 
 namespace voxdag {
 namespace {
@@ -40,8 +40,7 @@ class TopReader {
     CountedVector<std::uint32_t>& words = top_.levels[at(level)];
     if ((++nodes_ & 0xFFFF) == 0) poll_();
     CompactNode node;
-    if (read_node(compact_, range, level, node) != CompactFault::kNone)
-      throw Error("the stream of the compact DAG is broken");
+    if (read_node(compact_, range, level, node) != CompactFault::kNone) fail_broken_stream();
     const std::size_t place = words.size();
     if (place > kNone - 16) fail_too_large();
     words.resize(place + static_cast<std::size_t>(1 + popcount8(node.mask)));
@@ -65,16 +64,12 @@ class TopReader {
     return places_[at(level)][number];
   }
 
-  [[noreturn]] static void fail_too_large() {
-    throw Error("the DAG is too large: its nodes have more words than 32-bit pointers can address");
-  }
-
   const CompactSvdagView& compact_;
   const std::function<void()>& poll_;
   int unit_level_;
   std::uint64_t nodes_ = 0;
   CompactTop top_;
-  std::vector<CountedVector<std::uint32_t>> places_;  ///< Of the shared nodes, by level.
+  std::vector<CountedVector<std::uint32_t>> places_;  ///< Places of the shared nodes, by level.
 };
 
 }  // namespace

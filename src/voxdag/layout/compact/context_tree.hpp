@@ -13,7 +13,7 @@
 /// prepare() makes what reading needs:
 ///
 ///   starts  for each value of the features 52 to 59: the first node on the way from the root that
-///           tests none of them. Walks through trees of masks so skip some levels.
+///           tests none of them. So walks through trees of masks skip some levels.
 ///   steps   the nodes; a leaf has its table's place in `entries` << 8 | kLeafNode
 ///   entries all tables. A table is the number of its entries, then the entries:
 ///           symbol | start << 8 | (frequency - 1) << 20

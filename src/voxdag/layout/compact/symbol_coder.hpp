@@ -26,7 +26,7 @@ namespace voxdag {
 
 inline constexpr int kFrequencyBits = 12;  ///< The frequencies of a table add up to 2^12.
 inline constexpr int kRangeBits = 31;      ///< 2^30 < range <= 2^31.
-inline constexpr int kOpenBits = 2;        ///< What an open record takes beyond its doublings.
+inline constexpr int kOpenBits = 2;        ///< Bits of an open record beyond its doublings.
 inline constexpr int kMostRawBits = 12;    ///< The largest number of bits of one raw number.
 
 /// Returns how often a range from 1 to 2^31 is doubled until it is above 2^30.
@@ -44,8 +44,9 @@ class SymbolReader {
     code_ = next(kRangeBits);
   }
 
-  /// Returns the width of one of 4096 parts of the interval, and the position of the number in it.
+  /// Returns the width of a 4096th of the interval.
   VOXDAG_HD std::uint32_t unit() const { return range_ >> kFrequencyBits; }
+  /// Returns the distance of the number from the lower end of the interval.
   VOXDAG_HD std::uint32_t code() const { return code_; }
 
   /// Removes the symbol with the interval [start, start + frequency).
@@ -68,10 +69,10 @@ class SymbolReader {
     return value;
   }
 
-  /// Returns the bit after an open record, when all its symbols were read.
+  /// Returns the bit after an open record. All its symbols must have been read.
   VOXDAG_HD std::uint64_t open_end() const { return at_ - kRangeBits + kOpenBits; }
-  /// Returns whether a closed record has no more bits than its symbols, all of which were read, can
-  /// need.
+  /// Returns whether a closed record has no more bits than its symbols can take. All of them must
+  /// have been read.
   VOXDAG_HD bool is_finished() const { return end_ <= open_end(); }
 
  private:
@@ -142,7 +143,7 @@ class SymbolWriter {
     range_ = range << count;
     shift(count);
   }
-  /// Doubles `low_` and moves the bits above it to the digits.
+  /// Doubles `low_` `count` times, and moves the bits above it to the digits.
   void shift(int count) {
     low_ <<= count;
     held_ += count;
@@ -163,8 +164,8 @@ class SymbolWriter {
     digits_.push_back(digit & 0xFFFFu);
   }
 
-  /// If a number whose last bit is `extra` bits behind the doublings is in the interval, makes the
-  /// least such number the digits, and returns true.
+  /// Looks for the least number in the interval that ends `extra` bits behind the doublings. If
+  /// there is one, makes it the digits and returns true.
   bool add_bits_inside(int extra) {
     const std::uint64_t step = std::uint64_t{1} << (kRangeBits - extra);
     const std::uint64_t number = (low_ + step - 1) / step * step;
@@ -173,7 +174,8 @@ class SymbolWriter {
     flush();
     return true;
   }
-  /// Makes digits of the least multiple of 2^29 from which on 2^29 numbers are in the interval.
+  /// Makes the least multiple of 2^29 in the interval the digits. It is at most 2^29 above `low_`,
+  /// so the 2^29 numbers from it on are in the interval, too: its next 29 bits may be any.
   void add_open_bits() {
     const std::uint64_t step = std::uint64_t{1} << (kRangeBits - kOpenBits);
     low_ = (low_ + step - 1) / step * step;

@@ -1,0 +1,168 @@
+#include "viewer/server/answers.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "viewer/embedded/page_files.hpp"
+#include "viewer/server/entity_tags.hpp"
+#include "viewer/server/multipart_body.hpp"
+#include "viewer/server/scene_ranges.hpp"
+#include "viewer/server/server_address.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr char kScenePath[] = "/scene.vdag";
+constexpr char kSceneType[] = "application/octet-stream";
+
+/// Allows only what the page needs: files of this server; a worker and pictures that the page makes
+/// itself (blob:); pictures in its style sheet (data:). Forbids inline scripts and styles, and
+/// frames of other sites around the page.
+constexpr char kContentSecurityPolicy[] =
+    "default-src 'none'; script-src 'self'; worker-src blob:; connect-src 'self'; "
+    "style-src 'self'; img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'self'";
+
+/// The ranges of the request that the calling thread answers.
+struct PlannedRanges {
+  bool are_wrong = false;         // No range can be served.
+  std::vector<ByteRange> ranges;  // As resolve_ranges() makes them; none: the whole scene.
+};
+
+PlannedRanges& planned() {
+  static thread_local PlannedRanges ranges;
+  return ranges;
+}
+
+bool is_for_scene(const httplib::Request& request) { return request.path == kScenePath; }
+
+/// Sets the entity tag. If the client has these bytes already, sets the status 304 and returns
+/// true.
+bool answer_known(const httplib::Request& request, httplib::Response& response,
+                  const std::string& tag) {
+  response.set_header("ETag", tag);
+  if (!has_tag(request.get_header_value("If-None-Match"), tag)) return false;
+  response.status = 304;
+  return true;
+}
+
+void refuse(httplib::Response& response, int status, const std::string& text) {
+  response.status = status;
+  response.set_content(text + "\n", "text/plain; charset=utf-8");
+}
+
+/// Makes a response of `size` bytes, which read(offset, span) provides piece by piece.
+template <class Read>
+void give(httplib::Response& response, std::uint64_t size, const std::string& type,
+          const Read& read) {
+  if (size == 0) return response.set_content("", type);
+  response.set_content_provider(
+      size, type, [read](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        constexpr std::size_t kPiece = 65536;
+        std::vector<std::byte> piece(std::min(length, kPiece));
+        return read(offset, std::span<std::byte>(piece)) &&
+               sink.write(reinterpret_cast<const char*>(piece.data()), piece.size());
+      });
+}
+
+}  // namespace
+
+const httplib::Headers& Answers::default_headers() {
+  static const httplib::Headers headers = {
+      {"Content-Security-Policy", kContentSecurityPolicy},
+      // Browsers believe the types that the server says, and run no other file as a script.
+      {"X-Content-Type-Options", "nosniff"},
+      // Other sites can neither embed the scene nor get a handle of the page's window.
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Referrer-Policy", "no-referrer"},
+      // Browsers keep copies, but ask each time whether the copies are still right.
+      {"Cache-Control", "no-cache"}};
+  return headers;
+}
+
+Answers::Answers(const SceneBytes& scene, const std::string& local_host)
+    : scene_(scene), local_host_(local_host), scene_tag_(quoted_tag(scene.tag())) {
+  for (const PageFile& file : page_files()) page_tags_[file.path] = tag_of(file.bytes);
+}
+
+void Answers::plan(httplib::Request& request) const {
+  planned() = {};
+  std::vector<ByteRange> ranges;
+  std::swap(ranges, request.ranges);
+  const std::string if_range = request.get_header_value("If-Range");
+  if (ranges.empty() || request.method != "GET" || !is_for_scene(request) ||
+      (!if_range.empty() && if_range != scene_tag_))
+    return;
+  planned().are_wrong = !resolve_ranges(ranges, scene_.size());
+  planned().ranges = std::move(ranges);
+}
+
+bool Answers::is_allowed_host(const httplib::Request& request) const {
+  if (local_host_.empty()) return true;
+  const std::string host = host_of(request.get_header_value("Host"));
+  return host == "localhost" || host == "127.0.0.1" || host == "[::1]" || host == local_host_;
+}
+
+void Answers::answer(const httplib::Request& request, httplib::Response& response) const {
+  if (!is_allowed_host(request))
+    return refuse(response, 403, "this server answers only for localhost");
+  if (request.method != "GET" && request.method != "HEAD") {
+    response.set_header("Allow", "GET, HEAD");
+    return refuse(response, 405, "only GET and HEAD");
+  }
+  if (is_for_scene(request)) return answer_scene(request, response);
+  const std::string_view path = request.path;
+  const PageFile* const file = path == "/"             ? find_page_file("index.html")
+                               : path.starts_with("/") ? find_page_file(path.substr(1))
+                                                       : nullptr;
+  if (file == nullptr) return refuse(response, 404, "not found");
+  if (answer_known(request, response, page_tags_.at(file->path))) return;
+  give(response, file->bytes.size(), std::string(file->type),
+       [file](std::uint64_t offset, auto out) {
+         std::copy_n(
+             std::as_bytes(std::span(file->bytes)).begin() + static_cast<std::ptrdiff_t>(offset),
+             out.size(), out.begin());
+         return true;
+       });
+}
+
+void Answers::answer_scene(const httplib::Request& request, httplib::Response& response) const {
+  if (!scene_.is_unchanged())
+    return refuse(response, 500,
+                  "the scene's file has changed since the server opened it: start it again");
+  response.set_header("Accept-Ranges", "bytes");
+  if (answer_known(request, response, scene_tag_)) return;
+  if (planned().are_wrong) {
+    response.set_header("Content-Range", fmt::format("bytes */{}", scene_.size()));
+    response.status = 416;
+    return;
+  }
+  const std::vector<ByteRange>& ranges = planned().ranges;
+  if (!ranges.empty()) response.status = 206;
+  if (ranges.size() > 1) return answer_parts(ranges, response);
+  std::uint64_t begin = 0, size = scene_.size();
+  if (!ranges.empty()) {
+    const auto [first, last] = ranges[0];
+    response.set_header("Content-Range", fmt::format("bytes {}-{}/{}", first, last, scene_.size()));
+    begin = static_cast<std::uint64_t>(first);
+    size = static_cast<std::uint64_t>(last - first) + 1;
+  }
+  give(response, size, kSceneType,
+       [this, begin](std::uint64_t offset, auto out) { return scene_.read(begin + offset, out); });
+}
+
+void Answers::answer_parts(const std::vector<ByteRange>& ranges,
+                           httplib::Response& response) const {
+  const std::string boundary = "voxdag-range-" + scene_.tag();
+  const auto body = std::make_shared<MultipartBody>(scene_, ranges, kSceneType, boundary);
+  give(response, body->size(), "multipart/byteranges; boundary=" + boundary,
+       [body](std::uint64_t offset, auto out) { return body->read(offset, out); });
+}
+
+}  // namespace voxdag

@@ -1,0 +1,42 @@
+#pragma once
+/// Answers requests for the files of the page and for one scene.
+#include <httplib.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewer/scene/scene_bytes.hpp"
+#include "viewer/server/scene_ranges.hpp"
+
+namespace voxdag {
+
+/// Answers GET and HEAD of the page's files and of /scene.vdag, which is `scene`, with ranges and
+/// entity tags. The answer to other paths is 404, to other methods 405. Thread-safe; plan() and
+/// answer() of a request must run on one thread.
+class Answers {
+ public:
+  /// If `local_host` is not empty, requests are refused unless their Host is this name or a name of
+  /// the loopback interface. `scene` must outlive this object.
+  Answers(const SceneBytes& scene, const std::string& local_host);
+
+  /// Returns the header fields of every answer.
+  static const httplib::Headers& default_headers();
+
+  /// Takes the ranges out of the request, so that the HTTP library applies none itself, and keeps
+  /// them for answer() if they apply. Call it before answer().
+  void plan(httplib::Request& request) const;
+  void answer(const httplib::Request& request, httplib::Response& response) const;
+
+ private:
+  bool is_allowed_host(const httplib::Request& request) const;
+  void answer_scene(const httplib::Request& request, httplib::Response& response) const;
+  void answer_parts(const std::vector<ByteRange>& ranges, httplib::Response& response) const;
+
+  const SceneBytes& scene_;
+  const std::string local_host_, scene_tag_;
+  std::map<std::string_view, std::string> page_tags_;  ///< By the path of the page's file.
+};
+
+}  // namespace voxdag

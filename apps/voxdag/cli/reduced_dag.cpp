@@ -1,0 +1,86 @@
+#include "cli/reduced_dag.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "voxdag/compact/coarsen.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/verify_vdag.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Throws Error unless the metadata of the file describes its attributes.
+void check_metadata(const VdagMetadata& metadata, const DagAttributesView& attributes,
+                    const std::string& path) {
+  try {
+    compare_attributes(metadata.attributes, attributes);
+  } catch (const Error& error) {
+    throw error.in_file(path);
+  }
+}
+
+/// Describes values that were encoded again within these bounds. The errors of the cells that the
+/// coarser grid keeps are not known.
+void encode_again(AttributesMetadata& attributes, const CoarsenBounds& bounds) {
+  if (attributes.colors)
+    attributes.colors = {std::min(attributes.colors->bound + bounds.color_bound, 1.0), {}};
+  if (attributes.normals)
+    attributes.normals = {std::min(attributes.normals->bound + bounds.normal_bound_degrees, 180.0),
+                          {}};
+}
+
+}  // namespace
+
+std::vector<Option> add_reduction_options(const Command& command, DagReduction& reduction) {
+  const Option levels = command.optional_number<int>(
+      "--levels", reduction.levels, NumberRange::whole(kMinLevels, kMaxLevels), "L",
+      "Make the grid coarser, 2^L voxels a side: a voxel is set if one in it was");
+  const auto has_levels = [&reduction] { return reduction.levels.has_value(); };
+  const Option color_bound =
+      command
+          .number("--color-bound", reduction.bounds.color_bound, NumberRange::from(0, 1),
+                  "DIFFERENCE",
+                  "With --levels: how far a colour may change when the coarser colours are encoded "
+                  "again, in the units of build (0: not at all)")
+          .only_if(has_levels, "without --levels");
+  const Option normal_bound =
+      command
+          .number("--normal-bound", reduction.bounds.normal_bound_degrees,
+                  NumberRange::from(0, 180), "DEGREES",
+                  "With --levels: how far a normal may turn when it is encoded again (0: not at "
+                  "all)")
+          .only_if(has_levels, "without --levels");
+  const Option drop = command.flag("--drop-attributes", reduction.drop_attributes,
+                                   "Leave out colours, normals and material ids");
+  return {levels, color_bound, normal_bound, drop};
+}
+
+ReducedDag::ReducedDag(const DagInput& file, const std::string& path, const DagReduction& reduction,
+                       MemoryBudget* memory, Progress* progress)
+    : dag_(file.view()), metadata_(file.metadata()) {
+  if (!reduction.drop_attributes) attributes_ = file.attributes();
+  if (attributes_.is_empty())
+    metadata_.attributes = {};
+  else
+    check_metadata(metadata_, attributes_, path);
+  const int levels = reduction.levels.value_or(dag_.levels);
+  if (levels > dag_.levels)
+    throw Error(path, "",
+                fmt::format("has {} levels, {} voxels a side: it cannot get {} levels", dag_.levels,
+                            std::int64_t{1} << dag_.levels, levels));
+  if (levels == dag_.levels) return;
+  coarse_ = coarsen(dag_, levels, memory, progress);
+  dag_ = coarse_.view();
+  metadata_ = coarser_metadata(metadata_, dag_);
+  if (attributes_.is_empty()) return;
+  coarse_attributes_ =
+      coarsen_attributes({file.view(), attributes_}, dag_, reduction.bounds, memory, progress);
+  if (attributes_.index.finest_level > levels) encode_again(metadata_.attributes, reduction.bounds);
+  attributes_ = coarse_attributes_.view();
+  metadata_.attributes.resolution = std::int64_t{1} << attributes_.index.finest_level;
+  memory_ = MemoryReservation(memory, coarse_attributes_.bytes());
+}
+
+}  // namespace voxdag

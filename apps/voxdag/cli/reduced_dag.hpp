@@ -1,0 +1,45 @@
+#pragma once
+/// The options that make a DAG coarser or leave out its attributes, and the DAG that they make.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/scene_input.hpp"
+#include "voxdag/attributes/coarsen_attributes.hpp"
+
+namespace voxdag {
+
+struct DagReduction {
+  std::optional<int> levels;  ///< None: those of the file.
+  bool drop_attributes = false;
+  CoarsenBounds bounds;
+};
+
+/// Adds --levels, --color-bound, --normal-bound and --drop-attributes. Returns them.
+std::vector<Option> add_reduction_options(const Command& command, DagReduction& reduction);
+
+/// A DAG with its metadata and attributes. Refers to its file, which must outlive it, or owns what
+/// the reduction changed. Move-only; views stay valid when it is moved.
+class ReducedDag {
+ public:
+  /// `path` is the file's name, for errors. Throws Error if `reduction` asks for more levels than
+  /// the file has, or if the file's metadata does not describe its attributes; OverMemory and
+  /// Cancelled. `memory` may be null.
+  ReducedDag(const DagInput& file, const std::string& path, const DagReduction& reduction,
+             MemoryBudget* memory, Progress* progress);
+
+  const SvdagView& dag() const { return dag_; }
+  const DagAttributesView& attributes() const { return attributes_; }
+  const VdagMetadata& metadata() const { return metadata_; }
+
+ private:
+  SvdagView dag_;
+  DagAttributesView attributes_;
+  VdagMetadata metadata_;
+  Svdag coarse_;
+  DagAttributes coarse_attributes_;
+  MemoryReservation memory_;  ///< Counts `coarse_attributes_`.
+};
+
+}  // namespace voxdag
