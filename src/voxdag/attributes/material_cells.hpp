@@ -53,16 +53,13 @@ class MaterialFilter {
     std::uint32_t cell = 0, id = 0;
     double area = 0;
   };
-  void add_pieces(const NumberedCell& cell, StackedCell part);
   void add_entries(std::uint32_t cell, const Cell& pieces);
   void join(const NumberedCell& cell);
 
   const SvdagView& dag_;
   const CellIndexView& index_;
-  const TriangleSource& source_;
   std::span<const std::uint32_t> materials_;
-  const PieceSampler sampler_;
-  PieceStack pieces_;
+  TaskPieces pieces_;
   std::uint64_t first_ = 0;         // number of the task's cell
   CountedVector<Entry> entries_;    // by cell and id
   std::size_t next_ = 0;            // of the entries that join() has not read
