@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/report/charts.hpp"
+#include "cli/command.hpp"
 #include "cli/output_files.hpp"
 #include "cli/session.hpp"
 
@@ -26,5 +27,14 @@ struct BenchOutput {
              const std::vector<std::function<Chart(const std::string& file)>>& charts,
              const std::string& text, Session& session) const;
 };
+
+/// Adds --output and --plot, whose help is `plot`.
+void add_output_options(const Command& command, BenchOutput& output, const std::string& plot);
+
+/// Adds --threads, --quiet and --json.
+void add_run_options(const Command& command, Session& session);
+
+/// Returns the line above a table: the processor, its cores and the load before the benchmark.
+std::string machine_text(const nlohmann::ordered_json& machine);
 
 }  // namespace voxdag
