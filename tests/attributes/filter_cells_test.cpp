@@ -205,6 +205,25 @@ TEST(FilterCells, AMemoryLimitIsKeptOrRefused) {
   });
 }
 
+TEST(BuildAttributes, TheFinestLevelIsTheLastThatIsExpectedToFit) {
+  SvdagCounts counts;
+  counts.svo_nodes_per_level = {1, 8, 64, 512};
+  counts.voxels = 4096;
+  const auto finest = [&](bool colors, bool normals, bool materials, std::uint64_t bytes) {
+    AttributeOptions options;
+    options.colors = colors;
+    options.normals = normals;
+    options.materials = materials;
+    return finest_level_within(counts, options, bytes);
+  };
+  EXPECT_EQ(finest(true, false, false, 5000), 4);  // 4681 cells
+  EXPECT_EQ(finest(true, true, false, 5000), 3);   // 585 cells
+  EXPECT_EQ(finest(false, true, false, 600), 3);
+  EXPECT_EQ(finest(false, false, true, 600), 4);
+  EXPECT_EQ(finest(false, false, true, 500), 3);
+  EXPECT_EQ(finest(true, true, true, 0), 0);
+}
+
 TEST(BuildAttributes, NormalsAreWithinTheirBound) {
   const ColoredMesh scene(12, 6);
   const SurfaceShading shading(scene.mesh, scene.appearance);
