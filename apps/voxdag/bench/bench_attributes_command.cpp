@@ -1,12 +1,10 @@
 /// The command line of `voxdag bench attributes`.
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench/attributes/bench_attributes.hpp"
 #include "bench/bench_output.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
@@ -40,20 +38,16 @@ double parse_bound(const std::string& text) {
 }
 
 void run(const BenchAttributesArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const AttributesResults results = bench_attributes(arguments.plan, session.progress);
-  arguments.output.write(attributes_json(results, machine),
-                         {[&](const std::string& file) { return attributes_chart(results, file); }},
-                         machine_text(machine) + attributes_table(results), session);
+  const AttributesResults results = measure_and_write(
+      arguments.output, session, [&] { return bench_attributes(arguments.plan, session.progress); },
+      attributes_json, attributes_chart, attributes_table);
   throw_failure(results.runs);
 }
 
 void finish_plan(AttributesPlan& plan, const MeshAccess& access) {
   access.give_rights(plan.read);
   std::sort(plan.levels.begin(), plan.levels.end());
-  std::sort(plan.codecs.begin(), plan.codecs.end());
-  plan.codecs.erase(std::unique(plan.codecs.begin(), plan.codecs.end()), plan.codecs.end());
+  sort_unique(plan.codecs);
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
 /// The command line of `voxdag bench build`.
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench/bench_output.hpp"
 #include "bench/build/bench_build.hpp"
 #include "bench/build/bench_report.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "bench/rivals/command_rival.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
@@ -39,12 +37,9 @@ std::shared_ptr<Rival> parse_rival(const std::string& text) {
 }
 
 void bench(const BenchArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const BenchResults results = bench_build(arguments.plan, session.progress);
-  arguments.output.write(bench_json(results, machine),
-                         {[&](const std::string& file) { return bench_chart(results, file); }},
-                         machine_text(machine) + bench_table(results), session);
+  const BenchResults results = measure_and_write(
+      arguments.output, session, [&] { return bench_build(arguments.plan, session.progress); },
+      bench_json, bench_chart, bench_table);
   for (const BuildRun& run : results.builds)
     if (!run.failure.empty()) throw Error(run.scene, std::to_string(1 << run.levels), run.failure);
 }

@@ -2,12 +2,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench/bench_output.hpp"
 #include "bench/compact/bench_compact.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
@@ -35,12 +33,9 @@ const CompactForm* parse_form(const std::string& text) {
 }
 
 void run(const BenchCompactArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const CompactResults results = bench_compact(arguments.plan, session.progress);
-  arguments.output.write(compact_json(results, machine),
-                         {[&](const std::string& file) { return compact_chart(results, file); }},
-                         machine_text(machine) + compact_table(results), session);
+  const CompactResults results = measure_and_write(
+      arguments.output, session, [&] { return bench_compact(arguments.plan, session.progress); },
+      compact_json, compact_chart, compact_table);
   throw_failure(results.runs);
 }
 
@@ -49,8 +44,7 @@ void finish_plan(CompactPlan& plan, const MeshAccess& access) {
   std::sort(plan.levels.begin(), plan.levels.end());
   if (plan.forms.empty())
     for (const CompactForm& form : compact_forms()) plan.forms.push_back(&form);
-  std::sort(plan.forms.begin(), plan.forms.end());
-  plan.forms.erase(std::unique(plan.forms.begin(), plan.forms.end()), plan.forms.end());
+  sort_unique(plan.forms);
 }
 
 }  // namespace

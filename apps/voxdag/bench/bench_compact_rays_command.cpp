@@ -1,11 +1,9 @@
 /// The command line of `voxdag bench compact-rays`.
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "bench/bench_output.hpp"
 #include "bench/compact_rays/compact_rays.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
@@ -19,17 +17,15 @@ struct BenchCompactRaysArguments {
 };
 
 void run(const BenchCompactRaysArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const DagInput file(session.subject, &session.progress);
-  const std::string& source = file.metadata().source.name;
-  const CompactRaysResults results = bench_compact_rays(
-      source.empty() ? std::filesystem::path(session.subject).filename().string() : source,
-      file.view(), file.grid(), arguments.plan, session.progress);
-  arguments.output.write(compact_rays_json(results, machine), {[&](const std::string& plot) {
-                           return compact_rays_chart(results, plot);
-                         }},
-                         machine_text(machine) + compact_rays_table(results), session);
+  const auto measure = [&] {
+    const DagInput file(session.subject, &session.progress);
+    const std::string& source = file.metadata().source.name;
+    return bench_compact_rays(
+        source.empty() ? std::filesystem::path(session.subject).filename().string() : source,
+        file.view(), file.grid(), arguments.plan, session.progress);
+  };
+  measure_and_write(arguments.output, session, measure, compact_rays_json, compact_rays_chart,
+                    compact_rays_table);
 }
 
 }  // namespace
