@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/attributes/bench_attributes.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -21,8 +20,6 @@ std::string title_of(ColorCodec codec) {
                                           : "ESVO blocks";
 }
 
-std::string resolution(int levels) { return with_commas(std::uint64_t{1} << levels); }
-
 /// Returns the number, or null if it is not finite.
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
@@ -35,7 +32,7 @@ Json result_json(const AttributesRun& run, const ColorResult& result) {
           {"bound", finite_or_null(result.bound)},
           {"bytes", result.bytes},
           {"bits_per_cell", run.bits_per_cell(result)},
-          {"bits_per_voxel", run.bits_per_voxel(result)},
+          {"bits_per_voxel", run.bits_per_voxel(result.bytes)},
           {"psnr_db", finite_or_null(result.psnr_db)},
           {"ms_ssim", result.ms_ssim},
           {"mean_ms_ssim", result.mean_ms_ssim()},
@@ -43,12 +40,7 @@ Json result_json(const AttributesRun& run, const ColorResult& result) {
           {"cells_per_second", cells_per_second(run, result.seconds)}};
 }
 
-Json run_json(const AttributesRun& run) {
-  Json json{{"scene", run.scene}, {"resolution", std::int64_t{1} << run.levels}};
-  if (!run.failure.empty()) {
-    json["failure"] = run.failure;
-    return json;
-  }
+void add_figures(Json& json, const AttributesRun& run) {
   json["voxels"] = run.voxels;
   json["cells"] = run.cells;
   json["index_bytes"] = run.index_bytes;
@@ -56,7 +48,6 @@ Json run_json(const AttributesRun& run) {
   json["filter_cells_per_second"] = cells_per_second(run, run.filter_seconds);
   json["results"] = Json::array();
   for (const ColorResult& result : run.results) json["results"].push_back(result_json(run, result));
-  return json;
 }
 
 std::string least_of(const ColorResult& result) {
@@ -70,10 +61,7 @@ std::string bound_of(const ColorResult& result) {
 }  // namespace
 
 Json attributes_json(const AttributesResults& results, const Json& machine) {
-  Json json{{"program", program_name()}, {"machine", machine}};
-  json["runs"] = Json::array();
-  for (const AttributesRun& run : results.runs) json["runs"].push_back(run_json(run));
-  return json;
+  return scene_runs_json(results.runs, machine, add_figures);
 }
 
 std::string attributes_table(const AttributesResults& results) {
@@ -81,15 +69,14 @@ std::string attributes_table(const AttributesResults& results) {
   for (const AttributesRun& run : results.runs) {
     if (!text.empty()) text += "\n";
     text += fmt::format("{}{}", run.scene,
-                        run.levels == 0 ? "" : fmt::format(" {}³", resolution(run.levels)));
+                        run.levels == 0 ? "" : fmt::format(" {}³", resolution_text(run.levels)));
     if (!run.failure.empty()) {
       text += fmt::format(" failed: {}\n", run.failure);
       continue;
     }
     text += fmt::format(
         ": {} voxels, {} cells, numbers {:.3f} bits/voxel, filtered in {:.2f} s ({} cells/s)\n",
-        with_commas(run.voxels), with_commas(run.cells),
-        8 * static_cast<double>(run.index_bytes) / static_cast<double>(run.voxels),
+        with_commas(run.voxels), with_commas(run.cells), run.bits_per_voxel(run.index_bytes),
         run.filter_seconds, human_count(cells_per_second(run, run.filter_seconds)));
     text += fmt::format("  {:<13} {:>6} {:>15} {:>11} {:>10} {:>9} {:>8} {:>8} {:>9} {:>10}\n",
                         "colours", "bound", "bytes", "bits/voxel", "bits/cell", "PSNR", "MS-SSIM",
@@ -98,7 +85,7 @@ std::string attributes_table(const AttributesResults& results) {
       text += fmt::format(
           "  {:<13} {:>6} {:>15} {:>11.3f} {:>10.3f} {:>6.2f} dB {:>8.4f} {:>8} {:>9.2f} {:>10}\n",
           title_of(result.codec), bound_of(result), with_commas(result.bytes),
-          run.bits_per_voxel(result), run.bits_per_cell(result), result.psnr_db,
+          run.bits_per_voxel(result.bytes), run.bits_per_cell(result), result.psnr_db,
           result.mean_ms_ssim(), least_of(result), result.seconds,
           human_count(cells_per_second(run, result.seconds)));
   }
@@ -110,7 +97,7 @@ Chart attributes_chart(const AttributesResults& results, const std::filesystem::
   for (const AttributesRun& run : results.runs) {
     if (!run.failure.empty()) continue;
     ChartPanel panel;
-    panel.title = fmt::format("{} {}³", run.scene, resolution(run.levels));
+    panel.title = fmt::format("{} {}³", run.scene, resolution_text(run.levels));
     panel.x.label = "bits per voxel";
     panel.y.label = "mean MS-SSIM";
     for (const ColorCodec codec : kColorCodecs) {
@@ -118,7 +105,7 @@ Chart attributes_chart(const AttributesResults& results, const std::filesystem::
       line.markers = true;
       for (const ColorResult& result : run.results) {
         if (result.codec != codec) continue;
-        line.x.push_back(run.bits_per_voxel(result));
+        line.x.push_back(run.bits_per_voxel(result.bytes));
         line.y.push_back(result.mean_ms_ssim());
       }
       if (!line.x.empty()) panel.lines.push_back(std::move(line));

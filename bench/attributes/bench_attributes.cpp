@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -16,6 +14,8 @@
 #include "bench/report/scratch_folder.hpp"
 #include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/dag/stop_watch.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
@@ -25,12 +25,7 @@
 namespace voxdag {
 namespace {
 
-namespace fs = std::filesystem;
 using Colors = std::vector<Value8>;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Encodes colours as the builder of .vdag files does, on all threads.
 ValuePages encode_pages(const Colors& colors, double bound, ValueErrors& errors,
@@ -47,15 +42,16 @@ ValuePages encode_pages(const Colors& colors, double bound, ValueErrors& errors,
   return pages;
 }
 
-double psnr_of(double squared, std::size_t cells) {
-  return squared == 0 ? std::numeric_limits<double>::infinity()
-                      : 10 * std::log10(255.0 * 255 * 3 * static_cast<double>(cells) / squared);
+double psnr_of(const ValueErrors& errors, std::size_t cells) {
+  AttributesMetadata metadata;
+  metadata.colors = {0, errors.squared};
+  return metadata.color_psnr_db(cells);
 }
 
 double psnr_of(const Colors& given, const Colors& stored) {
   ValueErrors errors;
   for (std::size_t i = 0; i < given.size(); ++i) errors.count(given[i], stored[i]);
-  return psnr_of(static_cast<double>(errors.squared), given.size());
+  return psnr_of(errors, given.size());
 }
 
 /// The colours of one DAG, and their pictures.
@@ -71,12 +67,12 @@ class ColoredScene {
   ColorResult voxdag(double bound) const {
     ColorResult result;
     result.bound = bound;
-    const auto start = std::chrono::steady_clock::now();
+    StopWatch watch;
     ValueErrors errors;
     const ValuePages pages = encode_pages(colors_, bound, errors, progress_);
-    result.seconds = seconds_since(start);
+    result.seconds = watch.lap();
     result.bytes = pages.view().bytes();
-    result.psnr_db = psnr_of(static_cast<double>(errors.squared), colors_.size());
+    result.psnr_db = psnr_of(errors, colors_.size());
     result.ms_ssim = pictures_->similarities({index_, pages.view(), {}, {}}, progress_);
     return result;
   }
@@ -90,9 +86,9 @@ class ColoredScene {
     ColorResult result;
     result.codec = ColorCodec::kDolonius;
     result.bound = threshold;
-    const auto start = std::chrono::steady_clock::now();
+    StopWatch watch;
     const EncodedColors encoded = encode_dolonius(bytes, static_cast<float>(threshold), progress_);
-    result.seconds = seconds_since(start);
+    result.seconds = watch.lap();
     result.bytes = encoded.size.bytes();
     Colors stored;
     stored.reserve(colors_.size());
@@ -107,9 +103,9 @@ class ColoredScene {
     ColorResult result;
     result.codec = ColorCodec::kEsvo;
     result.bound = std::numeric_limits<double>::quiet_NaN();
-    const auto start = std::chrono::steady_clock::now();
+    StopWatch watch;
     const EsvoColors encoded = encode_esvo_colors(dag_, index_, colors_, progress_);
-    result.seconds = seconds_since(start);
+    result.seconds = watch.lap();
     result.bytes = 8 * encoded.blocks;
     compare(encoded.colors, result);
     return result;
@@ -145,20 +141,8 @@ class Bench {
   Bench(const AttributesPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
 
   AttributesResults run() {
-    for (const std::string& scene : plan_.scenes) {
-      const std::size_t runs = results_.runs.size();
-      try {
-        measure(scene);
-      } catch (const Cancelled&) {
-        throw;
-      } catch (const Error& error) {
-        if (results_.runs.size() == runs) {
-          results_.runs.emplace_back();
-          results_.runs.back().scene = fs::path(scene).filename();
-        }
-        results_.runs.back().failure = error.what();
-      }
-    }
+    measure_scenes(plan_.scenes, results_.runs,
+                   [this](const std::string& scene) { measure(scene); });
     return std::move(results_);
   }
 
@@ -192,9 +176,9 @@ class Bench {
     run.cells = index.cells;
     run.index_bytes = index.view().bytes();
     CellColors cells(index.cells);
-    const auto start = std::chrono::steady_clock::now();
+    StopWatch watch;
     filter_cells(mesh, grid, dag, index.view(), &shading, cells, &memory, &progress_);
-    run.filter_seconds = seconds_since(start);
+    run.filter_seconds = watch.lap();
     const ColoredScene colored(dag, grid, index.view(), std::move(cells.colors), plan_.views,
                                progress_);
     for (const ColorCodec codec : plan_.codecs) {
@@ -226,10 +210,6 @@ std::string key_of(ColorCodec codec) {
 
 double ColorResult::mean_ms_ssim() const {
   return std::accumulate(ms_ssim.begin(), ms_ssim.end(), 0.0) / static_cast<double>(ms_ssim.size());
-}
-
-double AttributesRun::bits_per_voxel(const ColorResult& result) const {
-  return 8 * static_cast<double>(result.bytes) / static_cast<double>(voxels);
 }
 
 double AttributesRun::bits_per_cell(const ColorResult& result) const {

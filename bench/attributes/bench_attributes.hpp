@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/report/charts.hpp"
+#include "bench/report/scene_runs.hpp"
 #include "voxdag/readers/read_options.hpp"
 
 namespace voxdag {
@@ -16,44 +17,40 @@ enum class ColorCodec {
   kEsvo,      ///< The blocks of an ESVO.
 };
 
-/// The name of a codec on the command line and in the JSON.
+/// Returns the name of a codec on the command line and in the JSON.
 std::string key_of(ColorCodec codec);
 inline constexpr ColorCodec kColorCodecs[] = {ColorCodec::kVoxdag, ColorCodec::kDolonius,
                                               ColorCodec::kEsvo};
 
 struct AttributesPlan {
   std::vector<std::string> scenes;  ///< Mesh files, or procedural scenes as NAME or NAME:SIZE.
-  std::vector<int> levels;          ///< Of the grids; ascending. All cells get colours.
-  std::vector<double> bounds;       ///< Of voxdag's colours: AttributeOptions::color_bound.
-  std::vector<double> thresholds;   ///< Of Dolonius's colours.
+  std::vector<int> levels;          ///< log2 of the resolutions, ascending. All cells get colours.
+  std::vector<double> bounds;       ///< For voxdag: AttributeOptions::color_bound.
+  std::vector<double> thresholds;   ///< For Dolonius: see encode_dolonius().
   std::vector<ColorCodec> codecs;
   int views = 4;
-  ReadOptions read;  ///< Rights of the readers; its other members are unused.
+  ReadOptions read;  ///< The rights of the readers. The other members are unused.
 };
 
 /// The colours of a scene in one codec.
 struct ColorResult {
   ColorCodec codec = ColorCodec::kVoxdag;
-  double bound = 0;             ///< Of voxdag and Dolonius; NaN: the codec has none.
+  double bound = 0;             ///< The bound or the threshold; NaN: the codec has none.
   std::uint64_t bytes = 0;      ///< Without the numbers of cells.
-  double psnr_db = 0;           ///< Of all channels of all cells; infinite if all are exact.
-  std::vector<double> ms_ssim;  ///< Of each view.
+  double psnr_db = 0;           ///< Over all channels of all cells; infinite if all are exact.
+  std::vector<double> ms_ssim;  ///< One for each view.
   double seconds = 0;           ///< Wall-clock seconds of the encoder, from colours in memory.
 
   double mean_ms_ssim() const;
 };
 
-/// A scene at one resolution.
-struct AttributesRun {
-  std::string scene;
-  int levels = 0;
-  std::uint64_t voxels = 0, cells = 0;
-  std::uint64_t index_bytes = 0;  ///< Of the numbers of cells, which every codec needs.
-  double filter_seconds = 0;      ///< From the mesh and the DAG in memory to colours.
+/// The colours of a scene at one resolution.
+struct AttributesRun : SceneRun {
+  std::uint64_t cells = 0;
+  std::uint64_t index_bytes = 0;  ///< Size of the numbers of cells, which every codec needs.
+  double filter_seconds = 0;      ///< Wall-clock, from the mesh and the DAG in memory to colours.
   std::vector<ColorResult> results;
-  std::string failure;  ///< Not empty: the members above are not all known.
 
-  double bits_per_voxel(const ColorResult& result) const;
   double bits_per_cell(const ColorResult& result) const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of a coloured DAG, to see what errors of its colours look like.
+/// Compares pictures of a DAG with exact colours and with stored ones.
 #include <memory>
 #include <vector>
 

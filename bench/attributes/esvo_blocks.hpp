@@ -13,13 +13,13 @@
 namespace voxdag {
 
 struct EsvoColors {
-  std::uint64_t blocks = 0;    ///< Of 8 bytes.
-  std::vector<Value8> colors;  ///< As decoded, by number; that of the root is exact.
+  std::uint64_t blocks = 0;    ///< Number of blocks of 8 bytes.
+  std::vector<Value8> colors;  ///< Decoded colours, by number. The root keeps its exact colour.
 };
 
 /// Encodes the colours of all cells that `index` numbers and decodes them again. `colors` has one
-/// for each. An ESVO also ends at coarse cells that its contours and colours describe well enough;
-/// these blocks are for all cells of the finest level. Throws Cancelled.
+/// for each. An ESVO may end at coarse cells that its contours and colours describe well enough;
+/// these blocks always hold all cells down to the finest level. Throws Cancelled.
 EsvoColors encode_esvo_colors(const SvdagView& dag, const CellIndexView& index,
                               const std::vector<Value8>& colors, const Progress& progress);
 

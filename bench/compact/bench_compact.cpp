@@ -2,15 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "bench/build/bench_mesh.hpp"
 #include "bench/compact/plain_sizes.hpp"
 #include "bench/report/scratch_folder.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/dag/stop_watch.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/scene_file.hpp"
 #include "voxdag/io/process_memory.hpp"
@@ -23,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Returns the name of the mesh, or of the file if that is unknown.
 std::string name_of(const SceneMetadata& metadata, const std::string& path) {
   const std::string& source = metadata.source.name;
@@ -38,20 +33,12 @@ class Bench {
   Bench(const CompactPlan& plan, Progress& progress) : plan_(plan), progress_(progress) {}
 
   CompactResults run() {
-    for (const std::string& scene : plan_.scenes) {
-      const std::size_t runs = results_.runs.size();
-      try {
-        if (fs::path(scene).extension() == ".vdag")
-          measure_file(scene);
-        else
-          measure_mesh(scene);
-      } catch (const Cancelled&) {
-        throw;
-      } catch (const Error& error) {
-        if (results_.runs.size() == runs) add_run(fs::path(scene).filename(), 0);
-        results_.runs.back().failure = error.what();
-      }
-    }
+    measure_scenes(plan_.scenes, results_.runs, [this](const std::string& scene) {
+      if (fs::path(scene).extension() == ".vdag")
+        measure_file(scene);
+      else
+        measure_mesh(scene);
+    });
     return std::move(results_);
   }
 
@@ -60,7 +47,6 @@ class Bench {
     CompactRun& run = results_.runs.emplace_back();
     run.scene = scene;
     run.levels = levels;
-    run.build_seconds = std::numeric_limits<double>::quiet_NaN();
     return run;
   }
 
@@ -96,9 +82,9 @@ class Bench {
     options.memory = &memory;
     for (const int levels : plan_.levels) {
       CompactRun& run = add_run(prepared.identity.name, levels);
-      const auto start = std::chrono::steady_clock::now();
+      StopWatch watch;
       const BuildResult built = build_svdag(mesh, fit_grid(mesh, levels), options, &progress_);
-      run.build_seconds = seconds_since(start);
+      run.build_seconds = watch.lap();
       measure(built.dag.view(), run);
     }
   }
@@ -113,9 +99,9 @@ class Bench {
     for (const CompactForm* form : plan_.forms) {
       progress_.report(fmt::format("encoding {} {} as {}", run.scene, 1 << run.levels, form->title),
                        0);
-      const auto start = std::chrono::steady_clock::now();
+      StopWatch watch;
       FormResult result{form, form->measure(dag, progress_), 0};
-      result.seconds = seconds_since(start);
+      result.seconds = watch.lap();
       run.forms.push_back(std::move(result));
     }
   }
@@ -130,10 +116,6 @@ class Bench {
 
 double CompactRun::part_of_reference(const FormResult& result) const {
   return static_cast<double>(result.size.bytes()) / static_cast<double>(reference_bytes);
-}
-
-double CompactRun::bits_per_voxel(const FormResult& result) const {
-  return 8 * static_cast<double>(result.size.bytes()) / static_cast<double>(voxels);
 }
 
 std::vector<FormMeans> form_means(const CompactResults& results) {

@@ -1,12 +1,14 @@
 #pragma once
 /// `voxdag bench compact`: bytes of DAGs in the compact forms of several papers.
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "bench/compact/compact_forms.hpp"
 #include "bench/report/charts.hpp"
+#include "bench/report/scene_runs.hpp"
 #include "voxdag/readers/read_options.hpp"
 
 namespace voxdag {
@@ -26,18 +28,18 @@ struct FormResult {
   double seconds = 0;  ///< Wall-clock seconds of the encoder, from the DAG in memory.
 };
 
-/// A scene at one resolution.
-struct CompactRun {
-  std::string scene;
-  int levels = 0;
-  std::uint64_t voxels = 0, svo_nodes = 0, dag_nodes = 0;
-  double build_seconds = 0;           ///< NaN: the DAG was read from a file.
+/// The DAG of a scene at one resolution.
+struct CompactRun : SceneRun {
+  std::uint64_t svo_nodes = 0, dag_nodes = 0;
+  /// NaN: the DAG was read from a file.
+  double build_seconds = std::numeric_limits<double>::quiet_NaN();
   std::uint64_t reference_bytes = 0;  ///< In kReferenceForm.
   std::vector<FormResult> forms;
-  std::string failure;  ///< Not empty: the members above are not all known.
 
   double part_of_reference(const FormResult& result) const;
-  double bits_per_voxel(const FormResult& result) const;
+  double bits_per_voxel(const FormResult& result) const {
+    return SceneRun::bits_per_voxel(result.size.bytes());
+  }
 };
 
 struct CompactResults {

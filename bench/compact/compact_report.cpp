@@ -7,15 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/compact/bench_compact.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string resolution(int levels) { return with_commas(std::uint64_t{1} << levels); }
 
 Json form_json(const CompactRun& run, const FormResult& result) {
   Json json{{"bytes", result.size.bytes()},
@@ -27,12 +24,7 @@ Json form_json(const CompactRun& run, const FormResult& result) {
   return json;
 }
 
-Json run_json(const CompactRun& run) {
-  Json json{{"scene", run.scene}, {"resolution", std::int64_t{1} << run.levels}};
-  if (!run.failure.empty()) {
-    json["failure"] = run.failure;
-    return json;
-  }
+void add_figures(Json& json, const CompactRun& run) {
   json["voxels"] = run.voxels;
   json["svo_nodes"] = run.svo_nodes;
   json["dag_nodes"] = run.dag_nodes;
@@ -40,15 +32,12 @@ Json run_json(const CompactRun& run) {
   json["forms"] = Json::object();
   for (const FormResult& result : run.forms)
     json["forms"][result.form->key] = form_json(run, result);
-  return json;
 }
 
 }  // namespace
 
 Json compact_json(const CompactResults& results, const Json& machine) {
-  Json json{{"program", program_name()}, {"machine", machine}};
-  json["runs"] = Json::array();
-  for (const CompactRun& run : results.runs) json["runs"].push_back(run_json(run));
+  Json json = scene_runs_json(results.runs, machine, add_figures);
   json["geometric_means"] = Json::object();
   for (const FormMeans& mean : form_means(results))
     json["geometric_means"][mean.form->key] = {{"runs", mean.runs},
@@ -72,13 +61,13 @@ std::string compact_table(const CompactResults& results) {
   for (const CompactRun& run : results.runs) {
     if (!run.failure.empty()) {
       text += fmt::format("{:<{}} {:>9}  failed: {}\n", run.scene, width,
-                          run.levels == 0 ? "" : resolution(run.levels), run.failure);
+                          run.levels == 0 ? "" : resolution_text(run.levels), run.failure);
       continue;
     }
     bool is_first = true;
     for (const FormResult& result : run.forms) {
       text += line(
-          is_first ? run.scene : "", is_first ? resolution(run.levels) : "",
+          is_first ? run.scene : "", is_first ? resolution_text(run.levels) : "",
           is_first ? with_commas(run.voxels) : "", result.form->title,
           with_commas(result.size.bytes()), fmt::format("{:.3f}", run.part_of_reference(result)),
           fmt::format("{:.4f}", run.bits_per_voxel(result)), fmt::format("{:.2f}", result.seconds));
@@ -103,7 +92,7 @@ Chart compact_chart(const CompactResults& results, const std::filesystem::path& 
   Chart chart{file, {}};
   for (const auto& [levels, runs] : by_levels) {
     ChartPanel panel;
-    panel.title = resolution(levels) + "³";
+    panel.title = resolution_text(levels) + "³";
     panel.y.label = "bits per voxel";
     for (const CompactRun* run : runs)
       panel.groups.push_back(std::filesystem::path(run->scene).stem());

@@ -25,10 +25,10 @@ std::vector<std::uint32_t> reference_order(const std::vector<Node>& parents, std
   return order;
 }
 
-/// Places the words of the nodes of each level one after the other, in reference_order(), from the
-/// last level up, so that the places of a node's children are known when the node is placed. A node
-/// has one word for its tags, and for each child `words_of(child)` words, where words_of is
-/// make_words_of(level, places of the level below). Returns the number of nodes.
+/// Places the words of all nodes, and returns the number of nodes. Each level has its own places,
+/// in reference_order(). Levels are placed from the last one up, because the words of a pointer
+/// depend on the place of the child. A node has one word for its tags, and words_of(child) words
+/// for each child; words_of is make_words_of(level, places of the level below).
 template <class Node, class MakeWordsOf>
 std::uint64_t place_levels(const std::vector<std::vector<Node>>& levels, std::size_t leaf_blocks,
                            const MakeWordsOf& make_words_of) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/clipped_polygon.hpp"
+#include "support/memory_limit.hpp"
 #include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/dag/build_svdag.hpp"
@@ -198,21 +199,29 @@ TEST(FilterCells, AMemoryLimitIsKeptOrRefused) {
   AttributeOptions options;
   options.colors = true;
   options.finest_level = 7;
-  bool was_refused = false, was_built = false;
-  for (std::uint64_t limit = std::uint64_t{1} << 14; limit <= std::uint64_t{1} << 30; limit *= 4) {
-    MemoryBudget budget(limit);
+  expect_limit_is_kept_or_refused([&](MemoryBudget& budget) {
     options.memory = &budget;
-    try {
-      build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);
-      was_built = true;
-      EXPECT_LE(budget.peak(), limit);
-    } catch (const OverMemory&) {
-      was_refused = true;
-      EXPECT_FALSE(was_built) << "with less memory";
-    }
-    EXPECT_EQ(budget.used(), 0u);
-  }
-  EXPECT_TRUE(was_refused && was_built);
+    build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);
+  });
+}
+
+TEST(BuildAttributes, TheFinestLevelIsTheLastThatIsExpectedToFit) {
+  SvdagCounts counts;
+  counts.svo_nodes_per_level = {1, 8, 64, 512};
+  counts.voxels = 4096;
+  const auto finest = [&](bool colors, bool normals, bool materials, std::uint64_t bytes) {
+    AttributeOptions options;
+    options.colors = colors;
+    options.normals = normals;
+    options.materials = materials;
+    return finest_level_within(counts, options, bytes);
+  };
+  EXPECT_EQ(finest(true, false, false, 5000), 4);  // 4681 cells
+  EXPECT_EQ(finest(true, true, false, 5000), 3);   // 585 cells
+  EXPECT_EQ(finest(false, true, false, 600), 3);
+  EXPECT_EQ(finest(false, false, true, 600), 4);
+  EXPECT_EQ(finest(false, false, true, 500), 3);
+  EXPECT_EQ(finest(true, true, true, 0), 0);
 }
 
 TEST(BuildAttributes, NormalsAreWithinTheirBound) {

@@ -8,11 +8,12 @@
 #include <random>
 
 #include "support/clipped_polygon.hpp"
+#include "support/memory_limit.hpp"
 #include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/attributes/material_colors.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
-#include "voxdag/layout/encode_material_ids.hpp"
+#include "voxdag/layout/validate_material_ids.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
@@ -124,21 +125,10 @@ TEST(FilterMaterials, AMemoryLimitIsKeptOrRefused) {
   AttributeOptions options;
   options.materials = true;
   options.finest_level = 7;
-  bool was_refused = false, was_built = false;
-  for (std::uint64_t limit = std::uint64_t{1} << 14; limit <= std::uint64_t{1} << 30; limit *= 4) {
-    MemoryBudget budget(limit);
+  expect_limit_is_kept_or_refused([&](MemoryBudget& budget) {
     options.memory = &budget;
-    try {
-      build_attributes(scene.mesh, scene.grid, dag.view(), nullptr, options);
-      was_built = true;
-      EXPECT_LE(budget.peak(), limit);
-    } catch (const OverMemory&) {
-      was_refused = true;
-      EXPECT_FALSE(was_built) << "with less memory";
-    }
-    EXPECT_EQ(budget.used(), 0u);
-  }
-  EXPECT_TRUE(was_refused && was_built);
+    build_attributes(scene.mesh, scene.grid, dag.view(), nullptr, options);
+  });
 }
 
 TEST(MaterialColors, EveryCellHasTheColourOfItsMaterial) {

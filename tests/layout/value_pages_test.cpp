@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/damaged_pages.hpp"
 #include "support/error_of.hpp"
 #include "voxdag/layout/page_reader.hpp"
 #include "voxdag/layout/validate_value_pages.hpp"
@@ -114,19 +115,11 @@ ValuePages small_page() {
 }
 
 TEST(ValuePages, EveryFlippedBitIsRefusedOrSafeToRead) {
-  const ValuePages good = small_page();
-  int refused = 0;
-  for (std::size_t bit = 0; bit < 64 * good.words.size(); ++bit) {
-    ValuePages pages = good;
-    pages.words[bit / 64] ^= std::uint64_t{1} << bit % 64;
-    try {
-      validate_value_pages(pages.view());
-    } catch (const Error&) {
-      ++refused;
-      continue;
-    }
-    for (std::uint64_t i = 0; i < pages.values; ++i) read_value(pages.view(), i);
-  }
+  const int refused = refused_bit_flips(small_page(), validate_value_pages,
+                                        [](const ValuePages& pages, std::size_t) {
+                                          for (std::uint64_t i = 0; i < pages.values; ++i)
+                                            read_value(pages.view(), i);
+                                        });
   EXPECT_GT(refused, 20);  // lengths and padding
 }
 

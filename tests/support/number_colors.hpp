@@ -34,9 +34,7 @@ class NumberColors {
     pages_.words.assign(pages * kBits / 64, 0);
     std::uint64_t at = 0;
     for (std::uint64_t i = 0; i < pages * kPageValues; ++i) {
-      if (i % (kPageValues * kGroupPages) == 0) pages_.groups.push_back(at / 8);
-      if (i % kPageValues == 0)
-        pages_.pages.push_back(static_cast<std::uint16_t>(at / 8 - pages_.groups.back()));
+      if (i % kPageValues == 0) pages_.add_page(at / 8);
       if (i % 4 == 0) {
         write_bits(pages_.words.data(), at, 9, ValueBlock{ValueBlock::kRaw, 4}.pack());
         at += 9;

@@ -1,18 +1,13 @@
 /// The command line of `voxdag bench attributes`.
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench/attributes/bench_attributes.hpp"
 #include "bench/bench_output.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
-#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
@@ -23,40 +18,36 @@ struct BenchAttributesArguments {
   BenchOutput output;
 };
 
+std::string known_codecs() {
+  std::string names;
+  for (const ColorCodec codec : kColorCodecs) names += (names.empty() ? "" : ", ") + key_of(codec);
+  return names;
+}
+
 ColorCodec parse_codec(const std::string& text) {
   for (const ColorCodec codec : kColorCodecs)
     if (key_of(codec) == text) return codec;
-  throw std::invalid_argument("must be one of voxdag, dolonius, esvo");
+  throw std::invalid_argument("must be one of " + known_codecs());
 }
 
 double parse_bound(const std::string& text) {
   const std::vector<double> numbers = parse_numbers(text);
   if (numbers.size() != 1 || !(numbers[0] >= 0 && numbers[0] <= 1))
-    throw std::invalid_argument("must be numbers from 0 to 1");
+    throw std::invalid_argument("must be a number from 0 to 1");
   return numbers[0];
 }
 
 void run(const BenchAttributesArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const AttributesResults results = bench_attributes(arguments.plan, session.progress);
-  arguments.output.write(
-      attributes_json(results, machine),
-      {[&](const std::string& file) { return attributes_chart(results, file); }},
-      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
-                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
-                  machine.at("load_average").get<double>(), attributes_table(results)),
-      session);
-  for (const AttributesRun& run : results.runs)
-    if (!run.failure.empty()) throw Error(run.failure);
+  const AttributesResults results = measure_and_write(
+      arguments.output, session, [&] { return bench_attributes(arguments.plan, session.progress); },
+      attributes_json, attributes_chart, attributes_table);
+  throw_failure(results.runs);
 }
 
 void finish_plan(AttributesPlan& plan, const MeshAccess& access) {
-  plan.read.allow_outside = access.allow_outside;
-  plan.read.any_assimp_importer = access.any_importer;
+  access.give_rights(plan.read);
   std::sort(plan.levels.begin(), plan.levels.end());
-  std::sort(plan.codecs.begin(), plan.codecs.end());
-  plan.codecs.erase(std::unique(plan.codecs.begin(), plan.codecs.end()), plan.codecs.end());
+  sort_unique(plan.codecs);
 }
 
 }  // namespace
@@ -81,20 +72,15 @@ void add_bench_attributes_command(const Command& bench, Session& session) {
                "Largest errors of voxdag's colours, as `build --color-bound` takes them (default: "
                "0.03,0.04,0.05,0.06,0.08)");
   command.list("--thresholds", plan.thresholds, parse_bound, "D,D...",
-               "Largest errors of the colours of Dolonius and others, as distances in sRGB "
-               "(default: 0.05,0.1)");
+               "Largest errors of the colours of Dolonius's codec, as distances in sRGB, each "
+               "channel from 0 to 1 (default: 0.05,0.1)");
   command.list("--codecs", plan.codecs, parse_codec, "CODEC,CODEC...",
-               "Any of voxdag, dolonius, esvo (default: all)");
+               "Any of " + known_codecs() + " (default: all)");
   command.number("--views", plan.views, NumberRange::whole(1, 100), "N",
-                 "Pictures to compare, chosen automatically");
+                 "Number of pictures to compare; their views are chosen automatically");
   add_mesh_access_options(command, arguments->access);
-  command.text("-o,--output", arguments->output.json_file, "FILE.json",
-               "Also write the JSON to a file");
-  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
-               "Plot MS-SSIM against bits per voxel");
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
-  add_json_option(command, session);
+  add_output_options(command, arguments->output, "Plot MS-SSIM against bits per voxel");
+  add_run_options(command, session);
   command.when_parsed([arguments, &session] {
     finish_plan(arguments->plan, arguments->access);
     session.inputs = arguments->plan.scenes;

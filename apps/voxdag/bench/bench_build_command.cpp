@@ -1,15 +1,11 @@
 /// The command line of `voxdag bench build`.
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench/bench_output.hpp"
 #include "bench/build/bench_build.hpp"
 #include "bench/build/bench_report.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "bench/rivals/command_rival.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
@@ -41,16 +37,9 @@ std::shared_ptr<Rival> parse_rival(const std::string& text) {
 }
 
 void bench(const BenchArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const BenchResults results = bench_build(arguments.plan, session.progress);
-  arguments.output.write(
-      bench_json(results, machine),
-      {[&](const std::string& file) { return bench_chart(results, file); }},
-      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
-                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
-                  machine.at("load_average").get<double>(), bench_table(results)),
-      session);
+  const BenchResults results = measure_and_write(
+      arguments.output, session, [&] { return bench_build(arguments.plan, session.progress); },
+      bench_json, bench_chart, bench_table);
   for (const BuildRun& run : results.builds)
     if (!run.failure.empty()) throw Error(run.scene, std::to_string(1 << run.levels), run.failure);
 }
@@ -93,13 +82,8 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
   command.number("--repeat", plan.repeat, NumberRange::whole(1, 1000), "N",
                  "Number of runs; the fastest counts");
   add_mesh_access_options(command, arguments->access);
-  command.text("-o,--output", arguments->output.json_file, "FILE.json",
-               "Also write the JSON to a file");
-  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
-               "Plot seconds and bytes over the resolution");
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
-  add_json_option(command, session);
+  add_output_options(command, arguments->output, "Plot seconds and bytes over the resolution");
+  add_run_options(command, session);
   command.when_parsed([arguments, &session] {
     finish_plan(arguments->plan, arguments->access);
     session.inputs = arguments->plan.meshes;

@@ -1,19 +1,14 @@
 /// The command line of `voxdag bench compact`.
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench/bench_output.hpp"
 #include "bench/compact/bench_compact.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
-#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
@@ -38,28 +33,18 @@ const CompactForm* parse_form(const std::string& text) {
 }
 
 void run(const BenchCompactArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const CompactResults results = bench_compact(arguments.plan, session.progress);
-  arguments.output.write(
-      compact_json(results, machine),
-      {[&](const std::string& file) { return compact_chart(results, file); }},
-      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
-                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
-                  machine.at("load_average").get<double>(), compact_table(results)),
-      session);
-  for (const CompactRun& run : results.runs)
-    if (!run.failure.empty()) throw Error(run.failure);
+  const CompactResults results = measure_and_write(
+      arguments.output, session, [&] { return bench_compact(arguments.plan, session.progress); },
+      compact_json, compact_chart, compact_table);
+  throw_failure(results.runs);
 }
 
 void finish_plan(CompactPlan& plan, const MeshAccess& access) {
-  plan.read.allow_outside = access.allow_outside;
-  plan.read.any_assimp_importer = access.any_importer;
+  access.give_rights(plan.read);
   std::sort(plan.levels.begin(), plan.levels.end());
   if (plan.forms.empty())
     for (const CompactForm& form : compact_forms()) plan.forms.push_back(&form);
-  std::sort(plan.forms.begin(), plan.forms.end());
-  plan.forms.erase(std::unique(plan.forms.begin(), plan.forms.end()), plan.forms.end());
+  sort_unique(plan.forms);
 }
 
 }  // namespace
@@ -81,13 +66,8 @@ void add_bench_compact_command(const Command& bench, Session& session) {
   command.list("--forms", plan.forms, parse_form, "FORM,FORM...",
                "Any of " + known_forms() + " (default: all)");
   add_mesh_access_options(command, arguments->access);
-  command.text("-o,--output", arguments->output.json_file, "FILE.json",
-               "Also write the JSON to a file");
-  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
-               "Plot bars of bits per voxel");
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
-  add_json_option(command, session);
+  add_output_options(command, arguments->output, "Plot bars of bits per voxel");
+  add_run_options(command, session);
   command.when_parsed([arguments, &session] {
     finish_plan(arguments->plan, arguments->access);
     session.inputs = arguments->plan.scenes;

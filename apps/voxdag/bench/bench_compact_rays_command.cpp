@@ -1,13 +1,9 @@
 /// The command line of `voxdag bench compact-rays`.
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "bench/bench_output.hpp"
 #include "bench/compact_rays/compact_rays.hpp"
-#include "bench/report/bench_machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
 #include "cli/scene_input.hpp"
@@ -21,20 +17,15 @@ struct BenchCompactRaysArguments {
 };
 
 void run(const BenchCompactRaysArguments& arguments, Session& session) {
-  arguments.output.check_writable(session.progress);
-  const nlohmann::ordered_json machine = machine_json();
-  const DagInput file(session.subject, &session.progress);
-  const std::string& source = file.metadata().source.name;
-  const CompactRaysResults results = bench_compact_rays(
-      source.empty() ? std::filesystem::path(session.subject).filename().string() : source,
-      file.view(), file.grid(), arguments.plan, session.progress);
-  arguments.output.write(
-      compact_rays_json(results, machine),
-      {[&](const std::string& plot) { return compact_rays_chart(results, plot); }},
-      fmt::format("{} ({} cores), load average {:.2f} before\n\n{}",
-                  machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
-                  machine.at("load_average").get<double>(), compact_rays_table(results)),
-      session);
+  const auto measure = [&] {
+    const DagInput file(session.subject, &session.progress);
+    const std::string& source = file.metadata().source.name;
+    return bench_compact_rays(
+        source.empty() ? std::filesystem::path(session.subject).filename().string() : source,
+        file.view(), file.grid(), arguments.plan, session.progress);
+  };
+  measure_and_write(arguments.output, session, measure, compact_rays_json, compact_rays_chart,
+                    compact_rays_table);
 }
 
 }  // namespace
@@ -52,13 +43,8 @@ void add_bench_compact_rays_command(const Command& bench, Session& session) {
                  "Number of runs; the fastest counts");
   command.number("--rays", arguments->plan.most_rays, NumberRange::whole(1, 100'000'000), "N",
                  "Largest number of rays of a kind and view");
-  command.text("-o,--output", arguments->output.json_file, "FILE.json",
-               "Also write the JSON to a file");
-  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
-               "Plot the time per ray over the bytes");
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
-  add_json_option(command, session);
+  add_output_options(command, arguments->output, "Plot the time per ray over the bytes");
+  add_run_options(command, session);
   command.when_parsed([arguments, &session] {
     arguments->output.check_distinct(session);
     session.work = [arguments, &session] { run(*arguments, session); };

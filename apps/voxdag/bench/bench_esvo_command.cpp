@@ -78,16 +78,12 @@ void add_bench_esvo_command(const Command& bench_command, Session& session) {
                  "End rays at cells of this size in the picture; 0: always at voxels");
   command.off_switch("--no-silhouettes", plan.silhouettes,
                      "Do not compare silhouettes with those of the mesh");
-  command.text("-o,--output", arguments->output.json_file, "FILE.json",
-               "Also write the JSON to a file");
-  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
-               "Plot megabytes, seconds and silhouettes over the resolution");
+  add_output_options(command, arguments->output,
+                     "Plot megabytes, seconds and silhouettes over the resolution");
   command.text("--rays-plot", arguments->output.plot_files[1], "FILE.svg",
                "Plot bars of rays per second");
   add_device_option(command, plan.device);
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
-  add_json_option(command, session);
+  add_run_options(command, session);
   command.when_parsed([arguments, scenes, &session] {
     for (const std::string& text : arguments->scenes) {
       try {

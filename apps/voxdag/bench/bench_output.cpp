@@ -41,4 +41,21 @@ void BenchOutput::write(const nlohmann::ordered_json& json,
   fmt::print("{}", session.json ? in_json : text);
 }
 
+void add_output_options(const Command& command, BenchOutput& output, const std::string& plot) {
+  command.text("-o,--output", output.json_file, "FILE.json", "Also write the JSON to a file");
+  command.text("--plot", output.plot_files[0], "FILE.svg", plot);
+}
+
+void add_run_options(const Command& command, Session& session) {
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+}
+
+std::string machine_text(const nlohmann::ordered_json& machine) {
+  return fmt::format("{} ({} cores), load average {:.2f} before\n\n",
+                     machine.at("processor").get<std::string>(), machine.at("cores").get<int>(),
+                     machine.at("load_average").get<double>());
+}
+
 }  // namespace voxdag

@@ -200,14 +200,9 @@ void add_bench_trace_command(const Command& bench, Session& session) {
   command.text(
       "--openvdb", plan.openvdb_program, "PROGRAM",
       "Also cast the rays with OpenVDB: the path of rival_openvdb_trace (bench/README.md)");
-  command.text("-o,--output", arguments->output.json_file, "FILE.json",
-               "Also write the JSON to a file");
-  command.text("--plot", arguments->output.plot_files[0], "FILE.svg",
-               "Plot bars of rays per second");
+  add_output_options(command, arguments->output, "Plot bars of rays per second");
   add_device_option(command, plan.device);
-  add_threads_option(command, session);
-  add_quiet_option(command, session);
-  add_json_option(command, session);
+  add_run_options(command, session);
   command.when_parsed([arguments, &session] {
     finish_plan(*arguments, session);
     session.inputs = {arguments->mesh_file, arguments->esvo_file, arguments->path_file};

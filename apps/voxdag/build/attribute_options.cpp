@@ -29,9 +29,8 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .parsed(
           "--attribute-resolution", arguments.levels, parse_levels, "M",
           "Resolution of the finest colours, normals and materials, in cells per side: a power of "
-          "two from 4 "
-          "to the grid's resolution (default: the finest that is expected to fit into 4 GiB and "
-          "the memory limit)")
+          "two from 4 to the grid's resolution (default: the finest that is expected to fit into "
+          "4 GiB and the memory limit)")
       .only_if(is_wanted, "without --color, --normal and --material-ids")
       .in_group(group);
   command

@@ -25,8 +25,7 @@ auto read_and_check(const std::string& file, const MeshAccess& access, Session& 
   ReadOptions options;
   options.progress = &session.progress;
   options.memory = access.memory;
-  options.allow_outside = access.allow_outside;
-  options.any_assimp_importer = access.any_importer;
+  access.give_rights(options);
   options.named_files = &named;
   auto result = read(options);
   check_not_overwritten(access.outputs, named, file);

@@ -18,6 +18,12 @@ struct MeshAccess {
   bool any_importer = false;        ///< As ReadOptions::any_assimp_importer.
   MemoryBudget* memory = nullptr;   ///< As ReadOptions::memory.
   std::vector<OutputFile> outputs;  ///< Files that the command writes: no mesh may name them.
+
+  /// Sets the rights of a reader.
+  void give_rights(ReadOptions& options) const {
+    options.allow_outside = allow_outside;
+    options.any_assimp_importer = any_importer;
+  }
 };
 
 /// Adds --allow-outside and --assimp. `mesh` is the option that names the mesh, if it is optional.

@@ -32,12 +32,12 @@ class DagInput {
   bool is_compact() const { return std::holds_alternative<Decoded>(dag_); }
 
  private:
-  /// What a compact file holds.
+  /// A compact file, decoded to the plain form.
   struct Decoded {
-    std::optional<CompactFile> file;  ///< The attributes point into it. None: no attributes.
+    std::optional<CompactFile> file;  ///< Empty if the file has no attributes.
     Svdag dag;
     CellIndex index;           ///< The numbers of the cells with attributes.
-    DagAttributesView stored;  ///< Of `file` and `index`; stays valid when they are moved.
+    DagAttributesView stored;  ///< Points into `file` and `index`, also after they are moved.
 
     SvdagView view() const { return dag.view(); }
     const DagAttributesView& attributes() const { return stored; }

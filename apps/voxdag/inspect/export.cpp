@@ -27,12 +27,11 @@ struct ExportArguments {
   bool is_page() const { return is_page_output(output); }
 };
 
-/// Throws Error before the file is read, unless export_voxels() knows the extension.
+/// Throws Error, before the file is read, if no output has this extension.
 void check_extension(const std::string& output) {
-  const std::string extension = std::filesystem::path(output).extension().string();
-  if (extension != ".npy" && extension != ".ply" && extension != ".raw")
+  if (!can_export_to(output))
     throw Error(output, "",
-                "cannot export to '" + extension +
+                "cannot export to '" + std::filesystem::path(output).extension().string() +
                     "': the extension must be .npy, .ply, .raw or .html; a folder ends in /");
 }
 

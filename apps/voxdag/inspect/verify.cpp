@@ -100,7 +100,7 @@ VerifyCheck value_check(const char* name, const ValueCheck& values, double bound
   return check;
 }
 
-/// Compares the attributes with the mesh; none if the file has none.
+/// Compares the attributes with the mesh. Returns no checks if the file has no attributes.
 std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, const DagInput& file,
                                           const MeshWithAppearance& source, Session& session) {
   const DagAttributesView attributes = file.attributes();
@@ -125,7 +125,7 @@ std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, cons
   return checks;
 }
 
-/// Returns the mesh with materials that say nothing.
+/// Returns a mesh that was read without its appearance with a default appearance.
 MeshWithAppearance without_appearance(Mesh mesh) {
   MeshWithAppearance source;
   source.appearance.materials.resize(std::max<std::size_t>(mesh.materials.size(), 1));
@@ -133,7 +133,7 @@ MeshWithAppearance without_appearance(Mesh mesh) {
   return source;
 }
 
-/// Compares a DAG with the mesh.
+/// Compares the voxels and the attributes of a DAG with the mesh.
 std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
@@ -144,7 +144,7 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& s
   else
     source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
   std::vector<VerifyCheck> checks = {cover_check(arguments, file, source.mesh, session)};
-  // The voxels of another mesh have other colours.
+  // If the voxels differ from the mesh, the attributes do too.
   if (checks[0].result != Result::kPassed) return checks;
   for (VerifyCheck& check : attribute_checks(arguments, file, source, session))
     checks.push_back(std::move(check));

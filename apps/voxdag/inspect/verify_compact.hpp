@@ -14,8 +14,7 @@ namespace voxdag {
 ///   structure   the head is right, and the stream decodes to a DAG
 ///   canonical   encoding that DAG again gives the same bytes
 ///   counts      the metadata has the counts of the DAG
-///   attributes  colours and normals are valid, and the metadata describes them; passes if the file
-///               has none
+///   attributes  attributes are valid, and the metadata describes them; passes if the file has none
 /// Throws Error only if the file cannot be read, and Cancelled.
 VerifyReport verify_compact(const std::filesystem::path& path, Progress& progress);
 

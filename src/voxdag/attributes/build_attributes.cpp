@@ -101,9 +101,10 @@ std::uint64_t count_cells(const SvdagCounts& counts, int level) {
 
 int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
                         std::uint64_t bytes) {
-  const std::uint64_t per_cell = (options.colors ? 1u : 0u) + (options.normals ? 1u : 0u);
+  const std::uint64_t bits_per_cell =
+      (options.colors ? 8u : 0u) + (options.normals ? 8u : 0u) + (options.materials ? 1u : 0u);
   int level = static_cast<int>(counts.svo_nodes_per_level.size());
-  while (level > 0 && count_cells(counts, level) * per_cell > bytes) --level;
+  while (level > 0 && (count_cells(counts, level) + 7) / 8 * bits_per_cell > bytes) --level;
   return level;
 }
 

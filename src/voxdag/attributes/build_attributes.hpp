@@ -58,7 +58,7 @@ DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagVi
 std::uint64_t count_cells(const SvdagCounts& counts, int level);
 
 /// Returns the finest level whose attributes are expected to fit into `bytes`; 0 if none fits.
-/// Expects one byte per cell for colours, and one for normals, where they are wanted.
+/// Expects 8 bits per cell for colours, 8 for normals and 1 for materials, where they are wanted.
 int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
                         std::uint64_t bytes);
 

@@ -1,12 +1,11 @@
 #pragma once
-/// Filters the cells of one subtree of a DAG.
+/// A task of the filters: one subtree of a DAG, and the pieces of its triangles.
 #include <algorithm>
+#include <bit>
 #include <span>
-#include <vector>
 
 #include "voxdag/layout/numbered_cell.hpp"
 #include "voxdag/pieces/load_pieces.hpp"
-#include "voxdag/pieces/sum_pieces.hpp"
 
 namespace voxdag {
 
@@ -17,42 +16,63 @@ struct CellTask {
   std::span<const std::uint32_t> triangles;  ///< Those that meet it.
 };
 
-/// Filters tasks, one at a time. Each thread has its own.
-class CellFilter {
+/// Cuts the triangles of tasks into pieces, one task at a time. Each thread has its own.
+class TaskPieces {
  public:
-  /// Refers to the arguments. Counts the pieces of triangles in `memory`; null: no limit. Without
-  /// `with_normals`, the normals of the values are meaningless unit vectors.
-  CellFilter(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
-             const SurfaceShading* shading, bool with_normals, MemoryBudget* memory);
-
   /// The largest number of triangles that are cut into pieces at a time.
   static constexpr std::size_t kMostLoaded = 1 << 14;
 
-  /// The bytes that filter() needs for each cell in the subtree. The caller counts them.
-  static constexpr std::uint64_t kBytesPerCell = sizeof(SurfaceSum) + sizeof(VoxelValue);
+  /// Refers to the arguments. Counts the pieces in `memory`; null: no limit.
+  TaskPieces(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
+             const PieceSampler& sampler, MemoryBudget* memory)
+      : dag_(dag), index_(index), source_(source), sampler_(sampler), pieces_(memory) {}
 
-  /// Returns the bytes that the pieces of a task's triangles are expected to take.
-  static std::uint64_t piece_bytes(std::size_t triangles) {
+  const PieceSampler& sampler() const { return sampler_; }
+
+  /// Returns the bytes that the pieces of this many triangles are expected to take.
+  static std::uint64_t expected_bytes(std::size_t triangles) {
     return std::min(triangles, kMostLoaded) * PieceStack::kBytesPerTriangle;
   }
 
-  /// Returns the sum over the task's cell. Sets `values` to the values of all cells in its subtree,
-  /// in the order of their numbers. A cell without visible surface gets the value of the nearest
-  /// cell above it in the subtree that has some; `values` is meaningless if no cell has any (the
-  /// area of the sum is 0). Throws OverMemory.
-  SurfaceSum filter(const CellTask& task, std::vector<VoxelValue>& values);
+  /// Calls use(cell, pieces) for the finest cells of the task that its triangles meet, without the
+  /// pieces that the alpha test of the sampler's shading removes. The cells come in the order of
+  /// their numbers for each kMostLoaded triangles. Throws OverMemory.
+  template <class Use>
+  void for_each_finest_cell(const CellTask& task, const Use& use) {
+    for (std::size_t begin = 0; begin < task.triangles.size(); begin += kMostLoaded) {
+      const std::size_t count = std::min(kMostLoaded, task.triangles.size() - begin);
+      load_pieces(pieces_, sampler_, source_, task.cell.level, task.place,
+                  task.triangles.subspan(begin, count));
+      descend(task.cell, pieces_.root(), use);
+    }
+    pieces_.finish();
+  }
 
  private:
-  void add_pieces(const NumberedCell& cell, StackedCell part);
-  SurfaceSum join(const NumberedCell& cell, std::vector<VoxelValue>& values);
+  template <class Use>
+  void descend(const NumberedCell& cell, StackedCell part, const Use& use) {
+    if (sampler_.shading() != nullptr)
+      pieces_.remove_if(part, [this](const Cell& view, const TrianglePiece& piece) {
+        return sampler_.is_alpha_masked(view, piece);
+      });
+    if (part.is_empty()) return;
+    if (cell.level == index_.finest_level) return use(cell, pieces_.view(part));
+    const PieceStack::Split split = pieces_.begin_split(part);
+    for (std::uint32_t left = split.children & children_of(dag_, cell); left != 0;
+         left &= left - 1) {
+      const int child = std::countr_zero(left);
+      const StackedCell of_child = pieces_.push_child(part, split, child);
+      descend(child_of(dag_, index_, cell, child), of_child, use);
+      pieces_.pop(of_child);
+    }
+    pieces_.end_split(split);
+  }
 
   const SvdagView& dag_;
   const CellIndexView& index_;
   const TriangleSource& source_;
   const PieceSampler sampler_;
   PieceStack pieces_;
-  std::uint64_t first_ = 0;       // number of the task's cell
-  std::vector<SurfaceSum> sums_;  // of all cells in the task, by number - first_
 };
 
 }  // namespace voxdag

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "voxdag/attributes/build_attributes.hpp"
-#include "voxdag/attributes/cell_task.hpp"
+#include "voxdag/attributes/cell_filter.hpp"
 #include "voxdag/attributes/material_cells.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/parallel/polled_for.hpp"

@@ -10,7 +10,7 @@ namespace voxdag {
 
 /// The result of comparing one kind of attribute.
 struct ValueCheck {
-  std::uint64_t cells = 0;  ///< That were compared.
+  std::uint64_t cells = 0;  ///< Number of compared cells.
   double largest_error = 0;
   Vec3i worst{};  ///< The cell with the largest error, in cells of its level.
   int worst_level = 0;
@@ -22,10 +22,10 @@ struct AttributeCheck {
   ValueCheck materials;  ///< 1 - area of the stored material / largest area of a material.
 };
 
-/// Takes random cells of the levels with attributes, at most `samples`; all cells if there are not
-/// more. Filters the surface in each cell again, by the code of the builder but without its encoder
-/// and its pages, and compares the result with the stored values. `shading` is the shading of the
-/// mesh. Leaves out
+/// Compares random cells of the levels with attributes: at most `samples`, or all cells if there
+/// are not more. Filters the surface in each cell again, by the code of the builder but without its
+/// encoder and its pages, and compares the result with the stored values. `shading` is the shading
+/// of the mesh. Leaves out
 ///
 ///   all        cells with more than 65,536 cells in their subtrees
 ///   colours    cells without visible surface, whose values come from a cell above

@@ -13,29 +13,13 @@
 namespace voxdag {
 namespace {
 
-/// Returns a copy of the groups, pages and words of `view`, which count in `memory` while they are
-/// copied.
-template <class Values, class View>
-Values copy_of(const View& view, MemoryBudget* memory) {
+/// Returns a copy of the pages. `memory` counts it until the function returns.
+CellPages copy_of(const CellPagesView& view, MemoryBudget* memory) {
   const MemoryReservation counted(memory, view.bytes());
-  Values values;
-  values.groups.assign(view.groups, view.groups + view.group_count());
-  values.pages.assign(view.pages, view.pages + view.page_count());
-  values.words.assign(view.words, view.words + view.word_count);
-  values.values = view.values;
-  return values;
-}
-
-ValuePages copy_of(const ValuePagesView& view, MemoryBudget* memory) {
-  auto values = copy_of<ValuePages>(view, memory);
-  values.precision = view.precision;
-  return values;
-}
-
-MaterialIds copy_of(const MaterialIdsView& view, MemoryBudget* memory) {
-  auto ids = copy_of<MaterialIds>(view, memory);
-  ids.materials = view.materials;
-  return ids;
+  return {{view.groups, view.groups + view.group_count()},
+          {view.pages, view.pages + view.page_count()},
+          {view.words, view.words + view.word_count},
+          view.values};
 }
 
 ValueMetric color_metric(const CoarsenBounds& bounds) {
@@ -150,10 +134,10 @@ DagAttributes coarsen_attributes(const ColoredDagView& fine, const SvdagView& co
   const MemoryReservation index_bytes(memory, result.index.view().bytes());
   if (finest <= coarse.levels) {
     // The cells with attributes, and so their numbers, are those of the fine grid.
-    if (fine.attributes.has_colors()) result.colors = copy_of(fine.attributes.colors, memory);
-    if (fine.attributes.has_normals()) result.normals = copy_of(fine.attributes.normals, memory);
-    if (fine.attributes.has_materials())
-      result.materials = copy_of(fine.attributes.materials, memory);
+    const auto& [fine_index, colors, normals, materials] = fine.attributes;
+    result.colors = {copy_of(colors, memory), colors.precision};
+    result.normals = {copy_of(normals, memory), normals.precision};
+    result.materials = {copy_of(materials, memory), materials.materials};
     return result;
   }
   Coarsener(fine, result.index, bounds, memory, progress).fill(result);

@@ -4,11 +4,11 @@
 
 namespace voxdag {
 
-/// By how much values may change when they are encoded again; 0: not at all. The units are those
-/// of AttributeOptions.
+/// The largest changes of values that are encoded again, in the units of AttributeOptions. 0: the
+/// values do not change.
 struct CoarsenBounds {
   double color_bound = 0;
-  double normal_bound_degrees = 0;  ///< Less than about kLeastNormalBound: not at all.
+  double normal_bound_degrees = 0;  ///< Below kLeastNormalBound, normals do not change.
 };
 
 /// Returns the attributes of `coarse`, the DAG that coarsen() made of `fine`. Each cell keeps its

@@ -24,7 +24,7 @@ class PageWriter {
   EncodedPage& page_;
 };
 
-/// The sums of the units of a page, and then of its blocks while they merge.
+/// Merges the units of a page to blocks. Holds the sums of each.
 class PageMerger {
  public:
   PageMerger(std::span<const Value8, kPageValues> values, const ValueMetric& metric) {
@@ -41,7 +41,7 @@ class PageMerger {
   void merge(const BlockEstimator& estimator) {
     for (std::size_t i = 0; i < kUnits; ++i) {
       next_[i] = i + 1;
-      before_[i] = i - 1;  // of no use for 0
+      before_[i] = i - 1;  // not used for 0
       costs_[i] = estimator.cost(static_cast<int>(i) * kBlockUnit, sums_[i]);
     }
     saved_.fill(-1);
@@ -76,7 +76,7 @@ class PageMerger {
   }
 
  private:
-  /// Finds what a merge of block `i` with the next one saves.
+  /// Computes the cost that a merge of block `i` with the next one saves.
   void join(const BlockEstimator& estimator, std::size_t i) {
     saved_[i] = -1;
     const std::size_t other = next_[i];
@@ -106,8 +106,8 @@ class PageEncoder {
               EndPrecision precision, const PageMerger& merger)
       : merger_(merger), fitter_(values, metric, precision) {}
 
-  /// Calls use(block) for the fitted blocks, in order. Splits blocks for which only every value by
-  /// itself keeps the bound, as long as this saves cost.
+  /// Calls use(block) for the fitted blocks, in order. Splits a block that must store each value by
+  /// itself, as long as this saves cost.
   template <class Use>
   void for_each_fitted(const Use& use) const {
     std::array<FittedBlock, kUnits> blocks;

@@ -80,16 +80,31 @@ float BlockEstimator::line_error(int weight_bits, float spread, float range2) co
   return std::min(even, spread * kNormalError[weight_bits]);
 }
 
+/// Returns the cost of the best line in a direction, or `least` if that is less. `fixed` is the
+/// price of the errors that weights cannot reduce, `farthest_off` the largest error off the line,
+/// `extent2` the square of the values' extent along it.
+float BlockEstimator::lines_cost(const ValueSums& sums, bool is_grey, float fixed,
+                                 float farthest_off, float spread, float extent2,
+                                 float least) const {
+  const auto n = static_cast<float>(sums.count), bound = static_cast<float>(metric_.bound);
+  for (int k = is_grey ? 1 : 2; k <= 4; ++k) {
+    // Only a line of any direction has weights of 4 bits.
+    const float base = bits(is_grey && k < 4 ? k : k + 3, sums) + fixed;
+    if (base >= least) break;
+    const auto steps = static_cast<float>((2 << k) - 2);
+    if (extent2 > (bound - farthest_off) * steps * steps) continue;
+    least = std::min(least, base + price_ * line_error(k, spread, n * extent2));
+  }
+  return least;
+}
+
 float BlockEstimator::cost(int begin, const ValueSums& sums) const {
   const auto n = static_cast<float>(sums.count), weights = static_cast<float>(metric_.sum());
   const auto bound = static_cast<float>(metric_.bound);
   const auto w = [&](std::size_t c) { return static_cast<float>(metric_.weights[c]); };
   const float total = total_spread(sums, metric_);
   const float rounding = n * rounding_;
-  const auto bits = [&](int type) {
-    return static_cast<float>(ValueBlock{type, sums.count}.bits(end_bits_));
-  };
-  float least = bits(ValueBlock::kRaw) + price_ * rounding;
+  float least = bits(ValueBlock::kRaw, sums) + price_ * rounding;
 
   float farthest = 0;  // error of the corner farthest from the mean
   for (std::size_t c = 0; c < 3; ++c) {
@@ -97,7 +112,7 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
     farthest += w(c) * square(std::max(sums.hi[c] - mean, mean - sums.lo[c]));
   }
   if (farthest <= bound)
-    least = std::min(least, bits(ValueBlock::kFlat) + price_ * (total + rounding));
+    least = std::min(least, bits(ValueBlock::kFlat, sums) + price_ * (total + rounding));
   if (sums.distinct == 2) return std::min(least, two_value_cost(sums, rounding));
 
   // The line along grey.
@@ -115,16 +130,10 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
   const float extent = static_cast<float>(sums.hi[5] - sums.lo[5]) / weights;
   const float extent2 = weights * extent * extent;
   if (farthest_off < bound)
-    for (int k = 1; k <= 4; ++k) {
-      // A line of any direction has weights of 4 bits.
-      const float base = bits(k < 4 ? k : k + 3) + price_ * (off_line + rounding);
-      if (base >= least) break;
-      const auto steps = static_cast<float>((2 << k) - 2);
-      if (extent2 > (bound - farthest_off) * steps * steps) continue;
-      least = std::min(least, base + price_ * line_error(k, grey, n * extent2));
-    }
+    least =
+        lines_cost(sums, true, price_ * (off_line + rounding), farthest_off, grey, extent2, least);
   // A line along the principal axis has a longer second end, and can only reduce the errors.
-  if (bits(5) + price_ * rounding < least &&
+  if (bits(5, sums) + price_ * rounding < least &&
       price_ * off_line > static_cast<float>(end_bits_ - ValueBlock::kStepBits))
     return principal_cost(begin, sums, total, least);
   if (farthest_off >= bound) return principal_cost(begin, sums, total, least);
@@ -134,40 +143,27 @@ float BlockEstimator::cost(int begin, const ValueSums& sums) const {
 /// Returns the cost of a line between the two values of a block. `rounding` is the sum of the
 /// errors of its ends.
 float BlockEstimator::two_value_cost(const ValueSums& sums, float rounding) const {
-  const auto bits = [&](int type) {
-    return static_cast<float>(ValueBlock{type, sums.count}.bits(end_bits_));
-  };
   const int step = sums.other.x - sums.first.x;
   const bool is_grey = sums.other.y - sums.first.y == step && sums.other.z - sums.first.z == step;
-  const float exact = bits(5) + price_ * rounding;
+  const float exact = bits(5, sums) + price_ * rounding;
   if (!is_grey) return exact;
   constexpr float kStepError = square(ValueBlock::kStepUnit) / 12.0f;
   const auto weights = static_cast<float>(metric_.sum() * sums.count);
-  return std::min(exact, bits(1) + price_ * (rounding + weights * kStepError));
+  return std::min(exact, bits(1, sums) + price_ * (rounding + weights * kStepError));
 }
 
 /// Returns the cost of the best line along the principal axis, or `least` if that is less.
 float BlockEstimator::principal_cost(int begin, const ValueSums& sums, float total,
                                      float least) const {
-  const auto bits = [&](int type) {
-    return static_cast<float>(ValueBlock{type, sums.count}.bits(end_bits_));
-  };
   const auto n = static_cast<float>(sums.count);
   const auto bound = static_cast<float>(metric_.bound);
   const PrincipalAxis axis = principal_axis(sums, metric_);
   const float base = price_ * (std::max(total - axis.spread, 0.0f) + n * rounding_);
-  if (bits(5) + base >= least) return least;
+  if (bits(5, sums) + base >= least) return least;
   const AxisExtent extent = extent_along(axis, values_ + begin, sums, metric_);
   if (extent.farthest_off >= bound) return least;
   const float extent2 = square(extent.hi - extent.lo);
-  for (int k = 2; k <= 4; ++k) {
-    const float with_bits = bits(k + 3) + base;
-    if (with_bits >= least) break;
-    const auto steps = static_cast<float>((2 << k) - 2);
-    if (extent2 > (bound - extent.farthest_off) * steps * steps) continue;
-    least = std::min(least, with_bits + price_ * line_error(k, axis.spread, n * extent2));
-  }
-  return least;
+  return lines_cost(sums, false, base, extent.farthest_off, axis.spread, extent2, least);
 }
 
 }  // namespace voxdag

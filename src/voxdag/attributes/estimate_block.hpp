@@ -12,11 +12,12 @@ struct PrincipalAxis {
   float direction[3] = {};  ///< Unit length; zero if all values are equal.
   float spread = 0;         ///< Sum of the squared distances from the mean along the axis.
 };
+/// Returns the axis of the values with these sums, by a few steps of the power method.
 PrincipalAxis principal_axis(const ValueSums& sums, const ValueMetric& metric);
 
-/// Where values lie, seen from their mean.
+/// The extent of values around a line through their mean.
 struct AxisExtent {
-  float lo = 0, hi = 0;    ///< The least and the greatest place along the axis.
+  float lo = 0, hi = 0;    ///< The smallest and the largest distance from the mean, with sign.
   float farthest_off = 0;  ///< The largest squared distance from the axis.
 };
 /// Returns the extent of the values with these sums.
@@ -38,6 +39,11 @@ class BlockEstimator {
   float two_value_cost(const ValueSums& sums, float rounding) const;
   float principal_cost(int begin, const ValueSums& sums, float total, float least) const;
   float line_error(int weight_bits, float spread, float range2) const;
+  float lines_cost(const ValueSums& sums, bool is_grey, float fixed, float farthest_off,
+                   float spread, float extent2, float least) const;
+  float bits(int type, const ValueSums& sums) const {
+    return static_cast<float>(ValueBlock{type, sums.count}.bits(end_bits_));
+  }
 
   const Value8* values_;
   const ValueMetric& metric_;

@@ -1,56 +1,16 @@
 #include "voxdag/attributes/filter_cells.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 
-#include "voxdag/attributes/cell_task.hpp"
-#include "voxdag/attributes/top_cells.hpp"
-#include "voxdag/parallel/ordered_pipeline.hpp"
+#include "voxdag/attributes/cell_filter.hpp"
+#include "voxdag/attributes/filter_tasks.hpp"
 #include "voxdag/pieces/duplicate_surfaces.hpp"
-#include "voxdag/pieces/memory_gate.hpp"
 
 namespace voxdag {
 namespace {
-
-/// Filters tasks. Thread-safe.
-class TaskFilter {
- public:
-  TaskFilter(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
-             const SurfaceShading* shading, CellValueSink& sink, MemoryBudget* memory)
-      : dag_(dag),
-        index_(index),
-        sink_(sink),
-        memory_(memory),
-        gate_(memory),
-        filters_([&dag, &index, &source, shading, with_normals = sink.needs_normals(), memory] {
-          return CellFilter(dag, index, source, shading, with_normals, memory);
-        }) {}
-
-  /// Filters the task, stores its sum in it and frees its triangles. Gives the values to the sink,
-  /// unless the task has no visible surface. Returns the number of cells.
-  std::uint64_t filter(NumberedTopCell& task) {
-    const std::uint64_t cells = cells_in(dag_, index_, task.cell);
-    const std::uint64_t bytes = cells * CellFilter::kBytesPerCell;
-    const MemoryGate::Pass pass(gate_, bytes + CellFilter::piece_bytes(task.triangles.size()));
-    const MemoryReservation counted(memory_, bytes);
-    std::vector<VoxelValue> values;
-    task.sum = filters_.local().filter({task.cell, task.place, task.triangles}, values);
-    if (task.sum.area > 0) sink_.add(task.cell.number, values);
-    task.triangles = TriangleList(memory_);
-    return cells;
-  }
-
- private:
-  const SvdagView& dag_;
-  const CellIndexView& index_;
-  CellValueSink& sink_;
-  MemoryBudget* memory_;
-  MemoryGate gate_;
-  tbb::enumerable_thread_specific<CellFilter> filters_;
-};
 
 /// Returns the value of all cells of a mesh without visible surface.
 VoxelValue grey_value() {
@@ -105,18 +65,17 @@ void filter_cells(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
   const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, duplicates};
   NumberedTopCells cells = list_top_cells(dag, index, source, memory, progress);
-  const std::vector<std::size_t> tasks = tasks_in_order(cells);
-  TaskFilter filter(dag, index, source, shading, sink, memory);
-  std::uint64_t done = 0;
-  ordered_pipeline(
-      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), progress,
-      [&](std::size_t i) { return filter.filter(cells[tasks[i]]); },
-      [&](std::uint64_t count) {
-        done += count;
-        if (progress != nullptr)
-          progress->report("attributes",
-                           static_cast<double>(done) / static_cast<double>(index.cells), done);
-      });
+  tbb::enumerable_thread_specific<CellFilter> filters(
+      [&] { return CellFilter(dag, index, source, shading, sink.needs_normals(), memory); });
+  filter_tasks(
+      dag, index, cells, CellFilter::kBytesPerCell, memory, "attributes", progress,
+      [&](const CellTask& task) {
+        std::vector<VoxelValue> values;
+        const SurfaceSum sum = filters.local().filter(task, values);
+        if (sum.area > 0) sink.add(task.cell.number, values);
+        return sum;
+      },
+      [&](std::size_t task, const SurfaceSum& sum) { cells[task].sum = sum; });
   finish_top_cells(dag, index, cells, sink);
 }
 

@@ -1,31 +1,28 @@
 #include "voxdag/attributes/filter_materials.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <numeric>
 
+#include "voxdag/attributes/filter_tasks.hpp"
 #include "voxdag/attributes/material_cells.hpp"
-#include "voxdag/attributes/top_cells.hpp"
 #include "voxdag/layout/encode_material_ids.hpp"
-#include "voxdag/parallel/ordered_pipeline.hpp"
-#include "voxdag/pieces/memory_gate.hpp"
 
 namespace voxdag {
 namespace {
 
 struct TaskResult {
-  std::uint64_t cells = 0;
   MaterialAreas areas;
   std::vector<CellRun> runs;
 };
 
-/// What is known about a top cell.
+/// The materials of a top cell.
 struct TopMaterials {
-  MaterialAreas areas;  ///< Until its parent has them.
-  std::uint32_t id = 0;
-  std::size_t first_run = 0, end_run = 0;  ///< Of a task.
+  MaterialAreas areas;   ///< Empty once the areas of its parent include them.
+  std::uint32_t id = 0;  ///< The cell's own material.
+  /// For a task: the runs of all cells in its subtree. Both 0 for other cells.
+  std::size_t first_run = 0, end_run = 0;
 };
 
 /// Adds the areas of the children to those of the top cells, and finds the top cells' materials.
@@ -51,38 +48,23 @@ MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView
   const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
   const TriangleSource source{grid, quantized, no_open_edges, nullptr, no_duplicates};
   NumberedTopCells cells = list_top_cells(dag, index, source, memory, progress);
-  const std::vector<std::size_t> tasks = tasks_in_order(cells);
   std::vector<TopMaterials> of(cells.size());
   CountedVector<CellRun> runs(memory);
-  MemoryGate gate(memory);
   tbb::enumerable_thread_specific<MaterialFilter> filters(
       [&] { return MaterialFilter(dag, index, source, mesh.triangle_materials, memory); });
-  std::size_t used = 0;
-  std::uint64_t done = 0;
-  ordered_pipeline(
-      tasks.size(), 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), progress,
-      [&](std::size_t i) {
-        NumberedTopCell& task = cells[tasks[i]];
+  filter_tasks(
+      dag, index, cells, MaterialFilter::kBytesPerCell, memory, "materials", progress,
+      [&](const CellTask& task) {
         TaskResult result;
-        result.cells = cells_in(dag, index, task.cell);
-        const std::uint64_t bytes = result.cells * MaterialFilter::kBytesPerCell;
-        const MemoryGate::Pass pass(gate, bytes + CellFilter::piece_bytes(task.triangles.size()));
-        const MemoryReservation counted(memory, bytes);
-        result.areas = filters.local().filter({task.cell, task.place, task.triangles}, result.runs);
+        result.areas = filters.local().filter(task, result.runs);
         result.runs.shrink_to_fit();
-        task.triangles = TriangleList(memory);
         return result;
       },
-      [&](TaskResult& result) {
-        TopMaterials& task = of[tasks[used++]];
-        task.areas = std::move(result.areas);
-        task.first_run = runs.size();
+      [&](std::size_t i, TaskResult& result) {
+        of[i].areas = std::move(result.areas);
+        of[i].first_run = runs.size();
         runs.insert(runs.end(), result.runs.begin(), result.runs.end());
-        task.end_run = runs.size();
-        done += result.cells;
-        if (progress != nullptr)
-          progress->report("materials",
-                           static_cast<double>(done) / static_cast<double>(index.cells), done);
+        of[i].end_run = runs.size();
       });
   join_top_cells(cells, of);
 

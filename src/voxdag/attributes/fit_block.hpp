@@ -76,8 +76,8 @@ class BlockFitter {
   };
   /// Sums over the weights of a block's values.
   struct WeightSums {
-    int weights = 0, squares = 0;   ///< Of the weights.
-    std::array<int, 3> products{};  ///< Of weights and channels.
+    int weights = 0, squares = 0;   ///< Sums of the weights and of their squares.
+    std::array<int, 3> products{};  ///< Sums of weight times channel.
   };
 
   std::uint32_t pack(Value8 value) const;

@@ -49,24 +49,18 @@ MaterialFilter::MaterialFilter(const SvdagView& dag, const CellIndexView& index,
                                std::span<const std::uint32_t> materials, MemoryBudget* memory)
     : dag_(dag),
       index_(index),
-      source_(source),
       materials_(materials),
-      sampler_(nullptr),
-      pieces_(memory),
+      pieces_(dag, index, source, PieceSampler(nullptr), memory),
       entries_(memory) {}
 
 MaterialAreas MaterialFilter::filter(const CellTask& task, std::vector<CellRun>& runs) {
   first_ = task.cell.number;
   entries_.clear();
-  for (std::size_t begin = 0; begin < task.triangles.size(); begin += CellFilter::kMostLoaded) {
-    const std::size_t count = std::min(CellFilter::kMostLoaded, task.triangles.size() - begin);
-    load_pieces(pieces_, sampler_, source_, task.cell.level, task.place,
-                task.triangles.subspan(begin, count));
-    add_pieces(task.cell, pieces_.root());
-  }
-  pieces_.finish();
-  // One batch of triangles gives sorted entries; the order of equal ones is that of the batches.
-  if (task.triangles.size() > CellFilter::kMostLoaded)
+  pieces_.for_each_finest_cell(task, [this](const NumberedCell& cell, const Cell& pieces) {
+    add_entries(static_cast<std::uint32_t>(cell.number - first_), pieces);
+  });
+  // One batch of triangles gives sorted entries. Equal entries stay in the order of the batches.
+  if (task.triangles.size() > TaskPieces::kMostLoaded)
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       return a.cell != b.cell ? a.cell < b.cell : a.id < b.id;
     });
@@ -83,21 +77,7 @@ MaterialAreas MaterialFilter::filter(const CellTask& task, std::vector<CellRun>&
   return stack_;
 }
 
-/// Adds the pieces of triangles in a cell to the entries of the finest cells in it.
-void MaterialFilter::add_pieces(const NumberedCell& cell, StackedCell part) {
-  if (part.is_empty()) return;
-  if (cell.level == index_.finest_level)
-    return add_entries(static_cast<std::uint32_t>(cell.number - first_), pieces_.view(part));
-  const PieceStack::Split split = pieces_.begin_split(part);
-  for (std::uint32_t left = split.children & children_of(dag_, cell); left != 0; left &= left - 1) {
-    const int child = std::countr_zero(left);
-    const StackedCell of_child = pieces_.push_child(part, split, child);
-    add_pieces(child_of(dag_, index_, cell, child), of_child);
-    pieces_.pop(of_child);
-  }
-  pieces_.end_split(split);
-}
-
+/// Adds the areas of the pieces in a cell of the finest level, which has the number first_ + cell.
 void MaterialFilter::add_entries(std::uint32_t cell, const Cell& pieces) {
   const std::size_t begin = entries_.size();
   for (const TrianglePiece& piece : pieces.pieces) {

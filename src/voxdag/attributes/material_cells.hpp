@@ -16,11 +16,12 @@ struct MaterialArea {
 };
 using MaterialAreas = std::vector<MaterialArea>;  ///< In increasing order of the ids.
 
-/// Areas that differ by less than this part of the largest one count as equal: rounding decides
-/// nothing.
+/// Areas that differ by less than this part of the largest one count as equal, so that rounding
+/// decides nothing.
 inline constexpr double kEqualAreas = 0x1p-16;
 
-/// Returns the id with the largest area; of equal ones the smallest. There must be one.
+/// Returns the id with the largest area, or the smallest id of those whose areas count as equal to
+/// it. `areas` must not be empty.
 std::uint32_t largest_material(std::span<const MaterialArea> areas);
 
 /// Adds the areas `from` to `to`.
@@ -53,20 +54,17 @@ class MaterialFilter {
     std::uint32_t cell = 0, id = 0;
     double area = 0;
   };
-  void add_pieces(const NumberedCell& cell, StackedCell part);
   void add_entries(std::uint32_t cell, const Cell& pieces);
   void join(const NumberedCell& cell);
 
   const SvdagView& dag_;
   const CellIndexView& index_;
-  const TriangleSource& source_;
   std::span<const std::uint32_t> materials_;
-  const PieceSampler sampler_;
-  PieceStack pieces_;
+  TaskPieces pieces_;
   std::uint64_t first_ = 0;         // number of the task's cell
   CountedVector<Entry> entries_;    // by cell and id
-  std::size_t next_ = 0;            // of the entries that join() has not read
-  MaterialAreas stack_;             // of the cells on the path of join()
+  std::size_t next_ = 0;            // the first entry that join() has not read
+  MaterialAreas stack_;             // areas in the cells on the path of join()
   std::vector<std::uint16_t> ids_;  // of all cells in the task, by number - first_
 };
 

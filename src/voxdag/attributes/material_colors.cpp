@@ -10,7 +10,7 @@
 namespace voxdag {
 
 Value8 material_color(std::uint32_t id) {
-  // Hues at the golden ratio are far apart for near ids; three values tell further ones apart.
+  // Steps of the golden ratio give near ids distant hues. Three brightnesses tell other ids apart.
   const double hue = 6 * std::fmod(0.08 + id * 0.6180339887498949, 1.0);
   const double value = id % 3 == 0 ? 1.0 : id % 3 == 1 ? 0.8 : 0.62;
   Value8 color{};

@@ -14,12 +14,12 @@ namespace voxdag {
 
 struct NumberedTopCell {
   NumberedCell cell;
-  Vec3i place{};                                 ///< In cells of its level.
-  bool is_task = false;                          ///< Its children are not among the cells.
-  TriangleList triangles;                        ///< Those that meet it. Empty unless a task.
-  SurfaceSum sum;                                ///< Of the surface in it; set later.
-  VoxelValue value;                              ///< Set later.
-  std::size_t first_child = 0, child_count = 0;  ///< Its children, which follow each other.
+  Vec3i place{};           ///< In cells of its level.
+  bool is_task = false;    ///< Its children are not among the cells.
+  TriangleList triangles;  ///< Those that meet it. Empty unless a task.
+  SurfaceSum sum;          ///< Over the surface in it. filter_cells() sets it.
+  VoxelValue value;        ///< filter_cells() sets it.
+  std::size_t first_child = 0, child_count = 0;  ///< The range of its children in the list.
 };
 
 using NumberedTopCells = CountedVector<NumberedTopCell>;

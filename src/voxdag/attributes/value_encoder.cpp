@@ -76,8 +76,7 @@ ValuePages ValueEncoder::finish() {
   pages.pages.reserve(places_.size());
   std::uint64_t begin = 0;
   for (std::uint64_t page = 0; page < places_.size(); ++page) {
-    if (page % kGroupPages == 0) pages.groups.push_back(begin);
-    pages.pages.push_back(static_cast<std::uint16_t>(begin - pages.groups.back()));
+    pages.add_page(begin);
     begin += places_[page].bytes;
   }
   pages.words.assign(words, 0);

@@ -1,5 +1,5 @@
 #pragma once
-/// How errors of stored values are measured, bounded and traded for bits.
+/// Measures and bounds errors of stored values, and gives them a price in bits.
 #include <array>
 #include <cstdint>
 

@@ -9,16 +9,16 @@
 
 namespace voxdag {
 
-/// Sums, and the smallest and largest of some functions of the values. Those of two runs add up to
-/// those of both.
+/// Sums over a run of values, and the extents of some functions of them. Adding the sums of two
+/// runs gives the sums of both.
 struct ValueSums {
   std::int32_t count = 0;
   std::array<std::int32_t, 3> sum{};
   /// Products of channels: 00, 11, 22, 01, 02, 12.
   std::array<std::int32_t, 6> products{};
-  /// The channels, the differences 0 - 1 and 2 - 1 of channels, and grey().
+  /// Extents of the channels, of the differences 0 - 1 and 2 - 1 of channels, and of grey().
   std::array<std::int16_t, 6> lo{}, hi{};
-  /// The first value, and the first other one if there is one.
+  /// The first value, and the first value that differs from it, if there is one.
   Value8 first{}, other{};
   int distinct = 0;  ///< Number of different values; 3 stands for more than 2.
 

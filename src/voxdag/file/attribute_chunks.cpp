@@ -6,7 +6,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
-#include "voxdag/layout/encode_material_ids.hpp"
+#include "voxdag/layout/validate_material_ids.hpp"
 #include "voxdag/layout/validate_value_pages.hpp"
 
 namespace voxdag {

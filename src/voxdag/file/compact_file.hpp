@@ -22,12 +22,11 @@ struct CompactContents {
 
   /// Returns the DAG. Its stream points into the bytes that were parsed.
   CompactSvdagView view() const;
-  /// Returns whether the file has colours or normals. Then metadata.attributes.level() is the
-  /// finest level with attributes, for which build_cell_index() numbers the cells of the decoded
-  /// DAG.
+  /// Returns whether the file has attributes. Then metadata.attributes.level() is their finest
+  /// level, for which build_cell_index() numbers the cells of the decoded DAG.
   bool has_attributes() const;
-  /// Reads and checks the colours and normals of these cells. The result refers to the bytes that
-  /// were parsed and to the words of `index`. Linear time. Throws Error.
+  /// Reads and checks the attributes of the cells that `index` numbers. The result refers to the
+  /// bytes that were parsed and to the words of `index`. Linear time. Throws Error.
   DagAttributesView attributes(const CellIndexView& index) const;
 };
 

@@ -50,7 +50,7 @@ void export_raw(const std::filesystem::path& path, const VoxelSet& voxels, const
                 const ExportOptions& options = {});
 
 /// Writes voxel centres in world units, in Morton order, as binary little-endian PLY. Coordinates
-/// are float if that is exact to 1/16 voxel over the whole grid, else double. Normals (nx, ny, nz)
+/// are float if that is exact to 1/16 voxel over the whole grid, else double. Normals (nx, ny, nz),
 /// colours (red, green, blue: 8 bits, sRGB) and the number of the material (material: 16 bits)
 /// follow if the look has them.
 void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
@@ -58,12 +58,15 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
 
 /// Writes the voxels of the window as cubes in world units, as PLY: a quad, counter-clockwise from
 /// outside, for each face whose neighbour is not a voxel of the window. Quads share corners within
-/// a leaf block of 4³; with a look only within a voxel, whose attributes they have.
-/// Coordinates are as in export_ply_points(); at most 2^31 - 1 corners.
+/// a leaf block of 4³. With a look, they share corners only within a voxel, and each corner has the
+/// attributes of that voxel. Coordinates are as in export_ply_points(); at most 2^31 - 1 corners.
 void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options = {});
 
 enum class PlyContent { kPoints, kFaces };
+
+/// Returns whether export_voxels() knows the extension of `path`.
+bool can_export_to(const std::filesystem::path& path);
 
 /// Chooses the format by the extension: .npy (dense if there is a window, else coordinates), .ply,
 /// .raw.

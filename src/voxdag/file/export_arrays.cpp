@@ -17,7 +17,7 @@ constexpr std::size_t kRowsAtOnce = 16384;
 const ArrayLayout kNpyDense{"1 where the voxel is set", "uint8", "xyz"};
 const ArrayLayout kRawDense{"1 where the voxel is set", "uint8", "zyx"};
 
-/// The type of the rows of coordinates: a structured type if the look has something.
+/// The type of a row of coordinates. It is a structured type if the look has attributes.
 struct CoordinateRows {
   explicit CoordinateRows(const LookReader& look) {
     if (look.is_empty()) return;
@@ -32,10 +32,10 @@ struct CoordinateRows {
     item_bytes = bytes;
   }
 
-  std::string dtype = "<i4";  ///< Of an item.
+  std::string dtype = "<i4";  ///< Type of an item, in the syntax of NumPy.
   std::vector<std::uint64_t> shape{3};
   std::size_t item_bytes = sizeof(std::int32_t);
-  std::size_t bytes = sizeof(Vec3i);  ///< Of a row.
+  std::size_t bytes = sizeof(Vec3i);  ///< Size of a row.
   ArrayLayout layout{"voxel coordinates (x, y, z), in Morton order", "int32", ""};
 
  private:

@@ -182,8 +182,8 @@ BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i or
   return surface;
 }
 
-/// Calls fn(surface, voxel) for the parts of a block's surface whose faces share corners: for the
-/// whole block, or for each voxel that has faces. `voxel` is its first one.
+/// Calls fn(surface, voxel) for the parts of a block's surface whose faces share corners: for each
+/// voxel that has faces if `by_voxel`, otherwise for the whole block with its origin as `voxel`.
 template <class Fn>
 void for_each_part(const BlockSurface& whole, Vec3i origin, bool by_voxel, const Fn& fn) {
   if (!by_voxel) return fn(whole, origin);

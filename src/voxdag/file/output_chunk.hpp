@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/checksum.hpp"
 
 namespace voxdag {
@@ -25,5 +26,10 @@ struct OutputChunk {
     return stream.digest();
   }
 };
+
+/// Returns a chunk that a reader must know, with these bytes.
+inline OutputChunk required_chunk(std::uint32_t id, std::span<const std::byte> bytes) {
+  return {id, kVdagChunkRequired, {bytes}};
+}
 
 }  // namespace voxdag

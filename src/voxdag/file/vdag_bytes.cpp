@@ -42,14 +42,12 @@ std::span<const std::byte> bytes_of(const T* values, std::size_t count) {
 std::vector<OutputChunk> plain_chunks(const std::string& json, const SvdagView& view,
                                       const std::uint64_t* level_begin,
                                       const AttributeChunks& attributes) {
-  const auto required = [](std::uint32_t id, std::span<const std::byte> bytes) {
-    return OutputChunk{id, kVdagChunkRequired, {bytes}};
-  };
   std::vector<OutputChunk> chunks = {
-      required(kChunkMeta, bytes_of(json.data(), json.size())),
-      required(kChunkLevels, bytes_of(level_begin, static_cast<std::size_t>(view.levels - 1))),
-      required(kChunkNodes, bytes_of(view.nodes, view.node_words())),
-      required(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count))};
+      required_chunk(kChunkMeta, bytes_of(json.data(), json.size())),
+      required_chunk(kChunkLevels,
+                     bytes_of(level_begin, static_cast<std::size_t>(view.levels - 1))),
+      required_chunk(kChunkNodes, bytes_of(view.nodes, view.node_words())),
+      required_chunk(kChunkLeafBlocks, bytes_of(view.leaf_blocks, view.leaf_block_count))};
   chunks.insert(chunks.end(), attributes.chunks().begin(), attributes.chunks().end());
   return chunks;
 }

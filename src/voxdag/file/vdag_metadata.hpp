@@ -12,13 +12,13 @@
 
 namespace voxdag {
 
-/// How the attributes of the DAG's cells were made. Without attributes, all members are 0 or empty.
+/// Describes the attributes of the DAG's cells. Without attributes, all members are 0 or empty.
 struct AttributesMetadata {
   /// The bound that the encoder kept, and the differences between given and stored values.
   struct Values {
     double bound = 0;  ///< For colours from 0 to 1, for normals in degrees.
     /// For colours, the sum of the squared differences of all channels, in steps of 8 bits. For
-    /// normals, the sum of the distances, in 1/256 of a step of 8 bits. None: not known.
+    /// normals, the sum of the distances, in 1/256 of a step of 8 bits. Empty: not known.
     std::optional<std::uint64_t> errors;
     friend bool operator==(const Values&, const Values&) = default;
   };

@@ -53,13 +53,10 @@ void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
     return checked_metadata_json(metadata);
   });
   const std::vector<std::byte> head = compact_head(compact);
-  const auto required = [](std::uint32_t id, std::span<const std::byte> bytes) {
-    return OutputChunk{id, kVdagChunkRequired, {bytes}};
-  };
   std::vector<OutputChunk> chunks = {
-      required(kChunkMeta, std::as_bytes(std::span<const char>(json))),
-      required(kChunkCompactHead, head),
-      required(kChunkCompactStream, std::as_bytes(compact.words()))};
+      required_chunk(kChunkMeta, std::as_bytes(std::span<const char>(json))),
+      required_chunk(kChunkCompactHead, head),
+      required_chunk(kChunkCompactStream, std::as_bytes(compact.words()))};
   const AttributeChunks attribute_chunks(attributes, AttributeChunks::Index::kLeftOut);
   chunks.insert(chunks.end(), attribute_chunks.chunks().begin(), attribute_chunks.chunks().end());
   write_parts(path, VdagBytes(chunks).parts());

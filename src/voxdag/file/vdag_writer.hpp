@@ -16,8 +16,8 @@ namespace voxdag {
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata, const DagAttributesView& attributes = {});
 
-/// Writes a DAG in the compact form, in the same way. The numbers of the attributes are left out,
-/// because they follow from the DAG. Also throws Error if metadata.attributes does not describe
+/// Writes a DAG in the compact form. Leaves out the numbers of cells, because they follow from the
+/// DAG. Throws Error like the function above, and if metadata.attributes does not describe
 /// `attributes`.
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
                 const VdagMetadata& metadata, const DagAttributesView& attributes = {});

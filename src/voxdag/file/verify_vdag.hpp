@@ -64,8 +64,8 @@ void compare_attributes(const AttributesMetadata& stated, const DagAttributesVie
 ///   canonical order  check_canonical: also that every node is reachable
 ///   minimality       check_minimal: no two equal nodes in a level
 ///   counts           the metadata has the counts of the DAG
-///   attributes       numbers of cells, colours and normals are valid, and the metadata describes
-///                    them; passes if the file has none
+///   attributes       numbers of cells and attributes are valid, and the metadata describes them;
+///                    passes if the file has none
 /// Throws Error only if the file cannot be read.
 VerifyReport verify_vdag(const std::filesystem::path& path);
 

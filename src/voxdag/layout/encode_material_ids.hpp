@@ -1,5 +1,5 @@
 #pragma once
-/// Packs and checks the materials of cells.
+/// Packs the materials of cells.
 #include <array>
 
 #include "voxdag/core/memory_budget.hpp"
@@ -31,10 +31,5 @@ class MaterialEncoder {
   std::size_t count_ = 0;
   std::array<std::uint16_t, kPageValues> page_;
 };
-
-/// Throws Error unless `view` is what MaterialEncoder makes of some ids. Then read_material() is
-/// safe for every number. The arrays of `view` must be as long as it says. Linear time. The place
-/// of an error is "page 17".
-void validate_material_ids(const MaterialIdsView& view);
 
 }  // namespace voxdag

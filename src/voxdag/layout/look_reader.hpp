@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-/// The colour, the normal and the material of a voxel, in the form of files for other programs.
+/// The colour, the normal and the material of a voxel, in the types of exported files.
 struct VoxelLook {
   Vec3f normal{};                           ///< World space, unit length; zero: none.
   Value8 color{};                           ///< sRGB encoded; black: none.

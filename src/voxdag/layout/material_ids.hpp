@@ -5,15 +5,13 @@
 ///
 ///   id       as many bits as materials - 1 needs; none if there is one material
 ///   last     1 bit: 1 if the run is the page's last, which ends with the page or the last cell
-///   length   not of the last run: 3 bits b, then the b bits of the length below its leading one
+///   length   3 bits b, then the b bits of the length below its leading one; absent in the last run
 ///
 /// Lengths are at least 1, and two runs that follow each other have different ids. So the ids
-/// determine the bits. Pages begin at bytes; groups and pages are as in value_pages.hpp.
+/// determine the bits. cell_pages.hpp describes the tables that find pages.
 #include <cstdint>
-#include <vector>
 
-#include "voxdag/layout/bit_words.hpp"
-#include "voxdag/layout/value_pages.hpp"
+#include "voxdag/layout/cell_pages.hpp"
 
 namespace voxdag {
 
@@ -25,31 +23,13 @@ struct MaterialRun {
 
   std::uint32_t id = 0;
   std::uint32_t length = 0;  ///< 0: up to the end of the page.
-  int bits = 0;              ///< Of the stored run.
+  int bits = 0;              ///< Size of the stored run, in bits.
 };
 
 /// A view for kernels and readers.
-struct MaterialIdsView {
-  const std::uint64_t* groups = nullptr;
-  const std::uint16_t* pages = nullptr;
-  const std::uint64_t* words = nullptr;
-  std::uint64_t word_count = 0;
-  std::uint64_t values = 0;
+struct MaterialIdsView : CellPagesView {
   std::uint32_t materials = 0;  ///< Ids are less than this, 1 to kMostMaterials.
 
-  VOXDAG_HD bool is_empty() const { return values == 0; }
-  VOXDAG_HD std::uint64_t page_count() const { return (values + kPageValues - 1) / kPageValues; }
-  VOXDAG_HD std::uint64_t group_count() const {
-    return (page_count() + kGroupPages - 1) / kGroupPages;
-  }
-  /// Returns the bytes of both tables and of the pages.
-  VOXDAG_HD std::uint64_t bytes() const {
-    return group_count() * 8 + page_count() * 2 + word_count * 8;
-  }
-  /// Returns the bit at which a page begins.
-  VOXDAG_HD std::uint64_t page_begin(std::uint64_t page) const {
-    return 8 * (groups[page / kGroupPages] + pages[page]);
-  }
   /// Returns the number of bits of an id.
   VOXDAG_HD int id_bits() const {
     int bits = 0;
@@ -59,16 +39,10 @@ struct MaterialIdsView {
 };
 
 /// Ids in memory. The view is valid while this object lives unchanged.
-struct MaterialIds {
-  std::vector<std::uint64_t> groups;
-  std::vector<std::uint16_t> pages;
-  std::vector<std::uint64_t> words;
-  std::uint64_t values = 0;
+struct MaterialIds : CellPages {
   std::uint32_t materials = 0;
 
-  MaterialIdsView view() const {
-    return {groups.data(), pages.data(), words.data(), words.size(), values, materials};
-  }
+  MaterialIdsView view() const { return {CellPages::view(), materials}; }
 };
 
 /// Reads the run that begins at bit `at`. `id_bits` is that of the view. Reads at most 28 bits.

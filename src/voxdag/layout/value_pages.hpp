@@ -17,23 +17,15 @@
 /// values are e0; in type 4 each value is an end. In other types, a value of weight k is
 /// ((q - k) e0 + k e1) / q with q = 2^w - 1, rounded to the nearest integer, halves up.
 ///
-/// Pages begin at bytes. A group is 64 pages.
-///
-///   groups    64-bit: the first byte of the group
-///   pages     16-bit: the first byte of the page, counted from that of its group
-///   words     64-bit: the pages, from the lowest bit of each word up
-///
-/// Copies of the last value fill the last page up.
+/// Copies of the last value fill the last page up. cell_pages.hpp describes the tables that find
+/// pages.
 #include <cstdint>
-#include <vector>
 
 #include "voxdag/core/vec.hpp"
-#include "voxdag/layout/bit_words.hpp"
+#include "voxdag/layout/cell_pages.hpp"
 
 namespace voxdag {
 
-inline constexpr int kPageValues = 256;
-inline constexpr int kGroupPages = 64;
 inline constexpr int kBlockUnit = 4;  ///< Lengths of blocks are multiples of this.
 
 /// A value: a colour (red, green, blue, sRGB encoded) or a normal (see stored_attributes.hpp).
@@ -113,40 +105,15 @@ VOXDAG_HD constexpr Value8 stepped_end(Value8 e0, int step) {
 }
 
 /// A view for kernels and readers.
-struct ValuePagesView {
-  const std::uint64_t* groups = nullptr;
-  const std::uint16_t* pages = nullptr;
-  const std::uint64_t* words = nullptr;
-  std::uint64_t word_count = 0;
-  std::uint64_t values = 0;
+struct ValuePagesView : CellPagesView {
   EndPrecision precision;
-
-  VOXDAG_HD bool is_empty() const { return values == 0; }
-  VOXDAG_HD std::uint64_t page_count() const { return (values + kPageValues - 1) / kPageValues; }
-  VOXDAG_HD std::uint64_t group_count() const {
-    return (page_count() + kGroupPages - 1) / kGroupPages;
-  }
-  /// Returns the bytes of both tables and of the pages.
-  VOXDAG_HD std::uint64_t bytes() const {
-    return group_count() * 8 + page_count() * 2 + word_count * 8;
-  }
-  /// Returns the bit at which a page begins.
-  VOXDAG_HD std::uint64_t page_begin(std::uint64_t page) const {
-    return 8 * (groups[page / kGroupPages] + pages[page]);
-  }
 };
 
 /// Values in memory. The view is valid while this object lives unchanged.
-struct ValuePages {
-  std::vector<std::uint64_t> groups;
-  std::vector<std::uint16_t> pages;
-  std::vector<std::uint64_t> words;
-  std::uint64_t values = 0;
+struct ValuePages : CellPages {
   EndPrecision precision;
 
-  ValuePagesView view() const {
-    return {groups.data(), pages.data(), words.data(), words.size(), values, precision};
-  }
+  ValuePagesView view() const { return {CellPages::view(), precision}; }
 };
 
 /// Returns the value with number `number`, less than view.values. Skips half of the page's blocks

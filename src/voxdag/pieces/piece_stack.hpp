@@ -43,8 +43,8 @@ class PieceStack {
   /// Removes all triangles and begins a cell of 2^log2_size voxels a side at `origin` in the grid,
   /// in voxels. `triangles` is the expected number of triangles.
   void start(int log2_size, Vec3i origin, std::size_t triangles);
-  /// Removes all triangles. Keeps the memory for the next cell, whose pages would fault anew
-  /// otherwise, unless it is much of the budget.
+  /// Removes all triangles. Keeps the memory for the next cell, because new memory would fault its
+  /// pages again. Frees it if all threads together could hold more than 1/16 of the budget.
   void finish();
   /// Adds a triangle, whose coordinates are relative to the cell's origin. The caller chooses `id`.
   void add(const SurfaceTriangle& triangle, std::uint32_t id);
