@@ -1,11 +1,11 @@
 #include "viewer/site/export_site.hpp"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cctype>
 
+#include "gunzip.hpp"
 #include "scenes.hpp"
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
@@ -45,18 +45,7 @@ std::string unpacked(const std::string& text) {
     count -= 8;
     bytes += static_cast<char>(bits >> count);
   }
-  z_stream stream{};
-  EXPECT_EQ(inflateInit2(&stream, 15 + 16), Z_OK);
-  stream.next_in = reinterpret_cast<Bytef*>(bytes.data());
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  std::string out(20'000'000, '\0');
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
-  EXPECT_EQ(stream.avail_in, 0u);
-  out.resize(stream.total_out);
-  inflateEnd(&stream);
-  return out;
+  return gunzip(bytes);
 }
 
 std::string scene_text(const std::string& page) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gunzip.hpp"
 #include "http_client.hpp"
 #include "scenes.hpp"
 #include "support/error_of.hpp"
@@ -28,6 +29,40 @@ TEST_F(Server, EveryFileOfThePageHasItsTypeAndItsBytes) {
     EXPECT_EQ(answer.body, file.bytes);
     EXPECT_EQ(answer.fields.count("accept-ranges"), 0u);
   }
+}
+
+TEST_F(Server, ClientsThatTakeGzipGetThePageCompressed) {
+  for (const char* accepted : {"gzip", "deflate, gzip;q=0.5, br", "br,gzip ; q=1"})
+    for (const PageFile& file : page_files()) {
+      const std::string target = std::string("/").append(file.path);
+      const std::string field = std::string("Accept-Encoding: ") + accepted + "\r\n";
+      const HttpAnswer answer = get(port(), target, field), plain = get(port(), target);
+      EXPECT_EQ(answer.fields.at("vary"), "Accept-Encoding");
+      EXPECT_EQ(plain.fields.at("vary"), "Accept-Encoding");
+      EXPECT_EQ(answer.fields.at("content-type"), file.type);
+      if (answer.fields.count("content-encoding") == 0) {
+        EXPECT_EQ(answer.body, file.bytes) << file.path << " would be larger";
+        continue;
+      }
+      EXPECT_EQ(answer.fields.at("content-encoding"), "gzip");
+      EXPECT_LT(answer.body.size(), file.bytes.size());
+      EXPECT_EQ(gunzip(answer.body), file.bytes);
+      const std::string tag = answer.fields.at("etag");
+      EXPECT_NE(tag, plain.fields.at("etag"));
+      EXPECT_EQ(get(port(), target, field + "If-None-Match: " + tag + "\r\n").status, 304);
+      EXPECT_EQ(get(port(), target, "If-None-Match: " + tag + "\r\n").status, 200);
+    }
+}
+
+TEST_F(Server, ClientsThatRefuseGzipGetThePageAsItIs) {
+  for (const char* accepted : {"", "identity", "gzip;q=0", "gzip; q=0.000, br", "xgzip"}) {
+    const HttpAnswer answer =
+        get(port(), "/", std::string("Accept-Encoding: ") + accepted + "\r\n");
+    EXPECT_EQ(answer.fields.count("content-encoding"), 0u) << accepted;
+    EXPECT_EQ(answer.body, find_page_file("index.html")->bytes);
+  }
+  EXPECT_EQ(
+      get(port(), "/scene.vdag", "Accept-Encoding: gzip\r\n").fields.count("content-encoding"), 0u);
 }
 
 TEST_F(Server, TheRootIsThePage) {

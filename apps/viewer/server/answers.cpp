@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "viewer/embedded/page_files.hpp"
+#include "viewer/gzip/gzip.hpp"
 #include "viewer/server/entity_tags.hpp"
 #include "viewer/server/multipart_body.hpp"
 #include "viewer/server/scene_ranges.hpp"
@@ -51,6 +51,23 @@ bool answer_known(const httplib::Request& request, httplib::Response& response,
   return true;
 }
 
+/// Returns whether the value of Accept-Encoding allows gzip.
+bool accepts_gzip(std::string_view field) {
+  while (!field.empty()) {
+    const std::size_t end = std::min(field.find(','), field.size());
+    std::string_view entry = field.substr(0, end);
+    field.remove_prefix(std::min(end + 1, field.size()));
+    entry.remove_prefix(std::min(entry.find_first_not_of(" \t"), entry.size()));
+    const std::size_t name_end = std::min(entry.find_first_of(" \t;"), entry.size());
+    if (entry.substr(0, name_end) != "gzip") continue;
+    // A quality of zero forbids it: "gzip;q=0", "gzip; q=0.000".
+    const std::size_t quality = entry.find("q=");
+    return quality == std::string_view::npos ||
+           entry.substr(quality + 2).find_first_not_of("0. \t") != std::string_view::npos;
+  }
+  return false;
+}
+
 void refuse(httplib::Response& response, int status, const std::string& text) {
   response.status = status;
   response.set_content(text + "\n", "text/plain; charset=utf-8");
@@ -88,7 +105,14 @@ const httplib::Headers& Answers::default_headers() {
 
 Answers::Answers(const SceneBytes& scene, const std::string& local_host)
     : scene_(scene), local_host_(local_host), scene_tag_(quoted_tag(scene.tag())) {
-  for (const PageFile& file : page_files()) page_tags_[file.path] = tag_of(file.bytes);
+  for (const PageFile& file : page_files()) {
+    PageEncodings& encodings = page_[file.path];
+    encodings.tag = tag_of(file.bytes);
+    std::string compressed = gzip(file.bytes);
+    if (compressed.size() >= file.bytes.size()) continue;
+    encodings.gzip_tag = tag_of(compressed);
+    encodings.gzip = std::move(compressed);
+  }
 }
 
 void Answers::plan(httplib::Request& request) const {
@@ -122,14 +146,23 @@ void Answers::answer(const httplib::Request& request, httplib::Response& respons
                                : path.starts_with("/") ? find_page_file(path.substr(1))
                                                        : nullptr;
   if (file == nullptr) return refuse(response, 404, "not found");
-  if (answer_known(request, response, page_tags_.at(file->path))) return;
-  give(response, file->bytes.size(), std::string(file->type),
-       [file](std::uint64_t offset, auto out) {
-         std::copy_n(
-             std::as_bytes(std::span(file->bytes)).begin() + static_cast<std::ptrdiff_t>(offset),
-             out.size(), out.begin());
-         return true;
-       });
+  answer_page(*file, request, response);
+}
+
+void Answers::answer_page(const PageFile& file, const httplib::Request& request,
+                          httplib::Response& response) const {
+  const PageEncodings& encodings = page_.at(file.path);
+  const bool is_compressed =
+      !encodings.gzip.empty() && accepts_gzip(request.get_header_value("Accept-Encoding"));
+  response.set_header("Vary", "Accept-Encoding");
+  if (is_compressed) response.set_header("Content-Encoding", "gzip");
+  if (answer_known(request, response, is_compressed ? encodings.gzip_tag : encodings.tag)) return;
+  const std::string_view bytes = is_compressed ? std::string_view(encodings.gzip) : file.bytes;
+  give(response, bytes.size(), std::string(file.type), [bytes](std::uint64_t offset, auto out) {
+    std::copy_n(std::as_bytes(std::span(bytes)).begin() + static_cast<std::ptrdiff_t>(offset),
+                out.size(), out.begin());
+    return true;
+  });
 }
 
 void Answers::answer_scene(const httplib::Request& request, httplib::Response& response) const {

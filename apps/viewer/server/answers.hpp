@@ -7,10 +7,19 @@
 #include <string_view>
 #include <vector>
 
+#include "viewer/embedded/page_files.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 #include "viewer/server/scene_ranges.hpp"
 
 namespace voxdag {
+
+/// How the server sends a file of the page: the entity tag of its bytes, and its bytes compressed
+/// by gzip.
+struct PageEncodings {
+  std::string tag;
+  std::string gzip;  ///< Empty if it would not be smaller.
+  std::string gzip_tag;
+};
 
 /// Answers GET and HEAD of the page's files and of /scene.vdag, which is `scene`, with ranges and
 /// entity tags. The answer to other paths is 404, to other methods 405. Thread-safe; plan() and
@@ -31,12 +40,14 @@ class Answers {
 
  private:
   bool is_allowed_host(const httplib::Request& request) const;
+  void answer_page(const PageFile& file, const httplib::Request& request,
+                   httplib::Response& response) const;
   void answer_scene(const httplib::Request& request, httplib::Response& response) const;
   void answer_parts(const std::vector<ByteRange>& ranges, httplib::Response& response) const;
 
   const SceneBytes& scene_;
   const std::string local_host_, scene_tag_;
-  std::map<std::string_view, std::string> page_tags_;  ///< By the path of the page's file.
+  std::map<std::string_view, PageEncodings> page_;  ///< By the path of the page's file.
 };
 
 }  // namespace voxdag
