@@ -68,6 +68,10 @@ class Bench {
         results_.rays[c] = casts_[c].size();
       }
     }
+    for (std::size_t c = 0; c < kCompactRayClassCount; ++c) {
+      counted_[c] = sample_of(casts_[c], plan_.most_counted);
+      results_.plain_touched[c] = touched_memory(dag_, counted_[c]);
+    }
   }
 
   void measure_tables(int tables) {
@@ -110,6 +114,7 @@ class Bench {
           static_cast<double>(for_single.decoded_units() - single_before) / all_rays;
       times.packet_units_per_ray =
           static_cast<double>(for_packets.decoded_units() - packets_before) / all_rays;
+      point.touched[c] = touched_memory(compact.view(), counted_[c]);
     }
     results_.cache_bytes = for_packets.cache_bytes_per_thread();
     results_.points.push_back(point);
@@ -120,7 +125,7 @@ class Bench {
   const CompactRaysPlan& plan_;
   Progress& progress_;
   CompactRaysResults results_;
-  std::vector<CastRay> casts_[kCompactRayClassCount];
+  std::vector<CastRay> casts_[kCompactRayClassCount], counted_[kCompactRayClassCount];
   ScalarCaster<SvdagNodes> plain_;
   PacketCaster<BoundedDag> plain_packets_;
 };

@@ -2,12 +2,14 @@
 /// `voxdag bench compact-rays`: bytes of the compact form against the time of rays at it.
 ///
 /// The benchmark encodes the DAG with 1 to 4096 tables. It casts rays at each result as it is, and
-/// the same rays at the plain form, both one at a time and in packets. The four take turns.
+/// the same rays at the plain form, both one at a time and in packets. The four take turns. It also
+/// counts what some of the rays read.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "bench/compact_rays/touched_memory.hpp"
 #include "bench/rays/trace_rays.hpp"
 #include "bench/report/charts.hpp"
 #include "voxdag/parallel/progress.hpp"
@@ -19,6 +21,7 @@ struct CompactRaysPlan {
   int views = 2, repeat = 3;
   RayOptions rays;
   std::size_t most_rays = 1'000'000;  ///< The largest number of rays of a class and view.
+  std::size_t most_counted = 20'000;  ///< How many rays of a class have their reads counted.
 };
 
 /// The classes of rays that are measured.
@@ -41,6 +44,7 @@ struct CompactRaysPoint {
   double encode_seconds = 0, decode_seconds = 0, open_seconds = 0;
   std::uint64_t open_bytes = 0;  ///< Bytes of an open DAG beyond the compact form, without caches.
   CompactRaysTimes times[kCompactRayClassCount];
+  TouchedMemory touched[kCompactRayClassCount];
 };
 
 struct CompactRaysResults {
@@ -49,6 +53,7 @@ struct CompactRaysResults {
   std::uint64_t plain_bytes = 0, nodes = 0;
   std::uint64_t cache_bytes = 0;  ///< Bytes of one thread's cache.
   std::size_t rays[kCompactRayClassCount] = {};
+  TouchedMemory plain_touched[kCompactRayClassCount];
   std::vector<CompactRaysPoint> points;
 };
 

@@ -30,6 +30,30 @@ CompactRaysPoint fastest_at_plain(const CompactRaysResults& results) {
   return plain;
 }
 
+nlohmann::ordered_json json_of(const TouchedMemory& touched) {
+  return {{"bytes", touched.bytes}, {"lines", touched.lines}, {"symbols", touched.symbols}};
+}
+
+std::string touched_line(const std::string& name,
+                         const TouchedMemory (&touched)[kCompactRayClassCount]) {
+  std::string text = fmt::format("  {:<14}", name);
+  for (const TouchedMemory& memory : touched)
+    text += fmt::format("{:>10.0f}{:>8.1f}{:>9.0f}", memory.bytes, memory.lines, memory.symbols);
+  return text + '\n';
+}
+
+/// Returns a table of what rays read.
+std::string touched_table(const CompactRaysResults& results) {
+  std::string text = fmt::format(
+      "\nBytes, cache lines and symbols per ray that starts with empty caches:\n\n"
+      "  {:<14}{:>27}{:>27}{:>27}\n",
+      "", "primary", "shadow", "occlusion");
+  text += touched_line("plain", results.plain_touched);
+  for (const CompactRaysPoint& point : results.points)
+    text += touched_line(fmt::format("{} tables", point.tables), point.touched);
+  return text;
+}
+
 }  // namespace
 
 nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
@@ -43,6 +67,9 @@ nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
   json["cache_bytes_per_thread"] = results.cache_bytes;
   for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
     json["rays"][std::string(name_of(kCompactRayClasses[c]))] = results.rays[c];
+  for (std::size_t c = 0; c < kCompactRayClassCount; ++c)
+    json["plain_reads_per_ray"][std::string(name_of(kCompactRayClasses[c]))] =
+        json_of(results.plain_touched[c]);
   json["compact"] = nlohmann::ordered_json::array();
   for (const CompactRaysPoint& point : results.points) {
     nlohmann::ordered_json row = {{"tables", point.tables},
@@ -62,7 +89,8 @@ nlohmann::ordered_json compact_rays_json(const CompactRaysResults& results,
           {"time_ratio", times.seconds / times.plain_seconds},
           {"packet_time_ratio", times.packet_seconds / times.plain_seconds},
           {"decoded_per_ray", times.units_per_ray},
-          {"packet_decoded_per_ray", times.packet_units_per_ray}};
+          {"packet_decoded_per_ray", times.packet_units_per_ray},
+          {"reads_per_ray", json_of(point.touched[c])}};
     }
     json["compact"].push_back(row);
   }
@@ -110,7 +138,7 @@ std::string compact_rays_table(const CompactRaysResults& results) {
   for (const CompactRaysTimes& times : last.times)
     text += fmt::format(" {:.3f} {:.3f};", times.units_per_ray, times.packet_units_per_ray);
   text.back() = '\n';
-  return text;
+  return text + touched_table(results);
 }
 
 Chart compact_rays_chart(const CompactRaysResults& results, const std::filesystem::path& file) {

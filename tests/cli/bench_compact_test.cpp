@@ -67,6 +67,18 @@ TEST_F(BenchCompact, RaysAreCastAtTheCompactFormWithFewAndManyTables) {
     EXPECT_GT(point.at("primary").at("packet_seconds"), 0);
     EXPECT_GT(point.at("primary").at("decoded_per_ray"), 0);
   }
+  const auto reads = [](const Json& counts, const char* what) {
+    return counts.at(what).get<double>();
+  };
+  const Json& plain = json.at("plain_reads_per_ray").at("ao");
+  EXPECT_EQ(reads(plain, "symbols"), 0);
+  EXPECT_GE(reads(plain, "bytes"), 4 * reads(plain, "lines"));
+  EXPECT_LE(reads(plain, "bytes"), 64 * reads(plain, "lines"));
+  const Json few = json.at("compact")[0].at("ao").at("reads_per_ray"),
+             many = json.at("compact")[5].at("ao").at("reads_per_ray");
+  EXPECT_GT(reads(few, "symbols"), 1);
+  EXPECT_EQ(reads(few, "symbols"), reads(many, "symbols"));
+  EXPECT_GT(reads(many, "bytes"), 0);
 }
 
 TEST_F(BenchCompact, AnUnknownFormIsBadUsage) {
