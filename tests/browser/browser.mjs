@@ -1,24 +1,22 @@
 /** Starts browsers, and opens pages whose complaints are failures. */
 import assert from 'node:assert/strict';
-import fs from 'node:fs';
 import { after, before, describe } from 'node:test';
 import puppeteer from 'puppeteer-core';
+import { BROWSER_PATHS, isInstalled } from './browser_paths.mjs';
 
-const CHROMIUM = '/usr/bin/chromium', FIREFOX = '/usr/bin/firefox-esr';
-
-/** The browsers that are installed. */
-const browsers = [['chromium', CHROMIUM], ['firefox', FIREFOX]].filter(([, path]) => fs.existsSync(path)).map(([name]) => name);
+/** The browser to test; without VOXDAG_BROWSER all that are installed. */
+const browsers = process.env.VOXDAG_BROWSER ? [process.env.VOXDAG_BROWSER] : Object.keys(BROWSER_PATHS).filter(isInstalled);
 
 /** Starts a browser without a window. @param {string} name  chromium or firefox */
 export function launch(name) {
   if (name === 'firefox')
     return puppeteer.launch({
-      browser: 'firefox', executablePath: FIREFOX, headless: true, protocolTimeout: 300_000,
+      browser: 'firefox', executablePath: BROWSER_PATHS.firefox, headless: true, protocolTimeout: 300_000,
       extraPrefsFirefox: { 'webgl.force-enabled': true, 'webgl.disable-fail-if-major-performance-caveat': true, 'network.proxy.type': 0,
                           'security.sandbox.content.level': 0, 'gfx.webrender.software': true },
     });
   return puppeteer.launch({
-    executablePath: CHROMIUM, headless: true, protocolTimeout: 300_000,
+    executablePath: BROWSER_PATHS.chromium, headless: true, protocolTimeout: 300_000,
     args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
            '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });

@@ -21,13 +21,16 @@ const VIEWS = {
   ],
 };
 
+/** The size of pages whose own picture nobody looks at. */
+const SMALL = { width: 160, height: 100 };
+
 /** @param {string} name */
 const fileOf = (name) => (name === 'court' ? build('courtyard', 512) : buildColored(256));
 
 describeInBrowsers('pictures', (browserName, browser) => {
   it('shows a scene without complaints of the console or the security policy', async () => {
     const server = await view(build('courtyard', 256));
-    const page = await open(browser(), server.url);
+    const page = await open(browser(), server.url, SMALL);
     await still(page);
     const shot = path.join(folder, 'first.png');
     await page.screenshot({ path: shot });
@@ -40,7 +43,7 @@ describeInBrowsers('pictures', (browserName, browser) => {
   it('hits the same voxels as `voxdag trace`, away from ties', async () => {
     for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
       const file = fileOf(name), server = await view(file);
-      const page = await open(browser(), `${server.url}#ao=0&shadows=off`);
+      const page = await open(browser(), `${server.url}#ao=0&shadows=off`, SMALL);
       await still(page);
       for (const { eye, target } of shots.slice(0, browserName === 'chromium' ? 5 : 2)) {
         const camera = { eye, target, up: [0.02, 1, 0.03], fov: 60 };
@@ -61,7 +64,7 @@ describeInBrowsers('pictures', (browserName, browser) => {
     it('lights five views of two scenes as `voxdag render` does: SSIM of at least 0.98', async () => {
       for (const [name, shots] of Object.entries(VIEWS).map(([n, v]) => /** @type {[string, any[]]} */ ([n, v]))) {
         const file = fileOf(name), server = await view(file);
-        const page = await open(browser(), server.url, { width: 640, height: 400 });
+        const page = await open(browser(), server.url, SMALL);
         for (const [i, { eye, target }] of shots.entries()) {
           const picture = path.join(folder, `${name}${i}.png`);
           voxdag('render', file, '-q', '--size', `${WIDTH}x${HEIGHT}`, '--spp', '16', '--fov', '60', '--up', '0,1,0',
