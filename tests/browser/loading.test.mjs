@@ -1,22 +1,22 @@
 /** How scenes arrive: root first, from servers of several kinds, and what broken files do. */
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
-import http from 'node:http';
 import path from 'node:path';
 import { it } from 'node:test';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import { assertNoComplaints, describeInBrowsers, open, still } from './browser.mjs';
 import { readPng, spread } from './pictures.mjs';
-import { build, buildColored, folder, proxy, view, voxdag } from './program.mjs';
+import { build, buildColored, folder, proxy, serveFolder, view, voxdag } from './program.mjs';
 
-/** Light that costs little. */
+/** Light and a size that cost little. */
 const QUICK = '#ao=0&shadows=off';
+const SMALL = { width: 160, height: 96 };
 
 describeInBrowsers('loading', (browserName, browser) => {
   it('asks for the root first, and shows a picture before the last level has arrived', async () => {
     const file = build('courtyard', 1024), server = await view(file);
     const slow = await proxy(server.url, { bytesPerSecond: 2_000_000 });
-    const page = await open(browser(), slow.url + QUICK);
+    const page = await open(browser(), slow.url + QUICK, SMALL);
     const levels = await page.evaluate(() => new Promise((resolve) => {
       const { viewer } = /** @type {any} */ (window).voxdag;
       /** @type {any[]} */
@@ -27,7 +27,7 @@ describeInBrowsers('loading', (browserName, browser) => {
     }));
     const ranges = slow.requests.filter(({ path }) => path === '/scene.vdag').map(({ range }) => /bytes=(\d+)-(\d+)/.exec(range)?.slice(1).map(Number) ?? []);
     assert.equal(ranges[0][0], 0);
-    assert.ok(ranges[0][1] < 100_000, 'the first request is small');
+    assert.ok(ranges[0][1] < 20_000, 'the first request is small');
     for (let i = 1; i < ranges.length; ++i) assert.ok(ranges[i][0] > ranges[i - 1][0], `request ${i} follows the one before it`);
     assert.ok(ranges.length >= 2 && ranges.length <= 30, `${ranges.length} requests`);
     const last = levels.at(-1);
@@ -39,9 +39,72 @@ describeInBrowsers('loading', (browserName, browser) => {
     await server.close();
   });
 
+  it('shows the levels that came with the first request before it asks for more', async () => {
+    const server = await view(build('courtyard', 1024));
+    const page = await open(browser(), server.url + QUICK, SMALL);
+    const messages = await page.evaluate(async () => {
+      const { SceneLoader } = await import(new URL('file/scene_loader.js', document.baseURI).href);
+      return new Promise((resolve) => {
+        /** @type {string[]} */
+        const messages = [];
+        const loader = new SceneLoader((/** @type {any} */ message) => {
+          messages.push(message.type);
+          if (message.type === 'info') loader.load({ shown: message.info.levels, colors: false, normals: false });
+          if (message.type === 'done' || message.type === 'error') resolve(messages);
+        });
+        loader.open({ url: 'scene.vdag' });
+      });
+    });
+    const first = messages.slice(0, messages.indexOf('progress'));
+    assert.ok(first.filter((type) => type === 'level').length >= 4, `first ${first.join(', ')}`);
+    assert.equal(messages.at(-1), 'done');
+    await page.close();
+    await server.close();
+  });
+
+  it('shows the levels that fit into the textures of the graphics card, and says so', async () => {
+    const server = await view(build('courtyard', 1024));
+    const page = await open(browser(), server.url + QUICK, SMALL);
+    const { note, levels, shown, picture, coarse, fine, cell } = await page.evaluate(async () => {
+      const { createViewer } = await import(new URL('viewer.js', document.baseURI).href);
+      const { viewer: whole } = /** @type {any} */ (window).voxdag;
+      await whole.whenStill();
+      const original = WebGL2RenderingContext.prototype.getParameter;
+      /** @param {number} name */
+      WebGL2RenderingContext.prototype.getParameter = function (name) {
+        return name === WebGL2RenderingContext.MAX_TEXTURE_SIZE ? 128 : original.call(this, name);
+      };
+      const container = document.body.appendChild(document.createElement('div'));
+      container.style.cssText = 'position: fixed; inset: 0; width: 64px; height: 48px';
+      const viewer = createViewer({ container, url: 'scene.vdag', settings: { occlusion: { samples: 0 } } });
+      let note = '';
+      viewer.on('note', (/** @type {string} */ text) => (note = text));
+      await viewer.whenStill();
+      const bytes = new Uint8Array(await (await viewer.capture({ width: 64, height: 48, samples: 1 })).arrayBuffer());
+      const { eye, target } = viewer.info.view, way = target.map((/** @type {number} */ x, /** @type {number} */ i) => x - eye[i]);
+      const direction = way.map((/** @type {number} */ x) => x / Math.hypot(...way));
+      const [coarse, fine] = [viewer, whole].map((v) => v.castNow(eye, direction)?.distance ?? -1);
+      const shown = viewer.statistics().levelsLoaded, side = viewer.info.voxelSize * viewer.info.resolution;
+      const result = {
+        note, levels: viewer.info.levels, shown, picture: Array.from(bytes),
+        coarse, fine, cell: side / 2 ** shown,
+      };
+      viewer.destroy();
+      WebGL2RenderingContext.prototype.getParameter = original;
+      return result;
+    });
+    assert.ok(shown >= 4 && shown < levels, `${shown} of ${levels} levels`);
+    assert.equal(note, `This scene is too large for the graphics card: it is shown down to level ${shown} of ${levels}.`);
+    assert.ok(spread(readPng(Buffer.from(picture))) > 5, 'the picture is not blank');
+    assert.ok(coarse > 0 && coarse <= fine && fine - coarse < 4 * cell, `a cell at ${coarse} contains the voxel at ${fine}`);
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
+  });
+
   it('loads from a server that knows no ranges', async () => {
     const server = await view(buildColored(128)), whole = await proxy(server.url, { ranges: false });
-    const page = await open(browser(), whole.url + QUICK);
+    const page = await open(browser(), whole.url + QUICK, SMALL);
     await still(page);
     assert.equal(whole.requests.filter(({ path }) => path === '/scene.vdag').length, 1);
     assertNoComplaints(page);
@@ -54,18 +117,9 @@ describeInBrowsers('loading', (browserName, browser) => {
     const file = buildColored(128), site = path.join(folder, `site-${browserName}`), single = path.join(folder, `single-${browserName}.html`);
     voxdag('export', file, '-o', `${site}/`, '-q');
     voxdag('export', file, '-o', single, '-q');
-    const plain = http.createServer((request, response) => {
-      const name = path.join(site, new URL(request.url ?? '/', 'http://x').pathname.replace(/\/$/, '/index.html'));
-      const kinds = { '.js': 'text/javascript', '.html': 'text/html', '.css': 'text/css' };
-      if (!fs.existsSync(name)) return response.writeHead(404).end();
-      response.writeHead(200, { 'Content-Type': kinds[/** @type {'.js'} */ (path.extname(name))] ?? 'application/octet-stream' });
-      fs.createReadStream(name).pipe(response);
-    });
-    await new Promise((resolve) => plain.listen(0, '127.0.0.1', () => resolve(undefined)));
-    plain.unref();
-    const { port } = /** @type {import('node:net').AddressInfo} */ (plain.address());
-    for (const url of [`http://127.0.0.1:${port}/`, pathToFileURL(single).href]) {
-      const page = await open(browser(), url + QUICK);
+    const plain = await serveFolder(site);
+    for (const url of [plain.url, pathToFileURL(single).href]) {
+      const page = await open(browser(), url + QUICK, SMALL);
       await still(page);
       const shot = path.join(folder, `site-${browserName}.png`);
       await page.screenshot({ path: shot });
@@ -77,9 +131,39 @@ describeInBrowsers('loading', (browserName, browser) => {
     plain.close();
   });
 
+  it('is embedded in a page of its own', async () => {
+    const site = path.join(folder, `embed-${browserName}`);
+    voxdag('export', buildColored(128), '-o', `${site}/`, '-q');
+    fs.copyFileSync(fileURLToPath(new URL('../../examples/viewer/embed.html', import.meta.url)), path.join(site, 'embed.html'));
+    const { url, close } = await serveFolder(site);
+    const page = await open(browser(), `${url}embed.html`, { width: 320, height: 240, ready: '' });
+    const status = () => page.$eval('#status', (element) => element.textContent ?? '');
+    await page.waitForFunction(() => /\d voxels$/.test(document.querySelector('#status')?.textContent ?? ''), { timeout: 60_000 });
+    assert.match(await status(), /^[\d.,\s]+ voxels$/);
+    const canvas = await page.$('#scene canvas'), shots = [];
+    assert.ok(canvas);
+    for (const button of ['', '#turn', '#cut']) {
+      if (button !== '') await page.$eval(button, (element) => /** @type {HTMLElement} */ (element).click());
+      await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 500)));
+      const shot = path.join(folder, `embed-${browserName}${button.slice(1)}.png`);
+      await canvas.screenshot({ path: shot });
+      shots.push(readPng(shot).luma);
+    }
+    for (let i = 1; i < shots.length; ++i) {
+      const difference = shots[i].reduce((sum, v, at) => sum + Math.abs(v - shots[i - 1][at]), 0) / shots[i].length;
+      assert.ok(difference > 1, `picture ${i} differs from the one before by ${difference}`);
+    }
+    const frame = page.frames().find((frame) => frame.url().includes('index.html'));
+    assert.ok(frame, 'the whole viewer stands in a frame');
+    await frame.waitForFunction('window.voxdag?.viewer.statistics().levelsLoaded === 7', { timeout: 60_000 });
+    assertNoComplaints(page);
+    await page.close();
+    close();
+  });
+
   it('says what is wrong with broken files, and never hangs', async () => {
     const file = buildColored(128), server = await view(file);
-    const page = await open(browser(), server.url + QUICK);
+    const page = await open(browser(), server.url + QUICK, SMALL);
     await still(page);
     const bytes = fs.readFileSync(file);
     const outcomes = await page.evaluate(async (base64, cuts, flips) => {
@@ -121,7 +205,7 @@ describeInBrowsers('loading', (browserName, browser) => {
 
   it('draws again after the graphics card was lost', async () => {
     const server = await view(build('courtyard', 256));
-    const page = await open(browser(), server.url + QUICK);
+    const page = await open(browser(), server.url + QUICK, SMALL);
     await still(page);
     const before = path.join(folder, 'before.png'), after = path.join(folder, 'after.png');
     const canvas = await page.$('canvas');
@@ -145,7 +229,7 @@ describeInBrowsers('loading', (browserName, browser) => {
 
   it('ends every wait after a load that failed, and refuses pictures of impossible sizes', async () => {
     const server = await view(buildColored(128));
-    const page = await open(browser(), server.url + QUICK);
+    const page = await open(browser(), server.url + QUICK, SMALL);
     await still(page);
     const [title, none, size, samples] = await page.evaluate(async () => {
       const { createViewer } = await import(new URL('viewer.js', document.baseURI).href);

@@ -80,6 +80,21 @@ export async function view(file) {
 }
 
 /**
+ * Serves a folder as a plain web server does, without ranges.
+ * @param {string} site @returns {Promise<{url: string, close: () => void}>}
+ */
+export async function serveFolder(site) {
+  const server = http.createServer((request, response) => {
+    const name = path.join(site, new URL(request.url ?? '/', 'http://x').pathname.replace(/\/$/, '/index.html'));
+    const kinds = { '.js': 'text/javascript', '.html': 'text/html', '.css': 'text/css', '.svg': 'image/svg+xml' };
+    if (!fs.existsSync(name)) return response.writeHead(name.endsWith('favicon.ico') ? 204 : 404).end();
+    response.writeHead(200, { 'Content-Type': kinds[/** @type {'.js'} */ (path.extname(name))] ?? 'application/octet-stream' });
+    fs.createReadStream(name).pipe(response);
+  });
+  return { url: await listen(server), close: () => server.close() };
+}
+
+/**
  * Serves another server's pages, and notes each request; may slow them down, or lack Range.
  * @param {string} url @param {{bytesPerSecond?: number, ranges?: boolean}} [options]
  */
@@ -98,10 +113,15 @@ export async function proxy(url, { bytesPerSecond = Infinity, ranges = true } = 
       slowly(answer, response, bytesPerSecond).catch(() => response.destroy());
     }).on('error', () => response.destroy());
   });
+  return { url: await listen(server), requests, close: () => server.close() };
+}
+
+/** Opens a port. Returns the address. @param {http.Server} server */
+async function listen(server) {
   await new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(undefined)));
   server.unref();
   const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
-  return { url: `http://127.0.0.1:${port}/`, requests, close: () => server.close() };
+  return `http://127.0.0.1:${port}/`;
 }
 
 /**

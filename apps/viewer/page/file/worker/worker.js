@@ -3,7 +3,8 @@
  * worker's script: see scene_loader.js, which also lists the messages.
  */
 
-const HEAD_BYTES = 1 << 16, SLICE_BYTES = 1 << 22;
+/** The first request holds the head of the file and, of all but the largest files, the first levels. */
+const HEAD_BYTES = 1 << 14, SLICE_BYTES = 1 << 22;
 
 /** @type {MemorySource | ServerSource} */
 let source;
@@ -50,9 +51,9 @@ async function loadLevels(shown) {
   /** @type {UpperLevel | null} */
   let above = null;
   let most = 1;
-  // A request for several small levels at once: their bytes follow each other.
-  /** @type {Uint8Array} */
-  let ready = new Uint8Array(0);
+  // The levels that came with the head are shown before anything else is asked for. Then one request
+  // brings several small levels: their bytes follow each other.
+  let ready = head.subarray(Math.min(chunk('NODE').offset, head.length));
   let readyBegin = 0;
   for (let level = 0; level < Math.min(shown, levels - 2); ++level) {
     const begin = 4 * levelBegin[level], end = 4 * levelBegin[level + 1];
