@@ -2,8 +2,8 @@
 # Builds voxdag with warnings as errors and runs every test, on a Debian 12 that has only git.
 #
 #   scripts/test.sh           formatting, the library under clang, everything under g++, the tests
-#   scripts/test.sh --tidy    also runs clang-tidy and looks for types that are defined twice
-#                             (takes minutes more)
+#   scripts/test.sh --tidy    also builds the programs under clang, runs clang-tidy and looks for
+#                             types that are defined twice (takes minutes more)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
@@ -11,8 +11,8 @@ cd "$(dirname "$0")/.."
 usage() { sed -n '2,6s/^# \{0,1\}//p' "$0"; }
 tidy=no
 case "${1-}" in
-  "") ;;
-  --tidy) tidy=yes ;;
+  "") programs=OFF ;;
+  --tidy) tidy=yes programs=ON ;;
   -h | --help) usage; exit 0 ;;
   *) usage >&2; exit 2 ;;
 esac
@@ -36,7 +36,7 @@ find . -name '*.[ch]pp' -not -path './build*' -print0 |
   xargs -0 -r clang-format --dry-run -Werror
 
 echo "== clang"
-cmake --preset clang -DVOXDAG_WERROR=ON >/dev/null
+cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=$programs >/dev/null
 cmake --build --preset clang -- -j "$jobs"
 
 echo "== g++"

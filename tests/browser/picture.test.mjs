@@ -7,7 +7,7 @@ import { readHits, writeNpy } from './npy.mjs';
 import { readPng, spread, ssim } from './pictures.mjs';
 import { build, buildColored, folder, view, voxdag } from './program.mjs';
 
-const WIDTH = 160, HEIGHT = 90;
+const WIDTH = 128, HEIGHT = 72;
 
 /** Views of the court and of the coloured hill: world units. */
 const VIEWS = {
