@@ -1,4 +1,4 @@
-#include "voxdag/compact/coarsen.hpp"
+#include "voxdag/algebra/coarsen.hpp"
 
 #include <gtest/gtest.h>
 

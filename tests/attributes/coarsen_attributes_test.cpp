@@ -6,7 +6,7 @@
 
 #include "support/brute_svdag.hpp"
 #include "support/number_colors.hpp"
-#include "voxdag/compact/coarsen.hpp"
+#include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/layout/look.hpp"
 
 namespace voxdag {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "voxdag/compact/coarsen.hpp"
+#include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 

@@ -54,7 +54,7 @@ std::string vdag_metadata_json(const VdagMetadata& metadata);
 VdagMetadata parse_vdag_metadata(std::string_view json);
 
 /// Returns the metadata for the grid of fewer levels that `dag` has, whose voxels are `dag`; see
-/// coarsen() in compact/coarsen.hpp. `build` gets the key "coarsened_from".
+/// coarsen() in algebra/coarsen.hpp. `build` gets the key "coarsened_from".
 VdagMetadata coarser_metadata(VdagMetadata metadata, const SvdagView& dag);
 
 }  // namespace voxdag

@@ -1,0 +1,23 @@
+#pragma once
+/// Set operations on DAGs.
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+enum class SetOperation {
+  kUnion,         ///< Voxels of a, of b, or of both.
+  kIntersection,  ///< Voxels of a that are voxels of b.
+  kDifference,    ///< Voxels of a that are not voxels of b.
+  kSymmetric,     ///< Voxels of either a or b.
+};
+
+/// Returns the minimal DAG, in canonical order, of the voxels that `operation` selects. Both DAGs
+/// must be valid and have equal numbers of levels. The time and memory follow the number of
+/// different pairs of nodes at equal places. Throws Error if the result outgrows 32-bit pointers,
+/// OverMemory and Cancelled; `memory` and `progress` may be null.
+Svdag combine(const SvdagView& a, const SvdagView& b, SetOperation operation,
+              MemoryBudget* memory = nullptr, Progress* progress = nullptr);
+
+}  // namespace voxdag

@@ -1,0 +1,16 @@
+#pragma once
+/// Keeps the voxels in a box.
+#include "voxdag/core/box.hpp"
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// Returns the minimal DAG, in canonical order, of the voxels in `box`: box.lo is in it, box.hi is
+/// not. The box may reach beyond the grid. `dag` must be valid. Throws OverMemory and Cancelled;
+/// `memory` and `progress` may be null.
+Svdag crop(const SvdagView& dag, const Box3i& box, MemoryBudget* memory = nullptr,
+           Progress* progress = nullptr);
+
+}  // namespace voxdag

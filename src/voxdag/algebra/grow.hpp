@@ -1,0 +1,30 @@
+#pragma once
+/// Grows and shrinks bodies: dilation and erosion.
+///
+/// Source of the operations: Serra, "Image Analysis and Mathematical Morphology", 1982.
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// Which voxels are neighbours.
+enum class Neighbours {
+  k6,   ///< Those that share a face.
+  k26,  ///< Those that share a face, an edge or a corner.
+};
+
+/// Returns the minimal DAG, in canonical order, of all voxels of the grid that are `steps` steps
+/// from neighbour to neighbour or less away from a voxel of `dag`: a cube (k26) or an octahedron
+/// (k6) around each voxel. `dag` must be valid and steps >= 0. Throws Error if the result outgrows
+/// 32-bit pointers, OverMemory and Cancelled; `memory` and `progress` may be null.
+Svdag dilate(const SvdagView& dag, int steps, Neighbours neighbours, MemoryBudget* memory = nullptr,
+             Progress* progress = nullptr);
+
+/// Returns the minimal DAG, in canonical order, of the voxels of `dag` that are more than `steps`
+/// steps away from every place without a voxel. All places outside the grid are without voxels.
+/// See dilate() for the rest.
+Svdag erode(const SvdagView& dag, int steps, Neighbours neighbours, MemoryBudget* memory = nullptr,
+            Progress* progress = nullptr);
+
+}  // namespace voxdag

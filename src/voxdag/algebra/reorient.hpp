@@ -1,0 +1,31 @@
+#pragma once
+/// Mirrors and rotates the voxels of a grid.
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// One of the 48 symmetries of a cube: coordinate a of a voxel of the result is coordinate
+/// source_axis[a] of the source's voxel, counted from the other side of the grid if is_flipped[a].
+struct Orientation {
+  int source_axis[3] = {0, 1, 2};  ///< A permutation.
+  bool is_flipped[3] = {};
+
+  friend bool operator==(const Orientation&, const Orientation&) = default;
+};
+
+/// Returns the orientation that mirrors along an axis, 0 to 2.
+Orientation mirrored(int axis);
+/// Returns the orientation that rotates about an axis, 0 to 2, by quarter turns. A positive turn
+/// takes the next axis to the one after it: about z it takes x to y.
+Orientation rotated(int axis, int quarter_turns);
+/// Returns the orientation that applies `first`, then `second`.
+Orientation then(const Orientation& first, const Orientation& second);
+
+/// Returns the minimal DAG, in canonical order, of the reoriented grid. `dag` must be valid.
+/// O(DAG) time. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
+Svdag reorient(const SvdagView& dag, const Orientation& orientation, MemoryBudget* memory = nullptr,
+               Progress* progress = nullptr);
+
+}  // namespace voxdag

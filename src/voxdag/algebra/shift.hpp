@@ -1,0 +1,18 @@
+#pragma once
+/// Moves voxels in their grid.
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/vec.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// Returns the minimal DAG, in canonical order, of the grid of `levels` levels in which voxel p +
+/// `offset` is set if voxel p of `dag` is set. Voxels that would lie outside the grid are left out.
+/// `levels` may be more or less than the DAG's. `dag` must be valid. Each different cell depends on
+/// up to eight nodes. Throws Error if the result outgrows 32-bit pointers, OverMemory and
+/// Cancelled; `memory` and `progress` may be null.
+Svdag shift(const SvdagView& dag, Vec3i offset, int levels, MemoryBudget* memory = nullptr,
+            Progress* progress = nullptr);
+
+}  // namespace voxdag

@@ -1,0 +1,42 @@
+#pragma once
+/// A DAG as a source of rules.
+#include "voxdag/algebra/rewrite.hpp"
+
+namespace voxdag {
+
+/// A DAG of L levels, seen as the corner at (0,0,0) of a grid of `levels` >= L levels.
+class SourceDag {
+ public:
+  explicit SourceDag(const SvdagView& dag) : SourceDag(dag, dag.levels) {}
+  SourceDag(const SvdagView& dag, int levels) : dag_(dag), above_(levels - dag.levels) {}
+
+  std::uint32_t root() const {
+    if (dag_.is_empty()) return kNoCell;
+    return above_ > 0 ? kAboveRoot : 0;
+  }
+  /// Returns child `index` of a node of `level`, which is below levels - 2; kNoCell if there is
+  /// none, or if `node` is kNoCell.
+  std::uint32_t child(int level, std::uint32_t node, int index) const {
+    if (node == kNoCell) return kNoCell;
+    if (node == kAboveRoot) {
+      if (index != 0) return kNoCell;
+      return level + 1 == above_ ? 0 : kAboveRoot;
+    }
+    const std::uint32_t* words = dag_.nodes + node;
+    return (child_mask(words) >> index & 1) != 0 ? child_pointer(words, index) : kNoCell;
+  }
+  /// Returns the voxels of a node of level levels - 2; none if `node` is kNoCell. A DAG has at
+  /// least two levels, so the node is never above its root.
+  std::uint64_t block(std::uint32_t node) const {
+    return node == kNoCell ? 0 : dag_.leaf_blocks[node];
+  }
+  const SvdagView& view() const { return dag_; }
+
+ private:
+  static constexpr std::uint32_t kAboveRoot = kNoCell - 1;
+
+  SvdagView dag_;
+  int above_;  ///< Levels above the DAG's root.
+};
+
+}  // namespace voxdag
