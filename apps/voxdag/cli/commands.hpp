@@ -6,6 +6,10 @@ namespace voxdag {
 
 void add_build_command(const Command& program, Session& session);
 void add_convert_command(const Command& program, Session& session);
+void add_combine_command(const Command& program, Session& session);
+void add_diff_command(const Command& program, Session& session);
+/// Adds crop, shift, mirror, rotate, dilate and erode.
+void add_edit_commands(const Command& program, Session& session);
 void add_info_command(const Command& program, Session& session);
 void add_verify_command(const Command& program, Session& session);
 void add_render_command(const Command& program, Session& session);

@@ -1,0 +1,196 @@
+/// `voxdag combine` and `voxdag diff`: set operations on two DAGs.
+#include "voxdag/algebra/combine.hpp"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/output_files.hpp"
+#include "edit/edited_file.hpp"
+#include "voxdag/algebra/align_grids.hpp"
+#include "voxdag/algebra/shift.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Two files in one grid.
+class AlignedFiles {
+ public:
+  AlignedFiles(const std::string& first, const std::string& second, const EditArguments& arguments,
+               MemoryBudget& memory, Session& session)
+      : first_(first, &session.progress, &memory), second_(second, &session.progress, &memory) {
+    refuse_attributes(first_, first, arguments);
+    refuse_attributes(second_, second, arguments);
+    AlignedGrids aligned;
+    try {
+      aligned = align_grids(first_.grid(), second_.grid());
+    } catch (const Error& error) {
+      throw error.in_file(second);
+    }
+    grid_ = aligned.grid;
+    place_ = aligned.first;
+    dag_a_ = moved(first_, aligned.first, moved_a_, memory, session);
+    dag_b_ = moved(second_, aligned.second, moved_b_, memory, session);
+  }
+
+  const DagInput& first() const { return first_; }
+  const Grid& grid() const { return grid_; }
+  Svdag combined(SetOperation operation, MemoryBudget& memory, Session& session) const {
+    return combine(dag_a_, dag_b_, operation, &memory, &session.progress);
+  }
+  /// Returns the part of a DAG of the common grid that lies in the grid of the first file.
+  Svdag in_first_grid(Svdag dag, MemoryBudget& memory, Session& session) const {
+    if (grid_ == first_.grid()) return dag;
+    const Vec3i back{-place_.x, -place_.y, -place_.z};
+    return shift(dag.view(), back, first_.grid().levels, &memory, &session.progress);
+  }
+
+ private:
+  /// Returns the file's DAG in the common grid; `storage` holds it if it had to move.
+  SvdagView moved(const DagInput& file, Vec3i by, Svdag& storage, MemoryBudget& memory,
+                  Session& session) const {
+    if (by == Vec3i{} && file.grid().levels == grid_.levels) return file.view();
+    storage = shift(file.view(), by, grid_.levels, &memory, &session.progress);
+    return storage.view();
+  }
+
+  DagInput first_, second_;
+  Grid grid_;
+  Vec3i place_;  ///< Voxel (0,0,0) of the first file in the common grid.
+  Svdag moved_a_, moved_b_;
+  SvdagView dag_a_, dag_b_;
+};
+
+struct CombineArguments {
+  EditArguments edit;
+  std::string second;
+  bool is_union = false, is_intersection = false, is_difference = false, is_symmetric = false;
+};
+
+void run_combine(const CombineArguments& arguments, Session& session) {
+  check_writable(arguments.edit.output);
+  MemoryBudget memory = command_budget(arguments.edit.memory_limit);
+  const AlignedFiles files(session.subject, arguments.second, arguments.edit, memory, session);
+  const SetOperation operation = arguments.is_union          ? SetOperation::kUnion
+                                 : arguments.is_intersection ? SetOperation::kIntersection
+                                 : arguments.is_difference   ? SetOperation::kDifference
+                                                             : SetOperation::kSymmetric;
+  const char* name = arguments.is_union          ? "union with "
+                     : arguments.is_intersection ? "intersection with "
+                     : arguments.is_difference   ? "minus "
+                                                 : "symmetric difference with ";
+  const std::string edit = name + std::filesystem::path(arguments.second).filename().string();
+  Svdag dag = files.combined(operation, memory, session);
+  if (arguments.is_union || arguments.is_symmetric) {
+    write_edited(arguments.edit, dag, files.grid(), files.first(), edit, memory, session);
+  } else {
+    dag = files.in_first_grid(std::move(dag), memory, session);
+    write_edited(arguments.edit, dag, files.first().grid(), files.first(), edit, memory, session);
+  }
+}
+
+struct DiffArguments {
+  EditArguments edit;
+  std::string second;
+};
+
+void run_diff(const DiffArguments& arguments, Session& session) {
+  if (!arguments.edit.output.empty()) check_writable(arguments.edit.output);
+  MemoryBudget memory = command_budget(arguments.edit.memory_limit);
+  EditArguments voxels_only = arguments.edit;
+  voxels_only.drop_attributes = true;
+  const AlignedFiles files(session.subject, arguments.second, voxels_only, memory, session);
+  const auto count = [&](SetOperation operation) {
+    return count_svdag(files.combined(operation, memory, session).view()).voxels;
+  };
+  const Svdag dag = files.combined(SetOperation::kSymmetric, memory, session);
+  const std::uint64_t differing = count_svdag(dag.view()).voxels;
+  const std::uint64_t only_first = count(SetOperation::kDifference);
+  const std::uint64_t both = count(SetOperation::kIntersection);
+  if (!arguments.edit.output.empty()) {
+    const bool quiet = session.quiet;
+    session.quiet = true;
+    write_edited(
+        voxels_only, dag, files.grid(), files.first(),
+        "symmetric difference with " + std::filesystem::path(arguments.second).filename().string(),
+        memory, session);
+    session.quiet = quiet;
+  }
+  session.bar.clear();
+  if (session.json) {
+    const nlohmann::ordered_json json = {{"only_in_first", only_first},
+                                         {"only_in_second", differing - only_first},
+                                         {"in_both", both},
+                                         {"differing", differing}};
+    fmt::print("{}", json_text(json));
+  } else if (!session.quiet) {
+    fmt::print("only in {}: {} voxels\nonly in {}: {} voxels\nin both: {} voxels\n",
+               session.subject, with_commas(only_first), arguments.second,
+               with_commas(differing - only_first), with_commas(both));
+  }
+}
+
+}  // namespace
+
+void add_combine_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<CombineArguments>();
+  const Command command =
+      program.add("combine", "Write the union, intersection or difference of two DAGs",
+                  "voxdag combine body.vdag hole.vdag --subtract -o drilled.vdag\n\n"
+                  "Grids of other sizes and places are aligned if their voxels coincide.");
+  command.text("first", session.subject, "A", "A .vdag file").required();
+  command.text("second", arguments->second, "B", "Another .vdag file").required();
+  const Option all = command.flag("--union", arguments->is_union, "Voxels of A, of B or of both");
+  const Option common =
+      command.flag("--intersect", arguments->is_intersection, "Voxels of A that B has, too")
+          .not_with(all);
+  const Option minus =
+      command.flag("--subtract", arguments->is_difference, "Voxels of A that B does not have")
+          .not_with(all)
+          .not_with(common);
+  command.flag("--xor", arguments->is_symmetric, "Voxels of A or of B, but not of both")
+      .not_with(all)
+      .not_with(common)
+      .not_with(minus);
+  add_edit_options(command, arguments->edit, session);
+  command.when_parsed([arguments, &session] {
+    if (!arguments->is_union && !arguments->is_intersection && !arguments->is_difference &&
+        !arguments->is_symmetric)
+      throw UsageError("one of --union, --intersect, --subtract and --xor is required");
+    session.inputs.push_back(arguments->second);
+    check_distinct({{"--output", arguments->edit.output}}, session);
+    session.work = [arguments, &session] { run_combine(*arguments, session); };
+  });
+}
+
+void add_diff_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<DiffArguments>();
+  const Command command =
+      program.add("diff", "Count the voxels in which two DAGs differ, and write them",
+                  "voxdag diff before.vdag after.vdag -o changed.vdag");
+  command.text("first", session.subject, "A", "A .vdag file").required();
+  command.text("second", arguments->second, "B", "Another .vdag file").required();
+  EditArguments& edit = arguments->edit;
+  const Option output = command.text("-o,--output", edit.output, "OUT",
+                                     "The .vdag file to write: voxels of only one of both");
+  const Option compact =
+      command.flag("--compact", edit.compact, "Write the compact form (default: that of A)")
+          .needs(output);
+  command.flag("--plain", edit.plain, "Write the plain form").needs(output).not_with(compact);
+  add_memory_option(command, edit.memory_limit);
+  add_json_option(command, session);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.when_parsed([arguments, &session] {
+    session.inputs.push_back(arguments->second);
+    check_distinct({{"--output", arguments->edit.output}}, session);
+    session.work = [arguments, &session] { run_diff(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

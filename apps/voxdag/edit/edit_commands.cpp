@@ -1,0 +1,210 @@
+/// The commands that make one DAG from another: `voxdag crop`, `shift`, `mirror`, `rotate`,
+/// `dilate` and `erode`.
+#include <fmt/core.h>
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+
+#include "cli/commands.hpp"
+#include "cli/output_files.hpp"
+#include "cli/parse.hpp"
+#include "edit/edited_file.hpp"
+#include "voxdag/algebra/crop.hpp"
+#include "voxdag/algebra/grow.hpp"
+#include "voxdag/algebra/reorient.hpp"
+#include "voxdag/algebra/shift.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/io/process_memory.hpp"
+
+namespace voxdag {
+namespace {
+
+/// What an edit may use.
+struct EditContext {
+  const std::string& path;  ///< The input, for errors.
+  MemoryBudget* memory;
+  Progress* progress;
+};
+
+/// Makes the DAG of a command. May change the grid.
+using Edit = std::function<Svdag(const SvdagView& dag, Grid& grid, const EditContext& context)>;
+
+/// Lets the command read FILE, apply the edit and write OUT. describe() says what was done.
+void add_edit(const Command& command, Session& session, const Edit& edit,
+              const std::function<std::string()>& describe) {
+  const auto arguments = std::make_shared<EditArguments>();
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  add_edit_options(command, *arguments, session);
+  command.when_parsed([=, &session] {
+    check_distinct({{"--output", arguments->output}}, session);
+    session.work = [=, &session] {
+      check_writable(arguments->output);
+      MemoryBudget memory = command_budget(arguments->memory_limit);
+      const DagInput file(session.subject, &session.progress, &memory);
+      refuse_attributes(file, session.subject, *arguments);
+      Grid grid = file.grid();
+      const Svdag dag = edit(file.view(), grid, {session.subject, &memory, &session.progress});
+      write_edited(*arguments, dag, grid, file, describe(), memory, session);
+    };
+  });
+}
+
+std::string text_of(Vec3i v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+Vec3i parse_offset(const std::string& text) {
+  const Vec3d v = parse_vec3(text);
+  Vec3i offset;
+  for (int axis = 0; axis < 3; ++axis) {
+    offset[axis] = static_cast<std::int32_t>(v[axis]);
+    if (static_cast<double>(offset[axis]) != v[axis])
+      throw std::invalid_argument("must be three whole numbers of voxels");
+  }
+  return offset;
+}
+
+int parse_axis(const std::string& text) {
+  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
+    throw std::invalid_argument("must be x, y or z");
+  return text[0] - 'x';
+}
+
+void add_crop_command(const Command& program, Session& session) {
+  const Command command =
+      program.add("crop", "Keep the voxels of a DAG that lie in a box",
+                  "voxdag crop scene.vdag --window 0,0,0,512,512,256 -o part.vdag\n\n"
+                  "The grid stays as it is.");
+  const auto box = std::make_shared<Box3i>();
+  command
+      .parsed("--window", *box, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
+              "The first voxel, and one past the last on each axis")
+      .required();
+  add_edit(
+      command, session,
+      [box](const SvdagView& dag, Grid&, const EditContext& context) {
+        return crop(dag, *box, context.memory, context.progress);
+      },
+      [box] { return "cropped to " + text_of(box->lo) + "," + text_of(box->hi); });
+}
+
+void add_shift_command(const Command& program, Session& session) {
+  struct Arguments {
+    Vec3i by;
+    std::optional<int> levels;
+    bool drop_outside = false;
+  };
+  const Command command = program.add("shift", "Move the voxels of a DAG in its grid",
+                                      "voxdag shift scene.vdag --by 100,0,-20 -o moved.vdag");
+  const auto arguments = std::make_shared<Arguments>();
+  command.parsed("--by", arguments->by, parse_offset, "X,Y,Z", "How far to move, in whole voxels")
+      .required();
+  command.optional_number<int>("--levels", arguments->levels,
+                               NumberRange::whole(kMinLevels, kMaxLevels), "L",
+                               "Write a grid of 2^L voxels a side with the same lower corner "
+                               "(default: that of FILE)");
+  command.flag("--drop-outside", arguments->drop_outside,
+               "Leave out voxels that leave the grid; without it, that is an error");
+  add_edit(
+      command, session,
+      [arguments](const SvdagView& dag, Grid& grid, const EditContext& context) {
+        grid.levels = arguments->levels.value_or(grid.levels);
+        Svdag moved = shift(dag, arguments->by, grid.levels, context.memory, context.progress);
+        if (arguments->drop_outside) return moved;
+        const std::uint64_t lost = count_svdag(dag).voxels - count_svdag(moved.view()).voxels;
+        if (lost != 0)
+          throw Error(context.path, "",
+                      fmt::format("{} voxels would leave the grid: --levels makes it larger, "
+                                  "--drop-outside leaves them out",
+                                  lost));
+        return moved;
+      },
+      [arguments] { return "shifted by " + text_of(arguments->by); });
+}
+
+void add_mirror_command(const Command& program, Session& session) {
+  const Command command = program.add("mirror", "Mirror a DAG in the middle of its grid",
+                                      "voxdag mirror scene.vdag --axis x -o mirrored.vdag");
+  const auto axis = std::make_shared<int>(0);
+  command.parsed("--axis", *axis, parse_axis, "AXIS", "The axis that changes direction: x, y or z")
+      .required();
+  add_edit(
+      command, session,
+      [axis](const SvdagView& dag, Grid&, const EditContext& context) {
+        return reorient(dag, mirrored(*axis), context.memory, context.progress);
+      },
+      [axis] { return fmt::format("mirrored along {}", "xyz"[*axis]); });
+}
+
+void add_rotate_command(const Command& program, Session& session) {
+  struct Arguments {
+    int axis = 0, turns = 1;
+  };
+  const Command command =
+      program.add("rotate", "Rotate a DAG about the middle of its grid by quarter turns",
+                  "voxdag rotate scene.vdag --axis z --turns 1 -o rotated.vdag");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      .parsed("--axis", arguments->axis, parse_axis, "AXIS", "The axis to rotate about: x, y or z")
+      .required();
+  command.number("--turns", arguments->turns, NumberRange::whole(-3, 3), "N",
+                 "Number of quarter turns; one about z takes x to y");
+  add_edit(
+      command, session,
+      [arguments](const SvdagView& dag, Grid&, const EditContext& context) {
+        return reorient(dag, rotated(arguments->axis, arguments->turns), context.memory,
+                        context.progress);
+      },
+      [arguments] {
+        return fmt::format("rotated about {} by {} quarter turns", "xyz"[arguments->axis],
+                           arguments -> turns);
+      });
+}
+
+void add_grow_command(const Command& program, Session& session, bool is_dilation) {
+  struct Arguments {
+    int steps = 1;
+    Neighbours neighbours = Neighbours::k26;
+  };
+  const Command command =
+      is_dilation ? program.add("dilate", "Add the voxels that are near those of a DAG",
+                                "voxdag dilate scene.vdag --steps 3 -o thick.vdag")
+                  : program.add("erode", "Remove the voxels of a DAG that are near empty places",
+                                "voxdag erode solid.vdag --steps 3 -o thin.vdag\n\n"
+                                "All places outside the grid are empty.");
+  const auto arguments = std::make_shared<Arguments>();
+  command.number("--steps", arguments->steps, NumberRange::whole(1, std::int64_t{1} << kMaxLevels),
+                 "N", "Number of steps from voxel to neighbour");
+  command.parsed(
+      "--neighbours", arguments->neighbours,
+      [](const std::string& text) {
+        if (text == "6") return Neighbours::k6;
+        if (text == "26") return Neighbours::k26;
+        throw std::invalid_argument("must be 6 or 26");
+      },
+      "6|26", "Neighbours share a face (6), or a face, an edge or a corner (26, the default)");
+  add_edit(
+      command, session,
+      [=](const SvdagView& dag, Grid&, const EditContext& context) {
+        return is_dilation ? dilate(dag, arguments->steps, arguments->neighbours, context.memory,
+                                    context.progress)
+                           : erode(dag, arguments->steps, arguments->neighbours, context.memory,
+                                   context.progress);
+      },
+      [=] {
+        return fmt::format("{} by {} steps to {} neighbours", is_dilation ? "dilated" : "eroded",
+                           arguments->steps, arguments->neighbours == Neighbours::k6 ? 6 : 26);
+      });
+}
+
+}  // namespace
+
+void add_edit_commands(const Command& program, Session& session) {
+  add_crop_command(program, session);
+  add_shift_command(program, session);
+  add_mirror_command(program, session);
+  add_rotate_command(program, session);
+  add_grow_command(program, session, true);
+  add_grow_command(program, session, false);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,69 @@
+#include "edit/edited_file.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "cli/parse.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+
+void add_edit_options(const Command& command, EditArguments& arguments, Session& session) {
+  command.text("-o,--output", arguments.output, "OUT", "The .vdag file to write").required();
+  const Option compact = command.flag("--compact", arguments.compact,
+                                      "Write the compact form (default: the form of the input)");
+  command.flag("--plain", arguments.plain, "Write the plain form, the layout of the paper")
+      .not_with(compact);
+  command.flag("--drop-attributes", arguments.drop_attributes,
+               "Leave out colours, normals and material ids; files that have some are refused "
+               "without it");
+  add_memory_option(command, arguments.memory_limit);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+}
+
+void add_memory_option(const Command& command, std::uint64_t& limit) {
+  command.parsed("--memory", limit, parse_memory, "LIMIT",
+                 "Maximum memory, including the program (default: three quarters of the available "
+                 "memory)");
+}
+
+void refuse_attributes(const DagInput& file, const std::string& path,
+                      const EditArguments& arguments) {
+  if (!arguments.drop_attributes && !file.attributes().is_empty())
+    throw Error(path, "",
+                "has colours, normals or material ids, which this command cannot keep: "
+                "--drop-attributes leaves them out");
+}
+
+void write_edited(const EditArguments& arguments, const Svdag& dag, const Grid& grid,
+                  const DagInput& source, const std::string& edit, MemoryBudget& memory,
+                  Session& session) {
+  VdagMetadata metadata = source.metadata();
+  metadata.grid = grid;
+  metadata.counts = count_svdag(dag.view());
+  metadata.attributes = {};
+  metadata.program = "voxdag " VOXDAG_VERSION;
+  std::string& edits = metadata.build["edits"];
+  edits += (edits.empty() ? "" : "; ") + edit;
+  const bool compact = arguments.compact || (!arguments.plain && source.is_compact());
+  if (compact)
+    write_vdag(arguments.output, encode_svdag(dag.view(), {.memory = &memory}, &session.progress),
+               metadata, {});
+  else
+    write_vdag(arguments.output, dag.view(), metadata, {});
+  session.bar.clear();
+  warn_if_empty(metadata.counts.voxels, arguments.output, session);
+  if (session.quiet) return;
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
+  fmt::print("{}: {} voxels, {}, {} form\n", arguments.output, with_commas(metadata.counts.voxels),
+             human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
+             compact ? "compact" : "plain");
+}
+
+}  // namespace voxdag

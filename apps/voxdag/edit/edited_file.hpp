@@ -1,0 +1,37 @@
+#pragma once
+/// What the commands that change the voxels of a DAG have in common.
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/scene_input.hpp"
+#include "cli/session.hpp"
+#include "voxdag/core/memory_budget.hpp"
+
+namespace voxdag {
+
+struct EditArguments {
+  std::string output;
+  bool compact = false, plain = false, drop_attributes = false;
+  std::uint64_t memory_limit = 0;
+};
+
+/// Adds --output, --compact, --plain, --drop-attributes, --memory, --threads and --quiet. They
+/// belong to `arguments`.
+void add_edit_options(const Command& command, EditArguments& arguments, Session& session);
+
+/// Adds --memory.
+void add_memory_option(const Command& command, std::uint64_t& limit);
+
+/// Throws Error if the file has colours, normals or material ids and --drop-attributes was not
+/// given: a command that changes voxels keeps none.
+void refuse_attributes(const DagInput& file, const std::string& path,
+                      const EditArguments& arguments);
+
+/// Writes `dag` in the form that the options ask for, else in that of `source`. The grid is `grid`;
+/// the metadata is that of `source` and says in `build` how the voxels were made: `edit`. Prints a
+/// summary.
+void write_edited(const EditArguments& arguments, const Svdag& dag, const Grid& grid,
+                  const DagInput& source, const std::string& edit, MemoryBudget& memory,
+                  Session& session);
+
+}  // namespace voxdag
