@@ -1,0 +1,219 @@
+/// The commands that change the voxels of DAGs, against sets of exported voxels.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "sponge.hpp"
+
+namespace voxdag {
+namespace {
+
+using Voxel = std::array<int, 3>;
+using Voxels = std::set<Voxel>;
+
+class Edit : public Sponge {
+ protected:
+  static void SetUpTestSuite() {
+    Sponge::SetUpTestSuite();
+    ASSERT_EQ(run_voxdag({"scene", "sponge", "--size", "1", "-o", path("other.ply")}).status, 0);
+    for (const auto& [mesh, file] : {std::pair{"sponge.ply", "a.vdag"}, {"other.ply", "b.vdag"}})
+      ASSERT_EQ(run_voxdag({"build", path(mesh), "-r", "32", "--bounds", "0,0,0,0.6,0.6,0.6", "-o",
+                            path(file)})
+                    .status,
+                0);
+  }
+
+  /// Runs the command, which must succeed and write a valid file.
+  static std::string run(std::vector<std::string> words, const std::string& output) {
+    words.insert(words.end(), {"-o", path(output)});
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(run_voxdag({"verify", path(output)}).status, 0) << words[0];
+    return result.out;
+  }
+  static Voxels voxels_of(const std::string& file) {
+    EXPECT_EQ(run_voxdag({"export", path(file), "-o", path("voxels.npy"), "-q"}).status, 0);
+    const std::string text = read_text(path("voxels.npy"));
+    const std::size_t begin = text.find('\n') + 1;
+    Voxels voxels;
+    for (std::size_t at = begin; at + 12 <= text.size(); at += 12) {
+      std::int32_t v[3];
+      std::memcpy(v, text.data() + at, sizeof v);
+      voxels.insert({v[0], v[1], v[2]});
+    }
+    return voxels;
+  }
+  template <class Move>
+  static Voxels moved(const Voxels& voxels, const Move& move) {
+    Voxels result;
+    for (const Voxel& v : voxels) result.insert(move(v));
+    return result;
+  }
+};
+
+TEST_F(Edit, CombineMakesTheSetsOfItsName) {
+  const Voxels a = voxels_of("a.vdag"), b = voxels_of("b.vdag");
+  ASSERT_GT(a.size(), 1000u);
+  ASSERT_NE(a, b);
+  const auto expect = [&](const char* operation, const auto& make) {
+    Voxels expected;
+    make(a.begin(), a.end(), b.begin(), b.end(), std::inserter(expected, expected.end()));
+    run({"combine", path("a.vdag"), path("b.vdag"), operation}, "c.vdag");
+    EXPECT_EQ(voxels_of("c.vdag"), expected) << operation;
+  };
+  using I = Voxels::const_iterator;
+  using Out = std::insert_iterator<Voxels>;
+  expect("--union", std::set_union<I, I, Out>);
+  expect("--intersect", std::set_intersection<I, I, Out>);
+  expect("--subtract", std::set_difference<I, I, Out>);
+  expect("--xor", std::set_symmetric_difference<I, I, Out>);
+}
+
+TEST_F(Edit, CombineAlignsGridsThatCoincide) {
+  run({"shift", path("a.vdag"), "--by", "40,3,5", "--levels", "7"}, "far.vdag");
+  const Voxels a = voxels_of("a.vdag"), far = voxels_of("far.vdag");
+  EXPECT_EQ(far, moved(a, [](const Voxel& v) { return Voxel{v[0] + 40, v[1] + 3, v[2] + 5}; }));
+  Voxels both = a;
+  both.insert(far.begin(), far.end());
+  run({"combine", path("a.vdag"), path("far.vdag"), "--union"}, "both.vdag");
+  EXPECT_EQ(voxels_of("both.vdag"), both);
+  // A difference keeps the grid of the first file.
+  run({"combine", path("a.vdag"), path("both.vdag"), "--intersect"}, "agaa.vdag");
+  EXPECT_EQ(voxels_of("agaa.vdag"), a);
+  const ProcessResult info = run_voxdag({"info", path("agaa.vdag"), "--json"});
+  const nlohmann::json json = nlohmann::json::parse(info.out);
+  EXPECT_EQ(json.at("resolution"), 32);
+  EXPECT_EQ(json.at("build").at("edits"), "intersection with both.vdag");
+}
+
+TEST_F(Edit, CombineRefusesGridsThatDoNotCoincide) {
+  ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "64", "--bounds", "0,0,0,0.6,0.6,0.6",
+                        "-o", path("fine.vdag")})
+                .status,
+            0);
+  expect_failure(run_voxdag({"combine", path("a.vdag"), path("fine.vdag"), "--union", "-o",
+                             path("none.vdag")}),
+                 1, "the grids do not align: their voxels have sides of ");
+  EXPECT_EQ(files_like("none"), 0);
+  expect_failure(run_voxdag({"combine", path("a.vdag"), path("b.vdag"), "-o", path("none.vdag")}),
+                 2, "one of --union, --intersect, --subtract and --xor is required");
+  expect_failure(
+      run_voxdag({"combine", path("a.vdag"), path("b.vdag"), "--union", "-o", path("b.vdag")}), 2,
+      "--output");
+}
+
+TEST_F(Edit, DiffCountsWhatDiffers) {
+  const Voxels a = voxels_of("a.vdag"), b = voxels_of("b.vdag");
+  Voxels only_a, only_b, differing;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::inserter(only_a, only_a.end()));
+  std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::inserter(only_b, only_b.end()));
+  differing = only_a;
+  differing.insert(only_b.begin(), only_b.end());
+  const ProcessResult result = run_voxdag(
+      {"diff", path("a.vdag"), path("b.vdag"), "--json", "-o", path("d.vdag"), "--compact"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("only_in_first"), only_a.size());
+  EXPECT_EQ(json.at("only_in_second"), only_b.size());
+  EXPECT_EQ(json.at("in_both"), a.size() - only_a.size());
+  EXPECT_EQ(json.at("differing"), differing.size());
+  EXPECT_EQ(voxels_of("d.vdag"), differing);
+  const ProcessResult same = run_voxdag({"diff", path("a.vdag"), path("a.vdag")});
+  EXPECT_NE(same.out.find(": 0 voxels"), std::string::npos) << same.out;
+}
+
+TEST_F(Edit, CropShiftMirrorAndRotateMoveVoxels) {
+  const Voxels a = voxels_of("a.vdag");
+  run({"crop", path("a.vdag"), "--window", "3,0,5,20,17,32"}, "c.vdag");
+  Voxels inside;
+  for (const Voxel& v : a)
+    if (v[0] >= 3 && v[0] < 20 && v[1] < 17 && v[2] >= 5) inside.insert(v);
+  EXPECT_EQ(voxels_of("c.vdag"), inside);
+
+  run({"shift", path("c.vdag"), "--by", "-3,1,0"}, "s.vdag");
+  EXPECT_EQ(voxels_of("s.vdag"), moved(inside, [](const Voxel& v) {
+              return Voxel{v[0] - 3, v[1] + 1, v[2]};
+            }));
+  expect_failure(run_voxdag({"shift", path("c.vdag"), "--by", "-4,0,0", "-o", path("none.vdag")}),
+                 1,
+                 "voxels would leave the grid: --levels makes it larger, --drop-outside leaves "
+                 "them out");
+  EXPECT_EQ(files_like("none"), 0);
+
+  run({"mirror", path("c.vdag"), "--axis", "y"}, "m.vdag");
+  EXPECT_EQ(voxels_of("m.vdag"), moved(inside, [](const Voxel& v) {
+              return Voxel{v[0], 31 - v[1], v[2]};
+            }));
+  run({"rotate", path("c.vdag"), "--axis", "z"}, "r.vdag");
+  EXPECT_EQ(voxels_of("r.vdag"), moved(inside, [](const Voxel& v) {
+              return Voxel{31 - v[1], v[0], v[2]};
+            }));
+  run({"rotate", path("r.vdag"), "--axis", "z", "--turns", "-1"}, "back.vdag");
+  EXPECT_EQ(voxels_of("back.vdag"), inside);
+}
+
+TEST_F(Edit, DilateAndErodeFollowTheNeighbours) {
+  run({"crop", path("a.vdag"), "--window", "9,9,9,14,23,11"}, "few.vdag");
+  const Voxels few = voxels_of("few.vdag");
+  ASSERT_FALSE(few.empty());
+  Voxels near6, near26;
+  for (const Voxel& v : few)
+    for (int z = -2; z <= 2; ++z)
+      for (int y = -2; y <= 2; ++y)
+        for (int x = -2; x <= 2; ++x) {
+          near26.insert({v[0] + x, v[1] + y, v[2] + z});
+          if (std::abs(x) + std::abs(y) + std::abs(z) <= 2)
+            near6.insert({v[0] + x, v[1] + y, v[2] + z});
+        }
+  run({"dilate", path("few.vdag"), "--steps", "2"}, "d26.vdag");
+  EXPECT_EQ(voxels_of("d26.vdag"), near26);
+  run({"dilate", path("few.vdag"), "--steps", "2", "--neighbours", "6"}, "d6.vdag");
+  EXPECT_EQ(voxels_of("d6.vdag"), near6);
+  run({"erode", path("d26.vdag"), "--steps", "2"}, "e.vdag");
+  const Voxels closed = voxels_of("e.vdag");
+  EXPECT_TRUE(std::includes(closed.begin(), closed.end(), few.begin(), few.end()));
+  const ProcessResult none = run_voxdag({"erode", path("few.vdag"), "-o", path("empty.vdag")});
+  EXPECT_EQ(none.status, 0);
+  EXPECT_NE(none.err.find("voxdag: "), std::string::npos) << "it warns that no voxel is left";
+}
+
+TEST_F(Edit, EitherFormOnAnyNumberOfThreadsGivesTheSameBytes) {
+  ASSERT_EQ(run_voxdag({"convert", path("a.vdag"), "--compact", "-o", path("k.vdag")}).status, 0);
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"dilate"}, {"rotate", "--axis", "x"}, {"shift", "--by", "0,0,0"}}) {
+    const auto with = [&](const char* file, const char* threads) {
+      std::vector<std::string> all = words;
+      all.insert(all.begin() + 1, path(file));
+      all.insert(all.end(), {"--plain", "--threads", threads});
+      run(all, "same.vdag");
+      return read_text(path("same.vdag"));
+    };
+    EXPECT_EQ(with("a.vdag", "1"), with("k.vdag", "3")) << words[0];
+  }
+}
+
+TEST_F(Edit, AttributesAreNotLostSilently) {
+  ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "--bounds", "0,0,0,0.6,0.6,0.6",
+                        "--color", "-o", path("col.vdag")})
+                .status,
+            0);
+  expect_failure(run_voxdag({"dilate", path("col.vdag"), "-o", path("none.vdag")}), 1,
+                 "--drop-attributes leaves them out");
+  EXPECT_EQ(files_like("none"), 0);
+  run({"dilate", path("col.vdag"), "--drop-attributes"}, "grey.vdag");
+  run({"dilate", path("a.vdag")}, "grown.vdag");
+  EXPECT_EQ(voxels_of("grey.vdag"), voxels_of("grown.vdag"));
+}
+
+TEST_F(Edit, AMemoryLimitIsKeptOrRefused) {
+  expect_failure(run_voxdag({"dilate", path("a.vdag"), "--memory", "1M", "-o", path("none.vdag")}),
+                 1, "the memory limit of 1 MiB is too small");
+  EXPECT_EQ(files_like("none"), 0);
+}
+
+}  // namespace
+}  // namespace voxdag
