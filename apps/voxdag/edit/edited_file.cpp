@@ -33,7 +33,7 @@ void add_memory_option(const Command& command, std::uint64_t& limit) {
 }
 
 void refuse_attributes(const DagInput& file, const std::string& path,
-                      const EditArguments& arguments) {
+                       const EditArguments& arguments) {
   if (!arguments.drop_attributes && !file.attributes().is_empty())
     throw Error(path, "",
                 "has colours, normals or material ids, which this command cannot keep: "

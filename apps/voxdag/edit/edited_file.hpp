@@ -25,7 +25,7 @@ void add_memory_option(const Command& command, std::uint64_t& limit);
 /// Throws Error if the file has colours, normals or material ids and --drop-attributes was not
 /// given: a command that changes voxels keeps none.
 void refuse_attributes(const DagInput& file, const std::string& path,
-                      const EditArguments& arguments);
+                       const EditArguments& arguments);
 
 /// Writes `dag` in the form that the options ask for, else in that of `source`. The grid is `grid`;
 /// the metadata is that of `source` and says in `build` how the voxels were made: `edit`. Prints a
