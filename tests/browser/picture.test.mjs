@@ -1,5 +1,6 @@
 /** The picture in real browsers: hits and light are those of the command line. */
 import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { it } from 'node:test';
 import { assertNoComplaints, describeInBrowsers, open, still } from './browser.mjs';
@@ -20,6 +21,12 @@ const VIEWS = {
     { eye: [0.3, 0.2, 0.3], target: [0.8, 0.05, 0.7] }, { eye: [1.5, -0.6, 1.2], target: [0.5, 0, 0.5] },
   ],
 };
+
+/** Sections of views of the court: a plane, and a box. */
+const SECTIONS = [
+  { view: 2, section: { box: null, plane: { point: [0, 4, 1], normal: [0.1, 0.3, 1] } } },
+  { view: 4, section: { box: { low: [-8, 0.5, -6], high: [9, 5, 8] }, plane: null } },
+];
 
 /** The size of pages whose own picture nobody looks at. */
 const SMALL = { width: 160, height: 100 };
@@ -82,6 +89,30 @@ describeInBrowsers('pictures', (browserName, browser) => {
         await page.close();
         await server.close();
       }
+    });
+
+  if (browserName === 'chromium')
+    it('cuts sections as `voxdag render --view` does: SSIM of at least 0.99', async () => {
+      const file = fileOf('court'), server = await view(file);
+      const page = await open(browser(), server.url, SMALL);
+      for (const [i, { view: shot, section }] of SECTIONS.entries()) {
+        const picture = path.join(folder, `section${i}.png`), settings = path.join(folder, `section${i}.json`);
+        const { eye, target } = VIEWS.court[shot];
+        const shown = { camera: { eye, target, up: [0, 1, 0], fov: 60 }, section };
+        writeFileSync(settings, JSON.stringify(shown));
+        voxdag('render', file, '-q', '--size', `${WIDTH}x${HEIGHT}`, '--spp', '16', '--view', settings, '-o', picture);
+        const png = await page.evaluate(async (settings, width, height) => {
+          const { viewer } = /** @type {any} */ (window).voxdag;
+          viewer.set({ ...settings, lod: 1, sun: { direction: null } });
+          const blob = await viewer.capture({ width, height, samples: 16 });
+          return Array.from(new Uint8Array(await blob.arrayBuffer()));
+        }, shown, WIDTH, HEIGHT);
+        const likeness = ssim(readPng(picture), readPng(Buffer.from(png)));
+        assert.ok(likeness >= 0.99, `section ${i}: SSIM ${likeness}`);
+      }
+      assertNoComplaints(page);
+      await page.close();
+      await server.close();
     });
 });
 

@@ -50,6 +50,27 @@ TEST_F(RenderView, GivesThePictureOfTheOptions) {
             picture(with_camera({"--no-shadows"})));
 }
 
+TEST_F(RenderView, ASectionCutsThePicture) {
+  const std::string box = R"("section": {"box": {"low": [0, 0, 0.1], "high": [1, 0.5, 1]}})";
+  const std::string plane = R"("section": {"plane": {"point": [0.4, 0, 0], "normal": [1, 0, 0]}})";
+  const std::string cut = with_settings(std::string("{") + kCamera + ", " + box + "}");
+  EXPECT_EQ(cut, picture(with_camera({"--section-box", "0,0,0.1,1,0.5,1"})));
+  EXPECT_NE(cut, picture(kCameraOptions));
+  EXPECT_EQ(with_settings(std::string("{") + kCamera + ", " + plane + "}"),
+            picture(with_camera({"--section-plane", "0.4,0,0,1,0,0"})));
+  EXPECT_EQ(with_settings(std::string("{") + kCamera + ", " + box + "}",
+                          {"--section-box", "0,0,0,1,1,0.6"}),
+            picture(with_camera({"--section-box", "0,0,0,1,1,0.6"})));
+  const auto refused = [&](const std::string& option, const std::string& text,
+                           const std::string& reason) {
+    expect_failure(run_voxdag({"render", path("in.vdag"), "-o", path("no.png"), option, text}), 2,
+                   reason);
+  };
+  refused("--section-plane", "1,2,3", "six numbers");
+  refused("--section-plane", "1,2,3,0,0,0", "length is zero");
+  refused("--section-box", "1,0,0,0,1,1", "second corner");
+}
+
 TEST_F(RenderView, OptionsWinOverTheFile) {
   const std::string settings = std::string("{") + kCamera +
                                R"(, "sun": {"direction": [1, 2, 3], "angle": 4, "on": false},
@@ -71,7 +92,7 @@ TEST_F(RenderView, ErrorsNameFileAndKey) {
     EXPECT_FALSE(exists("no.png"));
   };
   refused(R"({"sky": true})", "\"sky\" is not a number");
-  refused(R"({"section": {"box": {"low": [0, 0, 0], "high": [1, 1, 1]}}})", "\"section.box\" cuts");
+  refused(R"({"section": {"box": {"low": [0, 0, 0]}}})", "\"section.box.high\" is missing");
   expect_failure(
       run_voxdag({"render", path("in.vdag"), "-o", path("no.png"), "--view", path("none.json")}), 1,
       "cannot open");

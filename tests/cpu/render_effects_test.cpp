@@ -113,6 +113,8 @@ TEST(RenderBeams, ChangeNoPixel) {
     options.sun_degrees = i % 3 == 0 ? 0 : number(0.5, 20);
     options.shadow_samples = kSamplesWithBeams;
     options.with_steps = true;
+    if (i % 5 == 0) options.section.box = {{-0.7, -0.9, -0.8}, {0.6, 0.7, 0.5}};
+    if (i % 5 < 2) options.section.plane = {{0, 0.1, 0}, {number(-1, 1), 1, number(-1, 1)}};
     const RenderedImage with = render_image(dag.view(), test_grid(kLevels), options);
     options.beams = false;
     const RenderedImage without = render_image(dag.view(), test_grid(kLevels), options);

@@ -66,6 +66,71 @@ TEST(RenderImage, DepthOfAFacingPlaneIsItsDistance) {
   }
 }
 
+/// Returns the voxels of block_on_a_floor() with z >= 30 and y < 20.
+Svdag part_of_a_block() {
+  std::vector<Vec3i> voxels;
+  for (std::int32_t z = 30; z < 64; ++z)
+    for (std::int32_t x = 0; x < 64; ++x)
+      for (std::int32_t y = 6; y < 20; ++y) {
+        const bool is_block = std::min(x, z) >= 24 && std::max(x, z) < 40;
+        if (y < 8 || is_block) voxels.push_back({x, y, z});
+      }
+  return brute_svdag(kPictureLevels, voxels);
+}
+
+TEST(RenderImage, ASectionShowsThatPartAndColoursTheCut) {
+  const Svdag dag = block_on_a_floor(), part = part_of_a_block();
+  RenderOptions options = small_picture();
+  options.view.eye = {0.3, 0.9, -2.5};
+  options.view.target = {0, -0.7, 0};
+  options.exposure = 1;
+  options.with_sun = false;
+  options.cube_pixels = 0;
+  RenderOptions cut = options;
+  cut.section.box = {{-1, -1, -1 + 30 * 2.0 / 64}, {1, -1 + 20 * 2.0 / 64, 1}};
+  const RenderedImage image = render_image(dag.view(), picture_grid(), cut);
+  const RenderedImage expected = render_image(part.view(), picture_grid(), options);
+  // The cuts lie between voxels, so both show the same surfaces in the same light.
+  EXPECT_EQ(image.depth, expected.depth);
+  EXPECT_EQ(image.occlusion, expected.occlusion);
+  int cuts = 0, others = 0;
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    if (!std::isfinite(image.depth[i])) continue;
+    const Vec3f normal = image.normal[i];
+    EXPECT_EQ(normal, expected.normal[i]);
+    // Only the block has voxels on both sides of its top; the floor and the block are cut in front.
+    const bool is_cut = image.radiance[i] != expected.radiance[i];
+    if (is_cut) {
+      EXPECT_TRUE(normal == (Vec3f{0, 0, -1}) || normal == (Vec3f{0, 1, 0}));
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(image.radiance[i][c] / expected.radiance[i][c],
+                    kCutAlbedo[c] / options.albedo[c], 1e-4);
+    }
+    ++(is_cut ? cuts : others);
+  }
+  EXPECT_GT(cuts, 50);
+  EXPECT_GT(others, 100);
+}
+
+TEST(RenderImage, APlaneCutsAlongItsNormal) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  options.view.eye = {0.1, 3, 0.2};
+  options.view.target = {0.1, 0, 0.2};
+  options.view.up = {0, 0, -1};
+  options.view.vertical_fov_degrees = 1;
+  options.section.plane = {{0, -0.5, 0}, {0, 7, 0}};
+  const RenderedImage image = render_image(dag.view(), picture_grid(), options);
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    EXPECT_NEAR(image.depth[i], 3.5, 1e-5);
+    EXPECT_EQ(image.normal[i], (Vec3f{0, 1, 0}));
+  }
+  // Nothing is left on the other side.
+  options.section.plane = {{0, 0.3, 0}, {0, -1, 0}};
+  const RenderedImage nothing = render_image(dag.view(), picture_grid(), options);
+  for (const float depth : nothing.depth) EXPECT_FALSE(std::isfinite(depth));
+}
+
 TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
   const Svdag dag = block_on_a_floor();
   RenderOptions options = small_picture();

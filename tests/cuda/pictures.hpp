@@ -86,6 +86,10 @@ inline std::vector<Picture> pictures(int scale) {
   detail.occlusion_cone = 0.07;
   detail.samples_per_pixel = 3;
   detail.shadow_samples = 3 * kShadowRaysWithBeams;
+  RenderOptions& section = add("section");
+  section.section.box = {{-1, -1, -0.9}, {0.35, 1, 0.6}};
+  section.section.plane = {{0, 0.3, 0}, {-0.2, 1, 0.1}};
+  section.lod_pixels = 2;
   RenderOptions& steps = add("steps");
   steps.with_steps = true;
   steps.view.eye = {0.1, -0.6, -0.4};

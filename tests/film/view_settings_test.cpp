@@ -35,6 +35,7 @@ TEST_F(Settings, MissingKeysHaveTheDefaultsOfRender) {
   EXPECT_EQ(settings.options.occlusion_samples, usual.occlusion_samples);
   EXPECT_EQ(settings.options.lod_pixels, usual.lod_pixels);
   EXPECT_EQ(settings.options.exposure, 0);
+  EXPECT_FALSE(settings.options.section.box || settings.options.section.plane);
   EXPECT_TRUE(settings.colors && settings.normals && settings.ignored.empty());
 }
 
@@ -45,7 +46,8 @@ TEST_F(Settings, EveryKeyIsRead) {
     "sky": 0.5, "exposure": 3, "shadows": false,
     "occlusion": {"samples": 16, "distance": 2.5, "cone": 0.07},
     "lod": 2, "cubes": 12, "level": null, "colors": false, "normals": false, "show": "light",
-    "section": {"box": null, "plane": null}, "mode": "fly",
+    "section": {"box": {"low": [-1, -2, -3], "high": [1, 2, 3]},
+                "plane": {"point": [7, 8, 9], "normal": [0, -2, 0]}}, "mode": "fly",
     "measures": [{"from": [0, 0, 0], "to": [1, 1, 1]}], "annotations": [], "path": []})");
   const RenderOptions& options = settings.options;
   EXPECT_EQ(options.view.eye, (Vec3d{1, 2, 3}));
@@ -63,6 +65,11 @@ TEST_F(Settings, EveryKeyIsRead) {
   EXPECT_EQ(options.occlusion_cone, 0.07);
   EXPECT_EQ(options.lod_pixels, 2);
   EXPECT_EQ(options.cube_pixels, 12);
+  ASSERT_TRUE(options.section.box && options.section.plane);
+  EXPECT_EQ(options.section.box->lo, (Vec3d{-1, -2, -3}));
+  EXPECT_EQ(options.section.box->hi, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(options.section.plane->point, (Vec3d{7, 8, 9}));
+  EXPECT_EQ(normalized(options.section.plane->normal), (Vec3d{0, -1, 0}));
   EXPECT_FALSE(settings.colors || settings.normals);
   EXPECT_TRUE(settings.ignored.empty());
 }
@@ -101,8 +108,15 @@ TEST_F(Settings, ErrorsNameTheKey) {
             "\"camera.up\" points along the view");
   EXPECT_EQ(error(R"({"occlusion": {"samples": 1.5}})"),
             "\"occlusion.samples\" is not a whole number");
-  EXPECT_EQ(error(R"({"section": {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}}})"),
-            "\"section.plane\" cuts the scene, which a picture cannot show: set it to null");
+  EXPECT_EQ(error(R"({"section": {"plane": {"point": [0, 0, 0]}}})"),
+            "\"section.plane.normal\" is missing");
+  EXPECT_EQ(error(R"({"section": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 0]}}})"),
+            "\"section.plane.normal\" must be a direction: finite and not zero");
+  EXPECT_EQ(error(R"({"section": {"box": {"low": [0, 0, 0]}}})"),
+            "\"section.box.high\" is missing");
+  EXPECT_EQ(error(R"({"section": {"box": {"low": [0, 2, 0], "high": [1, 1, 1]}}})"),
+            "\"section.box\" has its low corner above its high one");
+  EXPECT_EQ(error(R"({"section": 5})"), "\"section\" is not an object");
   EXPECT_TRUE(error("{").starts_with("byte ")) << error("{");
   EXPECT_EQ(error(R"({"sky": 1e999})"), "a number is out of range");
 }

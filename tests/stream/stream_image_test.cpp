@@ -54,6 +54,16 @@ TEST_F(StreamImage, HasTheHighlightsOfTheWholeOctree) {
   EXPECT_NE(image.radiance, dull.radiance);
 }
 
+TEST_F(StreamImage, HasTheSectionOfTheWholeOctree) {
+  StreamBlocks blocks(path(), bytes);
+  const RenderedImage uncut = whole();
+  const Grid& place = blocks.stream().grid();
+  options.section.plane = {place.origin + Vec3d{1, 1, 1} * (0.5 * place.side()), {0.3, -1, 0.2}};
+  const RenderedImage image = render_streamed(blocks, blocks.stream().grid(), options);
+  test::expect_same_picture(image, whole());
+  EXPECT_NE(image.depth, uncut.depth);
+}
+
 /// Renders these pictures one after the other, with memory for `bytes` of blocks. Returns the bytes
 /// of the blocks that are loaded at the end.
 std::uint64_t bytes_for(const std::filesystem::path& path, std::uint64_t bytes,

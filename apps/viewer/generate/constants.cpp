@@ -127,7 +127,8 @@ Json light_constants() {
           VOXDAG_MEMBER(options, occlusion_cone),
           VOXDAG_MEMBER(options, lod_pixels),
           VOXDAG_MEMBER(options, cube_pixels),
-          VOXDAG_MEMBER(options, albedo)};
+          VOXDAG_MEMBER(options, albedo),
+          {"cutAlbedo", json_of(kCutAlbedo)}};
 }
 
 /// Returns all groups of constants by name.

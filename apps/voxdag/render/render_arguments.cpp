@@ -108,7 +108,11 @@ void apply_view_file(RenderArguments& arguments, Session& session) {
   take("--ao-distance", options.occlusion_distance, saved.occlusion_distance);
   take("--ao-cone", options.occlusion_cone, saved.occlusion_cone);
   take("--lod", options.lod_pixels, saved.lod_pixels);
+  take("--section-box", options.section.box, saved.section.box);
+  take("--section-plane", options.section.plane, saved.section.plane);
   take("--cubes", options.cube_pixels, saved.cube_pixels);
+  if (!arguments.mesh.file.empty() && (options.section.box || options.section.plane))
+    throw Error(view.file, "", "\"section\" cannot cut the triangles of --mesh: set it to null");
   view.colors = settings.colors;
   view.normals = settings.normals;
   std::vector<std::string> warnings;

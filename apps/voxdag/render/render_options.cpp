@@ -34,6 +34,16 @@ std::string parse_primary(const std::string& text) {
   return text;
 }
 
+/// Parses a point and a normal: "PX,PY,PZ,NX,NY,NZ".
+SectionOptions::Plane parse_plane(const std::string& text) {
+  const std::vector<double> v = parse_numbers(text);
+  if (v.size() != 6) throw std::invalid_argument("must be six numbers: a point and a normal");
+  const SectionOptions::Plane plane{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  if (!(dot(plane.normal, plane.normal) > 0))
+    throw std::invalid_argument("has a normal whose length is zero");
+  return plane;
+}
+
 FilterKind parse_filter_kind(const std::string& text) {
   if (text == "guided") return FilterKind::kGuided;
   if (text == "plain") return FilterKind::kPlain;
@@ -172,7 +182,8 @@ Option add_mesh_options(const Command& command, MeshArguments& mesh) {
 
 void add_filter_options(const Command& command, RenderArguments& arguments) {
   const auto shows_voxels = [&arguments] { return !arguments.mesh.is_seen(); };
-  arguments.view.winners.push_back(
+  Winners& winners = arguments.view.winners;
+  winners.push_back(
       command
           .number("--cubes", arguments.options.cube_pixels,
                   NumberRange::from(0, RenderLimits::kCubePixels), "PIXELS",
@@ -193,6 +204,21 @@ void add_filter_options(const Command& command, RenderArguments& arguments) {
   command.flag("--no-filter", arguments.no_filter, "Show every voxel as it is")
       .not_with(filter)
       .not_with(kind);
+}
+
+void add_section_options(const Command& command, RenderArguments& arguments) {
+  const auto has_no_mesh = [&arguments] { return arguments.mesh.file.empty(); };
+  SectionOptions& section = arguments.options.section;
+  Winners& winners = arguments.view.winners;
+  winners.push_back(command
+                        .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+                                "Show only what is in this box, in world units")
+                        .only_if(has_no_mesh, "with --mesh"));
+  winners.push_back(command
+                        .parsed("--section-plane", section.plane, parse_plane, "PX,PY,PZ,NX,NY,NZ",
+                                "Remove the side of the plane through the point P to which the "
+                                "normal N points, in world units")
+                        .only_if(has_no_mesh, "with --mesh"));
 }
 
 void add_path_options(const Command& command, PathArguments& path, const ViewOptions& view) {
@@ -227,9 +253,10 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   add_occlusion_options(command, options, winners);
   add_quality_options(command, options, winners);
   command.text("--view", arguments.view.file, "SETTINGS.json",
-               "Take the camera, the light and the quality from settings that the viewer saved; "
-               "other options win over them");
+               "Take the camera, the light, the quality and the section from settings that the "
+               "viewer saved; other options win over them");
   add_filter_options(command, arguments);
+  add_section_options(command, arguments);
   command.text("--depth", arguments.depth, "OUT", "Same as --pass depth=OUT");
   command.text("--normal", arguments.normal, "OUT", "Same as --pass normal=OUT");
   command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",

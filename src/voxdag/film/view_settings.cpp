@@ -53,7 +53,7 @@ class Reader {
           [&](const Json& value) {
             if (value != "light") ignore("show", "a picture shows the light; --pass writes others");
           }},
-         {"section", [&](const Json& value) { refuse_section(value); }},
+         {"section", [&](const Json& value) { read_section(value); }},
          {"mode", nothing},
          {"measures", nothing},
          {"annotations", nothing},
@@ -166,14 +166,39 @@ class Reader {
                   }}});
   }
 
-  void refuse_section(const Json& json) {
-    const auto part = [this](const std::string& key) {
-      return [this, key](const Json& value) {
-        if (!value.is_null())
-          refuse(key, "cuts the scene, which a picture cannot show: set it to null");
-      };
-    };
-    each_member(json, "section", {{"box", part("section.box")}, {"plane", part("section.plane")}});
+  void read_section(const Json& json) {
+    SectionOptions& section = settings_.options.section;
+    each_member(json, "section",
+                {{"box",
+                  [&](const Json& value) {
+                    if (!value.is_null()) section.box = read_box(value, "section.box");
+                  }},
+                 {"plane", [&](const Json& value) {
+                    if (!value.is_null()) section.plane = read_plane(value, "section.plane");
+                  }}});
+  }
+
+  Box3d read_box(const Json& json, const std::string& key) {
+    std::optional<Vec3d> low, high;
+    each_member(json, key,
+                {{"low", [&](const Json& value) { low = vector(value, key + ".low"); }},
+                 {"high", [&](const Json& value) { high = vector(value, key + ".high"); }}});
+    if (!low) refuse(key + ".low", "is missing");
+    if (!high) refuse(key + ".high", "is missing");
+    for (int axis = 0; axis < 3; ++axis)
+      if (!((*low)[axis] <= (*high)[axis])) refuse(key, "has its low corner above its high one");
+    return {*low, *high};
+  }
+
+  SectionOptions::Plane read_plane(const Json& json, const std::string& key) {
+    std::optional<Vec3d> point, normal;
+    each_member(
+        json, key,
+        {{"point", [&](const Json& value) { point = vector(value, key + ".point"); }},
+         {"normal", [&](const Json& value) { normal = direction(value, key + ".normal"); }}});
+    if (!point) refuse(key + ".point", "is missing");
+    if (!normal) refuse(key + ".normal", "is missing");
+    return {*point, *normal};
   }
 
   const std::string& file_;

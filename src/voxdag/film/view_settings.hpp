@@ -8,7 +8,8 @@
 namespace voxdag {
 
 struct ViewSettings {
-  /// The camera, the light and the level of detail of the view; other members have their defaults.
+  /// The camera, the light, the level of detail and the section of the view; other members have
+  /// their defaults.
   RenderOptions options;
   bool colors = true, normals = true;  ///< Show the colours, the normals that the scene stores.
   /// A warning for each setting that a picture cannot show and for each unknown key, such as
@@ -17,8 +18,8 @@ struct ViewSettings {
 };
 
 /// Reads at most 16 MiB of JSON. docs/viewer.md lists the keys; missing keys have their defaults.
-/// Throws Error for a value of the wrong type or out of range, for another version, and for a
-/// section, which a picture cannot show. The reason names the key.
+/// Throws Error for a value of the wrong type or out of range, and for another version. The reason
+/// names the key.
 ViewSettings read_view_settings(const std::string& file);
 
 }  // namespace voxdag

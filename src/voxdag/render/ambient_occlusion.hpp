@@ -54,8 +54,11 @@ VOXDAG_HD inline int trace_occlusion(const Caster& caster, const RenderSetup& se
       active * rays,
       [&](int i) {
         const int pixel = scratch.active[i / rays];
-        return occlusion_ray(setup.tables, settings.occlusion_distance, settings.occlusion_cone,
-                             scratch.points[pixel], scratch.pixels[pixel], first + i % rays);
+        CastRay ray =
+            occlusion_ray(setup.tables, settings.occlusion_distance, settings.occlusion_cone,
+                          scratch.points[pixel], scratch.pixels[pixel], first + i % rays);
+        limit_to(setup.section, ray.ray);
+        return ray;
       },
       [&](int i, bool is_hit) { scratch.open[scratch.active[i / rays]] += is_hit ? 0 : 1; });
   return active * rays;

@@ -64,6 +64,7 @@ VOXDAG_HD inline void trace_shadow_rays(const Caster& caster, const RenderSetup&
         if (!(sample.weight > 0)) return ray;
         const LightInterval& interval = scratch.intervals[pixel];
         ray.ray = make_grid_ray(point.start, sample.direction, interval.first, interval.last);
+        limit_to(setup.section, ray.ray);
         // The ray ends at cells of the size that the picture shows, so that shadows and picture
         // agree.
         ray.stop.at_start = point.cell_side;

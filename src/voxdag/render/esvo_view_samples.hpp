@@ -99,7 +99,11 @@ VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster
         ViewSample& sample = scratch.samples[pixel];
         sample = ViewSample{};
         if (!is_hit) return;
-        sample = esvo_view_sample(nodes, setup, pixel_direction(setup, tile, pixel), ray, hit);
+        const Vec3d direction = pixel_direction(setup, tile, pixel);
+        const Vec3f cut = hit.t == ray.t_min ? cut_normal(setup.section, ray) : Vec3f{};
+        const double depth = ray.to_world_t(static_cast<double>(hit.t));
+        sample = dot(cut, cut) > 0 ? cut_view_sample(setup, direction, hit.level, depth, cut)
+                                   : esvo_view_sample(nodes, setup, direction, ray, hit);
       });
   return tile.width * tile.height;
 }

@@ -25,6 +25,16 @@ struct RenderLimits {
   static constexpr double kLodPixels = 1000, kCubePixels = 1e6;
 };
 
+/// The part of a scene that a picture shows, in world units.
+struct SectionOptions {
+  std::optional<Box3d> box;
+  /// Shows the side of the plane through `point` from which `normal` points away.
+  struct Plane {
+    Vec3d point, normal;  ///< The normal is not zero.
+  };
+  std::optional<Plane> plane;
+};
+
 struct RenderOptions {
   int width = 1920, height = 1080;  ///< Pixels; at least 1 each.
   ViewRequest view;                 ///< frame_scene finds the parts that are not set.
@@ -44,6 +54,9 @@ struct RenderOptions {
   /// Occlusion rays end at cells that subtend this solid angle, in steradians; 0 means cells of the
   /// size of the surface's cell. The paper uses 0.07.
   double occlusion_cone = 0;
+
+  /// Rays see only this part. Surfaces where it cuts voxels have a colour of their own.
+  SectionOptions section;
 
   float lod_pixels = 1;  ///< RenderSettings explains this field and the next two.
   float cube_pixels = 24;

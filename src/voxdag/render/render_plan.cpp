@@ -75,6 +75,27 @@ Sky make_sky(const Camera& camera, const View& view, const RenderOptions& option
   return sky;
 }
 
+/// Returns the section in the coordinates of rays.
+RaySection make_section(const Grid& grid, const SectionOptions& options) {
+  RaySection section;
+  section.is_on = options.box || options.plane;
+  const auto in_grid = [&](Vec3d world) {
+    return (world - grid.origin) * (1 / grid.side()) + Vec3d{1, 1, 1};
+  };
+  if (options.box) {
+    const Vec3d low = in_grid(options.box->lo), high = in_grid(options.box->hi);
+    for (int axis = 0; axis < 3; ++axis) {
+      section.low[axis] = static_cast<float>(std::clamp(low[axis], 1.0, 2.0));
+      section.high[axis] = static_cast<float>(std::clamp(high[axis], 1.0, 2.0));
+    }
+  }
+  if (options.plane) {
+    section.normal = normalized(options.plane->normal);
+    section.height = dot(section.normal, in_grid(options.plane->point));
+  }
+  return section;
+}
+
 }  // namespace
 
 RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOptions& options)
@@ -100,6 +121,7 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   setup_.sky = make_sky(setup_.camera, image_.view, options);
   setup_.tables = samples_.view();
   setup_.look = options.look;
+  setup_.section = make_section(grid, options.section);
   setup_.image = buffers_of(image_);
 
   RenderSettings& settings = setup_.settings;

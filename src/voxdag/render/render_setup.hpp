@@ -9,8 +9,12 @@
 #include "voxdag/render/sample_tables.hpp"
 #include "voxdag/render/sky.hpp"
 #include "voxdag/render/specular.hpp"
+#include "voxdag/trace/ray_section.hpp"
 
 namespace voxdag {
+
+/// The diffuse colour of the surfaces at which a section cuts voxels.
+inline constexpr Vec3f kCutAlbedo{0.45f, 0.06f, 0.03f};
 
 /// The effects of a picture and their quality.
 struct RenderSettings {
@@ -57,7 +61,8 @@ struct RenderSetup {
   Light lights[kMaxLights];
   int light_count = 0;
   SampleTables tables;
-  LookView look;  ///< See RenderOptions.
+  LookView look;       ///< See RenderOptions.
+  RaySection section;  ///< All rays are limited to it.
   ImageBuffers image;
   /// The t at which the primary rays of 4×4 pixels may start: see primary_beams.hpp. Null without
   /// beams.

@@ -42,9 +42,10 @@ struct StartRule {
 /// Returns whether a cell of the surface's own size lies at the point, or right in front of it as
 /// seen by the viewer. `to_viewer` has unit length.
 template <class Nodes>
-VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const SurfacePoint& point, Vec3f to_viewer) {
-  const GridRay ray =
-      make_grid_ray(point.start, to_viewer, 0, StartRule::kHidden * point.cell_side);
+VOXDAG_HD inline bool is_hidden(const Nodes& nodes, const RaySection& section,
+                                const SurfacePoint& point, Vec3f to_viewer) {
+  GridRay ray = make_grid_ray(point.start, to_viewer, 0, StartRule::kHidden * point.cell_side);
+  limit_to(section, ray);
   CellHit cell;
   return cast(nodes, ray, StopBelowSize{point.cell_side, 0, 2}, cell);
 }
@@ -83,7 +84,7 @@ VOXDAG_HD inline SurfacePoint make_surface_point(const Nodes& nodes, const Rende
   const Vec3f to_viewer = -static_cast<Vec3f>(normalized(direction));
   const auto can_start_at = [&](Vec3d there) {
     point.start = make_grid_point(setup.grid, there);
-    return !is_hidden(nodes, point, to_viewer);
+    return !is_hidden(nodes, setup.section, point, to_viewer);
   };
   if (can_start_at(lifted)) return point;
   // In corners, in gaps and at the edges of thin objects, that point may lie inside or behind a

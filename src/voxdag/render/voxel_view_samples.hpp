@@ -27,6 +27,7 @@ VOXDAG_HD inline CastRay primary_ray(const RenderSetup& setup, const ViewTile& t
   CastRay ray;
   ray.ray = make_grid_ray(setup.grid, setup.camera.eye, pixel_direction(setup, tile, pixel), t_min,
                           HUGE_VAL);
+  limit_to(setup.section, ray.ray);
   const double size_per_t =
       static_cast<double>(setup.settings.lod_pixels) * setup.camera.pixel_size();
   ray.stop = stop_below_size(setup.grid, ray.ray, size_per_t);
@@ -64,6 +65,19 @@ VOXDAG_HD inline ViewSample voxel_view_sample(const Nodes& nodes, const RenderSe
   return sample;
 }
 
+/// Returns the view sample at which a primary ray hit the surface of a section, whose normal is
+/// `normal`.
+VOXDAG_HD inline ViewSample cut_view_sample(const RenderSetup& setup, Vec3d direction, int level,
+                                            double depth, Vec3f normal) {
+  ViewSample sample;
+  sample.normal = sample.face = normal;
+  sample.albedo = kCutAlbedo;
+  sample.depth = static_cast<float>(depth);
+  sample.cell_size = static_cast<float>(setup.grid.cell_size(level));
+  sample.point = setup.camera.eye + direction * depth;
+  return sample;
+}
+
 /// Sets scratch.samples for all pixels of the tile. Returns the number of rays.
 template <class Nodes, class Caster, class Scratch>
 VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster,
@@ -79,6 +93,11 @@ VOXDAG_HD inline int trace_view_samples(const Nodes& nodes, const Caster& caster
         const Hit hit = to_hit(ray, cell, setup.grid.levels, 0, HUGE_VALF);
         const double depth = ray.to_world_t(static_cast<double>(cell.t));
         const Vec3d direction = pixel_direction(setup, tile, pixel);
+        const Vec3f cut = cell.t == ray.t_min ? cut_normal(setup.section, ray) : Vec3f{};
+        if (dot(cut, cut) > 0) {
+          sample = cut_view_sample(setup, direction, cell.level, depth, cut);
+          return;
+        }
         sample = voxel_view_sample(nodes, setup, direction, hit, depth);
       });
   return tile.width * tile.height;

@@ -72,7 +72,7 @@ export class Renderer {
         hits: [...CAST, 'hits'], display: ['display'], reduce: ['reduce'],
       }[name] ?? [];
       const head = `#version 300 es\n${GLSL}\n#define TEXEL_BITS ${texelBits(this.gl)}\n#define MOST_STEPS ${MOST_STEPS}\n#define INSTANCE_STEPS ${INSTANCE_STEPS}\n` +
-          `#define CUT_ALBEDO vec3(0.72, 0.27, 0.16)\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
+          `#define CUT_ALBEDO vec3(${LIGHT.cutAlbedo})\n${SHOWS.map((show, i) => `#define SHOW_${show.toUpperCase()} ${i}\n`).join('')}` +
           (look ? '#define HAS_LOOK\n' : '');
       const fragment = head + parts.map(text).join('\n');
       program = new Program(this.gl, `#version 300 es\n${text('quad.vert')}`, fragment, key);

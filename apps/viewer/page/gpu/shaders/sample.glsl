@@ -34,13 +34,12 @@ void main() {
   vec3 view = -normalize(direction);
   vec3 place = u_eye + direction * depth;
   bool is_cut = ray.cut != 0 && hit.t == ray.t_min;
-  vec3 normal, face, start;
+  vec3 normal, face;
   float color = -1.0;
   if (is_cut) {
     normal = ray.cut == 4 ? u_section_plane.xyz : vec3(0.0);
     if (ray.cut < 4) normal[ray.cut - 1] = direction[ray.cut - 1] > 0.0 ? -1.0 : 1.0;
     face = normal;
-    start = gridPoint(place);
     color = -2.0;
   } else {
     int side = enteredFace(ray, hit);
@@ -69,9 +68,9 @@ void main() {
 #endif
     float below = cubeHeight(face) - dot(face, entered);
     if (below > 0.0) place += face * (below * cell_side);
-    start = u_show == SHOW_LIGHT || u_show == SHOW_OCCLUSION ? startPoint(place, face, cell_side, direction, depth)
-                                                             : gridPoint(place);
   }
+  vec3 start = u_show == SHOW_LIGHT || u_show == SHOW_OCCLUSION ? startPoint(place, face, cell_side, direction, depth)
+                                                                : gridPoint(place);
   float value = steps;
   if (u_show == SHOW_LEVEL) value = float(hit.level);
   if (u_show == SHOW_SHARING) {
