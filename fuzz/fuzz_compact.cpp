@@ -26,9 +26,10 @@ namespace {
 void read_attributes(const CompactContents& contents, const SvdagView& dag) {
   if (!contents.has_attributes()) return;
   const CellIndex index = build_cell_index(dag, contents.metadata.attributes.level());
+  ExpandedChunks expanded;
   DagAttributesView attributes;
   try {
-    attributes = contents.attributes(index.view());
+    attributes = contents.attributes(index.view(), expanded);
   } catch (const Error&) {
     return;
   }
@@ -84,7 +85,8 @@ std::string seed_file(std::mt19937& rng) {
     metadata.attributes.colors = metadata.attributes.normals = {0.5, 3};
     metadata.attributes.materials.emplace(kNumberMaterials, "name");
   }
-  write_vdag(dir / "file.vdag", encode_svdag(dag.view()), metadata, attributes);
+  const AttributeForm form = rng() % 2 == 0 ? AttributeForm::kPages : AttributeForm::kWire;
+  write_vdag(dir / "file.vdag", encode_svdag(dag.view()), metadata, attributes, form);
   return read_text(dir / "file.vdag");
 }
 

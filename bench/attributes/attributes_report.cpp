@@ -31,6 +31,7 @@ Json result_json(const AttributesRun& run, const ColorResult& result) {
   return {{"codec", key_of(result.codec)},
           {"bound", finite_or_null(result.bound)},
           {"bytes", result.bytes},
+          {"wire_bytes", result.wire_bytes > 0 ? Json(result.wire_bytes) : Json()},
           {"bits_per_cell", run.bits_per_cell(result)},
           {"bits_per_voxel", run.bits_per_voxel(result.bytes)},
           {"psnr_db", finite_or_null(result.psnr_db)},
@@ -78,13 +79,16 @@ std::string attributes_table(const AttributesResults& results) {
         ": {} voxels, {} cells, numbers {:.3f} bits/voxel, filtered in {:.2f} s ({} cells/s)\n",
         with_commas(run.voxels), with_commas(run.cells), run.bits_per_voxel(run.index_bytes),
         run.filter_seconds, human_count(cells_per_second(run, run.filter_seconds)));
-    text += fmt::format("  {:<13} {:>6} {:>15} {:>11} {:>10} {:>9} {:>8} {:>8} {:>9} {:>10}\n",
-                        "colours", "bound", "bytes", "bits/voxel", "bits/cell", "PSNR", "MS-SSIM",
-                        "worst", "seconds", "cells/s");
+    text +=
+        fmt::format("  {:<13} {:>6} {:>15} {:>13} {:>11} {:>10} {:>9} {:>8} {:>8} {:>9} {:>10}\n",
+                    "colours", "bound", "bytes", "wire bytes", "bits/voxel", "bits/cell", "PSNR",
+                    "MS-SSIM", "worst", "seconds", "cells/s");
     for (const ColorResult& result : run.results)
       text += fmt::format(
-          "  {:<13} {:>6} {:>15} {:>11.3f} {:>10.3f} {:>6.2f} dB {:>8.4f} {:>8} {:>9.2f} {:>10}\n",
+          "  {:<13} {:>6} {:>15} {:>13} {:>11.3f} {:>10.3f} {:>6.2f} dB {:>8.4f} {:>8} {:>9.2f} "
+          "{:>10}\n",
           title_of(result.codec), bound_of(result), with_commas(result.bytes),
+          result.wire_bytes > 0 ? with_commas(result.wire_bytes) : "",
           run.bits_per_voxel(result.bytes), run.bits_per_cell(result), result.psnr_db,
           result.mean_ms_ssim(), least_of(result), result.seconds,
           human_count(cells_per_second(run, result.seconds)));

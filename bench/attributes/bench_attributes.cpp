@@ -18,6 +18,7 @@
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
+#include "voxdag/layout/wire/wire_values.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
@@ -72,6 +73,8 @@ class ColoredScene {
     const ValuePages pages = encode_pages(colors_, bound, errors, progress_);
     result.seconds = watch.lap();
     result.bytes = pages.view().bytes();
+    const WireValues wire = encode_wire_values(pages.view(), ValueKind::kColor);
+    result.wire_bytes = wire.bytes.size() + wire.segments.size() * sizeof(WireSegment);
     result.psnr_db = psnr_of(errors, colors_.size());
     result.ms_ssim = pictures_->similarities({index_, pages.view(), {}, {}}, progress_);
     return result;

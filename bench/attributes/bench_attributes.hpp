@@ -35,11 +35,12 @@ struct AttributesPlan {
 /// The colours of a scene in one codec.
 struct ColorResult {
   ColorCodec codec = ColorCodec::kVoxdag;
-  double bound = 0;             ///< The bound or the threshold; NaN: the codec has none.
-  std::uint64_t bytes = 0;      ///< Without the numbers of cells.
-  double psnr_db = 0;           ///< Over all channels of all cells; infinite if all are exact.
-  std::vector<double> ms_ssim;  ///< One for each view.
-  double seconds = 0;           ///< Wall-clock seconds of the encoder, from colours in memory.
+  double bound = 0;              ///< The bound or the threshold; NaN: the codec has none.
+  std::uint64_t bytes = 0;       ///< Without the numbers of cells.
+  std::uint64_t wire_bytes = 0;  ///< In the wire form; 0: the codec has none.
+  double psnr_db = 0;            ///< Over all channels of all cells; infinite if all are exact.
+  std::vector<double> ms_ssim;   ///< One for each view.
+  double seconds = 0;            ///< Wall-clock seconds of the encoder, from colours in memory.
 
   double mean_ms_ssim() const;
 };

@@ -161,8 +161,45 @@ describeInBrowsers('loading', (browserName, browser) => {
     close();
   });
 
-  it('says what is wrong with broken files, and never hangs', async () => {
-    const file = buildColored(128), server = await view(file);
+  it('reads colours and normals in the wire form', async () => {
+    const file = buildColored(512), wire = path.join(folder, 'wire.vdag');
+    voxdag('convert', file, '--wire', '-o', wire, '-q');
+    assert.ok(fs.statSync(wire).size < fs.statSync(file).size * 0.9);
+    const server = await view(wire);
+    const page = await open(browser(), server.url + QUICK, SMALL);
+    await still(page);
+    const [ofWire, ofPages] = await page.evaluate(async (base64) => {
+      const { SceneLoader } = await import(new URL('file/scene_loader.js', document.baseURI).href);
+      /** @param {{url?: string, bytes?: ArrayBuffer}} from */
+      const load = (from) => new Promise((resolve) => {
+        const loader = new SceneLoader((/** @type {any} */ message) => {
+          if (message.type === 'info') loader.load({ shown: 2, colors: true, normals: true });
+          if (message.type === 'error') resolve(message.text);
+          if (message.type !== 'attributes') return;
+          const list = (/** @type {any} */ { precision, begins, words }) => [precision, ...begins, ...words];
+          resolve({ colors: list(message.colors), normals: list(message.normals) });
+        });
+        loader.open(from);
+      });
+      const same = (/** @type {any} */ a, /** @type {any} */ b) => [a.colors.length, a.normals.length, JSON.stringify(a) === JSON.stringify(b)];
+      const wire = await load({ url: 'scene.vdag' });
+      const pages = await load({ bytes: Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer });
+      return [same(wire, pages), same(pages, pages)];
+    }, fs.readFileSync(file).toString('base64'));
+    assert.ok(ofWire[0] > 10_000 && ofWire[1] > 40_000);
+    assert.deepEqual(ofWire, ofPages);
+    assertNoComplaints(page);
+    await page.close();
+    await server.close();
+  });
+
+  for (const form of ['pages', 'wire']) it(`says what is wrong with broken files, and never hangs (${form})`, async () => {
+    let file = buildColored(128);
+    if (form === 'wire') {
+      file = path.join(folder, 'small-wire.vdag');
+      voxdag('convert', buildColored(128), '--wire', '-o', file, '-q');
+    }
+    const server = await view(file);
     const page = await open(browser(), server.url + QUICK, SMALL);
     await still(page);
     const bytes = fs.readFileSync(file);

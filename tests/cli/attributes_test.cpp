@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "colored_waves.hpp"
 #include "json.hpp"
@@ -12,6 +13,7 @@
 #include "support/temp_dir.hpp"
 #include "support/test_rays.hpp"
 #include "support/vdag_bytes.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
@@ -334,6 +336,51 @@ TEST_F(AttributesCommand, OptionsWithoutEffectAreRefused) {
                  1, "1024 is more than the grid's resolution, ");
   expect_failure(run_build("a.esvo", {"--color"}), 2, "is for DAGs only");
   EXPECT_EQ(dir_.count(), 1);
+}
+
+TEST_F(AttributesCommand, TheWireFormIsSmallerAndGoesThroughEveryCommand) {
+  write_text(dir_ / "waves.obj", colored_waves(true));
+  const std::string pages =
+      build("pages.vdag", {"--color", "--normal", "--material-ids", "--compact"});
+  const std::string wire = dir_ / "wire.vdag";
+  const auto succeed = [](const std::vector<std::string>& words) {
+    const ProcessResult result = run_voxdag(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  succeed({"convert", pages, "--wire", "-o", wire});
+  EXPECT_LT(std::filesystem::file_size(wire), std::filesystem::file_size(pages));
+  const auto json = nlohmann::json::parse(succeed({"info", wire, "--json"}));
+  EXPECT_EQ(json.at("attributes").at("color").at("form"), "wire");
+  EXPECT_EQ(json.at("attributes").at("material").at("form"), "wire");
+  EXPECT_NE(succeed({"info", wire}).find("wire form"), std::string::npos);
+  succeed({"verify", wire, "--mesh", dir_ / "waves.obj"});
+  // The way back, from the compact and from the plain form.
+  succeed({"convert", wire, "-o", dir_ / "back.vdag"});
+  EXPECT_EQ(read_text(dir_ / "back.vdag"), read_text(pages));
+  succeed({"convert", wire, "--plain", "--wire", "-o", dir_ / "plain_wire.vdag"});
+  succeed({"verify", dir_ / "plain_wire.vdag"});
+  succeed({"convert", dir_ / "plain_wire.vdag", "--compact", "-o", dir_ / "back.vdag"});
+  EXPECT_EQ(read_text(dir_ / "back.vdag"), read_text(pages));
+  write_rays(CompactFile(wire).grid());
+  const auto hits = [&](const std::string& scene) {
+    succeed({"trace", scene, "--rays", dir_ / "rays.npy", "-o", dir_ / "hits.npy"});
+    return read_text(dir_ / "hits.npy");
+  };
+  EXPECT_EQ(hits(wire), hits(pages));
+  EXPECT_EQ(hits(dir_ / "plain_wire.vdag"), hits(pages));
+  // A limit below the expanded attributes is refused, and nothing is written.
+  const ProcessResult refused =
+      run_voxdag({"convert", wire, "--memory", "1M", "-o", dir_ / "none.vdag"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "none.vdag"));
+  // Broken bytes of the coded values, with a right checksum of none.
+  std::string bytes = read_text(wire);
+  bytes[bytes.size() - 200] ^= 1;
+  write_text(dir_ / "broken.vdag", bytes);
+  const ProcessResult broken = run_voxdag({"info", dir_ / "broken.vdag"});
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_NE(broken.err.find("checksum"), std::string::npos) << broken.err;
 }
 
 }  // namespace

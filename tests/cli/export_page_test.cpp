@@ -40,7 +40,7 @@ TEST_F(ExportPage, LevelsKeepTheColours) {
     const ProcessResult result = run_voxdag(words);
     EXPECT_EQ(result.status, 0) << result.err;
   };
-  write({"convert", colored, "-o", coarse, "-q"});
+  write({"convert", colored, "--wire", "-o", coarse, "-q"});
   write({"export", colored, "-o", dir_ / "site/", "-q"});
   EXPECT_EQ(read_text(dir_ / "site/scene.vdag"), read_text(coarse));
   EXPECT_NE(run_voxdag({"info", coarse, "--json"}).out.find("\"color\""), std::string::npos);

@@ -7,6 +7,7 @@
 #include "support/error_of.hpp"
 #include "support/number_colors.hpp"
 #include "support/vdag_bytes.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/layout/look.hpp"
 
 namespace voxdag {
@@ -19,7 +20,7 @@ const Svdag& small_dag() {
 
 const std::vector<std::string> kNames = {"brick", "glass", "", "leaf \"x\"", "wood"};
 
-std::string colored_file(int finest = 5) {
+std::string colored_file(int finest = 5, AttributeForm form = AttributeForm::kPages) {
   const Svdag& dag = small_dag();
   const NumberColors colors(dag.view(), finest);
   VdagMetadata metadata = example_metadata(dag.view());
@@ -28,7 +29,7 @@ std::string colored_file(int finest = 5) {
   metadata.attributes.normals = {3.5, 99};
   metadata.attributes.materials = kNames;
   const TempDir dir;
-  write_vdag(dir / "file.vdag", dag.view(), metadata, colors.view().attributes);
+  write_vdag(dir / "file.vdag", dag.view(), metadata, colors.view().attributes, form);
   return read_text(dir / "file.vdag");
 }
 
@@ -50,9 +51,12 @@ void read_all(const VdagContents& contents) {
     }
 }
 
+constexpr AttributeForm kForms[] = {AttributeForm::kPages, AttributeForm::kWire};
+
 TEST(AttributeChunks, WhatWasWrittenIsRead) {
-  for (int finest = 0; finest <= 5; ++finest) {
-    const AlignedBytes bytes(colored_file(finest));
+  for (int run = 0; run < 12; ++run) {
+    const int finest = run / 2;
+    const AlignedBytes bytes(colored_file(finest, kForms[run % 2]));
     const VdagContents contents = parse_vdag(bytes.span());
     const DagAttributesView& attributes = contents.attributes;
     EXPECT_EQ(attributes.index.finest_level, finest);
@@ -85,33 +89,37 @@ TEST(AttributeChunks, AReaderWithoutAttributesCanSkipThem) {
 }
 
 TEST(AttributeChunks, EveryFlippedBitIsRefusedWithoutChecksums) {
-  const std::string bytes = colored_file();
-  for (std::size_t i = 4; i < 8; ++i)
-    for (std::uint64_t at = 0; at < entry_of(bytes, i).length; ++at) {
-      std::string changed = bytes;
-      changed[entry_of(bytes, i).offset + at] ^= static_cast<char>(1 << at % 8);
-      ASSERT_NE(error_of(changed), "no error");
-    }
+  for (const AttributeForm form : kForms) {
+    const std::string bytes = colored_file(5, form);
+    for (std::size_t i = 4; i < 8; ++i)
+      for (std::uint64_t at = 0; at < entry_of(bytes, i).length; ++at) {
+        std::string changed = bytes;
+        changed[entry_of(bytes, i).offset + at] ^= static_cast<char>(1 << at % 8);
+        ASSERT_NE(error_of(changed), "no error");
+      }
+  }
 }
 
 TEST(AttributeChunks, EveryFlippedBitWithCorrectChecksumsIsRefusedOrSafeToRead) {
-  const std::string bytes = colored_file(4);
-  int refused = 0;
-  for (std::size_t i = 4; i < 8; ++i)
-    for (std::uint64_t bit = 0; bit < 8 * entry_of(bytes, i).length; ++bit) {
-      std::string changed = bytes;
-      changed[entry_of(bytes, i).offset + bit / 8] ^= static_cast<char>(1 << bit % 8);
-      repair_checksums(changed);
-      try {
-        const AlignedBytes aligned(changed);
-        const VdagContents contents = parse_vdag(aligned.span());
-        if (bit % 61 == 0) read_all(contents);
-        EXPECT_GT(i, 4u) << "bit " << bit << " of CIDX";
-      } catch (const Error&) {
-        ++refused;
+  for (const AttributeForm form : kForms) {
+    const std::string bytes = colored_file(4, form);
+    int refused = 0;
+    for (std::size_t i = 4; i < 8; ++i)
+      for (std::uint64_t bit = 0; bit < 8 * entry_of(bytes, i).length; ++bit) {
+        std::string changed = bytes;
+        changed[entry_of(bytes, i).offset + bit / 8] ^= static_cast<char>(1 << bit % 8);
+        repair_checksums(changed);
+        try {
+          const AlignedBytes aligned(changed);
+          const VdagContents contents = parse_vdag(aligned.span());
+          if (bit % 61 == 0) read_all(contents);
+          EXPECT_GT(i, 4u) << "bit " << bit << " of CIDX";
+        } catch (const Error&) {
+          ++refused;
+        }
       }
-    }
-  EXPECT_GT(refused, 1000);
+    EXPECT_GT(refused, 1000);
+  }
 }
 
 /// Returns the file with the last `cut` bytes of chunk `index` removed, and all offsets, sizes and
@@ -133,11 +141,61 @@ std::string shortened(const std::string& bytes, std::size_t index, std::uint64_t
 }
 
 TEST(AttributeChunks, EveryTruncatedChunkIsRefused) {
-  const std::string bytes = colored_file(4);
-  ASSERT_EQ(error_of(shortened(bytes, 4, 0)), "no error");
-  for (std::size_t i = 4; i < 8; ++i)
-    for (std::uint64_t cut = 1; cut <= entry_of(bytes, i).length; ++cut)
-      ASSERT_NE(error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
+  for (const AttributeForm form : kForms) {
+    const std::string bytes = colored_file(4, form);
+    ASSERT_EQ(error_of(shortened(bytes, 4, 0)), "no error");
+    for (std::size_t i = 4; i < 8; ++i)
+      for (std::uint64_t cut = 1; cut <= entry_of(bytes, i).length; ++cut)
+        ASSERT_NE(error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
+  }
+}
+
+TEST(AttributeChunks, TheWireFormIsNamedAndHasTheSameContents) {
+  const std::string pages = colored_file(), wire = colored_file(5, AttributeForm::kWire);
+  EXPECT_LT(wire.size(), pages.size());
+  EXPECT_EQ(entry_of(wire, 5).id, kChunkWireColors);
+  EXPECT_EQ(entry_of(wire, 6).id, kChunkWireNormals);
+  EXPECT_EQ(entry_of(wire, 7).id, kChunkWireMaterials);
+  const AlignedBytes bytes(wire);
+  const VdagContents contents = parse_vdag(bytes.span());
+  for (std::size_t i = 0; i < 8; ++i) {
+    const VdagChunkEntry entry = entry_of(pages, i);
+    const auto read = find_chunk(contents.chunks, entry.id)->bytes;
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(read.data()), read.size()),
+              pages.substr(entry.offset, entry.length));
+  }
+  const TempDir dir;
+  write_text(dir / "wire.vdag", wire);
+  write_text(dir / "pages.vdag", pages);
+  const WireBytes sizes = wire_bytes_of(dir / "wire.vdag");
+  EXPECT_EQ(sizes.colors, entry_of(wire, 5).length);
+  EXPECT_EQ(sizes.normals, entry_of(wire, 6).length);
+  EXPECT_EQ(sizes.materials, entry_of(wire, 7).length);
+  EXPECT_EQ(sizes.expanded,
+            entry_of(pages, 5).length + entry_of(pages, 6).length + entry_of(pages, 7).length);
+  EXPECT_EQ(wire_bytes_of(dir / "pages.vdag").expanded, 0u);
+}
+
+TEST(AttributeChunks, AWireChunkThatExpandsTooFarIsRefused) {
+  std::string bytes = colored_file(5, AttributeForm::kWire);
+  const VdagChunkEntry entry = entry_of(bytes, 5);
+  poke(bytes, entry.offset + offsetof(WireHeader, words), 8 * entry.length + 1);
+  repair_checksums(bytes);
+  EXPECT_NE(error_of(bytes).find("chunk WCOL: expands to"), std::string::npos) << error_of(bytes);
+  poke(bytes, entry.offset + offsetof(WireHeader, words), std::uint64_t{0});
+  repair_checksums(bytes);
+  EXPECT_NE(error_of(bytes).find("chunk WCOL: has too few words"), std::string::npos)
+      << error_of(bytes);
+}
+
+TEST(AttributeChunks, ColoursInBothFormsAreRefused) {
+  std::string bytes = colored_file(5, AttributeForm::kWire);
+  VdagChunkEntry entry = entry_of(bytes, 7);
+  entry.id = kChunkColors;
+  poke(bytes, entry_offset(7), entry);
+  repair_checksums(bytes);
+  EXPECT_NE(error_of(bytes).find("WCOL: stands for the chunk COLR"), std::string::npos)
+      << error_of(bytes);
 }
 
 TEST(AttributeChunks, ColoursWithoutNumbersAreRefused) {

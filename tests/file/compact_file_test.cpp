@@ -44,7 +44,8 @@ void read_all(const std::string& bytes) {
   const Svdag dag = decode_svdag(contents.view());
   if (!contents.has_attributes()) return;
   const CellIndex index = build_cell_index(dag.view(), contents.metadata.attributes.level());
-  const DagAttributesView attributes = contents.attributes(index.view());
+  ExpandedChunks expanded;
+  const DagAttributesView attributes = contents.attributes(index.view(), expanded);
   for (std::uint64_t i = 0; i < index.cells; ++i) {
     if (attributes.has_colors()) read_value(attributes.colors, i);
     if (attributes.has_normals()) read_value(attributes.normals, i);
@@ -79,7 +80,8 @@ TEST(CompactFile, TheAttributesOfAllCellsAreThoseThatWereWritten) {
     const CompactContents contents = parse_compact(bytes.span());
     EXPECT_FALSE(has_chunk(contents.chunks, kChunkCellIndex));
     const CellIndex index = build_cell_index(dag.view(), contents.metadata.attributes.level());
-    const DagAttributesView attributes = contents.attributes(index.view());
+    ExpandedChunks expanded;
+    const DagAttributesView attributes = contents.attributes(index.view(), expanded);
     for (std::uint64_t i = 0; i < index.cells; ++i) {
       ASSERT_EQ(read_value(attributes.colors, i), color_of_number(i));
       ASSERT_EQ(read_value(attributes.normals, i), color_of_number(i));
@@ -93,7 +95,8 @@ TEST(CompactFile, ColoursOfAnotherNumberOfCellsAreRefused) {
   const AlignedBytes bytes(colored_file(6));
   const CompactContents contents = parse_compact(bytes.span());
   const CellIndex coarser = build_cell_index(dag.view(), 5);
-  const std::string error = error_of([&] { contents.attributes(coarser.view()); });
+  ExpandedChunks expanded;
+  const std::string error = error_of([&] { contents.attributes(coarser.view(), expanded); });
   EXPECT_NE(error.find("chunk COLR: has "), std::string::npos) << error;
 }
 

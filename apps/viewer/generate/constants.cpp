@@ -7,6 +7,7 @@
 
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/layout/value_pages.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/render_options.hpp"
@@ -54,9 +55,10 @@ std::string camel_case(std::string name) {
 /// The container of .vdag files; offsets are in bytes.
 Json file_constants() {
   Json ids;
-  for (const std::uint32_t id : {kChunkMeta, kChunkLevels, kChunkNodes, kChunkLeafBlocks,
-                                 kChunkCompactHead, kChunkCompactStream, kChunkEsvo,
-                                 kChunkEsvoBlocks, kChunkCellIndex, kChunkColors, kChunkNormals})
+  for (const std::uint32_t id :
+       {kChunkMeta, kChunkLevels, kChunkNodes, kChunkLeafBlocks, kChunkCompactHead,
+        kChunkCompactStream, kChunkEsvo, kChunkEsvoBlocks, kChunkCellIndex, kChunkColors,
+        kChunkNormals, kChunkWireColors, kChunkWireNormals})
     ids[vdag_chunk_name(id)] = id;
   return {{"magic", kVdagMagic},
           {"version", kVdagVersion},
@@ -99,6 +101,28 @@ Json pages_constants() {
           {"flat", static_cast<int>(ValueBlock::kFlat)},
           {"raw", static_cast<int>(ValueBlock::kRaw)},
           {"channelBits", channel_bits}};
+}
+
+/// The wire form of values. Contexts count bits.
+Json wire_constants() {
+  return {
+      {"headerBytes", sizeof(WireHeader)},
+      {"precision", offsetof(WireHeader, parameter)},
+      VOXDAG_OFFSET(WireHeader, values),
+      VOXDAG_OFFSET(WireHeader, words),
+      VOXDAG_OFFSET(WireHeader, coded_bytes),
+      {"mostExpansion", kMostWireExpansion},
+      {"segmentPages", kSegmentPages},
+      VOXDAG_CONSTANT(RangeCoder, kProbabilityBits),
+      VOXDAG_CONSTANT(RangeCoder, kLeastRange),
+      VOXDAG_CONSTANT(AdaptiveBit, kFast),
+      VOXDAG_CONSTANT(AdaptiveBit, kSlow),
+      {"model",
+       {VOXDAG_CONSTANT(ValueModelSizes, kTypes), VOXDAG_CONSTANT(ValueModelSizes, kLengthBits),
+        VOXDAG_CONSTANT(ValueModelSizes, kLengthContexts),
+        VOXDAG_CONSTANT(ValueModelSizes, kEndBits), VOXDAG_CONSTANT(ValueModelSizes, kEndContexts),
+        VOXDAG_CONSTANT(ValueModelSizes, kStepBits), VOXDAG_CONSTANT(ValueModelSizes, kWeightBits),
+        VOXDAG_CONSTANT(ValueModelSizes, kNoWeight)}}};
 }
 
 /// The light, and the options of a picture whose defaults the page shares.
@@ -145,6 +169,7 @@ Json all_constants() {
             VOXDAG_OFFSET(CellIndexHeader, cells),
             VOXDAG_OFFSET(CellIndexHeader, width)}},
           {"PAGES", pages_constants()},
+          {"WIRE", wire_constants()},
           {"SAMPLES",
            {VOXDAG_CONSTANT(SampleTables, kSets), VOXDAG_CONSTANT(SampleTables, kRotations)}},
           {"LIGHT", light_constants()},

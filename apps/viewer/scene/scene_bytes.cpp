@@ -117,8 +117,9 @@ class FileBytes final : public SceneBytes {
 /// The bytes of the file for a DAG in memory.
 class DagBytes final : public SceneBytes {
  public:
-  DagBytes(const SvdagView& dag, const VdagMetadata& metadata, const DagAttributesView& attributes)
-      : bytes_(dag, metadata, attributes) {
+  DagBytes(const SvdagView& dag, const VdagMetadata& metadata, const DagAttributesView& attributes,
+           AttributeForm form)
+      : bytes_(dag, metadata, attributes, form) {
     std::memcpy(&header_, bytes_.parts().front().data(), sizeof header_);
     for (const auto& part : bytes_.parts()) {
       begins_.push_back(end_);
@@ -156,8 +157,9 @@ std::unique_ptr<SceneBytes> open_scene_bytes(const std::filesystem::path& path) 
 }
 
 std::unique_ptr<SceneBytes> make_scene_bytes(const SvdagView& dag, const VdagMetadata& metadata,
-                                             const DagAttributesView& attributes) {
-  return std::make_unique<DagBytes>(dag, metadata, attributes);
+                                             const DagAttributesView& attributes,
+                                             AttributeForm form) {
+  return std::make_unique<DagBytes>(dag, metadata, attributes, form);
 }
 
 }  // namespace voxdag

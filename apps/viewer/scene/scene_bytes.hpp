@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "voxdag/file/attribute_form.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
@@ -40,6 +41,7 @@ std::unique_ptr<SceneBytes> open_scene_bytes(const std::filesystem::path& path);
 /// Returns the bytes that write_vdag() would write for a DAG in memory, which must outlive the
 /// result. Throws what write_vdag() throws.
 std::unique_ptr<SceneBytes> make_scene_bytes(const SvdagView& dag, const VdagMetadata& metadata,
-                                             const DagAttributesView& attributes = {});
+                                             const DagAttributesView& attributes = {},
+                                             AttributeForm form = AttributeForm::kPages);
 
 }  // namespace voxdag

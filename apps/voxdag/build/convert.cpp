@@ -19,7 +19,7 @@ namespace {
 
 struct ConvertArguments {
   std::string output;
-  bool compact = false, plain = false;
+  bool compact = false, plain = false, wire = false;
   DagReduction reduction;
   std::uint64_t memory_limit = 0;
 };
@@ -31,11 +31,14 @@ void convert(const ConvertArguments& arguments, Session& session) {
   const DagInput file(session.subject, &session.progress, &memory);
   const ReducedDag dag(file, session.subject, arguments.reduction, &memory, &session.progress);
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
+  const DagAttributesView attributes = dag.attributes();
+  const AttributeForm form = arguments.wire ? AttributeForm::kWire : AttributeForm::kPages;
+  const MemoryReservation coded = reserve_coded(attributes, form, &memory);
   if (compact) {
     write_vdag(arguments.output, encode_svdag(dag.dag(), {.memory = &memory}, &session.progress),
-               dag.metadata(), dag.attributes());
+               dag.metadata(), attributes, form);
   } else {
-    write_vdag(arguments.output, dag.dag(), dag.metadata(), dag.attributes());
+    write_vdag(arguments.output, dag.dag(), dag.metadata(), attributes, form);
   }
   session.bar.clear();
   if (session.quiet) return;
@@ -59,6 +62,10 @@ void add_convert_command(const Command& program, Session& session) {
                                       "Write the compact form (default: the form of FILE)");
   command.flag("--plain", arguments->plain, "Write the plain form, the layout of the paper")
       .not_with(compact);
+  command.flag(
+      "--wire", arguments->wire,
+      "Write colours, normals and material ids a quarter smaller or more, to send them: readers "
+      "decode them all");
   add_reduction_options(command, arguments->reduction);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "

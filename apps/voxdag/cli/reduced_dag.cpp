@@ -57,6 +57,14 @@ std::vector<Option> add_reduction_options(const Command& command, DagReduction& 
   return {levels, color_bound, normal_bound, drop};
 }
 
+MemoryReservation reserve_coded(const DagAttributesView& attributes, AttributeForm form,
+                                MemoryBudget* memory) {
+  if (form == AttributeForm::kPages) return {};
+  // The coded bytes, and as many again while their array grows.
+  return MemoryReservation(memory, 2 * (attributes.colors.bytes() + attributes.normals.bytes() +
+                                        attributes.materials.bytes()));
+}
+
 ReducedDag::ReducedDag(const DagInput& file, const std::string& path, const DagReduction& reduction,
                        MemoryBudget* memory, Progress* progress)
     : dag_(file.view()), metadata_(file.metadata()) {

@@ -7,6 +7,7 @@
 #include "cli/command.hpp"
 #include "cli/scene_input.hpp"
 #include "voxdag/attributes/coarsen_attributes.hpp"
+#include "voxdag/file/attribute_form.hpp"
 
 namespace voxdag {
 
@@ -18,6 +19,11 @@ struct DagReduction {
 
 /// Adds --levels, --color-bound, --normal-bound and --drop-attributes. Returns them.
 std::vector<Option> add_reduction_options(const Command& command, DagReduction& reduction);
+
+/// Reserves the memory that a writer takes for attributes in this form, besides the attributes.
+/// `memory` may be null. Throws OverMemory.
+MemoryReservation reserve_coded(const DagAttributesView& attributes, AttributeForm form,
+                                MemoryBudget* memory);
 
 /// A DAG with its metadata and attributes. Refers to its file, which must outlive it, or owns what
 /// the reduction changed. Move-only; views stay valid when it is moved.

@@ -3,6 +3,7 @@
 #include "voxdag/attributes/material_colors.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
 
 namespace voxdag {
@@ -17,21 +18,28 @@ std::variant<DagInput, EsvoFile> open(const std::filesystem::path& path, Progres
   throw Error(path.string(), "", "has no material ids: voxdag build --material-ids stores them");
 }
 
+/// Returns the bytes that a .vdag file takes in memory before it is decoded.
+std::uint64_t bytes_in_memory(const std::filesystem::path& path) {
+  std::error_code unknown;  // Reading the file will tell the reason.
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  return (unknown ? 0 : static_cast<std::uint64_t>(bytes)) + wire_bytes_of(path).expanded;
+}
+
 }  // namespace
 
 DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* progress,
                                    MemoryBudget* memory) {
   Decoded decoded;
+  const MemoryReservation file_bytes(memory, bytes_in_memory(path));
   CompactFile file(path);
   const CompactContents& contents = file.contents();
-  const MemoryReservation file_bytes(memory, file.file_bytes());
   try {
     decoded.dag = decode_svdag(file.view(), memory, progress);
     if (contents.has_attributes()) {
       const MemoryReservation dag_bytes(memory, decoded.view().bytes());
       decoded.index =
           build_cell_index(decoded.view(), contents.metadata.attributes.level(), memory);
-      decoded.stored = contents.attributes(decoded.index.view());
+      decoded.stored = contents.attributes(decoded.index.view(), decoded.expanded);
     }
   } catch (const Cancelled&) {
     throw;
@@ -53,13 +61,13 @@ DagInput::DagInput(const std::filesystem::path& path, Progress* progress, Memory
     const bool is_kept = decoded.file->contents().has_attributes();
     if (!is_kept) decoded.file.reset();
     memory_ = MemoryReservation(memory, decoded.view().bytes() + decoded.index.view().bytes() +
-                                            (is_kept ? file_bytes_ : 0));
+                                            (is_kept ? bytes_in_memory(path) : 0));
     dag_ = std::move(decoded);
   } else {
+    memory_ = MemoryReservation(memory, bytes_in_memory(path));
     VdagFile file(path);
     metadata_ = file.metadata();
     file_bytes_ = file.file_bytes();
-    memory_ = MemoryReservation(memory, file_bytes_);
     dag_ = std::move(file);
   }
 }

@@ -37,7 +37,8 @@ class DagInput {
     std::optional<CompactFile> file;  ///< Empty if the file has no attributes.
     Svdag dag;
     CellIndex index;           ///< The numbers of the cells with attributes.
-    DagAttributesView stored;  ///< Points into `file` and `index`, also after they are moved.
+    ExpandedChunks expanded;   ///< Attributes that the file has in the wire form.
+    DagAttributesView stored;  ///< Points into the members above, also after they are moved.
 
     SvdagView view() const { return dag.view(); }
     const DagAttributesView& attributes() const { return stored; }

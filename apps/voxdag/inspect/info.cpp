@@ -8,6 +8,7 @@
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/esvo_report.hpp"
 #include "voxdag/report/human.hpp"
@@ -30,6 +31,11 @@ DagReport dag_report(const std::string& path, Progress& progress) {
   const DagInput file(path, &progress);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
   report.attributes = sizes_of(file.attributes());
+  const WireBytes wire = wire_bytes_of(path);
+  report.attributes.is_wire = wire.expanded > 0;
+  if (wire.colors > 0) report.attributes.color_bytes = wire.colors;
+  if (wire.normals > 0) report.attributes.normal_bytes = wire.normals;
+  if (wire.materials > 0) report.attributes.material_bytes = wire.materials;
   if (!file.is_compact()) return report;
   const CompactFile compact(path);
   report.compact = bytes_of(compact.view(), compact.head_bytes());

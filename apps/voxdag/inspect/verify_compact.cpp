@@ -53,10 +53,11 @@ VerifyReport verify_compact(const std::filesystem::path& path, Progress& progres
         [&] { compare_counts(contents.metadata.counts, count_svdag(dag.view())); });
   check("attributes", {kStructure}, [&] {
     CellIndex index;
+    ExpandedChunks expanded;
     DagAttributesView stored;
     if (contents.has_attributes()) {
       index = build_cell_index(dag.view(), contents.metadata.attributes.level());
-      stored = contents.attributes(index.view());
+      stored = contents.attributes(index.view(), expanded);
     }
     if (!dag.view().is_empty()) compare_attributes(contents.metadata.attributes, stored);
   });

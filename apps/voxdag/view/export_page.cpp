@@ -36,7 +36,8 @@ void check_page_output(const std::string& output, const Session& session) {
 
 void export_page(const std::string& output, const ShownSceneArguments& arguments,
                  Session& session) {
-  const ShownScene scene = ShownScene::read(session.subject, arguments, session);
+  const ShownScene scene =
+      ShownScene::read(session.subject, arguments, AttributeForm::kWire, session);
   const std::uint64_t bytes = is_single_file(output)
                                   ? export_single_page(output, scene.bytes(), &session.progress)
                                   : export_site(output, scene.bytes(), &session.progress);

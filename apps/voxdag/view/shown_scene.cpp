@@ -23,7 +23,7 @@ ShownScene ShownScene::open(const std::string& path, const ShownSceneArguments& 
                             Session& session) {
   refuse_esvo(path);
   if (is_compact_file(path)) {
-    ShownScene scene = read(path, arguments, session);
+    ShownScene scene = read(path, arguments, AttributeForm::kPages, session);
     session.bar.clear();
     if (!session.quiet)
       print_line(
@@ -36,7 +36,7 @@ ShownScene ShownScene::open(const std::string& path, const ShownSceneArguments& 
 }
 
 ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& arguments,
-                            Session& session) {
+                            AttributeForm form, Session& session) {
   refuse_esvo(path);
   ShownScene scene;
   // make_unique() would need to move the budget, which cannot be moved.
@@ -44,8 +44,9 @@ ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& 
   scene.file_ = std::make_unique<DagInput>(path, &session.progress, scene.memory_.get());
   scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction,
                                             scene.memory_.get(), &session.progress);
-  scene.bytes_ =
-      make_scene_bytes(scene.dag_->dag(), scene.dag_->metadata(), scene.dag_->attributes());
+  const DagAttributesView& attributes = scene.dag_->attributes();
+  scene.coded_ = reserve_coded(attributes, form, scene.memory_.get());
+  scene.bytes_ = make_scene_bytes(scene.dag_->dag(), scene.dag_->metadata(), attributes, form);
   return scene;
 }
 

@@ -24,9 +24,9 @@ class ShownScene {
   static ShownScene open(const std::string& path, const ShownSceneArguments& arguments,
                          Session& session);
   /// Reads a file into memory, checks all of it, and reduces it as `arguments` says. Throws what
-  /// DagInput and ReducedDag throw, and Error for an ESVO.
+  /// DagInput and ReducedDag throw, and Error for an ESVO. `form` is that of bytes().
   static ShownScene read(const std::string& path, const ShownSceneArguments& arguments,
-                         Session& session);
+                         AttributeForm form, Session& session);
 
   const SceneBytes& bytes() const { return *bytes_; }
 
@@ -34,6 +34,7 @@ class ShownScene {
   std::unique_ptr<MemoryBudget> memory_;  // The members below count their memory here.
   std::unique_ptr<DagInput> file_;
   std::unique_ptr<ReducedDag> dag_;
+  MemoryReservation coded_;
   std::unique_ptr<SceneBytes> bytes_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
 #include "voxdag/layout/validate_material_ids.hpp"
 #include "voxdag/layout/validate_value_pages.hpp"
@@ -126,7 +127,10 @@ bool read_chunk(const std::vector<VdagChunk>& chunks, std::uint32_t id, const Wo
 
 }  // namespace
 
-AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_cells) {
+AttributeChunks::~AttributeChunks() = default;
+
+AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_cells,
+                                 AttributeForm form) {
   if (attributes.is_empty()) return;
   if (of_cells == Index::kStored) {
     const CellIndexView& index = attributes.index;
@@ -138,9 +142,26 @@ AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_c
                        {std::as_bytes(std::span(&index_, 1)),
                         std::as_bytes(std::span(index.words, index.word_count()))}});
   }
-  if (attributes.has_colors()) add(kChunkColors, attributes.colors, colors_);
-  if (attributes.has_normals()) add(kChunkNormals, attributes.normals, normals_);
-  if (attributes.has_materials()) add(kChunkMaterials, attributes.materials, materials_);
+  const auto add_values = [&](std::uint32_t id, const ValuePagesView& pages,
+                              ValuePagesHeader& header, ValueKind kind) {
+    if (pages.is_empty() ||
+        (form == AttributeForm::kWire && add_wire(std::make_unique<WireChunk>(pages, kind))))
+      return;
+    add(id, pages, header);
+  };
+  add_values(kChunkColors, attributes.colors, colors_, ValueKind::kColor);
+  add_values(kChunkNormals, attributes.normals, normals_, ValueKind::kNormal);
+  if (!attributes.has_materials()) return;
+  const MaterialIdsView& ids = attributes.materials;
+  if (form == AttributeForm::kPages || !add_wire(std::make_unique<WireChunk>(ids)))
+    add(kChunkMaterials, ids, materials_);
+}
+
+bool AttributeChunks::add_wire(std::unique_ptr<WireChunk> chunk) {
+  if (!chunk->is_allowed()) return false;
+  chunks_.push_back(chunk->chunk());
+  wire_.push_back(std::move(chunk));
+  return true;
 }
 
 template <class View, class Header>
@@ -160,7 +181,8 @@ void AttributeChunks::add(std::uint32_t id, const View& pages, Header& header) {
 }
 
 bool has_attribute_values(const std::vector<VdagChunk>& chunks) {
-  return std::any_of(std::begin(kValueChunks), std::end(kValueChunks),
+  return has_wire_chunk(chunks) ||
+         std::any_of(std::begin(kValueChunks), std::end(kValueChunks),
                      [&](std::uint32_t id) { return has_chunk(chunks, id); });
 }
 

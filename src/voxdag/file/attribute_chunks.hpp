@@ -12,14 +12,19 @@
 /// MTID, the materials of cells:
 ///   0    MaterialIdsHeader  64 bytes
 ///   64   MaterialIdsView::groups, ::words, ::pages
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "voxdag/file/attribute_form.hpp"
 #include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/layout/wire/value_model.hpp"
 
 namespace voxdag {
+
+class WireChunk;
 
 struct CellIndexHeader {
   std::uint32_t finest_level;
@@ -53,8 +58,11 @@ class AttributeChunks {
  public:
   enum class Index { kStored, kLeftOut };
 
-  /// `index` says whether the chunk CIDX is among the chunks.
-  AttributeChunks(const DagAttributesView& attributes, Index index);
+  /// `index` says whether the chunk CIDX is among the chunks, `form` whether COLR and NRML have the
+  /// wire form.
+  AttributeChunks(const DagAttributesView& attributes, Index index,
+                  AttributeForm form = AttributeForm::kPages);
+  ~AttributeChunks();
   AttributeChunks(const AttributeChunks&) = delete;
   AttributeChunks& operator=(const AttributeChunks&) = delete;
 
@@ -64,14 +72,17 @@ class AttributeChunks {
  private:
   template <class View, class Header>
   void add(std::uint32_t id, const View& pages, Header& header);
+  /// Adds the chunk if a reader accepts it. Returns whether it did.
+  bool add_wire(std::unique_ptr<WireChunk> chunk);
 
   CellIndexHeader index_{};
   ValuePagesHeader colors_{}, normals_{};
   MaterialIdsHeader materials_{};
+  std::vector<std::unique_ptr<WireChunk>> wire_;
   std::vector<OutputChunk> chunks_;
 };
 
-/// Returns whether the file has values of cells: one of the chunks COLR, NRML and MTID.
+/// Returns whether the file has values of cells: COLR, NRML or MTID, in either form.
 bool has_attribute_values(const std::vector<VdagChunk>& chunks);
 
 /// Reads and checks the attributes of a valid DAG; returns an empty view if the file has none. The

@@ -3,6 +3,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/io/mapped_file.hpp"
 #include "voxdag/layout/compact/compact_bytes.hpp"
 
@@ -21,8 +22,11 @@ CompactSvdagView CompactContents::view() const {
 
 bool CompactContents::has_attributes() const { return has_attribute_values(chunks); }
 
-DagAttributesView CompactContents::attributes(const CellIndexView& index) const {
-  return read_attribute_values(chunks, index);
+DagAttributesView CompactContents::attributes(const CellIndexView& index,
+                                              ExpandedChunks& expanded) const {
+  std::vector<VdagChunk> in_pages = chunks;
+  expand_wire_chunks(in_pages, expanded);
+  return read_attribute_values(in_pages, index);
 }
 
 CompactContents parse_compact(std::span<const std::byte> file) {

@@ -25,9 +25,10 @@ struct CompactContents {
   /// Returns whether the file has attributes. Then metadata.attributes.level() is their finest
   /// level, for which build_cell_index() numbers the cells of the decoded DAG.
   bool has_attributes() const;
-  /// Reads and checks the attributes of the cells that `index` numbers. The result refers to the
-  /// bytes that were parsed and to the words of `index`. Linear time. Throws Error.
-  DagAttributesView attributes(const CellIndexView& index) const;
+  /// Reads and checks the attributes of the cells that `index` numbers. Those in the wire form are
+  /// decoded into `expanded`. The result refers to the bytes that were parsed, to `expanded` and to
+  /// the words of `index`. Linear time. Throws Error.
+  DagAttributesView attributes(const CellIndexView& index, ExpandedChunks& expanded) const;
 };
 
 /// Parses the bytes of a file; vdag_parse.hpp describes the container and the rules for errors.

@@ -72,9 +72,9 @@ VdagBytes::VdagBytes(const std::vector<OutputChunk>& chunks) : head_(make_head(c
 }
 
 PlainVdagBytes::PlainVdagBytes(const SvdagView& view, const VdagMetadata& metadata,
-                               const DagAttributesView& attributes)
+                               const DagAttributesView& attributes, AttributeForm form)
     : json_(checked_metadata_json(metadata)),
-      attributes_(attributes, AttributeChunks::Index::kStored),
+      attributes_(attributes, AttributeChunks::Index::kStored, form),
       bytes_(plain_chunks(json_, view, copy_level_begin(view, level_begin_), attributes_)) {
   assert(metadata.grid.levels == view.levels);
 }

@@ -36,7 +36,8 @@ class PlainVdagBytes {
  public:
   /// Throws Error as write_vdag() does, without a file name. Reads the DAG once, for its checksums.
   PlainVdagBytes(const SvdagView& view, const VdagMetadata& metadata,
-                 const DagAttributesView& attributes = {});
+                 const DagAttributesView& attributes = {},
+                 AttributeForm form = AttributeForm::kPages);
 
   const std::vector<std::span<const std::byte>>& parts() const { return bytes_.parts(); }
   std::uint64_t size() const { return bytes_.size(); }

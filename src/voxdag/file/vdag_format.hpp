@@ -67,10 +67,13 @@ inline constexpr std::uint32_t kChunkEsvo = vdag_chunk_id("ESVO");  ///< u64 slo
 inline constexpr std::uint32_t kChunkEsvoBlocks =
     vdag_chunk_id("EBLK");  ///< EsvoBlockEntry of each block.
 // These chunks are not required: a reader that ignores attributes can use the rest of the file.
-inline constexpr std::uint32_t kChunkCellIndex = vdag_chunk_id("CIDX");  ///< attribute_chunks.hpp
-inline constexpr std::uint32_t kChunkColors = vdag_chunk_id("COLR");     ///< attribute_chunks.hpp
-inline constexpr std::uint32_t kChunkNormals = vdag_chunk_id("NRML");    ///< attribute_chunks.hpp
-inline constexpr std::uint32_t kChunkMaterials = vdag_chunk_id("MTID");  ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkCellIndex = vdag_chunk_id("CIDX");    ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkColors = vdag_chunk_id("COLR");       ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkNormals = vdag_chunk_id("NRML");      ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkMaterials = vdag_chunk_id("MTID");    ///< attribute_chunks.hpp
+inline constexpr std::uint32_t kChunkWireColors = vdag_chunk_id("WCOL");   ///< wire_chunks.hpp
+inline constexpr std::uint32_t kChunkWireNormals = vdag_chunk_id("WNRM");  ///< wire_chunks.hpp
+inline constexpr std::uint32_t kChunkWireMaterials = vdag_chunk_id("WMTI");  ///< wire_chunks.hpp
 
 /// Returns the id as text, such as "NODE", with "?" for bytes other than letters, digits and
 /// spaces.

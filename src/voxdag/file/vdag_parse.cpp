@@ -8,6 +8,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/io/checksum.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
 
@@ -184,6 +185,7 @@ VdagContents parse_vdag(std::span<const std::byte> file) {
   if (has_chunk(contents.chunks, kChunkCompactStream))
     fail("", "holds a compact DAG, but one in the plain form is needed: voxdag convert --plain");
   check_vdag_checksums(contents.chunks);
+  expand_wire_chunks(contents.chunks, contents.expanded);
   contents.metadata = read_vdag_metadata(contents.chunks);
   contents.view = read_vdag_svdag(contents.chunks, contents.metadata.grid.levels);
   check_vdag_svdag(contents.view, validate_svdag);

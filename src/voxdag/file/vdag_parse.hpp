@@ -3,6 +3,7 @@
 /// "header", "chunk table", "chunk NODE, level 3, word 17" or "byte 192". No step reads outside of
 /// the given bytes, whatever they contain.
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,10 +23,14 @@ struct VdagChunk {
   std::span<const std::byte> bytes;
 };
 
+/// The memory of the chunks that expand_wire_chunks() made. Move-only: the chunks point into it.
+using ExpandedChunks = std::vector<std::unique_ptr<std::uint64_t[]>>;
+
 struct VdagContents {
-  std::vector<VdagChunk> chunks;
+  std::vector<VdagChunk> chunks;  ///< Without the wire form: see expand_wire_chunks().
+  ExpandedChunks expanded;
   VdagMetadata metadata;
-  // Views of the bytes that were parsed.
+  // Views of the bytes that were parsed, and of `expanded`.
   SvdagView view;
   DagAttributesView attributes;  ///< Empty if the file has none.
 };

@@ -38,14 +38,16 @@ auto with_name(const std::filesystem::path& path, const Make& make) {
 }  // namespace
 
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
-                const VdagMetadata& metadata, const DagAttributesView& attributes) {
-  const auto bytes =
-      with_name(path, [&] { return std::make_unique<PlainVdagBytes>(view, metadata, attributes); });
+                const VdagMetadata& metadata, const DagAttributesView& attributes,
+                AttributeForm form) {
+  const auto bytes = with_name(
+      path, [&] { return std::make_unique<PlainVdagBytes>(view, metadata, attributes, form); });
   write_parts(path, bytes->parts());
 }
 
 void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
-                const VdagMetadata& metadata, const DagAttributesView& attributes) {
+                const VdagMetadata& metadata, const DagAttributesView& attributes,
+                AttributeForm form) {
   assert(metadata.grid.levels == compact.levels);
   const std::string json = with_name(path, [&] {
     // A reader numbers the cells down to the level that the metadata has.
@@ -57,7 +59,7 @@ void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
       required_chunk(kChunkMeta, std::as_bytes(std::span<const char>(json))),
       required_chunk(kChunkCompactHead, head),
       required_chunk(kChunkCompactStream, std::as_bytes(compact.words()))};
-  const AttributeChunks attribute_chunks(attributes, AttributeChunks::Index::kLeftOut);
+  const AttributeChunks attribute_chunks(attributes, AttributeChunks::Index::kLeftOut, form);
   chunks.insert(chunks.end(), attribute_chunks.chunks().begin(), attribute_chunks.chunks().end());
   write_parts(path, VdagBytes(chunks).parts());
 }

@@ -6,6 +6,7 @@
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/io/file_copy.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/layout/validate_svdag.hpp"
@@ -117,6 +118,7 @@ VerifyReport verify_vdag(const std::filesystem::path& path) {
   run_check(report, "counts", {kStructure, kMetadata},
             [&] { compare_counts(contents.metadata.counts, count_svdag(contents.view)); });
   run_check(report, "attributes", {kStructure}, [&] {
+    expand_wire_chunks(contents.chunks, contents.expanded);
     const DagAttributesView stored = read_attribute_chunks(contents.chunks, contents.view);
     if (!contents.view.is_empty()) compare_attributes(contents.metadata.attributes, stored);
   });

@@ -43,6 +43,7 @@ double bits_per_cell(std::uint64_t bytes, const AttributeSizes& sizes) {
 Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& sizes) {
   Json json;
   json["index_bytes"] = sizes.index_bytes;
+  const char* const form = sizes.is_wire ? "wire" : "pages";
   const auto add = [&](const char* name, std::uint64_t bytes) -> Json& {
     json[name] = {{"resolution", metadata.resolution},
                   {"cells", sizes.cells},
@@ -53,17 +54,23 @@ Json attributes_json(const AttributesMetadata& metadata, const AttributeSizes& s
   if (metadata.colors) {
     const double psnr = metadata.color_psnr_db(sizes.cells);
     Json& color = add("color", sizes.color_bytes);
+    color["form"] = form;
     color["bound"] = metadata.colors->bound;
     // The PSNR of exact colours is infinite, which JSON cannot write.
     if (metadata.colors->errors) color["psnr_db"] = std::isfinite(psnr) ? Json(psnr) : Json();
   }
   if (metadata.normals) {
     Json& normal = add("normal", sizes.normal_bytes);
+    normal["form"] = form;
     normal["bound"] = metadata.normals->bound;
     if (metadata.normals->errors)
       normal["mean_degrees"] = metadata.normal_mean_degrees(sizes.cells);
   }
-  if (metadata.materials) add("material", sizes.material_bytes)["names"] = *metadata.materials;
+  if (metadata.materials) {
+    Json& material = add("material", sizes.material_bytes);
+    material["form"] = form;
+    material["names"] = *metadata.materials;
+  }
   return json;
 }
 
@@ -77,20 +84,22 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
     text += fmt::format("  {:<14}{}, {:.3f} bits/cell{}\n", name, human_bytes(bytes),
                         bits_per_cell(bytes, sizes), error);
   };
+  const std::string form = sizes.is_wire ? ", wire form" : "";
   if (metadata.colors)
     add("colours", sizes.color_bytes,
-        !metadata.colors->errors ? ""
-        : *metadata.colors->errors == 0
-            ? ", lossless"
-            : fmt::format(", PSNR {:.1f} dB", metadata.color_psnr_db(sizes.cells)));
+        form + (!metadata.colors->errors ? ""
+                : *metadata.colors->errors == 0
+                    ? ", lossless"
+                    : fmt::format(", PSNR {:.1f} dB", metadata.color_psnr_db(sizes.cells))));
   if (metadata.normals)
     add("normals", sizes.normal_bytes,
-        !metadata.normals->errors
-            ? ""
-            : fmt::format(", mean error {:.2f}°", metadata.normal_mean_degrees(sizes.cells)));
+        form +
+            (!metadata.normals->errors
+                 ? ""
+                 : fmt::format(", mean error {:.2f}°", metadata.normal_mean_degrees(sizes.cells))));
   if (metadata.materials)
     add("material ids", sizes.material_bytes,
-        fmt::format(", {} materials", with_commas(metadata.materials->size())));
+        form + fmt::format(", {} materials", with_commas(metadata.materials->size())));
   return text;
 }
 
@@ -98,8 +107,8 @@ std::string attributes_table(const AttributesMetadata& metadata, const Attribute
 
 AttributeSizes sizes_of(const DagAttributesView& attributes) {
   if (attributes.is_empty()) return {};
-  return {attributes.index.cells, attributes.index.bytes(), attributes.colors.bytes(),
-          attributes.normals.bytes(), attributes.materials.bytes()};
+  return {attributes.index.cells,     attributes.index.bytes(),     attributes.colors.bytes(),
+          attributes.normals.bytes(), attributes.materials.bytes(), false};
 }
 
 CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes) {

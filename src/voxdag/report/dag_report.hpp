@@ -16,6 +16,7 @@ namespace voxdag {
 struct AttributeSizes {
   std::uint64_t cells = 0;
   std::uint64_t index_bytes = 0, color_bytes = 0, normal_bytes = 0, material_bytes = 0;
+  bool is_wire = false;  ///< Colours and normals have the wire form.
 };
 AttributeSizes sizes_of(const DagAttributesView& attributes);
 

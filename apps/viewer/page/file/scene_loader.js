@@ -2,13 +2,13 @@
  * Loads a scene through a worker. The worker reads the file root first, checks every level, and
  * sends it.
  */
-import { CELL_INDEX, DAG, FILE, PAGES } from '../constants.js';
+import { CELL_INDEX, DAG, FILE, PAGES, WIRE } from '../constants.js';
 import { loadText } from './text_assets.js';
 
 /** Codes of instances are this many times the binary logarithm of the number. */
 export const INSTANCE_STEPS = 4;
 
-const PARTS = ['source', 'container', 'levels', 'attributes', 'worker'];
+const PARTS = ['source', 'container', 'levels', 'attributes', 'wire', 'worker'];
 
 /**
  * Contents of a file. `levelBegin` are the first words of the levels in NODE.
@@ -45,7 +45,7 @@ export class SceneLoader {
   async open(from) {
     const texts = await Promise.all(PARTS.map((name) => loadText(`file/worker/${name}.js`)));
     if (this.closed) return;
-    const constants = Object.entries({ FILE, DAG, PAGES, CELL_INDEX, INSTANCE_STEPS }).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
+    const constants = Object.entries({ FILE, DAG, PAGES, WIRE, CELL_INDEX, INSTANCE_STEPS }).map(([name, value]) => `const ${name} = ${JSON.stringify(value)};\n`);
     const url = URL.createObjectURL(new Blob(["'use strict';\n", ...constants, ...texts], { type: 'text/javascript' }));
     this.worker = new Worker(url);
     URL.revokeObjectURL(url);

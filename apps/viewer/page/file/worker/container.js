@@ -115,7 +115,8 @@ async function readSceneInfo(source, head, chunks) {
     voxels: Number(counts.voxels) || 0,
     dagNodesPerLevel: list(counts.dag_nodes_per_level),
     fileBytes: source.size, isEmpty, words, leafBlocks, levelBegin,
-    hasColors: chunks.has('COLR') && chunks.has('CIDX'), hasNormals: chunks.has('NRML') && chunks.has('CIDX'),
+    hasColors: (chunks.has('COLR') || chunks.has('WCOL')) && chunks.has('CIDX'),
+    hasNormals: (chunks.has('NRML') || chunks.has('WNRM')) && chunks.has('CIDX'),
     source: { name: String(parsed.source?.name ?? ''), vertices: Number(parsed.source?.vertices) || 0, triangles: Number(parsed.source?.triangles) || 0 },
   };
 }

@@ -78,6 +78,32 @@ async function loadLevels(shown) {
   send({ type: 'leaves', shown: Math.min(shown, levels), halves, codes, mostInstances: most }, codes === null ? [halves.buffer] : [halves.buffer, codes.buffer]);
 }
 
+/**
+ * Loads values of cells, in either form. Those in the wire form are decoded while the next arrive.
+ * @param {'COLR' | 'NRML'} id @param {'WCOL' | 'WNRM'} wireId @param {number} cells
+ */
+async function loadValues(id, wireId, cells) {
+  if (chunks.has(id)) return parseValues(await readSlices(chunk(id).offset, chunk(id).length), id, cells);
+  const { offset, length } = chunk(wireId);
+  const wire = new WirePages(await readSlices(offset, Math.min(WIRE.headerBytes, length)), wireId, length, cells);
+  wire.readTable(await readSlices(offset + WIRE.headerBytes, wire.codedAt - WIRE.headerBytes));
+  /** Begins to read segments from `first` on. @param {number} first */
+  const read = (first) => {
+    const begin = first === 0 ? 0 : wire.ends[first - 1].coded;
+    let last = first + 1;
+    while (last < wire.segmentCount && wire.ends[last].coded - begin <= SLICE_BYTES) ++last;
+    const bytes = readSlices(offset + wire.codedAt + begin, wire.ends[last - 1].coded - begin);
+    bytes.catch(() => undefined);  // `await` below reports it.
+    return { first, last, begin, bytes };
+  };
+  for (let part = wire.segmentCount > 0 ? read(0) : null; part !== null;) {
+    const { first, last, begin } = part, bytes = await part.bytes;
+    part = last < wire.segmentCount ? read(last) : null;
+    for (let s = first; s < last; ++s) wire.decode(s, bytes.subarray((s === 0 ? 0 : wire.ends[s - 1].coded) - begin, wire.ends[s].coded - begin));
+  }
+  return wire.pages();
+}
+
 /** @param {{colors: boolean, normals: boolean}} wanted */
 async function loadAttributes(wanted) {
   if (info.isEmpty || (!wanted.colors && !wanted.normals)) return;
@@ -86,11 +112,8 @@ async function loadAttributes(wanted) {
     send({ type: 'note', text: 'The colours have more than 4 G cells: the viewer cannot show them.' });
     return;
   }
-  /** @type {{[id: string]: ReturnType<typeof parseValues> | null}} */
-  const values = { COLR: null, NRML: null };
-  for (const [id, isWanted] of [['COLR', wanted.colors], ['NRML', wanted.normals]])
-    if (isWanted) values[String(id)] = parseValues(await readSlices(chunk(String(id)).offset, chunk(String(id)).length), String(id), index.cells);
-  const { COLR: colors, NRML: normals } = values;
+  const colors = wanted.colors ? await loadValues('COLR', 'WCOL', index.cells) : null;
+  const normals = wanted.normals ? await loadValues('NRML', 'WNRM', index.cells) : null;
   send({ type: 'attributes', index, colors, normals },
        [index.words.buffer, ...[colors, normals].flatMap((v) => (v === null ? [] : [v.begins.buffer, v.words.buffer]))]);
 }
