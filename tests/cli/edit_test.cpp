@@ -1,4 +1,5 @@
 /// The commands that change the voxels of DAGs, against sets of exported voxels.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -181,10 +182,54 @@ TEST_F(Edit, DilateAndErodeFollowTheNeighbours) {
   EXPECT_NE(none.err.find("voxdag: "), std::string::npos) << "it warns that no voxel is left";
 }
 
+TEST_F(Edit, ComponentsAreCountedAndTheLargeOnesKept) {
+  // A shell around an empty cube, and two voxels far away that share an edge.
+  const Voxel v = *voxels_of("a.vdag").begin();
+  run({"crop", path("a.vdag"), "--window",
+       fmt::format("{},{},{},{},{},{}", v[0], v[1], v[2], v[0] + 1, v[1] + 1, v[2] + 1)},
+      "any.vdag");
+  run({"shift", path("any.vdag"), "--by", fmt::format("{},{},{}", 4 - v[0], 4 - v[1], 4 - v[2])},
+      "one.vdag");
+  ASSERT_EQ(voxels_of("one.vdag"), (Voxels{{4, 4, 4}}));
+  run({"dilate", path("one.vdag"), "--steps", "3"}, "cube.vdag");
+  run({"erode", path("cube.vdag")}, "inner.vdag");
+  run({"combine", path("cube.vdag"), path("inner.vdag"), "--subtract"}, "shell.vdag");
+  run({"shift", path("one.vdag"), "--by", "20,20,20"}, "far.vdag");
+  run({"shift", path("one.vdag"), "--by", "21,21,20"}, "farther.vdag");
+  run({"combine", path("shell.vdag"), path("far.vdag"), "--union"}, "two.vdag");
+  run({"combine", path("two.vdag"), path("farther.vdag"), "--union"}, "all.vdag");
+  const auto sizes = [](const char* neighbours) {
+    const ProcessResult result =
+        run_voxdag({"components", path("all.vdag"), "--neighbours", neighbours, "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const std::size_t shell = 7 * 7 * 7 - 5 * 5 * 5;
+  EXPECT_EQ(sizes("26").at("components"), 2);
+  EXPECT_EQ(sizes("26").at("sizes"),
+            nlohmann::json::parse("[{\"voxels\": " + std::to_string(shell) +
+                                  ", \"count\": 1}, {\"voxels\": 2, \"count\": 1}]"));
+  EXPECT_EQ(sizes("6").at("components"), 3);
+  const std::string text = run({"components", path("all.vdag"), "--largest"}, "largest.vdag");
+  EXPECT_NE(text.find(": 2 components of 26 neighbours"), std::string::npos) << text;
+  EXPECT_EQ(voxels_of("largest.vdag"), voxels_of("shell.vdag"));
+  run({"components", path("all.vdag"), "--at-least", "2"}, "kept.vdag");
+  EXPECT_EQ(voxels_of("kept.vdag"), voxels_of("all.vdag"));
+  run({"components", path("all.vdag"), "--at-least", "2", "--neighbours", "6"}, "kept.vdag");
+  EXPECT_EQ(voxels_of("kept.vdag"), voxels_of("shell.vdag"));
+  run({"fill", path("shell.vdag")}, "filled.vdag");
+  EXPECT_EQ(voxels_of("filled.vdag"), voxels_of("cube.vdag"));
+  expect_failure(run_voxdag({"components", path("all.vdag"), "-o", path("none.vdag")}), 2,
+                 "needs --largest or --at-least");
+  expect_failure(run_voxdag({"components", path("all.vdag"), "--largest"}), 2, "--output");
+  expect_failure(run_voxdag({"components", path("all.vdag"), "--neighbours", "18"}), 2,
+                 "must be 6 or 26");
+}
+
 TEST_F(Edit, EitherFormOnAnyNumberOfThreadsGivesTheSameBytes) {
   ASSERT_EQ(run_voxdag({"convert", path("a.vdag"), "--compact", "-o", path("k.vdag")}).status, 0);
   for (const auto& words : std::vector<std::vector<std::string>>{
-           {"dilate"}, {"rotate", "--axis", "x"}, {"shift", "--by", "0,0,0"}}) {
+           {"dilate"}, {"fill"}, {"rotate", "--axis", "x"}, {"shift", "--by", "0,0,0"}}) {
     const auto with = [&](const char* file, const char* threads) {
       std::vector<std::string> all = words;
       all.insert(all.begin() + 1, path(file));

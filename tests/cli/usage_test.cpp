@@ -5,9 +5,10 @@
 namespace voxdag {
 namespace {
 
-const std::vector<std::string> kCommands = {"build", "convert", "info",      "verify",
-                                            "view",  "render",  "trace",     "export",
-                                            "scene", "bench",   "completion"};
+const std::vector<std::string> kCommands = {
+    "build",  "convert", "info",   "verify",     "view",    "render", "trace",
+    "export", "scene",   "bench",  "completion", "combine", "diff",   "components",
+    "crop",   "shift",   "mirror", "rotate",     "dilate",  "erode",  "fill"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});
@@ -68,7 +69,7 @@ TEST(Usage, BashCompletionNamesEveryCommandAndParses) {
   for (const std::string& command : kCommands)
     EXPECT_NE(script.out.find(command + ") words="), std::string::npos);
   const std::string check = script.out +
-                            "COMP_WORDS=(voxdag comp); COMP_CWORD=1; _voxdag\n"
+                            "COMP_WORDS=(voxdag comple); COMP_CWORD=1; _voxdag\n"
                             "echo \"${COMPREPLY[*]}\"\n";
   const ProcessResult completed = Process({"bash", "-c", check}).wait();
   EXPECT_EQ(completed.out, "completion\n") << completed.err;

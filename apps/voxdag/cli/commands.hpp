@@ -8,7 +8,8 @@ void add_build_command(const Command& program, Session& session);
 void add_convert_command(const Command& program, Session& session);
 void add_combine_command(const Command& program, Session& session);
 void add_diff_command(const Command& program, Session& session);
-/// Adds crop, shift, mirror, rotate, dilate and erode.
+void add_components_command(const Command& program, Session& session);
+/// Adds crop, shift, mirror, rotate, dilate, erode and fill.
 void add_edit_commands(const Command& program, Session& session);
 void add_info_command(const Command& program, Session& session);
 void add_verify_command(const Command& program, Session& session);

@@ -1,5 +1,5 @@
 /// The commands that make one DAG from another: `voxdag crop`, `shift`, `mirror`, `rotate`,
-/// `dilate` and `erode`.
+/// `dilate`, `erode` and `fill`.
 #include <fmt/core.h>
 
 #include <functional>
@@ -10,6 +10,7 @@
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "edit/edited_file.hpp"
+#include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/algebra/reorient.hpp"
@@ -174,14 +175,7 @@ void add_grow_command(const Command& program, Session& session, bool is_dilation
   const auto arguments = std::make_shared<Arguments>();
   command.number("--steps", arguments->steps, NumberRange::whole(1, std::int64_t{1} << kMaxLevels),
                  "N", "Number of steps from voxel to neighbour");
-  command.parsed(
-      "--neighbours", arguments->neighbours,
-      [](const std::string& text) {
-        if (text == "6") return Neighbours::k6;
-        if (text == "26") return Neighbours::k26;
-        throw std::invalid_argument("must be 6 or 26");
-      },
-      "6|26", "Neighbours share a face (6), or a face, an edge or a corner (26, the default)");
+  add_neighbours_option(command, arguments->neighbours);
   add_edit(
       command, session,
       [=](const SvdagView& dag, Grid&, const EditContext& context) {
@@ -196,6 +190,20 @@ void add_grow_command(const Command& program, Session& session, bool is_dilation
       });
 }
 
+void add_fill_command(const Command& program, Session& session) {
+  const Command command = program.add(
+      "fill", "Fill the cavities that the voxels of a DAG enclose",
+      "voxdag fill shell.vdag -o solid.vdag\n\n"
+      "A cavity is a set of empty places that no way over faces connects with the sides of the "
+      "grid.");
+  add_edit(
+      command, session,
+      [](const SvdagView& dag, Grid&, const EditContext& context) {
+        return fill_cavities(dag, context.memory, context.progress);
+      },
+      [] { return "filled"; });
+}
+
 }  // namespace
 
 void add_edit_commands(const Command& program, Session& session) {
@@ -205,6 +213,7 @@ void add_edit_commands(const Command& program, Session& session) {
   add_rotate_command(program, session);
   add_grow_command(program, session, true);
   add_grow_command(program, session, false);
+  add_fill_command(program, session);
 }
 
 }  // namespace voxdag

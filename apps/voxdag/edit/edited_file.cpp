@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "cli/parse.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
@@ -30,6 +31,17 @@ void add_memory_option(const Command& command, std::uint64_t& limit) {
   command.parsed("--memory", limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "
                  "memory)");
+}
+
+void add_neighbours_option(const Command& command, Neighbours& neighbours) {
+  command.parsed(
+      "--neighbours", neighbours,
+      [](const std::string& text) {
+        if (text == "6") return Neighbours::k6;
+        if (text == "26") return Neighbours::k26;
+        throw std::invalid_argument("must be 6 or 26");
+      },
+      "6|26", "Neighbours share a face (6), or a face, an edge or a corner (26, the default)");
 }
 
 void refuse_attributes(const DagInput& file, const std::string& path,

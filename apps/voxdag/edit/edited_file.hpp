@@ -5,6 +5,7 @@
 #include "cli/command.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/session.hpp"
+#include "voxdag/algebra/grow.hpp"
 #include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
@@ -21,6 +22,9 @@ void add_edit_options(const Command& command, EditArguments& arguments, Session&
 
 /// Adds --memory.
 void add_memory_option(const Command& command, std::uint64_t& limit);
+
+/// Adds --neighbours.
+void add_neighbours_option(const Command& command, Neighbours& neighbours);
 
 /// Throws Error if the file has colours, normals or material ids and --drop-attributes was not
 /// given: a command that changes voxels keeps none.

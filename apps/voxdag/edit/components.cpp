@@ -1,0 +1,119 @@
+/// `voxdag components`: counts the connected components of a DAG, and keeps the large ones.
+#include "voxdag/algebra/components.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/output_files.hpp"
+#include "edit/edited_file.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+struct ComponentsArguments {
+  EditArguments edit;
+  Neighbours neighbours = Neighbours::k26;
+  bool largest = false;
+  std::uint64_t least = 0;  ///< 0: not given.
+};
+
+void print_sizes(const std::string& path, const std::vector<ComponentSizes>& sizes,
+                 Neighbours neighbours, bool json) {
+  constexpr std::size_t kShown = 10;
+  std::uint64_t count = 0;
+  for (const ComponentSizes& size : sizes) count += size.count;
+  const int of = neighbours == Neighbours::k6 ? 6 : 26;
+  if (json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const ComponentSizes& size : sizes)
+      list.push_back({{"voxels", size.voxels}, {"count", size.count}});
+    const nlohmann::ordered_json all = {
+        {"components", count}, {"neighbours", of}, {"sizes", std::move(list)}};
+    fmt::print("{}", json_text(all));
+    return;
+  }
+  fmt::print("{}: {} components of {} neighbours\n", path, with_commas(count), of);
+  if (count > 0) fmt::print("  {:>20}{:>16}\n", "voxels", "components");
+  for (std::size_t i = 0; i < std::min(kShown, sizes.size()); ++i)
+    fmt::print("  {:>20}{:>16}\n", with_commas(sizes[i].voxels), with_commas(sizes[i].count));
+  if (sizes.size() > kShown)
+    fmt::print("  {:>20}{:>16}\n", "fewer", with_commas(count - [&] {
+                 std::uint64_t shown = 0;
+                 for (std::size_t i = 0; i < kShown; ++i) shown += sizes[i].count;
+                 return shown;
+               }()));
+}
+
+void run(const ComponentsArguments& arguments, Session& session) {
+  const EditArguments& edit = arguments.edit;
+  if (!edit.output.empty()) check_writable(edit.output);
+  MemoryBudget memory = command_budget(edit.memory_limit);
+  const DagInput file(session.subject, &session.progress, &memory);
+  if (!edit.output.empty()) refuse_attributes(file, session.subject, edit);
+  const std::vector<ComponentSizes> sizes =
+      component_sizes(file.view(), arguments.neighbours, &memory, &session.progress);
+  if (!edit.output.empty()) {
+    const std::uint64_t least =
+        arguments.largest ? (sizes.empty() ? 1 : sizes.front().voxels) : arguments.least;
+    const Svdag dag =
+        keep_components(file.view(), least, arguments.neighbours, &memory, &session.progress);
+    const bool quiet = session.quiet;
+    session.quiet = quiet || session.json;
+    write_edited(edit, dag, file.grid(), file,
+                 fmt::format("components of {} voxels or more", least), memory, session);
+    session.quiet = quiet;
+  }
+  session.bar.clear();
+  if (session.json || !session.quiet)
+    print_sizes(session.subject, sizes, arguments.neighbours, session.json);
+}
+
+}  // namespace
+
+void add_components_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<ComponentsArguments>();
+  const Command command =
+      program.add("components", "Count the connected components of a DAG, and keep the large ones",
+                  "voxdag components scan.vdag --largest -o body.vdag");
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  add_neighbours_option(command, arguments->neighbours);
+  EditArguments& edit = arguments->edit;
+  const Option output =
+      command.text("-o,--output", edit.output, "OUT", "The .vdag file to write: what is kept");
+  const Option largest =
+      command
+          .flag("--largest", arguments->largest,
+                "Keep the component with the most voxels; several that have as many are kept")
+          .needs(output);
+  command
+      .number("--at-least", arguments->least, NumberRange::whole(1, std::int64_t{1} << 60), "N",
+              "Keep the components with N voxels or more")
+      .needs(output)
+      .not_with(largest);
+  const Option compact =
+      command.flag("--compact", edit.compact, "Write the compact form (default: that of FILE)")
+          .needs(output);
+  command.flag("--plain", edit.plain, "Write the plain form").needs(output).not_with(compact);
+  command
+      .flag("--drop-attributes", edit.drop_attributes,
+            "Leave out the colours, normals and material ids of FILE")
+      .needs(output);
+  add_memory_option(command, edit.memory_limit);
+  add_json_option(command, session);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.when_parsed([arguments, &session] {
+    if (!arguments->edit.output.empty() && !arguments->largest && arguments->least == 0)
+      throw UsageError("--output", "needs --largest or --at-least");
+    check_distinct({{"--output", arguments->edit.output}}, session);
+    session.work = [arguments, &session] { run(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

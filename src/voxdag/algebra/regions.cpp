@@ -1,0 +1,368 @@
+#include "voxdag/algebra/regions.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "voxdag/algebra/leaf_coordinates.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr int kDirections = 13;
+
+/// Returns the directions from a cell to its neighbours, but only one of each two opposite ones:
+/// the first coordinate that is not 0 is 1.
+constexpr std::array<Vec3i, kDirections> kSteps = [] {
+  std::array<Vec3i, kDirections> steps{};
+  int count = 0;
+  for (int x = 0; x <= 1; ++x)
+    for (int y = x == 0 ? 0 : -1; y <= 1; ++y)
+      for (int z = x == 0 && y == 0 ? 1 : -1; z <= 1; ++z)
+        steps[static_cast<std::size_t>(count++)] = {x, y, z};
+  return steps;
+}();
+
+constexpr bool is_face(Vec3i step) { return dot(step, step) == 1; }
+
+/// Returns the direction with this step, or that of the opposite step; -1: not a step.
+int direction_of(Vec3i step, bool& is_opposite) {
+  for (int i = 0; i < kDirections; ++i)
+    for (const bool opposite : {false, true})
+      if (kSteps[static_cast<std::size_t>(i)] == (opposite ? -step : step)) {
+        is_opposite = opposite;
+        return i;
+      }
+  return -1;
+}
+
+Vec3i octant_at(int child) { return {child & 1, child >> 1 & 1, child >> 2 & 1}; }
+
+Vec3i voxel_at(int voxel) {
+  return {leaf_coordinate(voxel, 0), leaf_coordinate(voxel, 1), leaf_coordinate(voxel, 2)};
+}
+
+bool are_near(Vec3i a, Vec3i b, Neighbours neighbours) {
+  const Vec3i d = a - b;
+  const std::int32_t most = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  return neighbours == Neighbours::k26 ? most == 1 : dot(d, d) == 1;
+}
+
+/// What depends on the kind of neighbours alone.
+struct Neighbourhood {
+  explicit Neighbourhood(Neighbours neighbours) {
+    for (int a = 0; a < 64; ++a)
+      for (int b = 0; b < 64; ++b) {
+        const std::uint64_t bit = std::uint64_t{1} << b;
+        if (are_near(voxel_at(a), voxel_at(b), neighbours)) within[a] |= bit;
+        for (int i = 0; i < kDirections; ++i)
+          if (are_near(voxel_at(a), voxel_at(b) + kSteps[static_cast<std::size_t>(i)] * 4,
+                       neighbours))
+            across[i][a] |= bit;
+      }
+    for (int voxel = 0; voxel < 64; ++voxel)
+      for (int axis = 0; axis < 3; ++axis) {
+        if (leaf_coordinate(voxel, axis) == 0) side[2 * axis] |= std::uint64_t{1} << voxel;
+        if (leaf_coordinate(voxel, axis) == 3) side[2 * axis + 1] |= std::uint64_t{1} << voxel;
+      }
+  }
+
+  std::uint64_t within[64] = {};               ///< The neighbours of a voxel in its block.
+  std::uint64_t across[kDirections][64] = {};  ///< Those in the block beside it.
+  std::uint64_t side[6] = {};
+};
+
+const Neighbourhood& neighbourhood(Neighbours neighbours) {
+  static const Neighbourhood faces(Neighbours::k6), all(Neighbours::k26);
+  return neighbours == Neighbours::k6 ? faces : all;
+}
+
+/// Pairs of children of two cells that are `step` apart (0: one cell) and can touch.
+struct ChildPairOf {
+  int a, b, direction;
+  bool is_swapped;
+};
+
+std::vector<ChildPairOf> child_pairs(Vec3i step, Neighbours neighbours) {
+  std::vector<ChildPairOf> pairs;
+  const bool is_one_cell = step == Vec3i{};
+  for (int a = 0; a < 8; ++a)
+    for (int b = is_one_cell ? a + 1 : 0; b < 8; ++b) {
+      const Vec3i apart = octant_at(b) + step * 2 - octant_at(a);
+      bool is_opposite = false;
+      const int direction = direction_of(apart, is_opposite);
+      if (direction < 0 || (neighbours == Neighbours::k6 && !is_face(apart))) continue;
+      pairs.push_back({a, b, direction, is_opposite});
+    }
+  return pairs;
+}
+
+struct ChildPairTables {
+  explicit ChildPairTables(Neighbours neighbours) : within(child_pairs({}, neighbours)) {
+    for (const Vec3i step : kSteps) across.push_back(child_pairs(step, neighbours));
+  }
+  std::vector<ChildPairOf> within;
+  std::vector<std::vector<ChildPairOf>> across;
+};
+
+const ChildPairTables& child_pair_tables(Neighbours neighbours) {
+  static const ChildPairTables faces(Neighbours::k6), all(Neighbours::k26);
+  return neighbours == Neighbours::k6 ? faces : all;
+}
+
+/// Sets of numbers that grow together.
+class DisjointSets {
+ public:
+  void reset(std::size_t count) {
+    parents_.resize(count);
+    std::iota(parents_.begin(), parents_.end(), 0u);
+  }
+  /// Returns the least number of the set.
+  std::uint32_t find(std::uint32_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a), b = find(b);
+    if (a < b)
+      parents_[b] = a;
+    else
+      parents_[a] = b;
+  }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+};
+
+std::uint64_t cell_voxels(int levels, int level) {
+  return std::uint64_t{1} << (3 * (levels - level));
+}
+
+}  // namespace
+
+Regions::Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, MemoryBudget* memory,
+                 Progress* progress)
+    : source_(dag),
+      levels_(dag.levels),
+      kind_(kind),
+      neighbours_(neighbours),
+      memory_(memory),
+      progress_(progress),
+      block_voxels_(memory) {
+  for (int level = 0; level <= levels_ - 2; ++level) {
+    nodes_.emplace_back(memory);
+    regions_.emplace_back(memory);
+    above_.emplace_back(memory);
+    pairs_.emplace_back(memory);
+  }
+  if (dag.is_empty()) return;
+  number_nodes(dag);
+  find_blocks(dag);
+  for (int level = levels_ - 3; level >= 0; --level) find_nodes(dag, level);
+  pairs_.clear();
+}
+
+void Regions::number_nodes(const SvdagView& dag) {
+  for (int level = 0; level < levels_ - 2; ++level) {
+    const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
+    level_begin_.push_back(begin);
+    CountedVector<std::uint32_t>& numbers = numbers_.emplace_back(end - begin, 0u, memory_);
+    std::uint32_t number = 0;
+    for (std::uint64_t word = begin; word < end;
+         word += 1 + static_cast<std::uint64_t>(std::popcount(child_mask(dag.nodes + word))))
+      numbers[word - begin] = number++;
+  }
+}
+
+void Regions::add_node(int level, const std::vector<Region>& regions, std::uint64_t first_above) {
+  const auto l = static_cast<std::size_t>(level);
+  Node node{0, 0, regions_[l].size(), first_above};
+  for (const Region& region : regions) ++(region.sides != 0 ? node.open : node.closed);
+  regions_[l].insert(regions_[l].end(), regions.begin(), regions.end());
+  nodes_[l].push_back(node);
+}
+
+void Regions::find_blocks(const SvdagView& dag) {
+  const Neighbourhood& near = neighbourhood(neighbours_);
+  std::vector<Region> regions;
+  std::vector<std::uint64_t> voxels;
+  for (std::uint64_t block = 0; block < dag.leaf_block_count; ++block) {
+    poll_seldom(progress_, block);
+    regions.clear();
+    voxels.clear();
+    std::size_t open = 0;
+    const std::uint64_t set = dag.leaf_blocks[block];
+    for (std::uint64_t left = kind_ == RegionKind::kVoxels ? set : ~set; left != 0;) {
+      std::uint64_t region = 0, added = left & (~left + 1);
+      while (added != 0) {
+        region |= added;
+        std::uint64_t reached = 0;
+        for (std::uint64_t rest = added; rest != 0; rest &= rest - 1)
+          reached |= near.within[std::countr_zero(rest)];
+        added = reached & left & ~region;
+      }
+      left &= ~region;
+      Region found{static_cast<std::uint64_t>(std::popcount(region)), 0};
+      for (int side = 0; side < 6; ++side)
+        if ((region & near.side[side]) != 0) found.sides |= static_cast<std::uint8_t>(1 << side);
+      // Open regions come first.
+      const std::size_t place = found.sides != 0 ? open++ : regions.size();
+      regions.insert(regions.begin() + static_cast<std::ptrdiff_t>(place), found);
+      voxels.insert(voxels.begin() + static_cast<std::ptrdiff_t>(place), region);
+    }
+    block_voxels_.insert(block_voxels_.end(), voxels.begin(), voxels.end());
+    add_node(levels_ - 2, regions, 0);
+  }
+}
+
+void Regions::find_nodes(const SvdagView& dag, int level) {
+  const ChildPairTables& tables = child_pair_tables(neighbours_);
+  const auto l = static_cast<std::size_t>(level);
+  DisjointSets sets;
+  std::vector<Touch> touches;
+  std::vector<Region> members, regions;
+  std::vector<std::uint32_t> numbers;
+  std::uint64_t polled = 0;
+  for (std::uint64_t word = dag.level_begin[level]; word < dag.level_begin[level + 1];
+       word += 1 + static_cast<std::uint64_t>(std::popcount(child_mask(dag.nodes + word)))) {
+    poll_seldom(progress_, polled++);
+    const auto node = static_cast<std::uint32_t>(word);
+    std::uint32_t children[8], begin[9];
+    members.clear();
+    for (int child = 0; child < 8; ++child) {
+      children[child] = source_.child(level, node, child);
+      begin[child] = static_cast<std::uint32_t>(members.size());
+      const int outer = (child & 1 ? 2 : 1) | (child & 2 ? 8 : 4) | (child & 4 ? 32 : 16);
+      if (is_whole(children[child])) {
+        members.push_back({cell_voxels(levels_, level + 1), static_cast<std::uint8_t>(outer)});
+      } else if (children[child] != kNoCell) {
+        const Node& below = record(level + 1, children[child]);
+        for (std::uint32_t i = 0; i < below.open; ++i) {
+          Region region = regions_[l + 1][below.first_region + i];
+          region.sides &= static_cast<std::uint8_t>(outer);
+          members.push_back(region);
+        }
+      }
+    }
+    begin[8] = static_cast<std::uint32_t>(members.size());
+    sets.reset(members.size());
+    for (const ChildPairOf& pair : tables.within) {
+      if (begin[pair.a] == begin[pair.a + 1] || begin[pair.b] == begin[pair.b + 1]) continue;
+      touches.clear();
+      const int first = pair.is_swapped ? pair.b : pair.a,
+                second = pair.is_swapped ? pair.a : pair.b;
+      add_touches(level + 1, children[first], children[second], pair.direction, touches);
+      for (const Touch& touch : touches)
+        sets.join(begin[first] + touch.first, begin[second] + touch.second);
+    }
+    // The first member of a set collects its size and sides.
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
+      const std::uint32_t first = sets.find(i);
+      if (first == i) continue;
+      members[first].size += members[i].size;
+      members[first].sides |= members[i].sides;
+    }
+    regions.clear();
+    numbers.assign(members.size(), 0);
+    for (const bool is_open : {true, false})
+      for (std::uint32_t i = 0; i < members.size(); ++i) {
+        if (sets.find(i) != i || (members[i].sides != 0) != is_open) continue;
+        numbers[i] = static_cast<std::uint32_t>(regions.size());
+        regions.push_back(members[i]);
+      }
+    const std::uint64_t first_above = above_[l].size();
+    for (std::uint32_t i = 0; i < members.size(); ++i) above_[l].push_back(numbers[sets.find(i)]);
+    add_node(level, regions, first_above);
+  }
+}
+
+const Regions::Node& Regions::record(int level, std::uint32_t node) const {
+  const auto l = static_cast<std::size_t>(level);
+  return nodes_[l][level == levels_ - 2 ? node : numbers_[l][node - level_begin_[l]]];
+}
+
+Regions::Counts Regions::counts(int level, std::uint32_t node) const {
+  if (is_whole(node)) return {1, 0};
+  if (node == kNoCell) return {};
+  const Node& of_node = record(level, node);
+  return {of_node.open, of_node.closed};
+}
+
+std::uint64_t Regions::size(int level, std::uint32_t node, std::uint32_t region) const {
+  if (is_whole(node)) return cell_voxels(levels_, level);
+  return regions_[static_cast<std::size_t>(level)][record(level, node).first_region + region].size;
+}
+
+std::uint32_t Regions::region_above(int level, std::uint32_t node, int child,
+                                    std::uint32_t region) const {
+  if (node == kNoCell) return 0;
+  std::uint64_t place = record(level, node).first_above + region;
+  for (int before = 0; before < child; ++before)
+    place += counts(level + 1, source_.child(level, node, before)).open;
+  return above_[static_cast<std::size_t>(level)][place];
+}
+
+std::uint64_t Regions::block_voxels(std::uint32_t block, std::uint32_t region) const {
+  if (block == kNoCell) return ~std::uint64_t{0};
+  return block_voxels_[record(levels_ - 2, block).first_region + region];
+}
+
+void Regions::add_touches(int level, std::uint32_t a, std::uint32_t b, int direction,
+                          std::vector<Touch>& touches) {
+  if (is_whole(a) && is_whole(b)) {
+    touches.push_back({0, 0});
+  } else if (counts(level, a).open == 0 || counts(level, b).open == 0) {
+    return;
+  } else if (level == levels_ - 2) {
+    add_touches_of_blocks(a, b, direction, touches);
+  } else {
+    const List list = touches_of_nodes(level, a, b, direction);
+    const CountedVector<Touch>& known = pairs_[static_cast<std::size_t>(level)].touches;
+    const auto first = known.begin() + static_cast<std::ptrdiff_t>(list.begin);
+    touches.insert(touches.end(), first, first + list.count);
+  }
+}
+
+Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_t b,
+                                        int direction) {
+  Pairs& pairs = pairs_[static_cast<std::size_t>(level)];
+  const std::uint32_t number = pairs.keys.add({a, b, static_cast<std::uint32_t>(direction)});
+  if (number < pairs.lists.size()) return pairs.lists[number];
+  pairs.lists.push_back({});
+  std::vector<Touch> below, touches;
+  for (const ChildPairOf& pair :
+       child_pair_tables(neighbours_).across[static_cast<std::size_t>(direction)]) {
+    const std::uint32_t child_a = source_.child(level, a, pair.a),
+                        child_b = source_.child(level, b, pair.b);
+    below.clear();
+    if (pair.is_swapped)
+      add_touches(level + 1, child_b, child_a, pair.direction, below);
+    else
+      add_touches(level + 1, child_a, child_b, pair.direction, below);
+    for (Touch touch : below) {
+      if (pair.is_swapped) std::swap(touch.first, touch.second);
+      touches.push_back({region_above(level, a, pair.a, touch.first),
+                         region_above(level, b, pair.b, touch.second)});
+    }
+  }
+  std::sort(touches.begin(), touches.end());
+  touches.erase(std::unique(touches.begin(), touches.end()), touches.end());
+  const List list{pairs.touches.size(), static_cast<std::uint32_t>(touches.size())};
+  pairs.touches.insert(pairs.touches.end(), touches.begin(), touches.end());
+  return pairs.lists[number] = list;
+}
+
+void Regions::add_touches_of_blocks(std::uint32_t a, std::uint32_t b, int direction,
+                                    std::vector<Touch>& touches) const {
+  const auto& across = neighbourhood(neighbours_).across[direction];
+  const std::uint32_t open_a = counts(levels_ - 2, a).open, open_b = counts(levels_ - 2, b).open;
+  for (std::uint32_t i = 0; i < open_a; ++i) {
+    std::uint64_t reached = 0;
+    for (std::uint64_t rest = block_voxels(a, i); rest != 0; rest &= rest - 1)
+      reached |= across[std::countr_zero(rest)];
+    for (std::uint32_t k = 0; k < open_b && reached != 0; ++k)
+      if ((reached & block_voxels(b, k)) != 0) touches.push_back({i, k});
+  }
+}
+
+}  // namespace voxdag
