@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "voxdag/algebra/empty_regions.hpp"
 #include "voxel_grid.hpp"
 
 namespace voxdag {
@@ -136,6 +137,34 @@ TEST(Components, CavitiesAreFilled) {
                                            !flooded.reaches_the_sides(flooded.region(v));
                                   }))
           << set.name << ", " << levels << " levels";
+    }
+}
+
+TEST(EmptyRegions, EachMayBeFilled) {
+  for (const int levels : {2, 3, 4, 5})
+    for (const NamedVoxels& set : porous_sets(levels)) {
+      if (set.voxels.empty()) continue;
+      SCOPED_TRACE(set.name + ", " + std::to_string(levels) + " levels");
+      const VoxelGrid grid(levels, set.voxels);
+      const Svdag dag = brute_svdag(levels, set.voxels);
+      FloodedRegions flooded(levels, Neighbours::k6, [&](Vec3i v) { return !grid.contains(v); });
+      const EmptyRegions regions(dag.view());
+      ASSERT_EQ(regions.places().size(), flooded.sizes().size());
+      std::mt19937 rng(static_cast<unsigned>(levels));
+      std::vector<bool> is_filled(regions.places().size()), of_flooded = is_filled,
+                                                            is_met = is_filled;
+      for (std::size_t i = 0; i < is_filled.size(); ++i) {
+        const int region = flooded.region(regions.places()[i]);
+        ASSERT_GE(region, 0);
+        const auto at = static_cast<std::size_t>(region);
+        EXPECT_FALSE(is_met[at]) << "two places of one region";
+        is_met[at] = true;
+        is_filled[i] = of_flooded[at] = rng() % 2 == 0;
+      }
+      ASSERT_EQ(regions.fill(is_filled), VoxelGrid::dag_of(levels, [&](Vec3i v) {
+                  return grid.contains(v) ||
+                         of_flooded[static_cast<std::size_t>(flooded.region(v))];
+                }));
     }
 }
 

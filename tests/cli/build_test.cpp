@@ -266,5 +266,46 @@ TEST_F(Build, VerifyFindsTheWrongMesh) {
   expect_failure(result, 1, "no point of " + mesh_ + " is in the grid");
 }
 
+TEST_F(Build, SolidSetsTheInsideOfAClosedMesh) {
+  ASSERT_EQ(build({"-r", "64"}).status, 0);
+  const auto voxels_of = [this](const std::string& file) {
+    const ProcessResult result = run_voxdag({"info", file, "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out);
+  };
+  const std::string solid = dir_ / "solid.vdag", flood = dir_ / "flood.vdag",
+                    filled = dir_ / "filled.vdag";
+  ASSERT_EQ(build({"-r", "64", "--solid"}, solid).status, 0);
+  const Json info = voxels_of(solid);
+  EXPECT_EQ(info.at("build").at("solid"), "parity");
+  // A third of the corner of a cube of 64 by 32 by 32 voxels: 64 * 32 * 32 / 6 and half a surface.
+  EXPECT_GT(info.at("voxels"), voxels_of(output_).at("voxels"));
+  EXPECT_NEAR(info.at("voxels").get<double>(), 64 * 32 * 32 / 6.0, 3'000);
+  ASSERT_EQ(build({"-r", "64", "--solid", "flood"}, flood).status, 0);
+  EXPECT_EQ(voxels_of(flood).at("voxels"), info.at("voxels"));
+  ASSERT_EQ(run_voxdag({"fill", output_, "-o", filled}).status, 0);
+  EXPECT_EQ(voxels_of(filled).at("voxels"), info.at("voxels"));
+  for (const std::string& file : {solid, flood}) {
+    const ProcessResult verified = run_voxdag({"verify", file, "--mesh", mesh_});
+    EXPECT_EQ(verified.status, 0) << verified.out;
+    EXPECT_NE(verified.out.find("solid"), std::string::npos) << verified.out;
+  }
+  // A file that says so, but is a shell.
+  const std::string cut = dir_ / "cut.vdag";
+  ASSERT_EQ(run_voxdag({"erode", solid, "--steps", "2", "-o", cut}).status, 0);
+  const ProcessResult wrong = run_voxdag({"verify", cut, "--mesh", mesh_});
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.out.find("voxels differ from the inside"), std::string::npos) << wrong.out;
+}
+
+TEST_F(Build, AnOpenMeshHasNoInside) {
+  write_text(mesh_, "v 1 2 3\nv 5 2 3\nv 1 4 3\nv 1 2 5\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const ProcessResult result = build({"-r", "64", "--solid"});
+  expect_failure(result, 1, "the mesh is not closed: 3 edges belong to an odd number of triangles");
+  expect_nothing_left();
+  expect_failure(build({"-r", "64", "--solid", "full"}), 2, "neither parity nor flood");
+  expect_failure(build({"-r", "64", "--solid", "flood", "--color"}), 2, "--solid");
+}
+
 }  // namespace
 }  // namespace voxdag

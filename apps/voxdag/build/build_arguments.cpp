@@ -1,5 +1,7 @@
 #include "build/build_arguments.hpp"
 
+#include <stdexcept>
+
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
@@ -15,10 +17,21 @@ Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
                           : grid_from_voxel_size(mesh, *arguments.voxel_size);
 }
 
+std::string name_of(SolidRule rule) { return rule == SolidRule::kParity ? "parity" : "flood"; }
+
+SolidRule solid_rule(const std::string& name) {
+  if (name == "parity") return SolidRule::kParity;
+  if (name == "flood") return SolidRule::kFlood;
+  throw std::invalid_argument("\"" + name + "\" is neither parity nor flood");
+}
+
 std::map<std::string, std::string> grid_settings(const BuildArguments& arguments) {
-  return {{"cover", "exact"},
-          {"grid_from", arguments.bounds ? "bounds" : "mesh"},
-          {"scale_from", arguments.levels ? "resolution" : "voxel_size"}};
+  std::map<std::string, std::string> settings = {
+      {"cover", "exact"},
+      {"grid_from", arguments.bounds ? "bounds" : "mesh"},
+      {"scale_from", arguments.levels ? "resolution" : "voxel_size"}};
+  if (arguments.solid) settings["solid"] = name_of(*arguments.solid);
+  return settings;
 }
 
 }  // namespace voxdag

@@ -10,6 +10,7 @@
 #include "cli/mesh_input.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/esvo/build/build_esvo.hpp"
+#include "voxdag/solid/fill_solid.hpp"
 
 namespace voxdag {
 
@@ -30,8 +31,9 @@ struct BuildArguments {
   std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
   bool as_esvo = false;
-  AttributeArguments attributes;  ///< For DAGs.
-  bool compact = false;           ///< Write the compact form.
+  AttributeArguments attributes;   ///< For DAGs.
+  std::optional<SolidRule> solid;  ///< For DAGs.
+  bool compact = false;            ///< Write the compact form.
   EsvoArguments esvo;
 };
 
@@ -39,6 +41,10 @@ struct BuildArguments {
 /// surface, if there is displacement.
 Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
                  const BuildArguments& arguments);
+
+/// The names of the rules in options and metadata. solid_rule() throws std::invalid_argument.
+std::string name_of(SolidRule rule);
+SolidRule solid_rule(const std::string& name);
 
 /// Returns the settings that shape the voxels, for the metadata of the output.
 std::map<std::string, std::string> grid_settings(const BuildArguments& arguments);

@@ -21,8 +21,8 @@ namespace {
 
 /// Wall-clock seconds of the steps of a build.
 struct StageSeconds {
-  double read = 0, build = 0, attributes = 0, compact = 0, write = 0;
-  double total() const { return read + build + attributes + compact + write; }
+  double read = 0, build = 0, solid = 0, attributes = 0, compact = 0, write = 0;
+  double total() const { return read + build + solid + attributes + compact + write; }
 };
 
 nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
@@ -36,6 +36,7 @@ nlohmann::ordered_json json_of(const DagReport& dag, const BuildReport& build,
                      {"sort", build.sort_seconds},
                      {"canonical", build.canonical_seconds},
                      {"build", seconds.build},
+                     {"solid", seconds.solid},
                      {"attributes", seconds.attributes},
                      {"compact", seconds.compact},
                      {"write", seconds.write},
@@ -49,11 +50,12 @@ std::string table_of(const DagReport& dag, const StageSeconds& seconds) {
   const double rate = static_cast<double>(dag.metadata.counts.voxels) / seconds.build;
   return fmt::format(
       "{}\n"
-      "  time          {}: read {}, build {}, {}{}write {}\n"
+      "  time          {}: read {}, build {}, {}{}{}write {}\n"
       "  rate          {} voxels/s\n"
       "  peak memory   {}\n",
       dag_table(dag), human_seconds(seconds.total()), human_seconds(seconds.read),
       human_seconds(seconds.build),
+      seconds.solid > 0 ? "solid " + human_seconds(seconds.solid) + ", " : "",
       seconds.attributes > 0 ? "attributes " + human_seconds(seconds.attributes) + ", " : "",
       dag.compact ? fmt::format("compact {}, ", human_seconds(seconds.compact)) : "",
       human_seconds(seconds.write), human_count(rate), human_bytes(peak_resident_bytes()));
@@ -67,6 +69,21 @@ MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess
   MeshWithAppearance source;
   source.mesh = read_mesh_file(session.subject, access, session);
   return source;
+}
+
+/// Returns the DAG with the voxels inside. Errors name the mesh and what else could be done.
+Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid, SolidRule rule,
+           MemoryBudget& memory, Session& session) {
+  try {
+    return fill_solid(cover, mesh, grid, rule, &memory, &session.progress);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const OverMemory&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(session.subject, "",
+                error.reason() + "; --solid flood fills what its voxels enclose");
+  }
 }
 
 }  // namespace
@@ -92,15 +109,21 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
                             mesh.vertices.size(), mesh.triangles.size()};
   report.metadata.program = "voxdag " VOXDAG_VERSION;
   report.metadata.build = grid_settings(arguments);
-  const BuildResult result =
+  BuildResult result =
       build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
   const bool has_attributes = arguments.attributes.is_wanted();
   const auto free_source = [&] {
     memory.release(memory_bytes(mesh) + memory_bytes(source.appearance));
     source = {};
   };
-  if (!has_attributes) free_source();
   seconds.build = watch.lap();
+  if (arguments.solid) {
+    result.dag =
+        fill(result.dag.view(), mesh, report.metadata.grid, *arguments.solid, memory, session);
+    result.memory = MemoryReservation(&memory, result.dag.view().bytes());
+    seconds.solid = watch.lap();
+  }
+  if (!has_attributes) free_source();
 
   progress.throw_if_cancelled();
   const SvdagView view = result.dag.view();

@@ -93,8 +93,12 @@ Option Command::flag_or_number(const std::string& name, int& value, const Number
   const auto store = [&value, range](const std::string& text) { value = range.parse<int>(text); };
   const std::string default_value = std::to_string(if_left_out);
   const Option option = add_option(name, store, shape, help + note(range, default_value));
-  app_->get_option(name)->expected(0, 1)->default_str(default_value);
+  make_optional(name, default_value);
   return option;
+}
+
+void Command::make_optional(const std::string& name, const std::string& if_left_out) const {
+  app_->get_option(name)->expected(0, 1)->default_str(if_left_out);
 }
 
 Option Command::add_option(const std::string& names, const Store& store, const std::string& shape,

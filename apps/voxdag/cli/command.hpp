@@ -82,6 +82,15 @@ class Command {
   /// Adds an option with an optional whole number: "--name" without a number stores `if_left_out`.
   Option flag_or_number(const std::string& name, int& value, const NumberRange& range,
                         int if_left_out, const std::string& shape, const std::string& help) const;
+  /// Adds an option with an optional text: "--name" without a text stores parse(if_left_out).
+  template <class Value, class Parse>
+  Option flag_or_parsed(const std::string& name, Value& value, const Parse& parse,
+                        const std::string& if_left_out, const std::string& shape,
+                        const std::string& help) const {
+    const Option option = parsed(name, value, parse, shape, help);
+    make_optional(name, if_left_out);
+    return option;
+  }
 
   /// Registers `done`, which is called after all options of this command were parsed and each of
   /// them was found to have an effect. `done` may throw UsageError.
@@ -103,6 +112,8 @@ class Command {
                       const std::string& help) const;
   Option add_list(const std::string& names, const std::function<void()>& clear, const Store& store,
                   const std::string& shape, const std::string& help, char separator) const;
+  /// Lets an option be given without its text, which then is `if_left_out`.
+  void make_optional(const std::string& name, const std::string& if_left_out) const;
   /// Returns the note about range and default: " (1 to 16; default: 4)".
   static std::string note(const NumberRange& range, const std::string& default_value);
   template <class Number>

@@ -7,20 +7,26 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "build/build_arguments.hpp"
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "inspect/verify_compact.hpp"
+#include "voxdag/algebra/combine.hpp"
 #include "voxdag/attributes/check_attributes.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
+#include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/esvo/build/check_esvo.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/report/human.hpp"
+#include "voxdag/solid/fill_solid.hpp"
 
 namespace voxdag {
 namespace {
@@ -57,10 +63,10 @@ void announce_samples(std::uint64_t samples, const Check& check, Session& sessio
                 probe / static_cast<double>(kProbe) * static_cast<double>(samples), session);
 }
 
-VerifyCheck cover_check(const VerifyArguments& arguments, const DagInput& file, const Mesh& mesh,
-                        Session& session) {
+VerifyCheck cover_check(const VerifyArguments& arguments, const SvdagView& dag, const Grid& grid,
+                        const Mesh& mesh, Session& session) {
   const auto check_samples = [&](std::uint64_t samples) {
-    return check_cover(file.view(), file.grid(), mesh, samples, arguments.seed, &session.progress);
+    return check_cover(dag, grid, mesh, samples, arguments.seed, &session.progress);
   };
   announce_samples(arguments.samples, check_samples, session);
   const CoverCheck cover = check_samples(arguments.samples);
@@ -133,6 +139,32 @@ MeshWithAppearance without_appearance(Mesh mesh) {
   return source;
 }
 
+/// Compares a solid DAG with the mesh: its surface, and then what is inside.
+std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const DagInput& file,
+                                      const Mesh& mesh, const std::string& rule, Session& session) {
+  Progress* const progress = &session.progress;
+  const Svdag surface = build_svdag(mesh, file.grid(), {}, progress).dag;
+  std::vector<VerifyCheck> checks = {
+      cover_check(arguments, surface.view(), file.grid(), mesh, session)};
+  if (checks[0].result != Result::kPassed) return checks;
+  VerifyCheck check{"solid", Result::kPassed, {}};
+  try {
+    const Svdag filled =
+        fill_solid(surface.view(), mesh, file.grid(), solid_rule(rule), nullptr, progress);
+    const Svdag different =
+        combine(file.view(), filled.view(), SetOperation::kSymmetric, nullptr, progress);
+    const std::uint64_t voxels = count_svdag(different.view()).voxels;
+    check.detail = fmt::format("{} voxels differ from the inside of {} by {}", with_commas(voxels),
+                               arguments.mesh, rule);
+    if (voxels > 0) check.result = Result::kFailed;
+  } catch (const std::invalid_argument&) {
+    check.result = Result::kFailed;
+    check.detail = "the file has an unknown rule for the inside: " + printable(rule);
+  }
+  checks.push_back(std::move(check));
+  return checks;
+}
+
 /// Compares the voxels and the attributes of a DAG with the mesh.
 std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
@@ -143,7 +175,11 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& s
     source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
   else
     source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
-  std::vector<VerifyCheck> checks = {cover_check(arguments, file, source.mesh, session)};
+  const auto solid = file.metadata().build.find("solid");
+  if (solid != file.metadata().build.end())
+    return solid_checks(arguments, file, source.mesh, solid->second, session);
+  std::vector<VerifyCheck> checks = {
+      cover_check(arguments, file.view(), file.grid(), source.mesh, session)};
   // If the voxels differ from the mesh, the attributes do too.
   if (checks[0].result != Result::kPassed) return checks;
   for (VerifyCheck& check : attribute_checks(arguments, file, source, session))

@@ -25,6 +25,8 @@ constexpr std::array<Vec3i, kDirections> kSteps = [] {
 
 constexpr bool is_face(Vec3i step) { return dot(step, step) == 1; }
 
+constexpr int step_axis(Vec3i step) { return step.x != 0 ? 0 : step.y != 0 ? 1 : 2; }
+
 /// Returns the direction with this step, or that of the opposite step; -1: not a step.
 int direction_of(Vec3i step, bool& is_opposite) {
   for (int i = 0; i < kDirections; ++i)
@@ -174,10 +176,12 @@ void Regions::number_nodes(const SvdagView& dag) {
   }
 }
 
-void Regions::add_node(int level, const std::vector<Region>& regions, std::uint64_t first_above) {
+void Regions::add_node(int level, const std::vector<Region>& regions, std::uint64_t first_above,
+                       bool has_closed_below) {
   const auto l = static_cast<std::size_t>(level);
-  Node node{0, 0, regions_[l].size(), first_above};
+  Node node{0, 0, has_closed_below, regions_[l].size(), first_above};
   for (const Region& region : regions) ++(region.sides != 0 ? node.open : node.closed);
+  node.has_closed |= node.closed > 0;
   regions_[l].insert(regions_[l].end(), regions.begin(), regions.end());
   nodes_[l].push_back(node);
 }
@@ -211,7 +215,7 @@ void Regions::find_blocks(const SvdagView& dag) {
       voxels.insert(voxels.begin() + static_cast<std::ptrdiff_t>(place), region);
     }
     block_voxels_.insert(block_voxels_.end(), voxels.begin(), voxels.end());
-    add_node(levels_ - 2, regions, 0);
+    add_node(levels_ - 2, regions, 0, false);
   }
 }
 
@@ -229,8 +233,10 @@ void Regions::find_nodes(const SvdagView& dag, int level) {
     const auto node = static_cast<std::uint32_t>(word);
     std::uint32_t children[8], begin[9];
     members.clear();
+    bool has_closed_below = false;
     for (int child = 0; child < 8; ++child) {
       children[child] = source_.child(level, node, child);
+      has_closed_below |= has_closed(level + 1, children[child]);
       begin[child] = static_cast<std::uint32_t>(members.size());
       const int outer = (child & 1 ? 2 : 1) | (child & 2 ? 8 : 4) | (child & 4 ? 32 : 16);
       if (is_whole(children[child])) {
@@ -272,7 +278,7 @@ void Regions::find_nodes(const SvdagView& dag, int level) {
       }
     const std::uint64_t first_above = above_[l].size();
     for (std::uint32_t i = 0; i < members.size(); ++i) above_[l].push_back(numbers[sets.find(i)]);
-    add_node(level, regions, first_above);
+    add_node(level, regions, first_above, has_closed_below);
   }
 }
 
@@ -296,10 +302,39 @@ std::uint64_t Regions::size(int level, std::uint32_t node, std::uint32_t region)
 std::uint32_t Regions::region_above(int level, std::uint32_t node, int child,
                                     std::uint32_t region) const {
   if (node == kNoCell) return 0;
-  std::uint64_t place = record(level, node).first_above + region;
-  for (int before = 0; before < child; ++before)
-    place += counts(level + 1, source_.child(level, node, before)).open;
-  return above_[static_cast<std::size_t>(level)][place];
+  std::uint64_t places[8];
+  find_places_above(level, node, places);
+  return above_[static_cast<std::size_t>(level)][places[child] + region];
+}
+
+void Regions::find_places_above(int level, std::uint32_t node, std::uint64_t (&places)[8]) const {
+  std::uint64_t place = record(level, node).first_above;
+  for (int child = 0; child < 8; ++child) {
+    places[child] = place;
+    place += counts(level + 1, source_.child(level, node, child)).open;
+  }
+}
+
+Vec3i Regions::place_in(int level, std::uint32_t node, std::uint32_t region) const {
+  Vec3i at;
+  while (node != kNoCell && level < levels_ - 2) {
+    const std::int32_t half = std::int32_t{1} << (levels_ - level - 1);
+    bool is_found = false;
+    for (int child = 0; child < 8 && !is_found; ++child) {
+      const std::uint32_t below = source_.child(level, node, child);
+      const std::uint32_t open = counts(level + 1, below).open;
+      for (std::uint32_t i = 0; i < open && !is_found; ++i) {
+        if (region_above(level, node, child, i) != region) continue;
+        at = at + octant_at(child) * half;
+        node = below;
+        region = i;
+        is_found = true;
+      }
+    }
+    ++level;
+  }
+  if (node == kNoCell) return at;
+  return at + voxel_at(std::countr_zero(block_voxels(node, region)));
 }
 
 std::uint64_t Regions::block_voxels(std::uint32_t block, std::uint32_t region) const {
@@ -313,6 +348,15 @@ void Regions::add_touches(int level, std::uint32_t a, std::uint32_t b, int direc
     touches.push_back({0, 0});
   } else if (counts(level, a).open == 0 || counts(level, b).open == 0) {
     return;
+  } else if ((is_whole(a) || is_whole(b)) && is_face(kSteps[static_cast<std::size_t>(direction)])) {
+    // A whole cell touches all regions at the common side.
+    const bool is_a_whole = is_whole(a);
+    const Node& node = record(level, is_a_whole ? b : a);
+    const int axis = step_axis(kSteps[static_cast<std::size_t>(direction)]);
+    const int side = 1 << (2 * axis + (is_a_whole ? 0 : 1));
+    for (std::uint32_t i = 0; i < node.open; ++i)
+      if ((regions_[static_cast<std::size_t>(level)][node.first_region + i].sides & side) != 0)
+        touches.push_back(is_a_whole ? Touch{0, i} : Touch{i, 0});
   } else if (level == levels_ - 2) {
     add_touches_of_blocks(a, b, direction, touches);
   } else {
@@ -329,6 +373,10 @@ Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_
   const std::uint32_t number = pairs.keys.add({a, b, static_cast<std::uint32_t>(direction)});
   if (number < pairs.lists.size()) return pairs.lists[number];
   pairs.lists.push_back({});
+  const CountedVector<std::uint32_t>& above = above_[static_cast<std::size_t>(level)];
+  std::uint64_t places_a[8], places_b[8];
+  if (a != kNoCell) find_places_above(level, a, places_a);
+  if (b != kNoCell) find_places_above(level, b, places_b);
   std::vector<Touch> below, touches;
   for (const ChildPairOf& pair :
        child_pair_tables(neighbours_).across[static_cast<std::size_t>(direction)]) {
@@ -341,8 +389,8 @@ Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_
       add_touches(level + 1, child_a, child_b, pair.direction, below);
     for (Touch touch : below) {
       if (pair.is_swapped) std::swap(touch.first, touch.second);
-      touches.push_back({region_above(level, a, pair.a, touch.first),
-                         region_above(level, b, pair.b, touch.second)});
+      touches.push_back({a == kNoCell ? 0 : above[places_a[pair.a] + touch.first],
+                         b == kNoCell ? 0 : above[places_b[pair.b] + touch.second]});
     }
   }
   std::sort(touches.begin(), touches.end());

@@ -38,6 +38,12 @@ class Regions {
   std::uint64_t size(int level, std::uint32_t node, std::uint32_t region) const;
   /// Returns the region of `node` that open region `region` of its child belongs to.
   std::uint32_t region_above(int level, std::uint32_t node, int child, std::uint32_t region) const;
+  /// Returns whether the node, or a node below it, has closed regions.
+  bool has_closed(int level, std::uint32_t node) const {
+    return node != kNoCell && record(level, node).has_closed;
+  }
+  /// Returns a voxel, or a place without a voxel, of a region, counted from the node's first one.
+  Vec3i place_in(int level, std::uint32_t node, std::uint32_t region) const;
   /// Returns the voxels of a region of a leaf block.
   std::uint64_t block_voxels(std::uint32_t block, std::uint32_t region) const;
 
@@ -50,6 +56,7 @@ class Regions {
   /// The regions of a node are regions_[level][first_region + region].
   struct Node {
     std::uint32_t open, closed;
+    bool has_closed;
     std::uint64_t first_region, first_above;
   };
   struct Region {
@@ -71,8 +78,12 @@ class Regions {
   void number_nodes(const SvdagView& dag);
   void find_blocks(const SvdagView& dag);
   void find_nodes(const SvdagView& dag, int level);
-  /// Adds a node of `level` with these regions.
-  void add_node(int level, const std::vector<Region>& regions, std::uint64_t first_above);
+  /// Sets places[child] to where in `above_` the regions of each child begin. `node` may be kNoCell
+  /// if is_whole(node).
+  void find_places_above(int level, std::uint32_t node, std::uint64_t (&places)[8]) const;
+  /// Adds a node of `level` with these regions, the open ones first.
+  void add_node(int level, const std::vector<Region>& regions, std::uint64_t first_above,
+                bool has_closed_below);
   const Node& record(int level, std::uint32_t node) const;
   bool is_whole(std::uint32_t node) const { return node == kNoCell && kind_ == RegionKind::kEmpty; }
   /// Appends the pairs of regions of `a` and `b` that touch. `b` is the cell beside `a` in this

@@ -69,8 +69,8 @@ class UniqueKeys {
       slots_.grow([this](const auto& add_number) {
         for (std::uint32_t n = 0; n < keys_.size(); ++n) add_number(n, hash_of(keys_[n].data(), N));
       });
-    std::uint32_t& slot =
-        slots_.find(hash_of(key.data(), N), [&](std::uint32_t n) { return keys_[n] == key; });
+    std::uint32_t& slot = slots_.find(hash_of(key.data(), N),
+                                      [&](std::uint32_t n) { return are_equal(keys_[n], key); });
     if (slot != NumberSlots::kFree) return slot;
     if (keys_.size() == NumberSlots::kFree)
       throw Error("the DAGs are too large: a level has 2^32 different cells or more");
@@ -82,6 +82,13 @@ class UniqueKeys {
   CountedVector<Key> take() { return std::move(keys_); }
 
  private:
+  /// The operator of std::array calls memcmp().
+  static bool are_equal(const Key& a, const Key& b) {
+    std::uint32_t different = 0;
+    for (std::size_t i = 0; i < N; ++i) different |= a[i] ^ b[i];
+    return different == 0;
+  }
+
   CountedVector<Key> keys_;
   NumberSlots slots_;
 };
