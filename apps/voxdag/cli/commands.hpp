@@ -15,6 +15,7 @@ void add_info_command(const Command& program, Session& session);
 void add_verify_command(const Command& program, Session& session);
 void add_render_command(const Command& program, Session& session);
 void add_view_command(const Command& program, Session& session);
+void add_query_command(const Command& program, Session& session);
 void add_trace_command(const Command& program, Session& session);
 void add_export_command(const Command& program, Session& session);
 void add_scene_command(const Command& program, Session& session);

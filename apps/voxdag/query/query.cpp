@@ -1,0 +1,295 @@
+/// `voxdag query`: answers questions about the voxels of a DAG.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/output_files.hpp"
+#include "cli/parse.hpp"
+#include "cli/scene_input.hpp"
+#include "cli/usage_error.hpp"
+#include "voxdag/algebra/crop.hpp"
+#include "voxdag/cpu/trace_batch.hpp"
+#include "voxdag/file/npy.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/query/distance_field.hpp"
+#include "voxdag/query/height_map.hpp"
+#include "voxdag/query/nearest_voxel.hpp"
+#include "voxdag/query/surface_area.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+struct QueryArguments {
+  std::string points, segments, output;
+  bool count = false, distances = false, area = false, from_low = false;
+  std::optional<int> heights;  ///< Axis.
+  std::optional<Box3i> window;
+  std::uint64_t memory_limit = 0;
+};
+
+/// A batch of rows in memory at a time.
+constexpr std::size_t kBatch = std::size_t{1} << 18;
+
+/// Appends the bytes of a value to a row.
+template <class T>
+std::byte* put(std::byte* at, const T& value) {
+  std::memcpy(at, &value, sizeof value);
+  return at + sizeof value;
+}
+
+/// Reads rows of `columns` floats, and writes rows of `row_bytes` bytes, a batch at a time:
+/// answer(floats of all rows, number of rows, output).
+template <class Answer>
+std::uint64_t answer_rows(const std::string& input, std::uint64_t columns,
+                          const std::string& output, const std::string& dtype,
+                          std::size_t row_bytes, Session& session, const Answer& answer) {
+  NpyReader reader(input, "<f4", {columns}, sizeof(float));
+  NpyWriter writer(output, dtype, {}, row_bytes, reader.rows());
+  const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
+  std::vector<float> values(most * columns);
+  std::vector<std::byte> rows(most * row_bytes);
+  while (const std::size_t count = reader.read_rows(values.data(), most)) {
+    session.progress.throw_if_cancelled();
+    answer(values, count, rows);
+    writer.write_rows(rows.data(), count);
+    session.progress.report(
+        "query", static_cast<double>(writer.rows_written()) / static_cast<double>(reader.rows()),
+        writer.rows_written());
+  }
+  writer.commit();
+  return reader.rows();
+}
+
+/// Returns the voxel that holds a point in units of voxels, as far as 32 bits reach.
+Vec3i voxel_at(Vec3d point) {
+  Vec3i voxel;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double kMost = 2147483647;
+    const double at = std::floor(point[axis]);
+    voxel[axis] = static_cast<std::int32_t>(at >= -kMost ? std::min(at, kMost) : -kMost);
+  }
+  return voxel;
+}
+
+std::string answer_points(const QueryArguments& arguments, const DagInput& file, Session& session) {
+  constexpr std::size_t kBytes = 29;
+  const SvdagView dag = file.view();
+  const Grid& grid = file.grid();
+  const std::uint64_t points = answer_rows(
+      arguments.points, 3, arguments.output,
+      "[('occupied', '|b1'), ('voxel', '<i4', (3,)), ('nearest', '<i4', (3,)), "
+      "('distance', '<f4')]",
+      kBytes, session,
+      [&](const std::vector<float>& values, std::size_t count, std::vector<std::byte>& rows) {
+        constexpr std::size_t kChunk = 256;
+        polled_for(
+            (count + kChunk - 1) / kChunk, 1, &session.progress, "query", [&](std::size_t chunk) {
+              for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+                const float* const p = values.data() + 3 * i;
+                const Vec3d point = (static_cast<Vec3d>(Vec3f{p[0], p[1], p[2]}) - grid.origin) *
+                                    (1 / grid.voxel_size);
+                const Vec3i voxel = voxel_at(point);
+                const auto nearest = nearest_voxel(dag, point);
+                const bool is_occupied = nearest && nearest->voxel == voxel;
+                std::byte* row = rows.data() + kBytes * i;
+                row = put(row, is_occupied);
+                row = put(row, voxel);
+                row = put(row, nearest ? nearest->voxel : Vec3i{-1, -1, -1});
+                put(row, nearest
+                             ? static_cast<float>(std::sqrt(nearest->distance2) * grid.voxel_size)
+                             : HUGE_VALF);
+              }
+            });
+      });
+  return fmt::format("{} points", with_commas(points));
+}
+
+std::string answer_segments(const QueryArguments& arguments, const DagInput& file,
+                            Session& session) {
+  constexpr std::size_t kBytes = 17;
+  const CpuScene scene{VoxelSet(file.view())};
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  std::uint64_t clear = 0;
+  const std::uint64_t segments = answer_rows(
+      arguments.segments, 6, arguments.output,
+      "[('clear', '|b1'), ('t', '<f4'), ('voxel', '<i4', (3,))]", kBytes, session,
+      [&](const std::vector<float>& values, std::size_t count, std::vector<std::byte>& rows) {
+        rays.clear();
+        hits.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+          const float* const s = values.data() + 6 * i;
+          const Vec3f from{s[0], s[1], s[2]}, to{s[3], s[4], s[5]};
+          rays.push_back({from, 0, to - from, 1});
+        }
+        trace_batch(scene, file.grid(), rays, hits);
+        for (std::size_t i = 0; i < count; ++i) {
+          const Hit& hit = hits[i];
+          clear += hit.hit ? 0 : 1;
+          std::byte* row = rows.data() + kBytes * i;
+          row = put(row, !hit.hit);
+          row = put(row, hit.hit ? hit.t : 1.0f);
+          put(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
+        }
+      });
+  return fmt::format("{} segments, {} clear", with_commas(segments), with_commas(clear));
+}
+
+std::string write_distances(const QueryArguments& arguments, const DagInput& file,
+                            MemoryBudget& memory, Session& session) {
+  const Box3i& box = *arguments.window;
+  std::uint64_t places = 1, size[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    size[axis] = static_cast<std::uint64_t>(std::int64_t{box.hi[axis]} - box.lo[axis]);
+    if (places > (std::uint64_t{1} << 40) / size[axis])
+      throw UsageError("--window", "has more than 2^40 places");
+    places *= size[axis];
+  }
+  const MemoryReservation field(&memory, places * sizeof(float));
+  std::vector<float> distances = distance_field(file.view(), box, &session.progress);
+  for (float& distance : distances)
+    distance = static_cast<float>(static_cast<double>(distance) * file.grid().voxel_size);
+  NpyWriter writer(arguments.output, "<f4", {size[1], size[0]}, sizeof(float), size[2]);
+  writer.write_rows(distances.data(), static_cast<std::size_t>(size[2]));
+  writer.commit();
+  return fmt::format("{} x {} x {} distances", size[0], size[1], size[2]);
+}
+
+std::string write_heights(const QueryArguments& arguments, const DagInput& file,
+                          MemoryBudget& memory, Session& session) {
+  const auto side = static_cast<std::uint64_t>(file.grid().resolution());
+  const MemoryReservation map(&memory, side * side * (sizeof(std::int32_t) + 1));
+  const std::vector<std::int32_t> heights =
+      height_map(file.view(), *arguments.heights,
+                 arguments.from_low ? HeightSide::kLow : HeightSide::kHigh, &session.progress);
+  NpyWriter writer(arguments.output, "<i4", {side}, sizeof(std::int32_t), side);
+  writer.write_rows(heights.data(), static_cast<std::size_t>(side));
+  writer.commit();
+  return fmt::format("{} x {} heights", side, side);
+}
+
+void print_count(const QueryArguments& arguments, const DagInput& file, MemoryBudget& memory,
+                 Session& session) {
+  std::uint64_t voxels = file.metadata().counts.voxels;
+  if (arguments.window) {
+    const Svdag part = crop(file.view(), *arguments.window, &memory, &session.progress);
+    voxels = part.view().is_empty() ? 0 : count_svdag(part.view()).voxels;
+  } else {
+    voxels = file.view().is_empty() ? 0 : count_svdag(file.view()).voxels;
+  }
+  session.bar.clear();
+  if (session.json)
+    fmt::print("{}", json_text(nlohmann::ordered_json{{"voxels", voxels}}));
+  else
+    fmt::print("{}: {} voxels\n", session.subject, with_commas(voxels));
+}
+
+void print_area(const DagInput& file, MemoryBudget& memory, Session& session) {
+  const VoxelSurface surface = surface_of(file.view(), &memory, &session.progress);
+  const double side = file.grid().voxel_size;
+  const double volume = static_cast<double>(surface.voxels) * side * side * side,
+               area = static_cast<double>(surface.all_faces()) * side * side;
+  session.bar.clear();
+  if (session.json) {
+    const nlohmann::ordered_json json = {
+        {"voxels", surface.voxels}, {"volume", volume}, {"faces", surface.faces}, {"area", area}};
+    fmt::print("{}", json_text(json));
+  } else {
+    fmt::print("{}: {} voxels, volume {:.9g}; {} faces, area {:.9g}\n", session.subject,
+               with_commas(surface.voxels), volume, with_commas(surface.all_faces()), area);
+  }
+}
+
+void query(const QueryArguments& arguments, Session& session) {
+  if (!arguments.output.empty()) check_writable(arguments.output);
+  MemoryBudget memory = command_budget(arguments.memory_limit);
+  const DagInput file(session.subject, &session.progress, &memory);
+  if (arguments.count) return print_count(arguments, file, memory, session);
+  if (arguments.area) return print_area(file, memory, session);
+  const std::string done = !arguments.points.empty()     ? answer_points(arguments, file, session)
+                           : !arguments.segments.empty() ? answer_segments(arguments, file, session)
+                           : arguments.distances ? write_distances(arguments, file, memory, session)
+                                                 : write_heights(arguments, file, memory, session);
+  session.bar.clear();
+  if (!session.quiet) fmt::print("{}: {}\n", arguments.output, done);
+}
+
+int parse_axis(const std::string& text) {
+  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
+    throw std::invalid_argument("must be x, y or z");
+  return text[0] - 'x';
+}
+
+void check_query_arguments(const QueryArguments& arguments, Session& session) {
+  const bool writes = !arguments.points.empty() || !arguments.segments.empty() ||
+                      arguments.distances || arguments.heights;
+  if (!writes && !arguments.count && !arguments.area)
+    throw UsageError(
+        "one of --points, --segments, --distances, --heights, --count and --area is required");
+  if (writes && arguments.output.empty()) throw UsageError("--output", "is required");
+  if (!writes && !arguments.output.empty())
+    throw UsageError("--output", "has no effect: the answer is printed");
+  if (arguments.distances && !arguments.window) throw UsageError("--distances", "needs --window");
+  session.inputs = {arguments.points, arguments.segments};
+  check_distinct({{"--output", arguments.output}}, session);
+}
+
+}  // namespace
+
+void add_query_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<QueryArguments>();
+  const Command command = program.add("query", "Answer questions about the voxels of a DAG",
+                                      "voxdag query scene.vdag --points points.npy -o answers.npy");
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  std::vector<Option> kinds;
+  const auto add = [&kinds](Option option) {
+    for (const Option& other : kinds) option.not_with(other);
+    kinds.push_back(option);
+    return option;
+  };
+  add(command.text("--points", arguments->points, "P.npy",
+                   "For each point (N x 3 float32, world units): whether it is in a voxel, and the "
+                   "nearest voxel with its distance"));
+  add(command.text("--segments", arguments->segments, "S.npy",
+                   "For each segment (N x 6 float32, from and to): whether it meets no voxel, and "
+                   "the first voxel that it meets"));
+  add(command.flag("--distances", arguments->distances,
+                   "For each place of --window: the distance of its centre to the nearest voxel"));
+  const Option heights = add(command.parsed(
+      "--heights", arguments->heights, parse_axis, "AXIS",
+      "For each column along x, y or z: the coordinate of its highest voxel, -1 without voxels"));
+  add(command.flag("--count", arguments->count, "Count the voxels, or those of --window"));
+  add(command.flag("--area", arguments->area,
+                   "Measure the volume of the voxels and the area of their surface"));
+  command.flag("--from-low", arguments->from_low, "With --heights: of its lowest voxel")
+      .needs(heights);
+  command
+      .parsed("--window", arguments->window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
+              "The first voxel, and one past the last on each axis")
+      .only_if([arguments = arguments.get()] { return arguments->distances || arguments->count; },
+               "without --distances or --count");
+  command.text("-o,--output", arguments->output, "OUT.npy", "The array to write");
+  command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
+                 "Maximum memory, including the program (default: three quarters of the available "
+                 "memory)");
+  add_json_option(command, session);
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  command.when_parsed([arguments, &session] {
+    check_query_arguments(*arguments, session);
+    session.work = [arguments, &session] { query(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag
