@@ -8,7 +8,7 @@ namespace {
 const std::vector<std::string> kCommands = {
     "build",  "convert", "info",       "verify",  "view", "render",     "trace", "export",
     "scene",  "bench",   "completion", "combine", "diff", "components", "crop",  "shift",
-    "mirror", "rotate",  "dilate",     "erode",   "fill", "query"};
+    "mirror", "rotate",  "dilate",     "erode",   "fill", "query",      "import"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});

@@ -16,6 +16,7 @@
 #include "cli/scene_input.hpp"
 #include "cli/usage_error.hpp"
 #include "voxdag/algebra/crop.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/io/process_memory.hpp"
@@ -153,7 +154,7 @@ std::string write_distances(const QueryArguments& arguments, const DagInput& fil
   for (int axis = 0; axis < 3; ++axis) {
     size[axis] = static_cast<std::uint64_t>(std::int64_t{box.hi[axis]} - box.lo[axis]);
     if (places > (std::uint64_t{1} << 40) / size[axis])
-      throw UsageError("--window", "has more than 2^40 places");
+      throw Error("", "", "--window has more than 2^40 places");
     places *= size[axis];
   }
   const MemoryReservation field(&memory, places * sizeof(float));

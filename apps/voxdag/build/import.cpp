@@ -1,0 +1,138 @@
+/// `voxdag import`: builds a DAG from a file of voxels or points.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/output_files.hpp"
+#include "cli/parse.hpp"
+#include "cli/stopwatch.hpp"
+#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/imports/import_voxels.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/report/dag_report.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+struct ImportArguments {
+  std::string output;
+  ImportOptions options;
+  bool compact = false;
+  std::uint64_t memory_limit = 0;
+};
+
+/// Throws Error for options that the kind of file does not have, or needs.
+void check_grid_options(const VoxelSource& source, const ImportOptions& options) {
+  if (source.has_points()) {
+    if (!options.levels && !options.voxel_size)
+      throw Error("", "", "holds points, which need -r or --voxel-size");
+  } else if (options.voxel_size || options.bounds) {
+    throw Error("", "", "holds voxels; --voxel-size and --bounds are for points");
+  }
+}
+
+/// Imports the file. Errors name it.
+ImportResult import_file(const ImportArguments& arguments, MemoryBudget& memory, Session& session) {
+  ImportOptions options = arguments.options;
+  options.memory = &memory;
+  options.folder = std::filesystem::path(arguments.output).parent_path();
+  if (options.folder.empty()) options.folder = ".";
+  try {
+    const std::unique_ptr<VoxelSource> source = open_voxel_source(session.subject);
+    check_grid_options(*source, options);
+    return import_voxels(*source, options, &session.progress);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const OverMemory&) {
+    throw;
+  } catch (const Error& error) {
+    throw error.in_file(session.subject);
+  }
+}
+
+void import(const ImportArguments& arguments, Session& session) {
+  check_writable(arguments.output);
+  const Stopwatch watch;
+  MemoryBudget memory = command_budget(arguments.memory_limit);
+  const ImportResult result = import_file(arguments, memory, session);
+  const SvdagView dag = result.dag.view();
+  VdagMetadata metadata;
+  metadata.grid = result.grid;
+  metadata.counts = count_svdag(dag);
+  metadata.source = {std::filesystem::path(session.subject).filename().string(), result.read, 0};
+  metadata.program = "voxdag " VOXDAG_VERSION;
+  metadata.build = {{"cover", "imported"}};
+  if (arguments.compact)
+    write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
+               metadata);
+  else
+    write_vdag(arguments.output, dag, metadata);
+  session.bar.clear();
+  if (metadata.counts.voxels == 0)
+    print_warnings({arguments.output + ": holds no voxels"}, session);
+  if (session.json) {
+    const nlohmann::ordered_json json = {{"read", result.read},
+                                         {"outside", result.outside},
+                                         {"voxels", metadata.counts.voxels},
+                                         {"dag_nodes", metadata.counts.dag_nodes()},
+                                         {"seconds", watch.since_start()},
+                                         {"peak_memory_bytes", peak_resident_bytes()}};
+    fmt::print("{}", json_text(json));
+  } else if (!session.quiet) {
+    std::error_code unknown;
+    const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
+    fmt::print(
+        "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
+        result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
+        with_commas(metadata.counts.voxels),
+        with_commas(static_cast<std::uint64_t>(result.grid.resolution())),
+        human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
+        human_seconds(watch.since_start()));
+  }
+}
+
+}  // namespace
+
+void add_import_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<ImportArguments>();
+  const Command command = program.add("import", "Build a DAG from a file of voxels or points",
+                                      "voxdag import cloud.xyz -r 2048 -o cloud.vdag");
+  command
+      .text("file", session.subject, "FILE",
+            "Points: .xyz, .txt or .csv, or an array .npy of N x 3 float32 or float64. Voxels: an "
+            "array .npy of N x 3 int32, or .binvox")
+      .required();
+  command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
+  ImportOptions& options = arguments->options;
+  const Option resolution = command.parsed(
+      "-r,--resolution", options.levels, parse_levels, "N",
+      "Voxels per side: a power of two from 4 to 1048576 (default for voxels: that of "
+      "FILE, or the least that holds them)");
+  command
+      .parsed("--voxel-size", options.voxel_size, parse_positive, "SIZE",
+              "For points, instead of -r: side of a voxel, in the units of the points")
+      .not_with(resolution);
+  command.parsed("--bounds", options.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+                 "For points: box that the grid holds; points outside are left out (default: the "
+                 "bounding box of the points)");
+  command.flag("--compact", arguments->compact, "Write the compact form");
+  command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
+                 "Maximum memory, including the program: voxels that do not fit are sorted in "
+                 "files beside OUT (default: three quarters of the available memory)");
+  add_threads_option(command, session);
+  add_quiet_option(command, session);
+  add_json_option(command, session);
+  command.when_parsed([arguments, &session] {
+    check_distinct({{"--output", arguments->output}}, session);
+    session.work = [arguments, &session] { import(*arguments, session); };
+  });
+}
+
+}  // namespace voxdag

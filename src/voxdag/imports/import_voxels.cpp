@@ -1,0 +1,120 @@
+#include "voxdag/imports/import_voxels.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/voxels/voxel_builder.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Voxels in memory at a time, without a limit: 512 MiB.
+constexpr std::size_t kMostVoxels = std::size_t{1} << 26;
+
+std::size_t voxels_in_memory(const MemoryBudget* memory) {
+  if (memory == nullptr || memory->limit() == 0) return kMostVoxels;
+  // The other half is for the nodes.
+  return std::min<std::size_t>(kMostVoxels, memory->left() / 2 / sizeof(std::uint64_t));
+}
+
+/// The least and greatest coordinates in the file.
+struct Extent {
+  Vec3d lo{HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  std::uint64_t count = 0;
+};
+
+Extent extent_of(const VoxelSource& source, Progress* progress) {
+  Extent extent;
+  source.visit_all([&](Vec3d p) {
+    poll_seldom(progress, extent.count++);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!std::isfinite(p[axis]))
+        throw Error("", "", "point " + std::to_string(extent.count - 1) + " is not finite");
+    extent.lo = min(extent.lo, p);
+    extent.hi = max(extent.hi, p);
+  });
+  return extent;
+}
+
+Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Progress* progress) {
+  Grid grid = source.grid().value_or(Grid{});
+  if (!source.grid()) {
+    const Extent extent = extent_of(source, progress);
+    const double most = std::max({extent.hi.x, extent.hi.y, extent.hi.z, 0.0});
+    grid.levels =
+        std::max(kMinLevels, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(most))));
+    if (grid.levels > kMaxLevels)
+      throw Error("", "", "has voxels beyond 1048575, the last one of the largest grid");
+    grid.quantization_scale = kSubvoxels / grid.voxel_size;
+  }
+  grid.levels = options.levels.value_or(grid.levels);
+  return grid;
+}
+
+Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Progress* progress) {
+  Box3d bounds;
+  if (options.bounds) {
+    bounds = *options.bounds;
+  } else {
+    const Extent extent = extent_of(source, progress);
+    if (extent.count == 0) throw Error("", "", "has no points, so it has no bounds");
+    bounds = {extent.lo, extent.hi};
+    // One point has a grid of voxels of size 1, as a mesh of one point has.
+    if (!(bounds.lo.x < bounds.hi.x) && !(bounds.lo.y < bounds.hi.y) &&
+        !(bounds.lo.z < bounds.hi.z))
+      bounds.hi = bounds.lo + Vec3d{1, 1, 1} * std::ldexp(1.0, options.levels.value_or(2));
+  }
+  return options.levels ? grid_from_bounds(bounds, *options.levels)
+                        : grid_from_bounds(bounds, *options.voxel_size);
+}
+
+}  // namespace
+
+ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options,
+                           Progress* progress) {
+  ImportResult result;
+  result.grid = source.has_points() ? grid_of_points(source, options, progress)
+                                    : grid_of_voxels(source, options, progress);
+  const Grid& grid = result.grid;
+  const double side = std::ldexp(1.0, grid.levels);
+  VoxelBuilder builder(grid.levels, voxels_in_memory(options.memory), options.folder,
+                       options.memory, progress);
+  source.visit_all([&](Vec3d p) {
+    poll_seldom(progress, result.read++);
+    if (!source.has_points()) {
+      builder.add({static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+                   static_cast<std::int32_t>(p.z)});
+      return;
+    }
+    Vec3i voxel;
+    for (int axis = 0; axis < 3; ++axis) {
+      double at = std::floor((p[axis] - grid.origin[axis]) / grid.voxel_size);
+      // The upper sides of the bounding box, also after rounding.
+      if (!options.bounds) at = std::clamp(at, 0.0, side - 1);
+      if (!(at >= 0 && at < side)) {
+        ++result.outside;
+        return;
+      }
+      voxel[axis] = static_cast<std::int32_t>(at);
+    }
+    builder.add(voxel);
+  });
+  result.dag = builder.finish();
+  return result;
+}
+
+std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  if (name.ends_with(".npy")) return open_npy_points(path);
+  if (name.ends_with(".binvox")) return open_binvox(path);
+  if (name.ends_with(".xyz") || name.ends_with(".txt") || name.ends_with(".csv"))
+    return open_xyz_points(path);
+  throw Error(name, "", "is none of .npy, .xyz, .txt, .csv and .binvox");
+}
+
+}  // namespace voxdag

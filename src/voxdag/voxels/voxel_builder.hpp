@@ -1,0 +1,35 @@
+#pragma once
+/// Builds a DAG from voxels in any order.
+#include <filesystem>
+
+#include "voxdag/core/vec.hpp"
+#include "voxdag/layout/svdag.hpp"
+#include "voxdag/voxels/sorted_codes.hpp"
+
+namespace voxdag {
+
+/// Collects voxels, each any number of times, and builds their DAG. Memory is bounded: voxels that
+/// do not fit are sorted in files, and the DAG is built from the sorted ones node by node.
+class VoxelBuilder {
+ public:
+  /// A grid of 2^levels voxels a side. Holds up to `most_voxels` in memory, 8 bytes each; files lie
+  /// in `folder`. `memory` and `progress` may be null. Throws OverMemory.
+  VoxelBuilder(int levels, std::size_t most_voxels, const std::filesystem::path& folder,
+               MemoryBudget* memory = nullptr, Progress* progress = nullptr);
+
+  /// Adds a voxel. Throws Error if it lies outside of the grid, or if a file cannot be written;
+  /// Cancelled.
+  void add(Vec3i voxel);
+  /// Returns the minimal DAG, in canonical order. Call it last. Throws Error if it outgrows 32-bit
+  /// pointers or a file cannot be read; OverMemory and Cancelled.
+  Svdag finish();
+
+  const SortedCodes& codes() const { return codes_; }
+
+ private:
+  int levels_;
+  MemoryBudget* memory_;
+  SortedCodes codes_;
+};
+
+}  // namespace voxdag
