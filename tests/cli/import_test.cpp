@@ -24,7 +24,7 @@ TEST_F(ImportCommand, ExportedVoxelsComeBack) {
   EXPECT_EQ(run_voxdag({"verify", path("back.vdag")}).status, 0);
   // The same bytes with any memory and any number of threads, and from the compact form.
   ASSERT_EQ(run_voxdag({"import", path("voxels.npy"), "-r", resolution, "-o", path("again.vdag"),
-                        "--memory", "256M", "--threads", "1"})
+                        "--memory", "2G", "--threads", "1"})
                 .status,
             0);
   EXPECT_EQ(read_text(path("again.vdag")), read_text(path("back.vdag")));
