@@ -104,6 +104,7 @@ Chart attributes_chart(const AttributesResults& results, const std::filesystem::
     panel.title = fmt::format("{} {}³", run.scene, resolution_text(run.levels));
     panel.x.label = "bits per voxel";
     panel.y.label = "mean MS-SSIM";
+    panel.y.from_zero = false;
     for (const ColorCodec codec : kColorCodecs) {
       ChartLine line{title_of(codec), {}, {}, static_cast<int>(codec)};
       line.markers = true;

@@ -19,7 +19,9 @@ using Json = nlohmann::ordered_json;
 
 Json axis_json(const ChartAxis& axis) {
   static constexpr const char* kScales[] = {"linear", "log2", "log10"};
-  return {{"label", axis.label}, {"scale", kScales[static_cast<int>(axis.scale)]}};
+  return {{"label", axis.label},
+          {"scale", kScales[static_cast<int>(axis.scale)]},
+          {"from_zero", axis.from_zero}};
 }
 
 Json line_json(const ChartLine& line) {

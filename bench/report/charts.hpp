@@ -14,6 +14,7 @@ enum class AxisScale { kLinear, kLog2, kLog10 };
 struct ChartAxis {
   std::string label;  ///< With its unit: "frame time (ms)".
   AxisScale scale = AxisScale::kLinear;
+  bool from_zero = true;  ///< A linear y axis begins at 0.
 };
 
 enum class LineStyle {

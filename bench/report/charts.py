@@ -91,7 +91,7 @@ def draw_panel(axes, panel):
     if not panel["groups"]:
         set_scale(axes.xaxis, axes.set_xscale, panel["x"]["scale"])
     set_scale(axes.yaxis, axes.set_yscale, panel["y"]["scale"])
-    if panel["y"]["scale"] == "linear":
+    if panel["y"]["scale"] == "linear" and panel["y"]["from_zero"]:
         axes.set_ylim(bottom=0)
     if panel["groups"]:
         # Below the bars, where it hides none of them.
