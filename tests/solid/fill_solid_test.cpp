@@ -12,6 +12,7 @@
 #include "support/voxel_sets.hpp"
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/layout/svdag_lookup.hpp"
 
 namespace voxdag {
@@ -98,6 +99,67 @@ TEST(FillSolid, PocketsOfEqualNodesAreToldApart) {
     if (i % 2 == 0) add_box(mesh, at + Vec3f{0.75f, 0.75f, 0.75f}, at + Vec3f{2.25f, 2.25f, 2.25f});
   }
   EXPECT_EQ(expect_parity(mesh, grid), 2);
+}
+
+/// A million random points, against the planes of the tetrahedra that the mesh consists of.
+TEST(FillSolid, AMillionPointsAreInsideAnOddNumberOfTetrahedra) {
+  std::mt19937 rng(6);
+  std::uniform_real_distribution<double> place(0, 1);
+  Mesh mesh;
+  for (int i = 0; i < 12; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int corner = 0; corner < 4; ++corner)
+      mesh.vertices.push_back(Vec3f(Vec3d{place(rng), place(rng), place(rng)}));
+    for (const Triangle& t :
+         {Triangle{0, 1, 2}, Triangle{0, 3, 1}, Triangle{0, 2, 3}, Triangle{1, 3, 2}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const Grid grid = fit_grid(mesh, 10);
+  const Svdag cover = build_svdag(mesh, grid).dag;
+  const Svdag solid = fill_solid(cover.view(), mesh, grid, SolidRule::kParity);
+  const auto is_in_tetrahedron = [&](std::size_t first, Vec3d p) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const auto at = [&](std::size_t i) {
+        return static_cast<Vec3d>(mesh.vertices[first + (corner + i) % 4]);
+      };
+      const Vec3d normal = cross(at(2) - at(1), at(3) - at(1));
+      if ((dot(normal, p - at(1)) > 0) != (dot(normal, at(0) - at(1)) > 0)) return false;
+    }
+    return true;
+  };
+  int inside = 0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const Vec3i v{static_cast<std::int32_t>(rng() % 1024), static_cast<std::int32_t>(rng() % 1024),
+                  static_cast<std::int32_t>(rng() % 1024)};
+    if (svdag_contains(cover.view(), v, grid.levels)) continue;
+    const Vec3d centre = grid.to_world(static_cast<Vec3d>(v) + Vec3d{0.5, 0.5, 0.5});
+    bool is_odd = false;
+    for (std::size_t first = 0; first < mesh.vertices.size(); first += 4)
+      is_odd ^= is_in_tetrahedron(first, centre);
+    ASSERT_EQ(svdag_contains(solid.view(), v, grid.levels), is_odd);
+    inside += is_odd ? 1 : 0;
+  }
+  EXPECT_GT(inside, 10'000);
+}
+
+TEST(FillSolid, TheVolumeIsTheIntegralWithinTheSurface) {
+  std::mt19937 rng(7);
+  Mesh mesh;
+  add_rough_ball(mesh, {1, 2, 3}, 4, 0.3, 20, rng);
+  double integral = 0;
+  for (const Triangle& t : mesh.triangles)
+    integral += dot(static_cast<Vec3d>(mesh.vertices[t[0]]),
+                    cross(static_cast<Vec3d>(mesh.vertices[t[1]]),
+                          static_cast<Vec3d>(mesh.vertices[t[2]]))) /
+                6;
+  const Grid grid = fit_grid(mesh, 9);
+  const Svdag cover = build_svdag(mesh, grid).dag;
+  const Svdag solid = fill_solid(cover.view(), mesh, grid, SolidRule::kParity);
+  const double voxel = std::pow(grid.voxel_size, 3);
+  const double all = voxel * static_cast<double>(count_svdag(solid.view()).voxels),
+               surface = voxel * static_cast<double>(count_svdag(cover.view()).voxels);
+  EXPECT_GE(all, std::abs(integral));
+  EXPECT_LE(all - surface, std::abs(integral));
 }
 
 TEST(FillSolid, AGridInsideABodyIsFull) {
