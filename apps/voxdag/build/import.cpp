@@ -75,8 +75,7 @@ void import(const ImportArguments& arguments, Session& session) {
   else
     write_vdag(arguments.output, dag, metadata);
   session.bar.clear();
-  if (metadata.counts.voxels == 0)
-    print_warnings({arguments.output + ": holds no voxels"}, session);
+  warn_if_empty(metadata.counts.voxels, arguments.output, session);
   if (session.json) {
     const nlohmann::ordered_json json = {{"read", result.read},
                                          {"outside", result.outside},

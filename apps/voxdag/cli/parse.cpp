@@ -107,6 +107,12 @@ Box3d parse_box(const std::string& text) { return parse_box_of<double>(text); }
 
 Box3i parse_window(const std::string& text) { return parse_box_of<std::int32_t>(text); }
 
+int parse_axis(const std::string& text) {
+  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
+    throw std::invalid_argument("must be x, y or z");
+  return text[0] - 'x';
+}
+
 double parse_positive(const std::string& text) {
   const double value = parse_number<double>(text, "a number");
   if (!(value > 0)) throw std::invalid_argument("must be greater than zero");

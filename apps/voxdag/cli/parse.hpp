@@ -30,6 +30,8 @@ Vec3d parse_direction(const std::string& text);
 Box3d parse_box(const std::string& text);
 /// Parses a box of voxels, in whole numbers: the first voxel, and one past the last on each axis.
 Box3i parse_window(const std::string& text);
+/// Parses "x", "y" or "z". Returns 0, 1 or 2.
+int parse_axis(const std::string& text);
 /// Parses a finite number above zero.
 double parse_positive(const std::string& text);
 /// Parses a power of two, "8192" or "8K", and returns its log2.

@@ -176,12 +176,7 @@ void add_diff_command(const Command& program, Session& session) {
   command.text("first", session.subject, "A", "A .vdag file").required();
   command.text("second", arguments->second, "B", "Another .vdag file").required();
   EditArguments& edit = arguments->edit;
-  const Option output = command.text("-o,--output", edit.output, "OUT",
-                                     "The .vdag file to write: voxels of only one of both");
-  const Option compact =
-      command.flag("--compact", edit.compact, "Write the compact form (default: that of A)")
-          .needs(output);
-  command.flag("--plain", edit.plain, "Write the plain form").needs(output).not_with(compact);
+  add_optional_output(command, edit, "The .vdag file to write: voxels of only one of both");
   add_memory_option(command, edit.memory_limit);
   add_json_option(command, session);
   add_threads_option(command, session);

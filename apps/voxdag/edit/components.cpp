@@ -84,8 +84,7 @@ void add_components_command(const Command& program, Session& session) {
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   add_neighbours_option(command, arguments->neighbours);
   EditArguments& edit = arguments->edit;
-  const Option output =
-      command.text("-o,--output", edit.output, "OUT", "The .vdag file to write: what is kept");
+  const Option output = add_optional_output(command, edit, "The .vdag file to write: what is kept");
   const Option largest =
       command
           .flag("--largest", arguments->largest,
@@ -96,10 +95,6 @@ void add_components_command(const Command& program, Session& session) {
               "Keep the components with N voxels or more")
       .needs(output)
       .not_with(largest);
-  const Option compact =
-      command.flag("--compact", edit.compact, "Write the compact form (default: that of FILE)")
-          .needs(output);
-  command.flag("--plain", edit.plain, "Write the plain form").needs(output).not_with(compact);
   command
       .flag("--drop-attributes", edit.drop_attributes,
             "Leave out the colours, normals and material ids of FILE")

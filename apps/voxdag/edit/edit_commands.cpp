@@ -64,12 +64,6 @@ Vec3i parse_offset(const std::string& text) {
   return offset;
 }
 
-int parse_axis(const std::string& text) {
-  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
-    throw std::invalid_argument("must be x, y or z");
-  return text[0] - 'x';
-}
-
 void add_crop_command(const Command& program, Session& session) {
   const Command command =
       program.add("crop", "Keep the voxels of a DAG that lie in a box",

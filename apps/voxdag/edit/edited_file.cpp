@@ -27,6 +27,19 @@ void add_edit_options(const Command& command, EditArguments& arguments, Session&
   add_quiet_option(command, session);
 }
 
+Option add_optional_output(const Command& command, EditArguments& arguments,
+                           const std::string& help) {
+  const Option output = command.text("-o,--output", arguments.output, "OUT", help);
+  const Option compact = command
+                             .flag("--compact", arguments.compact,
+                                   "Write the compact form (default: the form of the input)")
+                             .needs(output);
+  command.flag("--plain", arguments.plain, "Write the plain form, the layout of the paper")
+      .needs(output)
+      .not_with(compact);
+  return output;
+}
+
 void add_memory_option(const Command& command, std::uint64_t& limit) {
   command.parsed("--memory", limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "

@@ -20,6 +20,11 @@ struct EditArguments {
 /// belong to `arguments`.
 void add_edit_options(const Command& command, EditArguments& arguments, Session& session);
 
+/// Adds --output, --compact and --plain for a command whose output is optional: `help` says what it
+/// writes. Returns --output.
+Option add_optional_output(const Command& command, EditArguments& arguments,
+                           const std::string& help);
+
 /// Adds --memory.
 void add_memory_option(const Command& command, std::uint64_t& limit);
 

@@ -226,12 +226,6 @@ void query(const QueryArguments& arguments, Session& session) {
   if (!session.quiet) fmt::print("{}: {}\n", arguments.output, done);
 }
 
-int parse_axis(const std::string& text) {
-  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z')
-    throw std::invalid_argument("must be x, y or z");
-  return text[0] - 'x';
-}
-
 void check_query_arguments(const QueryArguments& arguments, Session& session) {
   const bool writes = !arguments.points.empty() || !arguments.segments.empty() ||
                       arguments.distances || arguments.heights;

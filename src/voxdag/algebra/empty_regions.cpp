@@ -1,15 +1,10 @@
 #include "voxdag/algebra/empty_regions.hpp"
 
 #include "voxdag/algebra/select_regions.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {
-
-Vec3i child_origin(Vec3i first, int levels, int level, int child) {
-  const int log2_half = levels - level - 1;
-  return {first.x + ((child & 1) << log2_half), first.y + ((child >> 1 & 1) << log2_half),
-          first.z + ((child >> 2 & 1) << log2_half)};
-}
 
 /// Selects regions by a list. Nodes that occur several times may be filled differently: a state
 /// says which closed regions of a cell and of those below it are filled. Equal ones have equal
@@ -88,10 +83,11 @@ void EmptyRegions::add_places(int level, std::uint32_t node, Vec3i first) {
   for (std::uint32_t i = 0; i < counts.closed; ++i)
     places_.push_back(first + regions_->place_in(level, node, counts.open + i));
   if (level == regions_->levels() - 2) return;
+  const std::int32_t half = std::int32_t{1} << (regions_->levels() - level - 1);
   for (int child = 0; child < 8; ++child) {
     const std::uint32_t below = regions_->source().child(level, node, child);
     if (!regions_->has_closed(level + 1, below)) continue;
-    add_places(level + 1, below, child_origin(first, regions_->levels(), level, child));
+    add_places(level + 1, below, first + child_offset(child) * half);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "voxdag/algebra/leaf_coordinates.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {
@@ -38,8 +39,6 @@ int direction_of(Vec3i step, bool& is_opposite) {
   return -1;
 }
 
-Vec3i octant_at(int child) { return {child & 1, child >> 1 & 1, child >> 2 & 1}; }
-
 Vec3i voxel_at(int voxel) {
   return {leaf_coordinate(voxel, 0), leaf_coordinate(voxel, 1), leaf_coordinate(voxel, 2)};
 }
@@ -50,7 +49,7 @@ bool are_near(Vec3i a, Vec3i b, Neighbours neighbours) {
   return neighbours == Neighbours::k26 ? most == 1 : dot(d, d) == 1;
 }
 
-/// What depends on the kind of neighbours alone.
+/// The neighbours of each voxel of a leaf block, and the voxels at its sides.
 struct Neighbourhood {
   explicit Neighbourhood(Neighbours neighbours) {
     for (int a = 0; a < 64; ++a)
@@ -90,7 +89,7 @@ std::vector<ChildPairOf> child_pairs(Vec3i step, Neighbours neighbours) {
   const bool is_one_cell = step == Vec3i{};
   for (int a = 0; a < 8; ++a)
     for (int b = is_one_cell ? a + 1 : 0; b < 8; ++b) {
-      const Vec3i apart = octant_at(b) + step * 2 - octant_at(a);
+      const Vec3i apart = child_offset(b) + step * 2 - child_offset(a);
       bool is_opposite = false;
       const int direction = direction_of(apart, is_opposite);
       if (direction < 0 || (neighbours == Neighbours::k6 && !is_face(apart))) continue;
@@ -325,7 +324,7 @@ Vec3i Regions::place_in(int level, std::uint32_t node, std::uint32_t region) con
       const std::uint32_t open = counts(level + 1, below).open;
       for (std::uint32_t i = 0; i < open && !is_found; ++i) {
         if (region_above(level, node, child, i) != region) continue;
-        at = at + octant_at(child) * half;
+        at = at + child_offset(child) * half;
         node = below;
         region = i;
         is_found = true;

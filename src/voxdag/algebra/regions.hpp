@@ -18,7 +18,7 @@
 
 namespace voxdag {
 
-/// What the regions consist of.
+/// Regions of voxels, or of places without voxels.
 enum class RegionKind { kVoxels, kEmpty };
 
 /// The regions of all nodes. Numbers of a node's regions count from 0, the open ones first. A node
@@ -100,7 +100,7 @@ class Regions {
   Neighbours neighbours_;
   MemoryBudget* memory_;
   Progress* progress_;
-  /// Of each level above the leaf blocks: the number of the node that begins at a word.
+  /// The number of the node that begins at a word, for each level above the leaf blocks.
   std::vector<CountedVector<std::uint32_t>> numbers_;
   std::vector<std::uint64_t> level_begin_;
   std::vector<CountedVector<Node>> nodes_;

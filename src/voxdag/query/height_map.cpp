@@ -35,7 +35,7 @@ class Heights {
       for (int column = 0; column < 4; ++column) {
         const int child = half << axis_ | (column & 1) << u_ | (column >> 1) << v_;
         if ((child_mask(node) >> child & 1) == 0) continue;
-        const Vec3i below = cell * 2 + Vec3i{child & 1, child >> 1 & 1, child >> 2 & 1};
+        const Vec3i below = cell * 2 + child_offset(child);
         if (!done(level + 1, below)) visit(level + 1, child_pointer(node, child), below);
       }
     bool is_done = true;
@@ -83,7 +83,7 @@ class Heights {
   Progress* progress_;
   std::uint64_t polled_ = 0;
   std::vector<std::int32_t> heights_;
-  /// Of each level: whether all columns of a square have their heights.
+  /// Whether all columns of a square have their heights, for each level.
   std::vector<std::vector<bool>> done_;
 };
 

@@ -40,7 +40,7 @@ class Search {
     const std::uint32_t* const node = dag_.nodes + at;
     for (int child = 0; child < 8; ++child) {
       if ((child_mask(node) >> child & 1) == 0) continue;
-      const Vec3i begin = first + Vec3i{child & 1, child >> 1 & 1, child >> 2 & 1} * half;
+      const Vec3i begin = first + child_offset(child) * half;
       const double distance2 = distance2_to_cube(point_, begin, half);
       if (distance2 > best2_) continue;
       // The nearest first.

@@ -11,11 +11,13 @@
 namespace voxdag {
 
 enum class SolidRule {
-  /// What a ray leaves through an odd number of triangles: exact for closed meshes, which may
-  /// intersect themselves and be nested. Where two bodies overlap, they cancel each other out.
+  /// A voxel is inside if a ray from it crosses an odd number of triangles. Exact for closed
+  /// meshes,
+  /// which may intersect themselves and be nested. Where two bodies overlap, they cancel each other
+  /// out.
   kParity,
-  /// What no way through empty voxels connects with the sides of the grid: for meshes whose voxels
-  /// leave no gap. It fills cavities, too.
+  /// An empty voxel is inside if no way over faces through empty voxels connects it with the sides
+  /// of the grid. For meshes whose voxels leave no gap. It fills cavities, too.
   kFlood,
 };
 

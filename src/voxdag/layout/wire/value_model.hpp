@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-/// What the values are: it decides how the last channel of an end is predicted.
+/// Colours or normals: the last channel of a normal's end is predicted from the other two.
 enum class ValueKind { kColor, kNormal };
 
 /// The numbers of contexts of a ValueModel.
