@@ -4,112 +4,11 @@
 #include <bit>
 #include <numeric>
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
+#include "voxdag/algebra/cell_neighbours.hpp"
 #include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {
-
-constexpr int kDirections = 13;
-
-/// Returns the directions from a cell to its neighbours, but only one of each two opposite ones:
-/// the first coordinate that is not 0 is 1.
-constexpr std::array<Vec3i, kDirections> kSteps = [] {
-  std::array<Vec3i, kDirections> steps{};
-  int count = 0;
-  for (int x = 0; x <= 1; ++x)
-    for (int y = x == 0 ? 0 : -1; y <= 1; ++y)
-      for (int z = x == 0 && y == 0 ? 1 : -1; z <= 1; ++z)
-        steps[static_cast<std::size_t>(count++)] = {x, y, z};
-  return steps;
-}();
-
-constexpr bool is_face(Vec3i step) { return dot(step, step) == 1; }
-
-constexpr int step_axis(Vec3i step) { return step.x != 0 ? 0 : step.y != 0 ? 1 : 2; }
-
-/// Returns the direction with this step, or that of the opposite step; -1: not a step.
-int direction_of(Vec3i step, bool& is_opposite) {
-  for (int i = 0; i < kDirections; ++i)
-    for (const bool opposite : {false, true})
-      if (kSteps[static_cast<std::size_t>(i)] == (opposite ? -step : step)) {
-        is_opposite = opposite;
-        return i;
-      }
-  return -1;
-}
-
-Vec3i voxel_at(int voxel) {
-  return {leaf_coordinate(voxel, 0), leaf_coordinate(voxel, 1), leaf_coordinate(voxel, 2)};
-}
-
-bool are_near(Vec3i a, Vec3i b, Neighbours neighbours) {
-  const Vec3i d = a - b;
-  const std::int32_t most = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-  return neighbours == Neighbours::k26 ? most == 1 : dot(d, d) == 1;
-}
-
-/// The neighbours of each voxel of a leaf block, and the voxels at its sides.
-struct Neighbourhood {
-  explicit Neighbourhood(Neighbours neighbours) {
-    for (int a = 0; a < 64; ++a)
-      for (int b = 0; b < 64; ++b) {
-        const std::uint64_t bit = std::uint64_t{1} << b;
-        if (are_near(voxel_at(a), voxel_at(b), neighbours)) within[a] |= bit;
-        for (int i = 0; i < kDirections; ++i)
-          if (are_near(voxel_at(a), voxel_at(b) + kSteps[static_cast<std::size_t>(i)] * 4,
-                       neighbours))
-            across[i][a] |= bit;
-      }
-    for (int voxel = 0; voxel < 64; ++voxel)
-      for (int axis = 0; axis < 3; ++axis) {
-        if (leaf_coordinate(voxel, axis) == 0) side[2 * axis] |= std::uint64_t{1} << voxel;
-        if (leaf_coordinate(voxel, axis) == 3) side[2 * axis + 1] |= std::uint64_t{1} << voxel;
-      }
-  }
-
-  std::uint64_t within[64] = {};               ///< The neighbours of a voxel in its block.
-  std::uint64_t across[kDirections][64] = {};  ///< Those in the block beside it.
-  std::uint64_t side[6] = {};
-};
-
-const Neighbourhood& neighbourhood(Neighbours neighbours) {
-  static const Neighbourhood faces(Neighbours::k6), all(Neighbours::k26);
-  return neighbours == Neighbours::k6 ? faces : all;
-}
-
-/// Pairs of children of two cells that are `step` apart (0: one cell) and can touch.
-struct ChildPairOf {
-  int a, b, direction;
-  bool is_swapped;
-};
-
-std::vector<ChildPairOf> child_pairs(Vec3i step, Neighbours neighbours) {
-  std::vector<ChildPairOf> pairs;
-  const bool is_one_cell = step == Vec3i{};
-  for (int a = 0; a < 8; ++a)
-    for (int b = is_one_cell ? a + 1 : 0; b < 8; ++b) {
-      const Vec3i apart = child_offset(b) + step * 2 - child_offset(a);
-      bool is_opposite = false;
-      const int direction = direction_of(apart, is_opposite);
-      if (direction < 0 || (neighbours == Neighbours::k6 && !is_face(apart))) continue;
-      pairs.push_back({a, b, direction, is_opposite});
-    }
-  return pairs;
-}
-
-struct ChildPairTables {
-  explicit ChildPairTables(Neighbours neighbours) : within(child_pairs({}, neighbours)) {
-    for (const Vec3i step : kSteps) across.push_back(child_pairs(step, neighbours));
-  }
-  std::vector<ChildPairOf> within;
-  std::vector<std::vector<ChildPairOf>> across;
-};
-
-const ChildPairTables& child_pair_tables(Neighbours neighbours) {
-  static const ChildPairTables faces(Neighbours::k6), all(Neighbours::k26);
-  return neighbours == Neighbours::k6 ? faces : all;
-}
 
 /// Sets of numbers that grow together.
 class DisjointSets {
@@ -186,7 +85,7 @@ void Regions::add_node(int level, const std::vector<Region>& regions, std::uint6
 }
 
 void Regions::find_blocks(const SvdagView& dag) {
-  const Neighbourhood& near = neighbourhood(neighbours_);
+  const VoxelNeighbours& near = voxel_neighbours(neighbours_);
   std::vector<Region> regions;
   std::vector<std::uint64_t> voxels;
   for (std::uint64_t block = 0; block < dag.leaf_block_count; ++block) {
@@ -219,7 +118,7 @@ void Regions::find_blocks(const SvdagView& dag) {
 }
 
 void Regions::find_nodes(const SvdagView& dag, int level) {
-  const ChildPairTables& tables = child_pair_tables(neighbours_);
+  const ChildPairs& tables = child_pairs(neighbours_);
   const auto l = static_cast<std::size_t>(level);
   DisjointSets sets;
   std::vector<Touch> touches;
@@ -251,7 +150,7 @@ void Regions::find_nodes(const SvdagView& dag, int level) {
     }
     begin[8] = static_cast<std::uint32_t>(members.size());
     sets.reset(members.size());
-    for (const ChildPairOf& pair : tables.within) {
+    for (const ChildPair& pair : tables.within) {
       if (begin[pair.a] == begin[pair.a + 1] || begin[pair.b] == begin[pair.b + 1]) continue;
       touches.clear();
       const int first = pair.is_swapped ? pair.b : pair.a,
@@ -377,8 +276,8 @@ Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_
   if (a != kNoCell) find_places_above(level, a, places_a);
   if (b != kNoCell) find_places_above(level, b, places_b);
   std::vector<Touch> below, touches;
-  for (const ChildPairOf& pair :
-       child_pair_tables(neighbours_).across[static_cast<std::size_t>(direction)]) {
+  for (const ChildPair& pair :
+       child_pairs(neighbours_).across[static_cast<std::size_t>(direction)]) {
     const std::uint32_t child_a = source_.child(level, a, pair.a),
                         child_b = source_.child(level, b, pair.b);
     below.clear();
@@ -401,7 +300,7 @@ Regions::List Regions::touches_of_nodes(int level, std::uint32_t a, std::uint32_
 
 void Regions::add_touches_of_blocks(std::uint32_t a, std::uint32_t b, int direction,
                                     std::vector<Touch>& touches) const {
-  const auto& across = neighbourhood(neighbours_).across[direction];
+  const auto& across = voxel_neighbours(neighbours_).across[direction];
   const std::uint32_t open_a = counts(levels_ - 2, a).open, open_b = counts(levels_ - 2, b).open;
   for (std::uint32_t i = 0; i < open_a; ++i) {
     std::uint64_t reached = 0;
