@@ -116,10 +116,11 @@ void add_build_command(const Command& program, Session& session) {
           "write the same file (default: hash)")
       .in_group(kDagOptions);
   command
-      .flag_or_parsed("--solid", arguments->solid, solid_rule, "parity", "parity|flood",
-                      "Also set the voxels inside. parity (the default): those that a ray leaves "
-                      "through an odd number of triangles, for closed meshes; flood: those that no "
-                      "way through empty voxels connects with the sides of the grid")
+      .flag_or_parsed(
+          "--solid", arguments->solid, solid_rule, "parity", "parity|flood",
+          "Also set the voxels inside. parity (the default): voxels from which a ray crosses an "
+          "odd number of triangles, for closed meshes; flood: empty voxels that no way through "
+          "empty voxels connects with the sides of the grid")
       .only_if([arguments = arguments.get()] { return !arguments->attributes.is_wanted(); },
                "with --color, --normal or --material-ids: the inside has none")
       .in_group(kDagOptions);

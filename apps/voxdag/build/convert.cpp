@@ -62,10 +62,10 @@ void add_convert_command(const Command& program, Session& session) {
                                       "Write the compact form (default: the form of FILE)");
   command.flag("--plain", arguments->plain, "Write the plain form, the layout of the paper")
       .not_with(compact);
-  command.flag(
-      "--wire", arguments->wire,
-      "Write colours, normals and material ids a quarter smaller or more, to send them: readers "
-      "decode them all");
+  command.flag("--wire", arguments->wire,
+               "Code colours, normals and material ids for sending: a quarter smaller or more, but "
+               "readers decode "
+               "all of them");
   add_reduction_options(command, arguments->reduction);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "
