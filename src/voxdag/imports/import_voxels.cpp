@@ -30,13 +30,16 @@ struct Extent {
 
 Extent extent_of(const VoxelSource& source, Progress* progress) {
   Extent extent;
-  source.visit_all([&](Vec3d p) {
-    poll_seldom(progress, extent.count++);
-    for (int axis = 0; axis < 3; ++axis)
-      if (!std::isfinite(p[axis]))
-        throw Error("", "", "point " + std::to_string(extent.count - 1) + " is not finite");
-    extent.lo = min(extent.lo, p);
-    extent.hi = max(extent.hi, p);
+  source.visit_all([&](const VoxelBatch& batch) {
+    poll(progress);
+    for (const Vec3d p : batch.places) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(p[axis]))
+          throw Error("", "", "point " + std::to_string(extent.count) + " is not finite");
+      ++extent.count;
+      extent.lo = min(extent.lo, p);
+      extent.hi = max(extent.hi, p);
+    }
   });
   return extent;
 }
@@ -73,48 +76,45 @@ Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Pro
                         : grid_from_bounds(bounds, *options.voxel_size);
 }
 
+/// Returns the voxel of a point; none if it lies outside of the grid.
+std::optional<Vec3i> voxel_of_point(Vec3d point, const Grid& grid, bool has_bounds) {
+  const double side = std::ldexp(1.0, grid.levels);
+  Vec3i voxel;
+  for (int axis = 0; axis < 3; ++axis) {
+    double at = std::floor((point[axis] - grid.origin[axis]) / grid.voxel_size);
+    // The upper sides of the bounding box, also after rounding.
+    if (!has_bounds) at = std::clamp(at, 0.0, side - 1);
+    if (!(at >= 0 && at < side)) return std::nullopt;
+    voxel[axis] = static_cast<std::int32_t>(at);
+  }
+  return voxel;
+}
+
 }  // namespace
 
 ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options,
                            Progress* progress) {
+  const bool has_points = source.has_points();
   ImportResult result;
-  result.grid = source.has_points() ? grid_of_points(source, options, progress)
-                                    : grid_of_voxels(source, options, progress);
-  const Grid& grid = result.grid;
-  const double side = std::ldexp(1.0, grid.levels);
-  VoxelBuilder builder(grid.levels, voxels_in_memory(options.memory), options.folder,
+  result.grid = has_points ? grid_of_points(source, options, progress)
+                           : grid_of_voxels(source, options, progress);
+  VoxelBuilder builder(result.grid.levels, voxels_in_memory(options.memory), options.folder,
                        options.memory, progress);
-  source.visit_all([&](Vec3d p) {
-    poll_seldom(progress, result.read++);
-    if (!source.has_points()) {
-      builder.add({static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
-                   static_cast<std::int32_t>(p.z)});
-      return;
-    }
-    Vec3i voxel;
-    for (int axis = 0; axis < 3; ++axis) {
-      double at = std::floor((p[axis] - grid.origin[axis]) / grid.voxel_size);
-      // The upper sides of the bounding box, also after rounding.
-      if (!options.bounds) at = std::clamp(at, 0.0, side - 1);
-      if (!(at >= 0 && at < side)) {
+  source.visit_all([&](const VoxelBatch& batch) {
+    poll(progress);
+    result.read += batch.places.size();
+    for (const Vec3d place : batch.places) {
+      const std::optional<Vec3i> voxel =
+          has_points ? voxel_of_point(place, result.grid, options.bounds.has_value())
+                     : static_cast<Vec3i>(place);
+      if (voxel)
+        builder.add(*voxel);
+      else
         ++result.outside;
-        return;
-      }
-      voxel[axis] = static_cast<std::int32_t>(at);
     }
-    builder.add(voxel);
   });
   result.dag = builder.finish();
   return result;
-}
-
-std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  if (name.ends_with(".npy")) return open_npy_points(path);
-  if (name.ends_with(".binvox")) return open_binvox(path);
-  if (name.ends_with(".xyz") || name.ends_with(".txt") || name.ends_with(".csv"))
-    return open_xyz_points(path);
-  throw Error(name, "", "is none of .npy, .xyz, .txt, .csv and .binvox");
 }
 
 }  // namespace voxdag

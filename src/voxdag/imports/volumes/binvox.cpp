@@ -1,5 +1,5 @@
-// Format: a text header, then pairs of bytes (value 0 or 1, count 1 to 255). y runs fastest, then
-// z, then x.
+#include "voxdag/imports/volumes/binvox.hpp"
+
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -7,13 +7,15 @@
 #include <string_view>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/imports/voxel_source.hpp"
+#include "voxdag/imports/batched_voxels.hpp"
 #include "voxdag/io/mapped_file.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
 namespace {
 
+/// The file has a text header, then pairs of bytes (value 0 or 1, count 1 to 255). y runs fastest,
+/// then z, then x.
 class Binvox : public VoxelSource {
  public:
   explicit Binvox(std::filesystem::path path) : path_(std::move(path)) {
@@ -23,10 +25,11 @@ class Binvox : public VoxelSource {
 
   bool has_points() const override { return false; }
   std::optional<Grid> grid() const override { return grid_; }
-  void visit_all(const std::function<void(Vec3d)>& visit) const override {
+  void visit_all(const VisitBatch& visit) const override {
     const MappedFile mapping(path_, MappedFile::Access::kSequential);
     const std::string_view text = text_of(mapping);
     const std::uint64_t side = static_cast<std::uint64_t>(side_), places = side * side * side;
+    BatchedVoxels voxels(visit);
     std::uint64_t place = 0;
     for (std::size_t at = data_; at < text.size(); at += 2) {
       const auto value = static_cast<unsigned char>(text[at]);
@@ -37,10 +40,11 @@ class Binvox : public VoxelSource {
       if (count > places - place) fail(at, "has more values than voxels");
       if (value == 1)
         for (std::uint64_t i = place; i < place + count; ++i)
-          visit({static_cast<double>(i / (side * side)), static_cast<double>(i % side),
-                 static_cast<double>(i / side % side)});
+          voxels.add({static_cast<double>(i / (side * side)), static_cast<double>(i % side),
+                      static_cast<double>(i / side % side)});
       place += count;
     }
+    voxels.finish();
     if (place != places)
       fail(text.size(),
            "ends after " + std::to_string(place) + " of " + std::to_string(places) + " values");

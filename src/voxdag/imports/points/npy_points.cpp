@@ -1,16 +1,16 @@
-#include <array>
+#include "voxdag/imports/points/npy_points.hpp"
+
 #include <string>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/imports/voxel_source.hpp"
 
 namespace voxdag {
 namespace {
 
 /// Rows in memory at a time.
-constexpr std::size_t kBatch = std::size_t{1} << 16;
+constexpr std::size_t kBatch = 4096;
 
 template <class T>
 class NpyPoints : public VoxelSource {
@@ -20,13 +20,15 @@ class NpyPoints : public VoxelSource {
   }
 
   bool has_points() const override { return std::is_floating_point_v<T>; }
-  void visit_all(const std::function<void(Vec3d)>& visit) const override {
+  void visit_all(const VisitBatch& visit) const override {
     NpyReader reader = open();
-    std::vector<std::array<T, 3>> rows(kBatch);
-    while (const std::size_t count = reader.read_rows(rows.data(), kBatch))
-      for (std::size_t i = 0; i < count; ++i)
-        visit({static_cast<double>(rows[i][0]), static_cast<double>(rows[i][1]),
-               static_cast<double>(rows[i][2])});
+    std::vector<Vec3<T>> rows(kBatch);
+    std::vector<Vec3d> places;
+    while (const std::size_t count = reader.read_rows(rows.data(), kBatch)) {
+      places.clear();
+      for (std::size_t i = 0; i < count; ++i) places.push_back(static_cast<Vec3d>(rows[i]));
+      visit({places, {}});
+    }
   }
 
  private:

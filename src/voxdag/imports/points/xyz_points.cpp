@@ -1,3 +1,5 @@
+#include "voxdag/imports/points/xyz_points.hpp"
+
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -5,7 +7,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/imports/voxel_source.hpp"
+#include "voxdag/imports/batched_voxels.hpp"
 #include "voxdag/io/mapped_file.hpp"
 
 namespace voxdag {
@@ -20,10 +22,11 @@ class XyzPoints : public VoxelSource {
   explicit XyzPoints(std::filesystem::path path) : path_(std::move(path)) {}
 
   bool has_points() const override { return true; }
-  void visit_all(const std::function<void(Vec3d)>& visit) const override {
+  void visit_all(const VisitBatch& visit) const override {
     const MappedFile mapping(path_, MappedFile::Access::kSequential);
     const std::string_view text(reinterpret_cast<const char*>(mapping.bytes().data()),
                                 mapping.bytes().size());
+    BatchedVoxels points(visit);
     std::uint64_t number = 0;
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -32,9 +35,10 @@ class XyzPoints : public VoxelSource {
       std::string_view line = text.substr(at, end - at);
       line = line.substr(0, line.find('#'));
       Vec3d point;
-      if (read_point(line, number, point)) visit(point);
+      if (read_point(line, number, point)) points.add(point);
       at = end + 1;
     }
+    points.finish();
   }
 
  private:

@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/imports/points/npy_points.hpp"
+#include "voxdag/imports/points/xyz_points.hpp"
+#include "voxdag/imports/volumes/binvox.hpp"
+
+namespace voxdag {
+namespace {
+
+using Path = std::filesystem::path;
+using Options = VoxelSourceOptions;
+
+struct Format {
+  const char* ending;
+  bool has_threshold;
+  std::unique_ptr<VoxelSource> (*open)(const Path& path, const Options& options);
+};
+
+constexpr Format kFormats[] = {
+    {".npy", false, [](const Path& path, const Options&) { return open_npy_points(path); }},
+    {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
+};
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
+  std::string name = path.string(), endings;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Format& format : kFormats) {
+    if (name.ends_with(format.ending)) {
+      if (options.threshold && !format.has_threshold)
+        throw Error(path.string(), "", "has no values to compare with a threshold");
+      return format.open(path, options);
+    }
+    endings += std::string(endings.empty() ? "" : ", ") + format.ending;
+  }
+  throw Error(path.string(), "", "is none of " + endings);
+}
+
+}  // namespace voxdag
