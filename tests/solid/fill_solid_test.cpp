@@ -22,7 +22,7 @@ namespace {
 /// of times, and no others. Returns how many there are.
 int expect_parity(const Mesh& mesh, const Grid& grid) {
   const Svdag cover = build_svdag(mesh, grid).dag;
-  const Svdag solid = fill_solid(cover.view(), mesh, grid, SolidRule::kParity);
+  const Svdag solid = fill_solid(cover.view(), mesh, grid, {SolidRule::kParity});
   int inside = 0;
   const std::vector<Vec3i> expected = voxels_where(grid.levels, [&](Vec3i v) {
     if (svdag_contains(cover.view(), v, grid.levels)) return true;
@@ -116,7 +116,7 @@ TEST(FillSolid, AMillionPointsAreInsideAnOddNumberOfTetrahedra) {
   }
   const Grid grid = fit_grid(mesh, 10);
   const Svdag cover = build_svdag(mesh, grid).dag;
-  const Svdag solid = fill_solid(cover.view(), mesh, grid, SolidRule::kParity);
+  const Svdag solid = fill_solid(cover.view(), mesh, grid, {SolidRule::kParity});
   const auto is_in_tetrahedron = [&](std::size_t first, Vec3d p) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const auto at = [&](std::size_t i) {
@@ -154,7 +154,7 @@ TEST(FillSolid, TheVolumeIsTheIntegralWithinTheSurface) {
                 6;
   const Grid grid = fit_grid(mesh, 9);
   const Svdag cover = build_svdag(mesh, grid).dag;
-  const Svdag solid = fill_solid(cover.view(), mesh, grid, SolidRule::kParity);
+  const Svdag solid = fill_solid(cover.view(), mesh, grid, {SolidRule::kParity});
   const double voxel = std::pow(grid.voxel_size, 3);
   const double all = voxel * static_cast<double>(count_svdag(solid.view()).voxels),
                surface = voxel * static_cast<double>(count_svdag(cover.view()).voxels);
@@ -189,9 +189,9 @@ TEST(FillSolid, FloodFillsWhatIsEnclosed) {
   add_rough_ball(mesh, {0, 0, 0}, 3, 0.2, 8, rng);
   const Grid grid = fit_grid(mesh, 5);
   const Svdag cover = build_svdag(mesh, grid).dag;
-  const Svdag flood = fill_solid(cover.view(), mesh, grid, SolidRule::kFlood);
+  const Svdag flood = fill_solid(cover.view(), mesh, grid, {SolidRule::kFlood});
   EXPECT_EQ(flood, fill_cavities(cover.view()));
-  EXPECT_NE(flood, fill_solid(cover.view(), mesh, grid, SolidRule::kParity));
+  EXPECT_NE(flood, fill_solid(cover.view(), mesh, grid, {SolidRule::kParity}));
 }
 
 TEST(FillSolid, AnOpenMeshIsRefused) {
@@ -201,7 +201,7 @@ TEST(FillSolid, AnOpenMeshIsRefused) {
   const Grid grid = fit_grid(mesh, 4);
   const Svdag cover = build_svdag(mesh, grid).dag;
   const std::string error =
-      error_of([&] { fill_solid(cover.view(), mesh, grid, SolidRule::kParity); });
+      error_of([&] { fill_solid(cover.view(), mesh, grid, {SolidRule::kParity}); });
   EXPECT_NE(error.find("the mesh is not closed: 3 edges belong to an odd number of triangles"),
             std::string::npos)
       << error;
@@ -212,7 +212,7 @@ TEST(FillSolid, HugeGridsTakeNoLongerThanTheirSurface) {
   add_box(mesh, {0, 0, 0}, {1, 0.7f, 0.3f});
   const Grid grid = fit_grid(mesh, 16);
   const Svdag cover = build_svdag(mesh, grid).dag;
-  const Svdag solid = fill_solid(cover.view(), mesh, grid, SolidRule::kParity);
+  const Svdag solid = fill_solid(cover.view(), mesh, grid, {SolidRule::kParity});
   EXPECT_TRUE(svdag_contains(solid.view(), {30'000, 20'000, 10'000}, 16));
   EXPECT_FALSE(svdag_contains(solid.view(), {30'000, 20'000, 20'000}, 16));
 }

@@ -117,12 +117,20 @@ void add_build_command(const Command& program, Session& session) {
       .in_group(kDagOptions);
   command
       .flag_or_parsed(
-          "--solid", arguments->solid, solid_rule, "parity", "parity|flood",
+          "--solid", arguments->solid, solid_rule, "parity", "parity|winding|flood",
           "Also set the voxels inside. parity (the default): voxels from which a ray crosses an "
-          "odd number of triangles, for closed meshes; flood: empty voxels that no way through "
-          "empty voxels connects with the sides of the grid")
+          "odd number of triangles, for closed meshes; winding: voxels around which the surface "
+          "winds, for meshes with holes or of overlapping bodies; flood: empty voxels that no way "
+          "through empty voxels connects with the sides of the grid")
       .only_if([arguments = arguments.get()] { return !arguments->attributes.is_wanted(); },
                "with --color, --normal or --material-ids: the inside has none")
+      .in_group(kDagOptions);
+  command
+      .parsed("--winding-threshold", arguments->winding_threshold, parse_positive, "W",
+              "For --solid winding: a voxel is inside if the absolute generalised winding number "
+              "at its centre is at least W (default: 0.5)")
+      .only_if([arguments = arguments.get()] { return arguments->solid == SolidRule::kWinding; },
+               "without --solid winding")
       .in_group(kDagOptions);
   add_attribute_options(command, arguments->attributes, kDagOptions);
   command

@@ -33,7 +33,8 @@ struct BuildArguments {
   bool as_esvo = false;
   AttributeArguments attributes;   ///< For DAGs.
   std::optional<SolidRule> solid;  ///< For DAGs.
-  bool compact = false;            ///< Write the compact form.
+  double winding_threshold = 0.5;
+  bool compact = false;  ///< Write the compact form.
   EsvoArguments esvo;
 };
 
@@ -45,6 +46,8 @@ Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
 /// The names of the rules in options and metadata. solid_rule() throws std::invalid_argument.
 std::string name_of(SolidRule rule);
 SolidRule solid_rule(const std::string& name);
+/// Returns what settings of metadata, which must have "solid", say. Throws std::invalid_argument.
+SolidOptions solid_options(const std::map<std::string, std::string>& settings);
 
 /// Returns the settings that shape the voxels, for the metadata of the output.
 std::map<std::string, std::string> grid_settings(const BuildArguments& arguments);

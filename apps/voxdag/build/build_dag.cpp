@@ -72,17 +72,20 @@ MeshWithAppearance read_source(const BuildArguments& arguments, const MeshAccess
 }
 
 /// Returns the DAG with the voxels inside. Errors name the mesh and what else could be done.
-Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid, SolidRule rule,
-           MemoryBudget& memory, Session& session) {
+Svdag fill(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
+           const BuildArguments& arguments, MemoryBudget& memory, Session& session) {
+  const SolidOptions options{*arguments.solid, arguments.winding_threshold};
   try {
-    return fill_solid(cover, mesh, grid, rule, &memory, &session.progress);
+    return fill_solid(cover, mesh, grid, options, &memory, &session.progress);
   } catch (const Cancelled&) {
     throw;
   } catch (const OverMemory&) {
     throw;
   } catch (const Error& error) {
     throw Error(session.subject, "",
-                error.reason() + "; --solid flood fills what its voxels enclose");
+                error.reason() + (options.rule == SolidRule::kParity
+                                      ? "; --solid winding fills such meshes, too"
+                                      : "; --solid flood fills what its voxels enclose"));
   }
 }
 
@@ -118,8 +121,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   };
   seconds.build = watch.lap();
   if (arguments.solid) {
-    result.dag =
-        fill(result.dag.view(), mesh, report.metadata.grid, *arguments.solid, memory, session);
+    result.dag = fill(result.dag.view(), mesh, report.metadata.grid, arguments, memory, session);
     result.memory = MemoryReservation(&memory, result.dag.view().bytes());
     seconds.solid = watch.lap();
   }

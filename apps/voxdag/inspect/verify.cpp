@@ -141,7 +141,9 @@ MeshWithAppearance without_appearance(Mesh mesh) {
 
 /// Compares a solid DAG with the mesh: its surface, and then what is inside.
 std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const DagInput& file,
-                                      const Mesh& mesh, const std::string& rule, Session& session) {
+                                      const Mesh& mesh, Session& session) {
+  const std::map<std::string, std::string>& settings = file.metadata().build;
+  const std::string& rule = settings.at("solid");
   Progress* const progress = &session.progress;
   const Svdag surface = build_svdag(mesh, file.grid(), {}, progress).dag;
   std::vector<VerifyCheck> checks = {
@@ -150,7 +152,7 @@ std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const Da
   VerifyCheck check{"solid", Result::kPassed, {}};
   try {
     const Svdag filled =
-        fill_solid(surface.view(), mesh, file.grid(), solid_rule(rule), nullptr, progress);
+        fill_solid(surface.view(), mesh, file.grid(), solid_options(settings), nullptr, progress);
     const Svdag different =
         combine(file.view(), filled.view(), SetOperation::kSymmetric, nullptr, progress);
     const std::uint64_t voxels = count_svdag(different.view()).voxels;
@@ -175,9 +177,8 @@ std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& s
     source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
   else
     source = without_appearance(read_mesh_file(arguments.mesh, arguments.access, session));
-  const auto solid = file.metadata().build.find("solid");
-  if (solid != file.metadata().build.end())
-    return solid_checks(arguments, file, source.mesh, solid->second, session);
+  if (file.metadata().build.contains("solid"))
+    return solid_checks(arguments, file, source.mesh, session);
   std::vector<VerifyCheck> checks = {
       cover_check(arguments, file.view(), file.grid(), source.mesh, session)};
   // If the voxels differ from the mesh, the attributes do too.

@@ -1,42 +1,13 @@
 #include "voxdag/solid/closed_mesh.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/parallel/polled_sort.hpp"
+#include "voxdag/solid/mesh_edges.hpp"
 
 namespace voxdag {
-namespace {
-
-bool is_before(Vec3i a, Vec3i b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
-/// Returns 64 bits of an edge. Different edges have equal bits with a probability of 2^-64.
-std::uint64_t hash_of_edge(Vec3i a, Vec3i b) {
-  if (is_before(b, a)) std::swap(a, b);
-  std::uint64_t h = 0x9E3779B97F4A7C15ull;
-  for (const std::int32_t part : {a.x, a.y, a.z, b.x, b.y, b.z}) {
-    h = (h ^ static_cast<std::uint32_t>(part)) * 0xD6E8FEB86659FD93ull;
-    h ^= h >> 32;
-  }
-  return h;
-}
-
-/// Calls visit(a, b) for the edges of a triangle that have a length.
-template <class Visit>
-void each_edge(const QuantizedMesh& mesh, std::size_t triangle, const Visit& visit) {
-  if (!mesh.in_range(triangle)) return;
-  const QuantizedTriangle t = mesh.triangle(triangle);
-  for (int corner = 0; corner < 3; ++corner) {
-    const Vec3i a = t[corner], b = t[(corner + 1) % 3];
-    if (a != b) visit(a, b);
-  }
-}
-
-}  // namespace
 
 OddEdges find_odd_edges(const QuantizedMesh& mesh, MemoryBudget* memory, Progress* progress) {
   const std::size_t count = mesh.mesh_triangle_count();

@@ -5,12 +5,17 @@
 #include <cstdio>
 #include <string>
 
+#include "voxdag/algebra/combine.hpp"
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/empty_regions.hpp"
 #include "voxdag/algebra/rewrite.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/solid/closed_mesh.hpp"
 #include "voxdag/solid/parity.hpp"
+#include "voxdag/solid/winding/winding_sheets.hpp"
+#include "voxdag/voxels/voxel_builder.hpp"
 
 namespace voxdag {
 namespace {
@@ -22,11 +27,9 @@ std::string world_text(const Grid& grid, Vec3i units) {
   return text;
 }
 
-/// Throws Error if the parity of crossings has no meaning.
+/// Throws Error if the mesh is not closed, so that the parity of crossings has no meaning.
 void check_closed(const QuantizedMesh& mesh, const Grid& grid, MemoryBudget* memory,
                   Progress* progress) {
-  if (mesh.triangle_count() != mesh.mesh_triangle_count())
-    throw Error("", "", "the mesh reaches too far out of the grid to tell what is inside");
   const OddEdges odd = find_odd_edges(mesh, memory, progress);
   if (odd.count > 0)
     throw Error("", "",
@@ -47,22 +50,78 @@ struct FullGrid {
   static std::uint64_t block(const Key&) { return ~std::uint64_t{0}; }
 };
 
+/// Returns the DAG of all voxels of a grid, or of none.
+Svdag whole_grid(int levels, bool is_full, MemoryBudget* memory, Progress* progress) {
+  if (is_full) return rewrite(FullGrid(), levels, memory, progress);
+  Svdag empty;
+  empty.levels = levels;
+  return empty;
+}
+
+Svdag fill_by_parity(const SvdagView& cover, const QuantizedMesh& mesh, MemoryBudget* memory,
+                     Progress* progress) {
+  if (cover.is_empty())
+    return whole_grid(cover.levels, are_inside(mesh, {Vec3i{}}, progress).front(), memory,
+                      progress);
+  const EmptyRegions regions(cover, memory, progress);
+  return regions.fill(are_inside(mesh, regions.places(), progress));
+}
+
+/// Returns whether each voxel is inside.
+std::vector<bool> are_inside(const WindingField& field, const std::vector<Vec3i>& voxels,
+                             Progress* progress) {
+  std::vector<std::uint8_t> inside(voxels.size());
+  polled_for(voxels.size(), 16, progress, "inside",
+             [&](std::size_t i) { inside[i] = field.is_inside(voxels[i]) ? 1 : 0; });
+  return {inside.begin(), inside.end()};
+}
+
+/// Returns the voxels among `codes` that are outside, in the same order.
+PageVector<std::uint64_t> select_outside(const PageVector<std::uint64_t>& codes,
+                                         const WindingField& field, MemoryBudget* memory,
+                                         Progress* progress) {
+  PageVector<std::uint8_t> inside(memory);
+  inside.resize(codes.size());
+  polled_for(codes.size(), 256, progress, "inside",
+             [&](std::size_t i) { inside[i] = field.is_inside(morton_decode(codes[i])) ? 1 : 0; });
+  PageVector<std::uint64_t> outside(memory);
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    if (inside[i] == 0) outside.push_back(codes[i]);
+  return outside;
+}
+
+Svdag fill_by_winding(const SvdagView& cover, const QuantizedMesh& mesh, double threshold,
+                      MemoryBudget* memory, Progress* progress) {
+  const WindingField field(mesh, threshold, memory, progress);
+  const PageVector<std::uint64_t> sheets = find_sheets(field, cover, memory, progress);
+  if (sheets.empty()) {
+    if (cover.is_empty()) return whole_grid(cover.levels, field.is_inside({}), memory, progress);
+    const EmptyRegions regions(cover, memory, progress);
+    return regions.fill(are_inside(field, regions.places(), progress));
+  }
+  // Surface and sheets part the grid; then the voxels of the sheets that are outside go.
+  const Svdag sheet_voxels = svdag_of_sorted(cover.levels, {sheets.data(), sheets.size()}, memory);
+  const Svdag walls = combine(cover, sheet_voxels.view(), SetOperation::kUnion, memory, progress);
+  const EmptyRegions regions(walls.view(), memory, progress);
+  const Svdag filled = regions.fill(are_inside(field, regions.places(), progress));
+  const PageVector<std::uint64_t> outside = select_outside(sheets, field, memory, progress);
+  const Svdag outside_voxels =
+      svdag_of_sorted(cover.levels, {outside.data(), outside.size()}, memory);
+  return combine(filled.view(), outside_voxels.view(), SetOperation::kDifference, memory, progress);
+}
+
 }  // namespace
 
-Svdag fill_solid(const SvdagView& cover, const Mesh& mesh, const Grid& grid, SolidRule rule,
-                 MemoryBudget* memory, Progress* progress) {
-  if (rule == SolidRule::kFlood) return fill_cavities(cover, memory, progress);
+Svdag fill_solid(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
+                 const SolidOptions& options, MemoryBudget* memory, Progress* progress) {
+  if (options.rule == SolidRule::kFlood) return fill_cavities(cover, memory, progress);
   const QuantizedMesh quantized(mesh, grid, memory, progress);
+  if (quantized.triangle_count() != quantized.mesh_triangle_count())
+    throw Error("", "", "the mesh reaches too far out of the grid to tell what is inside");
+  if (options.rule == SolidRule::kWinding)
+    return fill_by_winding(cover, quantized, options.winding_threshold, memory, progress);
   check_closed(quantized, grid, memory, progress);
-  if (cover.is_empty()) {
-    if (are_inside(quantized, {Vec3i{}}, progress).front())
-      return rewrite(FullGrid(), cover.levels, memory, progress);
-    Svdag empty;
-    empty.levels = cover.levels;
-    return empty;
-  }
-  const EmptyRegions regions(cover, memory, progress);
-  return regions.fill(are_inside(quantized, regions.places(), progress));
+  return fill_by_parity(cover, quantized, memory, progress);
 }
 
 }  // namespace voxdag

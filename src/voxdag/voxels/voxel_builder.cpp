@@ -90,4 +90,10 @@ Svdag VoxelBuilder::finish() {
   return builder.finish();
 }
 
+Svdag svdag_of_sorted(int levels, std::span<const std::uint64_t> codes, MemoryBudget* memory) {
+  PathBuilder builder(levels, memory);
+  for (const std::uint64_t code : codes) builder.add(code);
+  return builder.finish();
+}
+
 }  // namespace voxdag

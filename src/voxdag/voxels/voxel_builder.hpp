@@ -1,6 +1,7 @@
 #pragma once
 /// Builds a DAG from voxels in any order.
 #include <filesystem>
+#include <span>
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/layout/svdag.hpp"
@@ -31,5 +32,9 @@ class VoxelBuilder {
   MemoryBudget* memory_;
   SortedCodes codes_;
 };
+
+/// Returns the minimal DAG, in canonical order, of voxels whose Morton codes ascend. Throws Error
+/// if it outgrows 32-bit pointers, and OverMemory; `memory` may be null.
+Svdag svdag_of_sorted(int levels, std::span<const std::uint64_t> codes, MemoryBudget* memory);
 
 }  // namespace voxdag
