@@ -45,7 +45,7 @@ TEST(VoxelBuilder, ManyRunsAreMerged) {
     builder.add(v);
     EXPECT_EQ(dir.count(), 0) << "files have no names";
   }
-  EXPECT_GT(builder.codes().runs(), 20u);
+  EXPECT_GT(builder.runs(), 20u);
   EXPECT_EQ(builder.finish(), brute_svdag(10, voxels));
 }
 
@@ -53,7 +53,7 @@ TEST(VoxelBuilder, EqualVoxelsTakeNoFiles) {
   const TempDir dir;
   VoxelBuilder builder(20, 0, dir.path());
   for (int i = 0; i < 100'000; ++i) builder.add({i % 3, 1'048'575, 7});
-  EXPECT_EQ(builder.codes().runs(), 0u);
+  EXPECT_EQ(builder.runs(), 0u);
   EXPECT_EQ(builder.finish(),
             brute_svdag(20, {{0, 1'048'575, 7}, {1, 1'048'575, 7}, {2, 1'048'575, 7}}));
 }

@@ -24,6 +24,8 @@ namespace {
 struct ImportArguments {
   std::string output;
   ImportOptions options;
+  std::optional<double> threshold;  ///< For volumes.
+  bool is_grey = false;
   bool compact = false;
   std::uint64_t memory_limit = 0;
 };
@@ -42,10 +44,13 @@ void check_grid_options(const VoxelSource& source, const ImportOptions& options)
 ImportResult import_file(const ImportArguments& arguments, MemoryBudget& memory, Session& session) {
   ImportOptions options = arguments.options;
   options.memory = &memory;
+  options.colors = !arguments.is_grey;
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
   try {
-    const std::unique_ptr<VoxelSource> source = open_voxel_source(session.subject);
+    const std::unique_ptr<VoxelSource> source =
+        open_voxel_source(session.subject, {arguments.threshold});
+    print_warnings(source->warnings(), session);
     check_grid_options(*source, options);
     return import_voxels(*source, options, &session.progress);
   } catch (const Cancelled&) {
@@ -69,11 +74,16 @@ void import(const ImportArguments& arguments, Session& session) {
   metadata.source = {std::filesystem::path(session.subject).filename().string(), result.read, 0};
   metadata.program = "voxdag " VOXDAG_VERSION;
   metadata.build = {{"cover", "imported"}};
+  const DagAttributes& attributes = result.attributes;
+  if (attributes.view().has_colors()) {
+    metadata.attributes.resolution = result.grid.resolution();
+    metadata.attributes.colors = {arguments.options.color_bound, attributes.color_errors.squared};
+  }
   if (arguments.compact)
     write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
-               metadata);
+               metadata, attributes.view());
   else
-    write_vdag(arguments.output, dag, metadata);
+    write_vdag(arguments.output, dag, metadata, attributes.view());
   session.bar.clear();
   warn_if_empty(metadata.counts.voxels, arguments.output, session);
   if (session.json) {
@@ -121,6 +131,15 @@ void add_import_command(const Command& program, Session& session) {
   command.parsed("--bounds", options.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
                  "For points: box that the grid holds; points outside are left out (default: the "
                  "bounding box of the points)");
+  command.parsed("--threshold", arguments->threshold, parse_finite, "VALUE",
+                 "For volumes of numbers: values from VALUE on set their voxel (default: all but "
+                 "0)");
+  const Option no_colors =
+      command.flag("--no-color", arguments->is_grey, "Leave out the colours of FILE");
+  command
+      .number("--color-bound", options.color_bound, NumberRange::from(0, 1), "DIFFERENCE",
+              "Largest error of a stored colour, 0 to 1, as for voxdag build (0: lossless)")
+      .not_with(no_colors);
   command.flag("--compact", arguments->compact, "Write the compact form");
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program: voxels that do not fit are sorted in "

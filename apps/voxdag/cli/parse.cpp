@@ -113,6 +113,8 @@ int parse_axis(const std::string& text) {
   return text[0] - 'x';
 }
 
+double parse_finite(const std::string& text) { return parse_number<double>(text, "a number"); }
+
 double parse_positive(const std::string& text) {
   const double value = parse_number<double>(text, "a number");
   if (!(value > 0)) throw std::invalid_argument("must be greater than zero");

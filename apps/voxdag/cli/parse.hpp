@@ -32,6 +32,8 @@ Box3d parse_box(const std::string& text);
 Box3i parse_window(const std::string& text);
 /// Parses "x", "y" or "z". Returns 0, 1 or 2.
 int parse_axis(const std::string& text);
+/// Parses a finite number.
+double parse_finite(const std::string& text);
 /// Parses a finite number above zero.
 double parse_positive(const std::string& text);
 /// Parses a power of two, "8192" or "8K", and returns its log2.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/imports/colors/colored_voxel_builder.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 #include "voxdag/voxels/voxel_builder.hpp"
@@ -16,10 +17,10 @@ namespace {
 /// Voxels in memory at a time, without a limit: 512 MiB.
 constexpr std::size_t kMostVoxels = std::size_t{1} << 26;
 
-std::size_t voxels_in_memory(const MemoryBudget* memory) {
+std::size_t voxels_in_memory(const MemoryBudget* memory, std::size_t bytes_per_voxel) {
   if (memory == nullptr || memory->limit() == 0) return kMostVoxels;
   // The other half is for the nodes.
-  return std::min<std::size_t>(kMostVoxels, memory->left() / 2 / sizeof(std::uint64_t));
+  return std::min<std::size_t>(kMostVoxels, memory->left() / 2 / bytes_per_voxel);
 }
 
 /// The least and greatest coordinates in the file.
@@ -98,22 +99,39 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
   ImportResult result;
   result.grid = has_points ? grid_of_points(source, options, progress)
                            : grid_of_voxels(source, options, progress);
-  VoxelBuilder builder(result.grid.levels, voxels_in_memory(options.memory), options.folder,
-                       options.memory, progress);
-  source.visit_all([&](const VoxelBatch& batch) {
+  const int levels = result.grid.levels;
+  // Calls add(voxel, index) for all places in the grid.
+  const auto each_voxel = [&](const VoxelBatch& batch, const auto& add) {
     poll(progress);
     result.read += batch.places.size();
-    for (const Vec3d place : batch.places) {
+    for (std::size_t i = 0; i < batch.places.size(); ++i) {
+      const Vec3d place = batch.places[i];
       const std::optional<Vec3i> voxel =
           has_points ? voxel_of_point(place, result.grid, options.bounds.has_value())
                      : static_cast<Vec3i>(place);
       if (voxel)
-        builder.add(*voxel);
+        add(*voxel, i);
       else
         ++result.outside;
     }
-  });
-  result.dag = builder.finish();
+  };
+  if (options.colors && source.has_colors()) {
+    ColoredVoxelBuilder builder(levels, voxels_in_memory(options.memory, sizeof(ColoredCode)),
+                                options.folder, options.memory, progress);
+    source.visit_all([&](const VoxelBatch& batch) {
+      each_voxel(batch, [&](Vec3i voxel, std::size_t i) { builder.add(voxel, batch.colors[i]); });
+    });
+    auto [dag, attributes] = builder.finish(options.color_bound);
+    result.dag = std::move(dag);
+    result.attributes = std::move(attributes);
+  } else {
+    VoxelBuilder builder(levels, voxels_in_memory(options.memory, sizeof(std::uint64_t)),
+                         options.folder, options.memory, progress);
+    source.visit_all([&](const VoxelBatch& batch) {
+      each_voxel(batch, [&](Vec3i voxel, std::size_t) { builder.add(voxel); });
+    });
+    result.dag = builder.finish();
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 /// Builds DAGs from files of voxels and points.
 #include <optional>
 
+#include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/imports/voxel_source.hpp"
@@ -14,12 +15,15 @@ struct ImportOptions {
   std::optional<int> levels;         ///< log2 of the voxels per side.
   std::optional<double> voxel_size;  ///< World units; for points.
   std::optional<Box3d> bounds;       ///< For points: what the grid holds.
+  bool colors = true;                ///< Stores the colours of files that have some.
+  double color_bound = 0.05;         ///< AttributeOptions::color_bound
   std::filesystem::path folder;      ///< Of files for sorting.
   MemoryBudget* memory = nullptr;
 };
 
 struct ImportResult {
   Svdag dag;
+  DagAttributes attributes;  ///< Colours of all cells, if there are any.
   Grid grid;
   std::uint64_t read = 0;     ///< Points or voxels in the file.
   std::uint64_t outside = 0;  ///< Points outside of the bounds, which are left out.

@@ -5,9 +5,13 @@
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/layout/svdag.hpp"
-#include "voxdag/voxels/sorted_codes.hpp"
+#include "voxdag/voxels/sorted_records.hpp"
 
 namespace voxdag {
+
+/// Returns the Morton code of a voxel. Throws Error if it lies outside of a grid of 2^levels voxels
+/// a side.
+std::uint64_t code_in_grid(Vec3i voxel, int levels);
 
 /// Collects voxels, each any number of times, and builds their DAG. Memory is bounded: voxels that
 /// do not fit are sorted in files, and the DAG is built from the sorted ones node by node.
@@ -20,17 +24,18 @@ class VoxelBuilder {
 
   /// Adds a voxel. Throws Error if it lies outside of the grid, or if a file cannot be written;
   /// Cancelled.
-  void add(Vec3i voxel);
+  void add(Vec3i voxel) { codes_.add(code_in_grid(voxel, levels_)); }
   /// Returns the minimal DAG, in canonical order. Call it last. Throws Error if it outgrows 32-bit
   /// pointers or a file cannot be read; OverMemory and Cancelled.
   Svdag finish();
 
-  const SortedCodes& codes() const { return codes_; }
+  /// Returns the number of files that voxels were sorted in.
+  std::size_t runs() const { return codes_.runs(); }
 
  private:
   int levels_;
   MemoryBudget* memory_;
-  SortedCodes codes_;
+  SortedRecords<std::uint64_t, Repeats::kDropped> codes_;
 };
 
 /// Returns the minimal DAG, in canonical order, of voxels whose Morton codes ascend. Throws Error
