@@ -67,26 +67,22 @@ Svdag fill_by_parity(const SvdagView& cover, const QuantizedMesh& mesh, MemoryBu
   return regions.fill(are_inside(mesh, regions.places(), progress));
 }
 
-/// Returns whether each voxel is inside.
-std::vector<bool> are_inside(const WindingField& field, const std::vector<Vec3i>& voxels,
-                             Progress* progress) {
-  std::vector<std::uint8_t> inside(voxels.size());
-  polled_for(voxels.size(), 16, progress, "inside",
-             [&](std::size_t i) { inside[i] = field.is_inside(voxels[i]) ? 1 : 0; });
-  return {inside.begin(), inside.end()};
-}
-
 /// Returns the voxels among `codes` that are outside, in the same order.
 PageVector<std::uint64_t> select_outside(const PageVector<std::uint64_t>& codes,
                                          const WindingField& field, MemoryBudget* memory,
                                          Progress* progress) {
-  PageVector<std::uint8_t> inside(memory);
-  inside.resize(codes.size());
-  polled_for(codes.size(), 256, progress, "inside",
-             [&](std::size_t i) { inside[i] = field.is_inside(morton_decode(codes[i])) ? 1 : 0; });
+  // Near voxels at a time, so that most triangles have none behind them.
+  constexpr std::size_t kBatch = std::size_t{1} << 20;
   PageVector<std::uint64_t> outside(memory);
-  for (std::size_t i = 0; i < codes.size(); ++i)
-    if (inside[i] == 0) outside.push_back(codes[i]);
+  CountedVector<Vec3i> voxels(memory);
+  for (std::size_t begin = 0; begin < codes.size(); begin += kBatch) {
+    voxels.clear();
+    for (std::size_t i = begin; i < std::min(codes.size(), begin + kBatch); ++i)
+      voxels.push_back(morton_decode(codes[i]));
+    const std::vector<bool> inside = field.are_inside(voxels, memory, progress);
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+      if (!inside[i]) outside.push_back(codes[begin + i]);
+  }
   return outside;
 }
 
@@ -95,15 +91,18 @@ Svdag fill_by_winding(const SvdagView& cover, const QuantizedMesh& mesh, double 
   const WindingField field(mesh, threshold, memory, progress);
   const PageVector<std::uint64_t> sheets = find_sheets(field, cover, memory, progress);
   if (sheets.empty()) {
-    if (cover.is_empty()) return whole_grid(cover.levels, field.is_inside({}), memory, progress);
+    if (cover.is_empty())
+      return whole_grid(cover.levels,
+                        field.are_inside(std::vector{Vec3i{}}, memory, progress).front(), memory,
+                        progress);
     const EmptyRegions regions(cover, memory, progress);
-    return regions.fill(are_inside(field, regions.places(), progress));
+    return regions.fill(field.are_inside(regions.places(), memory, progress));
   }
   // Surface and sheets part the grid; then the voxels of the sheets that are outside go.
   const Svdag sheet_voxels = svdag_of_sorted(cover.levels, {sheets.data(), sheets.size()}, memory);
   const Svdag walls = combine(cover, sheet_voxels.view(), SetOperation::kUnion, memory, progress);
   const EmptyRegions regions(walls.view(), memory, progress);
-  const Svdag filled = regions.fill(are_inside(field, regions.places(), progress));
+  const Svdag filled = regions.fill(field.are_inside(regions.places(), memory, progress));
   const PageVector<std::uint64_t> outside = select_outside(sheets, field, memory, progress);
   const Svdag outside_voxels =
       svdag_of_sorted(cover.levels, {outside.data(), outside.size()}, memory);

@@ -5,9 +5,11 @@
 /// Generalized Winding Numbers", SIGGRAPH 2013. It tells how often the surface winds around a
 /// point: a whole number if the mesh is closed, and near one far away from the holes of others.
 ///
-/// The mesh and caps over its holes together are closed. So the winding numbers of mesh and caps
-/// differ by a whole number. A rough sum over the clusters of the mesh tells which one, and the
-/// caps, which are few, give the rest precisely.
+/// Mesh and caps over its holes together are closed. So their winding number is a whole number,
+/// which the crossings of one ray tell exactly, and the caps, which are few, tell the difference.
+#include <span>
+#include <vector>
+
 #include "voxdag/solid/winding/edge_tree.hpp"
 #include "voxdag/solid/winding/winding_tree.hpp"
 
@@ -16,16 +18,18 @@ namespace voxdag {
 class WindingField {
  public:
   /// A voxel is inside if the absolute winding number at its centre is at least `threshold`, which
-  /// is positive. All triangles of the mesh must be in range. Throws OverMemory and Cancelled;
-  /// `memory` and `progress` may be null.
+  /// is positive. All triangles of the mesh, which must outlive this object, must be in range.
+  /// Throws OverMemory and Cancelled; `memory` and `progress` may be null.
   WindingField(const QuantizedMesh& mesh, double threshold, MemoryBudget* memory,
                Progress* progress)
       : WindingField(mesh, find_boundary_edges(mesh, memory, progress), threshold, memory,
                      progress) {}
 
-  /// Returns whether a voxel that no triangle meets is inside. Voxels whose winding number is
-  /// within 1e-6 of the threshold may be on either side.
-  bool is_inside(Vec3i voxel) const;
+  /// Returns whether each voxel is inside; no triangle may meet these voxels. Voxels whose winding
+  /// number is within 1e-6 of the threshold may be on either side. Time grows with the triangles,
+  /// and with the voxels that lie behind each of them along x. Throws OverMemory and Cancelled.
+  std::vector<bool> are_inside(std::span<const Vec3i> voxels, MemoryBudget* memory,
+                               Progress* progress) const;
 
   /// Returns whether two voxels in a cell of 2^log2_side voxels a side that are connected through
   /// voxels that no triangle meets can be on different sides. `cell` is its place, in cells.
@@ -35,8 +39,11 @@ class WindingField {
   WindingField(const QuantizedMesh& mesh, CountedVector<BoundaryEdge> boundary, double threshold,
                MemoryBudget* memory, Progress* progress);
 
+  bool is_inside(Vec3d point, std::int32_t of_closed) const;
+
+  const QuantizedMesh& mesh_;
   EdgeTree edges_;
-  WindingTree mesh_, caps_;
+  WindingTree caps_;
   double threshold_;
 };
 

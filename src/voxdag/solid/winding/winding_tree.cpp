@@ -8,6 +8,7 @@
 #include "voxdag/parallel/polled_sort.hpp"
 #include "voxdag/solid/winding/arc_tangent.hpp"
 #include "voxdag/solid/winding/morton_order.hpp"
+#include "voxdag/solid/winding/winding_point.hpp"
 
 namespace voxdag {
 namespace {
@@ -15,14 +16,31 @@ namespace {
 constexpr std::size_t kLeafTriangles = 8;
 constexpr double kSphere = 4 * std::numbers::pi;
 
-/// Returns the solid angle of a triangle seen from the origin, over 4 pi.
-/// (Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.)
-double winding_of(Vec3d a, Vec3d b, Vec3d c) {
-  const double la = length(a), lb = length(b), lc = length(c);
-  return 2 / kSphere *
-         arc_tangent(dot(a, cross(b, c)),
-                     la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-}
+/// A sum of angles, as the argument of a product of complex numbers and whole turns.
+class AngleSum {
+ public:
+  /// Adds half the solid angle of a triangle.
+  /// (Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.)
+  void add_half(const SeenTriangle& t) {
+    const double a = length(t.a), b = length(t.b), c = length(t.c), scale = 1 / (a * b * c);
+    add(1 + (dot(t.a, t.b) * c + dot(t.b, t.c) * a + dot(t.c, t.a) * b) * scale,
+        t.volume6() * scale);
+  }
+  /// Returns the sum, in turns.
+  double turns() const { return turns_ + arc_tangent(y_, x_) / (2 * std::numbers::pi); }
+
+ private:
+  void add(double x, double y) {
+    const bool was_below = y_ < 0, is_below = y < 0;
+    const double product_x = x_ * x - y_ * y, product_y = x_ * y + y_ * x;
+    x_ = product_x, y_ = product_y;
+    // Two angles of one half of the plane are past its end if their sum is in the other half.
+    if (was_below == is_below && (y_ < 0) != is_below) turns_ += is_below ? -1 : 1;
+  }
+
+  double x_ = 1, y_ = 0;
+  int turns_ = 0;
+};
 
 /// Adds the symmetric part of the outer product of a dipole and its place.
 void add_moments(double (&moments)[6], Vec3d dipole, Vec3d place) {
@@ -158,10 +176,11 @@ WindingValue WindingTree::around(Vec3d point, double tolerance) const {
       sum.error += node.spread / gap4;
       i = node.next;
     } else {
-      for (std::size_t j = node.first; j < node.first + node.count; ++j) {
-        const QuantizedTriangle& t = triangles_[j];
-        sum.value += winding_of(static_cast<Vec3d>(t.x) - point, static_cast<Vec3d>(t.y) - point,
-                                static_cast<Vec3d>(t.z) - point);
+      if (node.count > 0) {
+        AngleSum angles;
+        for (std::size_t j = node.first; j < node.first + node.count; ++j)
+          angles.add_half({triangles_[j], point});
+        sum.value += angles.turns();
       }
       ++i;
     }

@@ -28,6 +28,8 @@ class WindingTree {
   /// surface is on either side of it.
   WindingValue around(Vec3d point, double tolerance) const;
 
+  const PageVector<QuantizedTriangle>& triangles() const { return triangles_; }
+
  private:
   /// A cluster of triangles: node i + 1 is its first half, if it is not a leaf.
   struct Node {
