@@ -3,7 +3,11 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/imports/points/las_header.hpp"
+#include "voxdag/imports/points/las_points.hpp"
 #include "voxdag/imports/points/npy_points.hpp"
+#include "voxdag/imports/points/pcd_points.hpp"
+#include "voxdag/imports/points/ply_points.hpp"
 #include "voxdag/imports/points/xyz_points.hpp"
 #include "voxdag/imports/volumes/binvox.hpp"
 
@@ -24,6 +28,9 @@ constexpr Format kFormats[] = {
     {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".ply", false, [](const Path& path, const Options&) { return open_ply_points(path); }},
+    {".las", false, [](const Path& path, const Options&) { return open_las_points(path); }},
+    {".pcd", false, [](const Path& path, const Options&) { return open_pcd_points(path); }},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
 };
 
@@ -41,6 +48,7 @@ std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& 
     }
     endings += std::string(endings.empty() ? "" : ", ") + format.ending;
   }
+  if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
   throw Error(path.string(), "", "is none of " + endings);
 }
 

@@ -33,17 +33,19 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// Parses the number that the text starts with into the nearest float32 (ties to even) and returns
-/// the number's end, or null if the text does not start with a number. Accepts infinities and NaN;
-/// a number too large for float32 becomes infinite.
-inline const char* parse_float_prefix(const char* first, const char* last, float& value) {
+/// Parses the number that the text starts with into the nearest float or double (ties to even) and
+/// returns the number's end, or null if the text does not start with a number. Accepts infinities
+/// and NaN; a number too large for the type becomes infinite.
+template <class Float>
+const char* parse_float_prefix(const char* first, const char* last, Float& value) {
   if (first != last && *first == '+' && last - first > 1 && first[1] != '-') ++first;
   const auto result = fast_float::from_chars(first, last, value);
   return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
 }
 
 /// Parses the whole token like parse_float_prefix(). Returns false if it is not a number.
-inline bool parse_float(std::string_view token, float& value) {
+template <class Float>
+bool parse_float(std::string_view token, Float& value) {
   const char* const last = token.data() + token.size();
   return parse_float_prefix(token.data(), last, value) == last;
 }

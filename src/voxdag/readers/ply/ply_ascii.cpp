@@ -3,33 +3,10 @@
 /// their final size.
 #include "voxdag/readers/ply/ply_attributes.hpp"
 #include "voxdag/readers/ply/ply_rows.hpp"
+#include "voxdag/readers/ply/ply_text_row.hpp"
 
 namespace voxdag {
 namespace {
-
-/// Removes the values of one property from a row and calls on_item(token) for each. Throws Fault,
-/// Cancelled.
-template <class OnItem>
-void take_property(std::string_view& row, const PlyProperty& property, CancelPoll& poll,
-                   const OnItem& on_item) {
-  const auto token = [&] {
-    const std::string_view text = next_token(row);
-    if (text.empty())
-      throw Fault{row.data(), "the row ends before property " + in_quotes(property.name)};
-    return text;
-  };
-  std::int64_t items = 1;
-  if (property.count_type) {
-    const std::string_view count = token();
-    if (!parse_int(count, items) || items < 0)
-      throw Fault{row.data(),
-                  "list count " + in_quotes(count) + " is not a whole number of 0 or more"};
-  }
-  for (; items > 0; --items) {
-    poll.step();
-    on_item(token());
-  }
-}
 
 std::int64_t to_int(std::string_view token) {
   std::int64_t value = 0;
@@ -136,8 +113,8 @@ class AsciiReader {
 
   std::size_t count_corners(std::string_view row, CancelPoll& poll) const {
     for (int p = 0; p < fields_.indices; ++p)
-      take_property(row, fields_.face.properties[static_cast<std::size_t>(p)], poll,
-                    [](std::string_view) {});
+      take_ply_property(row, fields_.face.properties[static_cast<std::size_t>(p)], poll,
+                        [](std::string_view) {});
     const char* const start = row.data();
     std::int64_t corners = 0;
     // A corner needs at least two characters, so a count that is too large for the line is refused
@@ -167,14 +144,14 @@ class AsciiReader {
     const bool has_values = body_.attributes != nullptr;
     Vec3f vertex;
     for (std::size_t p = 0; p < properties.size(); ++p)
-      take_property(row, properties[p], chunk.poll, [&](std::string_view token) {
+      take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
         for (int axis = 0; axis < 3; ++axis)
           if (fields_.axes[static_cast<std::size_t>(axis)] == static_cast<int>(p) &&
               !parse_float(token, vertex[axis]))
             throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
         if (has_values) take_value(body_.attributes->vertex_columns(), p, token, chunk.values);
       });
-    check_row_end(row);
+    check_ply_row_end(row);
     if (!is_finite(vertex)) has_bad_vertex_[chunk.index] = 1;
     mesh_.vertices[index] = vertex;
     if (has_values) body_.attributes->take_vertex(index, chunk.values);
@@ -192,7 +169,7 @@ class AsciiReader {
       const int property = static_cast<int>(p);
       std::uint32_t first = 0, previous = 0;
       std::size_t corner = 0;
-      take_property(row, properties[p], chunk.poll, [&](std::string_view token) {
+      take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
         if (property == fields_.material)
           material = checked_material(to_int(token), mesh_, token.data());
         if (has_values) take_value(body_.attributes->face_columns(), p, token, chunk.values);
@@ -205,7 +182,7 @@ class AsciiReader {
         ++corner;
       });
     }
-    check_row_end(row);
+    check_ply_row_end(row);
     const std::size_t count = chunk.triangle - first_triangle;
     const auto fan = std::span(mesh_.triangles).subspan(first_triangle, count);
     if (has_values) {
@@ -216,12 +193,6 @@ class AsciiReader {
     }
     for (std::size_t t = first_triangle; t < chunk.triangle && fields_.material >= 0; ++t)
       mesh_.triangle_materials[t] = material;
-  }
-
-  static void check_row_end(std::string_view row) {
-    const std::string_view extra = next_token(row);
-    if (!extra.empty())
-      throw Fault{extra.data(), "the row has " + in_quotes(extra) + " after its last property"};
   }
 
   void check_finite() {

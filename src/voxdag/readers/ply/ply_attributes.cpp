@@ -7,24 +7,12 @@
 #include "voxdag/image/color.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/readers/named_files.hpp"
+#include "voxdag/readers/ply/ply_color.hpp"
 
 namespace voxdag {
 namespace {
 
 using Slot = PlyRowValues::Slot;
-
-/// Returns the indices of scalar properties by name; empty if one is missing or a list.
-std::vector<int> find_scalars(const PlyElement& element,
-                              std::initializer_list<std::string_view> names) {
-  std::vector<int> found;
-  for (const std::string_view name : names) {
-    const int property = element.find({name});
-    if (property < 0 || element.properties[static_cast<std::size_t>(property)].count_type)
-      return {};
-    found.push_back(property);
-  }
-  return found;
-}
 
 void set_slots(PlyColumns& columns, const std::vector<int>& properties, Slot first) {
   for (std::size_t i = 0; i < properties.size(); ++i)
@@ -32,25 +20,16 @@ void set_slots(PlyColumns& columns, const std::vector<int>& properties, Slot fir
 }
 
 void find_color(const PlyElement& element, PlyColumns& columns) {
-  for (const auto& names :
-       {std::array{"red", "green", "blue", "alpha"},
-        std::array{"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"},
-        std::array{"r", "g", "b", "a"}}) {
-    std::vector<int> found = find_scalars(element, {names[0], names[1], names[2]});
-    if (found.empty()) continue;
-    const std::vector<int> alpha = find_scalars(element, {names[3]});
-    found.insert(found.end(), alpha.begin(), alpha.end());
-    set_slots(columns, found, Slot::kRed);
-    columns.color_components = static_cast<int>(found.size());
-    return;
-  }
+  const std::vector<int> found = find_ply_color(element);
+  set_slots(columns, found, Slot::kRed);
+  columns.color_components = static_cast<int>(found.size());
 }
 
 void find_uv(const PlyElement& element, PlyColumns& columns) {
   for (const auto& names :
        {std::array{"s", "t"}, std::array{"u", "v"}, std::array{"texture_u", "texture_v"},
         std::array{"texture_s", "texture_t"}}) {
-    const std::vector<int> found = find_scalars(element, {names[0], names[1]});
+    const std::vector<int> found = find_ply_scalars(element, {names[0], names[1]});
     if (found.empty()) continue;
     set_slots(columns, found, Slot::kU);
     columns.has_uvs = true;
@@ -59,23 +38,9 @@ void find_uv(const PlyElement& element, PlyColumns& columns) {
 }
 
 void find_normal(const PlyElement& element, PlyColumns& columns) {
-  const std::vector<int> found = find_scalars(element, {"nx", "ny", "nz"});
+  const std::vector<int> found = find_ply_scalars(element, {"nx", "ny", "nz"});
   set_slots(columns, found, Slot::kNormalX);
   columns.has_normals = !found.empty();
-}
-
-/// Returns the factor that maps a component of a colour to 0..1.
-float color_scale(PlyType type) {
-  switch (type) {
-    case PlyType::kInt8:
-    case PlyType::kUint8:
-      return 1.0f / 255;
-    case PlyType::kInt16:
-    case PlyType::kUint16:
-      return 1.0f / 65535;
-    default:
-      return is_integer(type) ? 1.0f / 255 : 1.0f;
-  }
 }
 
 /// Converts texture coordinates: in the file, v points up.
@@ -108,7 +73,7 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
   for (std::size_t p = 0; p < columns.slots.size(); ++p)
     if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha)
       color_scales_[static_cast<std::size_t>(columns.slots[p])] =
-          color_scale(colored.properties[p].type);
+          ply_color_scale(colored.properties[p].type);
 }
 
 void PlyAttributes::resize_vertices(std::size_t count) {

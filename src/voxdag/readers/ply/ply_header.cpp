@@ -33,7 +33,8 @@ class HeaderParser {
     header_.textures = CountedVector<std::string_view>(source.options.memory);
   }
 
-  PlyHeader parse() {
+  PlyHeader parse(PlyUse use) {
+    if (rest_.empty()) throw source_.error("the file is empty");
     find_line_end();
     std::string_view magic = line();
     if (next_token(magic) != "ply") fail("not a PLY file: it does not start with 'ply'");
@@ -59,6 +60,8 @@ class HeaderParser {
     if (!has_format) fail("PLY header without a 'format' line");
     header_.body = source_.bytes.size() - rest_.size();
     check_elements();
+    check_vertices();
+    if (use == PlyUse::kMesh) check_mesh();
     return std::move(header_);
   }
 
@@ -145,10 +148,11 @@ class HeaderParser {
       const PlyElement& element = header_.elements[i];
       if (element.name == "vertex") header_.vertex = static_cast<int>(i);
       if (element.name == "face") header_.face = static_cast<int>(i);
-      if (element.name == "tristrips" && element.count > 0)
-        fail("PLY with triangle strips: save it with a 'face' element");
       check_size(element);
     }
+  }
+
+  void check_vertices() {
     if (header_.vertex < 0) fail("PLY without a 'vertex' element");
     const PlyElement& vertex = header_.elements[static_cast<std::size_t>(header_.vertex)];
     for (const std::string_view axis : {"x", "y", "z"}) {
@@ -157,7 +161,14 @@ class HeaderParser {
       if (vertex.properties[static_cast<std::size_t>(found)].count_type)
         fail("PLY vertex property " + in_quotes(axis) + " is a list");
     }
-    if (vertex.count >= std::numeric_limits<std::uint32_t>::max())
+  }
+
+  void check_mesh() {
+    for (const PlyElement& element : header_.elements)
+      if (element.name == "tristrips" && element.count > 0)
+        fail("PLY with triangle strips: save it with a 'face' element");
+    if (header_.elements[static_cast<std::size_t>(header_.vertex)].count >=
+        std::numeric_limits<std::uint32_t>::max())
       fail("the mesh has more than 4,294,967,294 vertices");
     if (header_.face < 0) fail("PLY without a 'face' element: there is no surface to read");
     const PlyElement& face = header_.elements[static_cast<std::size_t>(header_.face)];
@@ -204,6 +215,8 @@ std::size_t PlyElement::least_row_bytes() const {
   return bytes;
 }
 
-PlyHeader parse_ply_header(const MeshSource& source) { return HeaderParser(source).parse(); }
+PlyHeader parse_ply_header(const MeshSource& source, PlyUse use) {
+  return HeaderParser(source).parse(use);
+}
 
 }  // namespace voxdag

@@ -55,12 +55,18 @@ struct PlyHeader {
   std::size_t body = 0;                       ///< Offset of the first byte after the header.
 
   int vertex = -1;  ///< Index of element `vertex`; always in range after parse_ply_header().
-  int face = -1;    ///< Index of element `face`; always in range after parse_ply_header().
+  int face = -1;    ///< Index of element `face`; always in range if the use is kMesh.
 };
 
-/// Parses the header and checks it: every line is known, vertices have x, y and z, faces have a
-/// list of integer indices, and the file is at least as long as the counts imply. Throws Error with
-/// the line, OverMemory.
-PlyHeader parse_ply_header(const MeshSource& source);
+/// The parts of a file that a reader wants.
+enum class PlyUse : std::uint8_t {
+  kMesh,   ///< Vertices and faces.
+  kPoints  ///< Vertices; the file may have faces, strips or other elements.
+};
+
+/// Parses the header and checks it: every line is known, vertices have x, y and z, and the file is
+/// at least as long as the counts imply. A mesh also needs faces with a list of integer indices and
+/// at most 2^32 - 2 vertices. Throws Error with the line, OverMemory.
+PlyHeader parse_ply_header(const MeshSource& source, PlyUse use = PlyUse::kMesh);
 
 }  // namespace voxdag

@@ -43,6 +43,12 @@ inline float load_float(PlyType type, const char* p, bool swap) {
   return static_cast<float>(load_int(type, p, swap));
 }
 
+inline double load_double(PlyType type, const char* p, bool swap) {
+  if (type == PlyType::kFloat) return load_ply<float>(p, swap);
+  if (type == PlyType::kDouble) return load_ply<double>(p, swap);
+  return static_cast<double>(load_int(type, p, swap));
+}
+
 /// Properties of fixed size, followed by one list. The last run of a row has no list.
 struct Run {
   std::size_t fixed_bytes = 0;

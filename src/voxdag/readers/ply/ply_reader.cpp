@@ -6,7 +6,6 @@
 namespace voxdag {
 
 MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
-  if (source.bytes.empty()) throw source.error("the file is empty");
   const PlyHeader header = parse_ply_header(source);
   const NamedFiles files(source);
   for (const std::string_view name : header.textures) files.report(source.folder / name);

@@ -1,0 +1,57 @@
+/// Fuzzes the readers of points: any bytes give points or an Error. The first byte chooses the
+/// format; the others are the file.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/imports/points/las_points.hpp"
+#include "voxdag/imports/points/npy_points.hpp"
+#include "voxdag/imports/points/pcd_points.hpp"
+#include "voxdag/imports/points/ply_points.hpp"
+#include "voxdag/imports/points/xyz_points.hpp"
+
+namespace {
+
+using Open = std::unique_ptr<voxdag::VoxelSource> (*)(const std::filesystem::path&);
+constexpr Open kReaders[] = {voxdag::open_ply_points, voxdag::open_las_points,
+                             voxdag::open_pcd_points, voxdag::open_xyz_points,
+                             voxdag::open_npy_points};
+
+/// A file in memory.
+class MemoryFile {
+ public:
+  MemoryFile(const std::uint8_t* data, std::size_t size) : descriptor_(memfd_create("points", 0)) {
+    if (descriptor_ < 0 || write(descriptor_, data, size) != static_cast<ssize_t>(size)) abort();
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { close(descriptor_); }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const MemoryFile file(data + 1, size - 1);
+  try {
+    const auto source = kReaders[data[0] % std::size(kReaders)](file.path());
+    std::uint64_t points = 0;
+    source->visit_all([&](const voxdag::VoxelBatch& batch) {
+      points += batch.places.size();
+      if (batch.colors.size() != (source->has_colors() ? batch.places.size() : 0)) abort();
+    });
+    // No format holds a point in less than three bytes, compressed by at most 88.
+    if (points > 88 * size / 3) abort();
+  } catch (const voxdag::Error&) {
+  }
+  return 0;
+}
