@@ -231,6 +231,7 @@ TEST_F(PcdPointsTest, PackedColoursAreIntegersOrFloats) {
   EXPECT_EQ(read(text("4278255360")).colors, (std::vector<Rgb8>{{0, 255, 0}}));
   EXPECT_EQ(read(text("-16777216")).colors, (std::vector<Rgb8>{{0, 0, 0}}));
   EXPECT_EQ(read(text("2.3418052e-38")).colors, (std::vector<Rgb8>{{255, 0, 0}}));
+  EXPECT_EQ(read(text("nan")).colors, (std::vector<Rgb8>{{0, 0, 0}}));
   expect_error(text("4294967296"), "line 4: colour '4294967296' has more than 32 bits");
   expect_error(text("red"), "line 4: colour 'red' is not a number");
   // Fields of other sizes are no colours.
@@ -277,7 +278,8 @@ TEST_F(PcdPointsTest, DamagedFilesAreRefusedOrSafe) {
 
 TEST_F(PcdPointsTest, BadHeadersAreRefusedWithTheirPlace) {
   const auto header = [](const std::string& lines) { return lines + "DATA ascii\n1 2 3\n"; };
-  expect_error("", "the file ends before the line DATA");
+  expect_error("", "the file is empty");
+  expect_error("FIELDS x y z\nPOINTS 1\n", "line 2: the file ends before the line DATA");
   expect_error("ply\n", "line 1: not a PCD file");
   expect_error("VERSION .7\nFIELD x\n", "line 2: unknown PCD header keyword 'FIELD'");
   expect_error("VERSION .8\n", "line 1: PCD version '.8' is not 0.5, 0.6 or 0.7");

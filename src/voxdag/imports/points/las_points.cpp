@@ -15,7 +15,7 @@ class LasPoints : public VoxelSource {
         file_(path, MappedFile::Access::kSequential),
         header_(parse_las_header(file_.text(), name_)),
         color_(las_color_offset(header_.format)) {
-    if (has_colors()) color_shift_ = has_wide_color() ? 8 : 0;
+    if (color_ > 0) color_shift_ = has_wide_color() ? 8 : 0;
   }
 
   bool has_points() const override { return true; }

@@ -19,6 +19,7 @@ class HeaderParser {
       : bytes_(bytes), rest_(bytes.substr(0, kMostHeaderBytes)), name_(name) {}
 
   PcdHeader parse() {
+    if (bytes_.empty()) throw Error(name_, "", "the file is empty");
     for (bool is_last = false; !is_last;) {
       if (rest_.empty())
         fail(bytes_.size() > kMostHeaderBytes ? "the header has no line DATA in its first MiB"

@@ -1,7 +1,7 @@
 #include "voxdag/imports/points/pcd_points.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 #include <limits>
 
 #include "voxdag/core/bits.hpp"
@@ -48,7 +48,8 @@ std::uint32_t parse_color(std::string_view token) {
   float packed = 0;
   if (!parse_float(token, packed))
     throw Fault{token.data(), "colour " + in_quotes(token) + " is not a number"};
-  return bits_of_float(packed);
+  // Text keeps no bits of a NaN.
+  return std::isnan(packed) ? 0 : bits_of_float(packed);
 }
 
 /// A point as the file has it.
@@ -72,7 +73,7 @@ class PcdPoints : public VoxelSource {
     }
     for (const char* const name : {"rgb", "rgba"}) {
       const int found = header_.find(name);
-      if (found < 0 || has_colors()) continue;
+      if (found < 0 || used_.size() > 3) continue;
       const PcdField& field = header_.fields[static_cast<std::size_t>(found)];
       if (field.count == 1 && field.size == 4) used_.push_back(field);
     }

@@ -9,8 +9,8 @@ namespace voxdag {
 /// viewpoint is ignored.
 ///
 /// The colours are field `rgb` or `rgba` of 4 bytes: 0xAARRGGBB, also as the bits of a float. In
-/// text, a number with only digits is that integer; any other number is such a float. Fields of
-/// other sizes are no colours.
+/// text, a number with only digits is that integer; any other number is such a float, and NaN is
+/// black. Fields of other sizes are no colours.
 ///
 /// Memory is bounded, also for compressed files, which hold one field of all points after another.
 /// Throws Error with the line or byte: malformed headers and values, counts that need a longer
