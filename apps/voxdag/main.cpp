@@ -49,11 +49,11 @@ int run(int argc, char** argv) {
                    "voxdag " VOXDAG_VERSION);
   Session session;
   for (const auto add :
-       {add_build_command, add_import_command, add_convert_command, add_combine_command,
-        add_diff_command, add_components_command, add_edit_commands, add_info_command,
-        add_verify_command, add_view_command, add_render_command, add_trace_command,
-        add_query_command, add_export_command, add_scene_command, add_bench_command,
-        add_completion_command})
+       {add_build_command, add_import_command, add_convert_command, add_coarsen_command,
+        add_combine_command, add_diff_command, add_components_command, add_edit_commands,
+        add_info_command, add_verify_command, add_view_command, add_render_command,
+        add_trace_command, add_query_command, add_export_command, add_scene_command,
+        add_bench_command, add_completion_command})
     add(line.root(), session);
   try {
     if (!line.parse(argc, argv)) {

@@ -54,16 +54,18 @@ std::string build_rows(const Builds& builds, std::size_t begin, std::size_t end)
 }
 
 std::string stage_rows(const Builds& builds, std::size_t begin, std::size_t end) {
-  const std::vector<int> widths{9, 9, 9, 9, 9, 9, 9, 9};
+  const std::vector<int> widths{9, 9, 9, 9, 9, 9, 9, 9, 9};
   std::string text =
-      row({"wall s", "read", "quantize", "voxelize", "merge", "number", "count and", "start and"},
+      row({"wall s", "read", "quantize", "voxelize", "merge", "number", "fill the", "count and",
+           "start and"},
           widths) +
-      row({"", "mesh", "and bin", "", "", "nodes", "write", "end"}, widths);
+      row({"", "mesh", "and bin", "", "", "nodes", "inside", "write", "end"}, widths);
   for (std::size_t i = begin; i < end; ++i) {
     const BuildRun& run = builds[i];
     if (!run.failure.empty()) continue;
     std::vector<std::string> cells{resolution(run.levels)};
-    for (const char* stage : {"read", "quantize", "voxelize", "merge", "canonical", "write"})
+    for (const char* stage :
+         {"read", "quantize", "voxelize", "merge", "canonical", "solid", "write"})
       cells.push_back(fmt::format("{:.2f}", run.stage(stage)));
     cells.push_back(fmt::format("{:.2f}", run.cost.wall_seconds - run.stage("total")));
     text += row(cells, widths);

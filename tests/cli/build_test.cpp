@@ -303,8 +303,32 @@ TEST_F(Build, AnOpenMeshHasNoInside) {
   const ProcessResult result = build({"-r", "64", "--solid"});
   expect_failure(result, 1, "the mesh is not closed: 3 edges belong to an odd number of triangles");
   expect_nothing_left();
-  expect_failure(build({"-r", "64", "--solid", "full"}), 2, "neither parity nor flood");
+  EXPECT_NE(result.err.find("--solid winding"), std::string::npos) << result.err;
+  expect_failure(build({"-r", "64", "--solid", "full"}), 2, "none of parity, winding and flood");
   expect_failure(build({"-r", "64", "--solid", "flood", "--color"}), 2, "--solid");
+}
+
+TEST_F(Build, AnOpenMeshIsFilledByItsWindingNumber) {
+  write_text(mesh_, "v 1 2 3\nv 5 2 3\nv 1 4 3\nv 1 2 5\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const auto voxels = [this](const std::vector<std::string>& options) {
+    EXPECT_EQ(build(options).status, 0);
+    const Json info = Json::parse(run_voxdag({"info", output_, "--json"}).out);
+    const ProcessResult verified = run_voxdag({"verify", output_, "--mesh", mesh_});
+    EXPECT_EQ(verified.status, 0) << verified.out;
+    return info.at("voxels").get<int>();
+  };
+  const int shell = voxels({"-r", "64"}), solid = voxels({"-r", "64", "--solid", "winding"}),
+            narrow = voxels({"-r", "64", "--solid", "winding", "--winding-threshold", "0.8"}),
+            wide = voxels({"-r", "64", "--solid", "winding", "--winding-threshold", "0.3"});
+  EXPECT_LT(shell, narrow);
+  EXPECT_LT(narrow, solid);
+  EXPECT_LT(solid, wide);
+  // The hole is flat, so that the winding number on it is 1/2.
+  EXPECT_NEAR(solid, 64 * 32 * 32 / 6.0, 3'000);
+  expect_failure(build({"-r", "64", "--solid", "--winding-threshold", "0.3"}), 2,
+                 "--winding-threshold");
+  expect_failure(build({"-r", "64", "--solid", "winding", "--winding-threshold", "0"}), 2,
+                 "greater than zero");
 }
 
 }  // namespace

@@ -117,6 +117,12 @@ TEST_F(Convert, FewerLevelsKeepEveryVoxelsCell) {
             4 * before.at("transform").at("voxel_size").get<double>());
   EXPECT_EQ(run_voxdag({"verify", coarse}).status, 0);
   expect_failure(run_voxdag({"convert", plain_, "--levels", "9", "-o", coarse}), 1, "256");
+  const std::string by_two = dir_ / "by_two.vdag";
+  ASSERT_EQ(run_voxdag({"coarsen", plain_, "--by", "2", "-o", by_two}).status, 0);
+  EXPECT_EQ(read_text(by_two), read_text(coarse));
+  expect_failure(run_voxdag({"coarsen", plain_, "--by", "7", "-o", by_two}), 1,
+                 "--by can drop 6 at most");
+  expect_failure(run_voxdag({"coarsen", plain_, "-o", by_two}), 2, "--by");
 }
 
 TEST_F(Convert, ADamagedCompactFileIsRefusedByPlace) {

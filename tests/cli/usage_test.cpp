@@ -6,9 +6,9 @@ namespace voxdag {
 namespace {
 
 const std::vector<std::string> kCommands = {
-    "build",  "convert", "info",       "verify",  "view", "render",     "trace", "export",
-    "scene",  "bench",   "completion", "combine", "diff", "components", "crop",  "shift",
-    "mirror", "rotate",  "dilate",     "erode",   "fill", "query",      "import"};
+    "build",  "convert", "info",       "verify",  "view", "render",     "trace",  "export",
+    "scene",  "bench",   "completion", "combine", "diff", "components", "crop",   "shift",
+    "mirror", "rotate",  "dilate",     "erode",   "fill", "query",      "import", "coarsen"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});

@@ -7,6 +7,7 @@
 #include "bench/build/bench_build.hpp"
 #include "bench/build/bench_report.hpp"
 #include "bench/rivals/command_rival.hpp"
+#include "build/build_arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 struct BenchArguments {
   BenchPlan plan;
+  std::string solid;  ///< The rule of `build --solid`; empty: none.
   MeshAccess access;
   BenchOutput output;
 };
@@ -44,7 +46,10 @@ void bench(const BenchArguments& arguments, Session& session) {
     if (!run.failure.empty()) throw Error(run.scene, std::to_string(1 << run.levels), run.failure);
 }
 
-void finish_plan(BenchPlan& plan, const MeshAccess& access) {
+std::string parse_solid(const std::string& text) { return name_of(solid_rule(text)); }
+
+void finish_plan(BenchPlan& plan, const MeshAccess& access, const std::string& solid) {
+  if (!solid.empty()) plan.build_options.insert(plan.build_options.end(), {"--solid", solid});
   if (access.allow_outside) plan.build_options.emplace_back("--allow-outside");
   if (access.any_importer) plan.build_options.insert(plan.build_options.end(), {"--assimp", "any"});
   if (plan.meshes.empty())
@@ -71,6 +76,8 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
                "Voxels per side (default: 512,1024,2048)");
   command.list("--method", plan.methods, parse_method, "METHOD,METHOD",
                "Any of hash, sort and paper, as in voxdag build (default: hash)");
+  command.flag_or_parsed("--solid", arguments->solid, parse_solid, "parity", "parity|winding|flood",
+                         "Also set the voxels inside, as voxdag build does");
   const Option rival = command.repeated(
       "--rival", plan.rivals, parse_rival, "NAME=COMMAND",
       "Run another program for comparison: a shell command with {mesh}, {out}, {resolution} and "
@@ -85,7 +92,7 @@ void add_bench_build_command(const Command& bench_command, Session& session) {
   add_output_options(command, arguments->output, "Plot seconds and bytes over the resolution");
   add_run_options(command, session);
   command.when_parsed([arguments, &session] {
-    finish_plan(arguments->plan, arguments->access);
+    finish_plan(arguments->plan, arguments->access, arguments->solid);
     session.inputs = arguments->plan.meshes;
     arguments->output.check_distinct(session);
     session.work = [arguments, &session] {

@@ -1,8 +1,10 @@
-/// `voxdag convert`: writes a DAG in its other form, or with fewer levels.
+/// `voxdag convert`: writes a DAG in its other form, or with fewer levels. `voxdag coarsen`: drops
+/// levels.
 #include <fmt/core.h>
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
@@ -10,6 +12,7 @@
 #include "cli/reduced_dag.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/report/human.hpp"
@@ -21,15 +24,30 @@ struct ConvertArguments {
   std::string output;
   bool compact = false, plain = false, wire = false;
   DagReduction reduction;
+  std::optional<int> coarsen_by;  ///< Levels to drop, instead of reduction.levels.
   std::uint64_t memory_limit = 0;
 };
+
+/// Returns the reduction of a file with `levels`. Throws Error if it drops too many.
+DagReduction reduction_of(const ConvertArguments& arguments, int levels, const std::string& path) {
+  DagReduction reduction = arguments.reduction;
+  if (!arguments.coarsen_by) return reduction;
+  if (*arguments.coarsen_by > levels - kMinLevels)
+    throw Error(path, "",
+                fmt::format("has {} levels, so that --by can drop {} at most", levels,
+                            levels - kMinLevels));
+  reduction.levels = levels - *arguments.coarsen_by;
+  return reduction;
+}
 
 void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
   const DagInput file(session.subject, &session.progress, &memory);
-  const ReducedDag dag(file, session.subject, arguments.reduction, &memory, &session.progress);
+  const ReducedDag dag(file, session.subject,
+                       reduction_of(arguments, file.grid().levels, session.subject), &memory,
+                       &session.progress);
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
   const DagAttributesView attributes = dag.attributes();
   const AttributeForm form = arguments.wire ? AttributeForm::kWire : AttributeForm::kPages;
@@ -49,24 +67,17 @@ void convert(const ConvertArguments& arguments, Session& session) {
              compact ? "compact" : "plain", human_seconds(watch.since_start()));
 }
 
-}  // namespace
-
-void add_convert_command(const Command& program, Session& session) {
-  const auto arguments = std::make_shared<ConvertArguments>();
-  const Command command =
-      program.add("convert", "Write a DAG in the compact or the plain form, or with fewer levels",
-                  "voxdag convert scene.vdag --compact -o small.vdag");
-  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
-  command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
-  const Option compact = command.flag("--compact", arguments->compact,
+/// Adds the options of the output that both commands have.
+void add_output_form(const Command& command, ConvertArguments& arguments) {
+  command.text("-o,--output", arguments.output, "OUT", "The .vdag file to write").required();
+  const Option compact = command.flag("--compact", arguments.compact,
                                       "Write the compact form (default: the form of FILE)");
-  command.flag("--plain", arguments->plain, "Write the plain form, the layout of the paper")
+  command.flag("--plain", arguments.plain, "Write the plain form, the layout of the paper")
       .not_with(compact);
-  command.flag("--wire", arguments->wire,
-               "Code colours, normals and material ids for sending: a quarter smaller or more, but "
-               "readers decode "
-               "all of them");
-  add_reduction_options(command, arguments->reduction);
+}
+
+void add_work_options(const Command& command, const std::shared_ptr<ConvertArguments>& arguments,
+                      Session& session) {
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program (default: three quarters of the available "
                  "memory)");
@@ -76,6 +87,39 @@ void add_convert_command(const Command& program, Session& session) {
     check_distinct({{"--output", arguments->output}}, session);
     session.work = [arguments, &session] { convert(*arguments, session); };
   });
+}
+
+}  // namespace
+
+void add_convert_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<ConvertArguments>();
+  const Command command =
+      program.add("convert", "Write a DAG in the compact or the plain form, or with fewer levels",
+                  "voxdag convert scene.vdag --compact -o small.vdag");
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  add_output_form(command, *arguments);
+  command.flag("--wire", arguments->wire,
+               "Code colours, normals and material ids for sending: a quarter smaller or more, but "
+               "readers decode all of them");
+  add_reduction_options(command, arguments->reduction);
+  add_work_options(command, arguments, session);
+}
+
+void add_coarsen_command(const Command& program, Session& session) {
+  const auto arguments = std::make_shared<ConvertArguments>();
+  const Command command = program.add(
+      "coarsen", "Drop levels of a DAG: each one halves the resolution",
+      "voxdag coarsen scene.vdag --by 2 -o small.vdag\n\n"
+      "A voxel of the result is set if any of the voxels in it is. Colours, normals and material "
+      "ids stay; voxdag convert --levels can also store them with larger errors.");
+  command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
+  command
+      .optional_number<int>("--by", arguments->coarsen_by,
+                            NumberRange::whole(1, kMaxLevels - kMinLevels), "K",
+                            "Number of levels to drop")
+      .required();
+  add_output_form(command, *arguments);
+  add_work_options(command, arguments, session);
 }
 
 }  // namespace voxdag

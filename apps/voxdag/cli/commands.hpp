@@ -7,6 +7,7 @@ namespace voxdag {
 void add_build_command(const Command& program, Session& session);
 void add_import_command(const Command& program, Session& session);
 void add_convert_command(const Command& program, Session& session);
+void add_coarsen_command(const Command& program, Session& session);
 void add_combine_command(const Command& program, Session& session);
 void add_diff_command(const Command& program, Session& session);
 void add_components_command(const Command& program, Session& session);
