@@ -32,6 +32,14 @@ void check_output() {
     throw Error("standard output", "", std::system_category().message(errno));
 }
 
+/// Returns the reason if a long text could not be printed, which fmt::print() reports without a
+/// name; else an empty text.
+std::string output_failure(const std::exception& error) {
+  const auto* const failure = dynamic_cast<const std::system_error*>(&error);
+  if (failure == nullptr || std::ferror(stdout) == 0) return "";
+  return "standard output: " + failure->code().message();
+}
+
 void work(Session& session) {
   std::optional<tbb::global_control> threads;
   if (session.threads > 0)
@@ -84,7 +92,8 @@ int run(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(subject + "out of memory", kFailure);
   } catch (const std::exception& error) {
-    return fail(subject + error.what(), kFailure);
+    const std::string output = output_failure(error);
+    return fail(output.empty() ? subject + error.what() : output, kFailure);
   }
 }
 
@@ -95,5 +104,6 @@ int main(int argc, char** argv) try {
   voxdag::make_writes_return_errors();
   return voxdag::run(argc, argv);
 } catch (const std::exception& error) {
-  return voxdag::report(error.what(), voxdag::kFailure);
+  const std::string output = voxdag::output_failure(error);
+  return voxdag::report(output.empty() ? error.what() : output, voxdag::kFailure);
 }
