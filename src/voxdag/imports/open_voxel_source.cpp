@@ -6,6 +6,7 @@
 #include "voxdag/imports/points/npy_points.hpp"
 #include "voxdag/imports/points/xyz_points.hpp"
 #include "voxdag/imports/volumes/binvox.hpp"
+#include "voxdag/imports/volumes/vox.hpp"
 
 namespace voxdag {
 namespace {
@@ -25,6 +26,7 @@ constexpr Format kFormats[] = {
     {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
+    {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 
 }  // namespace
