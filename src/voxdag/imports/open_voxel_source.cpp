@@ -3,9 +3,9 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/imports/points/npy_points.hpp"
 #include "voxdag/imports/points/xyz_points.hpp"
 #include "voxdag/imports/volumes/binvox.hpp"
+#include "voxdag/imports/volumes/npy_volume.hpp"
 #include "voxdag/imports/volumes/vox.hpp"
 
 namespace voxdag {
@@ -21,7 +21,8 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".npy", false, [](const Path& path, const Options&) { return open_npy_points(path); }},
+    {".npy", true,
+     [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
     {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
