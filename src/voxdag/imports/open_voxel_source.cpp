@@ -6,6 +6,7 @@
 #include "voxdag/imports/points/xyz_points.hpp"
 #include "voxdag/imports/volumes/binvox.hpp"
 #include "voxdag/imports/volumes/npy_volume.hpp"
+#include "voxdag/imports/volumes/nrrd.hpp"
 #include "voxdag/imports/volumes/vox.hpp"
 
 namespace voxdag {
@@ -27,6 +28,10 @@ constexpr Format kFormats[] = {
     {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
+    {".nrrd", true,
+     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+    {".nhdr", true,
+     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
     {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 
