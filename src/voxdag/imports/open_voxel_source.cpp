@@ -5,6 +5,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/imports/points/xyz_points.hpp"
 #include "voxdag/imports/volumes/binvox.hpp"
+#include "voxdag/imports/volumes/nifti.hpp"
 #include "voxdag/imports/volumes/npy_volume.hpp"
 #include "voxdag/imports/volumes/nrrd.hpp"
 #include "voxdag/imports/volumes/vox.hpp"
@@ -32,6 +33,10 @@ constexpr Format kFormats[] = {
      [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
     {".nhdr", true,
      [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+    {".nii", true,
+     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+    {".nii.gz", true,
+     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
     {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 

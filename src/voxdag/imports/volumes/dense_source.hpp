@@ -19,10 +19,10 @@ enum class Encoding : std::uint8_t {
 
 /// What the parser of a header found.
 struct DenseFile {
-  DenseVolume volume;
-  Grid grid;
-  std::vector<std::string> warnings;
-  std::filesystem::path path;  ///< Of the data.
+  DenseVolume volume = {};
+  Grid grid = {};
+  std::vector<std::string> warnings = {};
+  std::filesystem::path path = {};  ///< Of the data.
   MappedFile data;
   std::uint64_t begin = 0;  ///< First byte of the data in the file.
   Encoding encoding = Encoding::kRaw;

@@ -255,8 +255,7 @@ class Parser {
         if (word == "none") continue;
         const Vec3d direction = vector_in(*directions, word);
         placement.spacing[axis] = length(direction);
-        // True also for a mirrored axis, and for NaN.
-        if (!(direction[axis] == length(direction))) placement.is_turned = true;
+        placement.is_turned |= !is_along(direction, axis);
       }
     }
     if (const Field* origin = find("space origin"))

@@ -21,6 +21,11 @@ std::string shortest(double value) {
 
 }  // namespace
 
+bool is_along(Vec3d direction, int axis) {
+  // Allows an angle of 0.003 degrees.
+  return direction[axis] >= length(direction) * (1 - 1e-9) && direction[axis] > 0;
+}
+
 Grid grid_of_volume(const std::filesystem::path& path, const VolumeSize& size,
                     const VolumePlacement& placement, std::vector<std::string>& warnings) {
   const Vec3d spacing = placement.spacing;

@@ -16,6 +16,9 @@ struct VolumePlacement {
   bool is_turned = false;             ///< The axes are not those of the world.
 };
 
+/// Returns whether a direction is that of the axis, but for rounding.
+bool is_along(Vec3d direction, int axis);
+
 /// Returns the grid of a volume. Voxels are cubes of the smallest spacing. Adds a warning if the
 /// file has other voxels, or turned ones. Throws Error for a spacing that is not between 1e-30 and
 /// 1e30, and for a place beyond 1e30.
