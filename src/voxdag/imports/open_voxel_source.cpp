@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <system_error>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/imports/points/xyz_points.hpp"
@@ -8,6 +9,7 @@
 #include "voxdag/imports/volumes/nifti.hpp"
 #include "voxdag/imports/volumes/npy_volume.hpp"
 #include "voxdag/imports/volumes/nrrd.hpp"
+#include "voxdag/imports/volumes/png_slices.hpp"
 #include "voxdag/imports/volumes/vox.hpp"
 
 namespace voxdag {
@@ -43,6 +45,8 @@ constexpr Format kFormats[] = {
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
   std::string name = path.string(), endings;
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -54,7 +58,7 @@ std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& 
     }
     endings += std::string(endings.empty() ? "" : ", ") + format.ending;
   }
-  throw Error(path.string(), "", "is none of " + endings);
+  throw Error(path.string(), "", "is none of " + endings + ", or a folder of .png files");
 }
 
 }  // namespace voxdag

@@ -13,9 +13,9 @@ namespace {
 constexpr double kSameSpacing = 1e-5;
 constexpr double kFarthest = 1e30;
 
-std::string shortest(double value) {
+std::string text_of(double value) {
   char text[32];
-  const auto result = std::to_chars(text, text + sizeof text, value);
+  const auto result = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6);
   return {text, result.ptr};
 }
 
@@ -33,7 +33,7 @@ Grid grid_of_volume(const std::filesystem::path& path, const VolumeSize& size,
     if (!(spacing[axis] >= 1 / kFarthest && spacing[axis] <= kFarthest))
       throw Error(path.string(), "header",
                   "the spacing of the voxels must be between 1e-30 and 1e30, not " +
-                      shortest(spacing[axis]));
+                      text_of(spacing[axis]));
     if (placement.first_centre && !(std::abs((*placement.first_centre)[axis]) <= kFarthest))
       throw Error(path.string(), "header", "the volume lies beyond 1e30");
   }
@@ -44,9 +44,9 @@ Grid grid_of_volume(const std::filesystem::path& path, const VolumeSize& size,
   if (greatest <= grid.voxel_size * (1 + kSameSpacing))
     grid.voxel_size = spacing.x;
   else
-    warnings.push_back("the voxels are boxes of " + shortest(spacing.x) + " x " +
-                       shortest(spacing.y) + " x " + shortest(spacing.z) +
-                       "; they become cubes of side " + shortest(grid.voxel_size));
+    warnings.push_back("the voxels are boxes of " + text_of(spacing.x) + " x " +
+                       text_of(spacing.y) + " x " + text_of(spacing.z) +
+                       "; they become cubes of side " + text_of(grid.voxel_size));
   grid.quantization_scale = kSubvoxels / grid.voxel_size;
   if (placement.first_centre)
     grid.origin = *placement.first_centre - Vec3d{0.5, 0.5, 0.5} * grid.voxel_size;
