@@ -10,6 +10,7 @@
 #include "voxdag/imports/volumes/npy_volume.hpp"
 #include "voxdag/imports/volumes/nrrd.hpp"
 #include "voxdag/imports/volumes/png_slices.hpp"
+#include "voxdag/imports/volumes/vdb.hpp"
 #include "voxdag/imports/volumes/vox.hpp"
 
 namespace voxdag {
@@ -39,6 +40,8 @@ constexpr Format kFormats[] = {
      [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
     {".nii.gz", true,
      [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+    {".vdb", true,
+     [](const Path& path, const Options& options) { return open_vdb(path, options.threshold); }},
     {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 
