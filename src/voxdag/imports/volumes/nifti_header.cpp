@@ -9,6 +9,12 @@
 namespace voxdag {
 namespace {
 
+using namespace std::string_view_literals;
+
+/// What a file says about its version; a zero byte is part of each.
+constexpr std::string_view kPairMagic = "ni1\0"sv, kMagic1 = "n+1\0"sv,
+                           kMagic2 = "n+2\0\r\n\x1a\n"sv;
+
 /// Bytes of the fields, and the sizes of those that differ between the versions.
 struct FieldPlaces {
   std::size_t header, magic, dim, datatype, pixdim, vox_offset, slope, intercept, qform, sform,
@@ -73,11 +79,9 @@ class Parser {
         const bool is_first = places.real_bytes == 4;
         bits(places.header - 1, 1);  // Checks the length.
         const std::string_view magic = bytes_.substr(places.magic);
-        if (is_first && magic.starts_with(std::string_view("ni1", 4)))
+        if (is_first && magic.starts_with(kPairMagic))
           fail(places.magic, "has its data in another file, which is not supported");
-        if (magic.starts_with(is_first ? std::string_view("n+1", 4)
-                                       : std::string_view("n+2\0\r\n\x1a\n", 8)))
-          return;
+        if (magic.starts_with(is_first ? kMagic1 : kMagic2)) return;
       }
     fail(0, "is not a NIfTI file");
   }

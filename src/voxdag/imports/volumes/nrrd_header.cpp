@@ -182,7 +182,7 @@ class Parser {
 
   /// Returns one word for each axis.
   std::vector<std::string_view> words_of_axes(const Field& field) const {
-    const std::vector<std::string_view> words = words_of(field.value);
+    std::vector<std::string_view> words = words_of(field.value);
     if (words.size() != axes_)
       fail(field.line, "has " + std::to_string(words.size()) + " values for " +
                            std::to_string(axes_) + " axes");

@@ -37,6 +37,7 @@ class Vox : public VoxelSource {
     BatchedVoxels voxels(visit);
     for (const VoxInstance& instance : instances_) {
       const VoxModel& model = file_.models[instance.model];
+      if (model.is_empty()) continue;
       const auto* bytes =
           reinterpret_cast<const unsigned char*>(mapping_.text().data() + model.first_voxel);
       for (std::uint32_t i = 0; i < model.count; ++i, bytes += 4)
