@@ -83,7 +83,7 @@ TEST_F(Nrrd, DataInAFileBesideTheHeader) {
   };
   const std::string bytes = volume.bytes();
   check("encoding: raw\ndata file: d.raw\n", bytes);
-  check("encoding: raw\ndatafile: d.raw", bytes);
+  check("encoding: raw\ndatafile: ./d.raw", bytes);
   check("encoding: raw\nbyte skip: 3\ndata file: d.raw\n\n", "xyz" + bytes + "more");
   check("encoding: raw\nbyte skip: -1\nline skip: 1\ndata file: d.raw\n", "a\nxyz" + bytes);
   check("encoding: raw\nline skip: 2\nbyte skip: 1\ndata file: d.raw\n", "a\n\n+" + bytes);
@@ -96,6 +96,7 @@ TEST_F(Nrrd, DataInAFileBesideTheHeader) {
     return error_of_bytes("v.nhdr", header + "encoding: raw\n" + fields);
   };
   EXPECT_TRUE(has(error("data file: ../d.raw\n"), "is not the name of a file in the folder"));
+  EXPECT_TRUE(has(error("data file: ./../d.raw\n"), "is not the name of a file in the folder"));
   EXPECT_TRUE(has(error("data file: /etc/passwd\n"), "is not the name of a file in the folder"));
   EXPECT_TRUE(has(error("data file: ..\n"), "is not the name of a file in the folder"));
   EXPECT_TRUE(has(error("data file:\n"), "is not the name of a file in the folder"));

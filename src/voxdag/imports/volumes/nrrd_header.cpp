@@ -226,7 +226,9 @@ class Parser {
         fail(skip->line, "the byte skip must be 0 or greater, or -1 for raw data");
     }
     if (const Field* file = find("data file")) {
-      const std::string& name = file->value;
+      std::string name = file->value;
+      // Teem writes "./name" for a file beside the header.
+      if (name.starts_with("./")) name.erase(0, 2);
       const bool is_list = name == "LIST" || name.starts_with("LIST ");
       if (is_list || name.find('%') != std::string::npos)
         fail(file->line, "data in several files are not supported");
