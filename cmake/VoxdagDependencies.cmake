@@ -1,6 +1,6 @@
 # Finds the packages of the parts that are built. All packages are in Debian 12. If an optional
 # package is missing, one line says so.
-set(optional_packages assimp embree CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
+set(optional_packages assimp embree OpenVDB CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
 
 # The packages that an installed voxdag needs, by part: voxdagConfig.cmake.in reads them.
 set(VOXDAG_LIBRARY_PACKAGES Threads)
@@ -32,6 +32,13 @@ if("embree" IN_LIST VOXDAG_LIBRARY_PACKAGES)
   find_package(embree 3 QUIET)
   if(NOT embree_FOUND)
     message(STATUS "voxdag: Embree 3 (libembree-dev) not found: no `render --mesh`, no comparison with it in `bench trace`")
+  endif()
+endif()
+
+if("OpenVDB" IN_LIST VOXDAG_LIBRARY_PACKAGES)
+  find_package(OpenVDB QUIET)
+  if(NOT OpenVDB_FOUND)
+    message(STATUS "voxdag: OpenVDB (libopenvdb-dev, libboost-dev) not found: voxdag reads no .vdb volumes")
   endif()
 endif()
 

@@ -11,7 +11,7 @@ get_property(parts GLOBAL PROPERTY VOXDAG_TARGETS)
 set(VOXDAG_ROOM_TABLE "")
 foreach(room ${VOXDAG_ROOMS})
   set(packages ${VOXDAG_ROOM_${room}_PACKAGES})
-  foreach(optional assimp embree CUDAToolkit)
+  foreach(optional assimp embree OpenVDB CUDAToolkit)
     if(NOT ${optional}_FOUND)
       list(REMOVE_ITEM packages ${optional})
     endif()
@@ -43,4 +43,5 @@ configure_package_config_file(
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/voxdagConfig.cmake ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/FindOpenVDB.cmake
         DESTINATION ${package_dir})

@@ -42,12 +42,16 @@ std::size_t items_per_row(const std::vector<std::uint64_t>& row_shape) {
 
 }  // namespace
 
-NpyReader::NpyReader(const std::filesystem::path& path, const std::string& dtype,
-                     const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes)
-    : path_(path), row_bytes_(items_per_row(row_shape) * item_bytes) {
+NpyReader::NpyReader(const std::filesystem::path& path) : path_(path) {
   OpenInput input = open_input(path, InputKind::kFileOrPipe);
   input_ = std::move(input.descriptor);
   file_bytes_ = input.size;
+}
+
+NpyReader::NpyReader(const std::filesystem::path& path, const std::string& dtype,
+                     const std::vector<std::uint64_t>& row_shape, std::size_t item_bytes)
+    : NpyReader(path) {
+  row_bytes_ = items_per_row(row_shape) * item_bytes;
   const NpyHeader header = read_header();
   if (header.dtype != dtype)
     fail("items must be " + dtype_literal(dtype) + ", not " + dtype_literal(header.dtype));
@@ -110,6 +114,13 @@ NpyHeader NpyReader::read_header() {
   } catch (const Error& error) {
     throw error.in_file(path_.string());
   }
+}
+
+NpyStart read_npy_start(const std::filesystem::path& path) {
+  NpyReader reader(path);
+  NpyStart start{reader.read_header()};
+  start.data = reader.position_;
+  return start;
 }
 
 void NpyReader::check_size() const {

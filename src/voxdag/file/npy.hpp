@@ -26,6 +26,15 @@ struct NpyHeader {
 /// Parses the dictionary of a header. Throws Error with the byte, counted from `first_byte`.
 NpyHeader parse_npy_header(std::string_view text, std::uint64_t first_byte);
 
+/// The header of a file, and the byte at which its items begin.
+struct NpyStart {
+  NpyHeader header;
+  std::uint64_t data = 0;
+};
+
+/// Reads the start of a file with an array of any type. Throws Error with path and byte.
+NpyStart read_npy_start(const std::filesystem::path& path);
+
 /// Reads arrays of one expected type. Works on files and pipes; memory does not grow with N.
 class NpyReader {
  public:
@@ -45,6 +54,9 @@ class NpyReader {
   std::size_t read_rows(void* out, std::size_t most_rows);
 
  private:
+  friend NpyStart read_npy_start(const std::filesystem::path& path);
+  /// Opens `path` and reads nothing.
+  explicit NpyReader(const std::filesystem::path& path);
   void read_exactly(void* out, std::size_t bytes);
   NpyHeader read_header();
   void check_size() const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <system_error>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/imports/points/las_header.hpp"
@@ -10,6 +11,12 @@
 #include "voxdag/imports/points/ply_points.hpp"
 #include "voxdag/imports/points/xyz_points.hpp"
 #include "voxdag/imports/volumes/binvox.hpp"
+#include "voxdag/imports/volumes/nifti.hpp"
+#include "voxdag/imports/volumes/npy_volume.hpp"
+#include "voxdag/imports/volumes/nrrd.hpp"
+#include "voxdag/imports/volumes/png_slices.hpp"
+#include "voxdag/imports/volumes/vdb.hpp"
+#include "voxdag/imports/volumes/vox.hpp"
 
 namespace voxdag {
 namespace {
@@ -24,7 +31,8 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".npy", false, [](const Path& path, const Options&) { return open_npy_points(path); }},
+    {".npy", true,
+     [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
     {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
     {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
@@ -32,11 +40,24 @@ constexpr Format kFormats[] = {
     {".las", false, [](const Path& path, const Options&) { return open_las_points(path); }},
     {".pcd", false, [](const Path& path, const Options&) { return open_pcd_points(path); }},
     {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
+    {".nrrd", true,
+     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+    {".nhdr", true,
+     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+    {".nii", true,
+     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+    {".nii.gz", true,
+     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+    {".vdb", true,
+     [](const Path& path, const Options& options) { return open_vdb(path, options.threshold); }},
+    {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
 };
 
 }  // namespace
 
 std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
   std::string name = path.string(), endings;
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -49,7 +70,7 @@ std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& 
     endings += std::string(endings.empty() ? "" : ", ") + format.ending;
   }
   if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
-  throw Error(path.string(), "", "is none of " + endings);
+  throw Error(path.string(), "", "is none of " + endings + ", or a folder of .png files");
 }
 
 }  // namespace voxdag

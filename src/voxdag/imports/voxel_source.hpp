@@ -47,8 +47,8 @@ struct VoxelSourceOptions {
   std::optional<double> threshold;
 };
 
-/// Opens a file by the end of its name. Throws Error for formats that are not known, and for
-/// options that the format does not have.
+/// Opens a file by the end of its name, or a folder of PNG files. Throws Error for formats that are
+/// not known, and for options that the format does not have.
 std::unique_ptr<VoxelSource> open_voxel_source(const std::filesystem::path& path,
                                                const VoxelSourceOptions& options = {});
 

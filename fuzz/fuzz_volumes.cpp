@@ -1,0 +1,89 @@
+/// Fuzzes the readers of volumes. The first byte chooses the reader and the threshold, the rest is
+/// the file. The voxels must lie in the grid of the file, or an Error must follow.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/imports/volumes/binvox.hpp"
+#include "voxdag/imports/volumes/nifti.hpp"
+#include "voxdag/imports/volumes/npy_volume.hpp"
+#include "voxdag/imports/volumes/nrrd.hpp"
+#include "voxdag/imports/volumes/vox.hpp"
+
+namespace voxdag {
+namespace {
+
+/// A small file may stand for many voxels.
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 20;
+struct Enough {};
+
+/// A file in memory that has a path.
+class MemoryFile {
+ public:
+  MemoryFile(const std::uint8_t* data, std::size_t size) : file_(memfd_create("fuzz", 0)) {
+    if (file_ < 0 || ::write(file_, data, size) != static_cast<ssize_t>(size)) std::abort();
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::close(file_); }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
+
+std::unique_ptr<VoxelSource> open_chosen(std::uint8_t choice, const std::string& path) {
+  std::optional<double> threshold;
+  if (choice >= 128) threshold = 1.5;
+  switch (choice % 5) {
+    case 0:
+      return open_vox(path);
+    case 1:
+      return open_binvox(path);
+    case 2:
+      return open_npy(path, threshold);
+    case 3:
+      return open_nrrd(path, threshold);
+    default:
+      return open_nifti(path, threshold);
+  }
+}
+
+void check(const VoxelSource& source, const VoxelBatch& batch) {
+  if (batch.colors.size() != (source.has_colors() ? batch.places.size() : 0)) std::abort();
+  if (!source.grid()) return;
+  const auto side = static_cast<double>(source.grid()->resolution());
+  for (const Vec3d place : batch.places)
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(place[axis] >= 0 && place[axis] < side) || place[axis] != std::floor(place[axis]))
+        std::abort();
+}
+
+void read_all(std::uint8_t choice, const std::string& path) {
+  const auto source = open_chosen(choice, path);
+  source->warnings();
+  std::uint64_t voxels = 0;
+  source->visit_all([&](const VoxelBatch& batch) {
+    check(*source, batch);
+    voxels += batch.places.size();
+    if (voxels > kMostVoxels) throw Enough();
+  });
+}
+
+}  // namespace
+}  // namespace voxdag
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const voxdag::MemoryFile file(data + 1, size - 1);
+  try {
+    voxdag::read_all(data[0], file.path());
+  } catch (const voxdag::Error&) {
+  } catch (const voxdag::Enough&) {
+  }
+  return 0;
+}
