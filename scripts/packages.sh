@@ -13,6 +13,7 @@ voxdag_packages=(
 )
 voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib
+  libopenvdb-dev libboost-dev  # .vdb volumes
   clang clang-format clang-tidy
 )
 
