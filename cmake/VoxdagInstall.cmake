@@ -11,7 +11,8 @@ get_property(parts GLOBAL PROPERTY VOXDAG_TARGETS)
 set(VOXDAG_ROOM_TABLE "")
 foreach(room ${VOXDAG_ROOMS})
   set(packages ${VOXDAG_ROOM_${room}_PACKAGES})
-  foreach(optional assimp embree OpenVDB CUDAToolkit)
+  list(REMOVE_ITEM packages OpenVDB)  # only the module links it
+  foreach(optional assimp embree CUDAToolkit)
     if(NOT ${optional}_FOUND)
       list(REMOVE_ITEM packages ${optional})
     endif()
@@ -33,6 +34,9 @@ install(CODE "
   include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/installed_headers/voxdag DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(TARGET voxdag_vdb)
+  install(TARGETS voxdag_vdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/voxdag)
+endif()
 if(VOXDAG_BUILD_APPS)
   install(TARGETS voxdag_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
@@ -43,5 +47,4 @@ configure_package_config_file(
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/voxdagConfig.cmake ${PROJECT_BINARY_DIR}/voxdagConfigVersion.cmake
-        ${PROJECT_SOURCE_DIR}/cmake/FindOpenVDB.cmake
         DESTINATION ${package_dir})

@@ -10,8 +10,9 @@ namespace voxdag {
 /// says where their centres are.
 ///
 /// OpenVDB reads the whole file into memory, and is not made for files that one does not trust: a
-/// damaged file can crash it. Its exceptions become Error. Throws Error if voxdag was built without
-/// OpenVDB.
+/// damaged file can crash it. Its exceptions become Error. It is in a module of its own,
+/// voxdag_vdb.so, which is built where OpenVDB is installed and found as shared libraries are.
+/// Throws Error if there is none.
 std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
                                       std::optional<double> threshold);
 
