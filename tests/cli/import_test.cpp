@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "colored_waves.hpp"
 #include "sponge.hpp"
 
 namespace voxdag {
@@ -63,6 +64,70 @@ TEST_F(ImportCommand, PointsNeedAGrid) {
   write_text(path("b.binvox"), "#binvox 1\ndim 4 4 4\ndata\n");
   refused({path("b.binvox"), "--voxel-size", "1"}, 1, "are for points");
   refused({path("b.binvox")}, 1, "ends after 0 of 64 values");
+}
+
+TEST_F(ImportCommand, ColoredPointsComeBackAsTheyWere) {
+  write_text(path("waves.obj"), colored_waves());
+  const auto run = [](const std::vector<std::string>& arguments) {
+    const ProcessResult result = run_voxdag(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  const auto info = [&](const std::string& name) {
+    return nlohmann::json::parse(run({"info", path(name), "--json"}));
+  };
+  run({"build", path("waves.obj"), "-r", "64", "--color", "--color-bound", "0", "-o",
+       path("waves.vdag")});
+  run({"export", path("waves.vdag"), "-o", path("waves.ply"), "-q"});
+  // The points are the centres of the voxels.
+  const nlohmann::json transform = info("waves.vdag").at("transform");
+  const double size = transform.at("voxel_size");
+  std::string bounds;
+  for (int corner = 0; corner < 2; ++corner)
+    for (const double origin : transform.at("origin"))
+      bounds += (bounds.empty() ? "" : ",") + std::to_string(origin + corner * 64 * size);
+  run({"import", path("waves.ply"), "-r", "64", "--bounds", bounds, "--color-bound", "0", "-o",
+       path("back.vdag")});
+  EXPECT_EQ(nlohmann::json::parse(run({"diff", path("waves.vdag"), path("back.vdag"), "--json"}))
+                .at("differing"),
+            0);
+  const nlohmann::json color = info("back.vdag").at("attributes").at("color");
+  EXPECT_EQ(color.at("resolution"), 64);
+  EXPECT_TRUE(color.at("psnr_db").is_null());
+  EXPECT_EQ(run_voxdag({"verify", path("back.vdag")}).status, 0);
+  // Voxel by voxel, the colours are those that were exported.
+  run({"export", path("back.vdag"), "-o", path("back.ply"), "-q"});
+  const std::string before = read_text(path("waves.ply")), after = read_text(path("back.ply"));
+  const auto body = [](const std::string& ply) { return ply.substr(ply.find("end_header")); };
+  EXPECT_EQ(body(before), body(after));
+  run({"import", path("waves.ply"), "-r", "64", "--bounds", bounds, "--no-color", "-o",
+       path("grey.vdag")});
+  EXPECT_FALSE(info("grey.vdag").contains("attributes"));
+  expect_failure(run_voxdag({"import", path("waves.ply"), "-r", "64", "--threshold", "1", "-o",
+                             path("none.vdag")}),
+                 1, "no values to compare with a threshold");
+}
+
+TEST_F(ImportCommand, VolumesHaveAThreshold) {
+  // x runs fastest: the values are 0 to 63.
+  std::string values;
+  for (int i = 0; i < 64; ++i) values += std::to_string(i) + " ";
+  write_text(path("v.nrrd"),
+             "NRRD0004\ntype: int\ndimension: 3\nsizes: 4 4 4\nspacings: 1 2 1\nencoding: "
+             "ascii\n\n" +
+                 values + "\n");
+  const ProcessResult all = run_voxdag({"import", path("v.nrrd"), "-o", path("v.vdag")});
+  ASSERT_EQ(all.status, 0) << all.err;
+  EXPECT_NE(all.out.find("63 voxels of 4³"), std::string::npos) << all.out;
+  EXPECT_NE(all.err.find("cubes"), std::string::npos) << all.err;
+  const ProcessResult some =
+      run_voxdag({"import", path("v.nrrd"), "--threshold", "60", "-o", path("v.vdag"), "-q"});
+  EXPECT_EQ(some.status, 0) << some.err;
+  const ProcessResult count = run_voxdag({"query", path("v.vdag"), "--count", "--json"});
+  EXPECT_NE(count.out.find("4"), std::string::npos) << count.out;
+  expect_failure(
+      run_voxdag({"import", path("v.nrrd"), "--threshold", "many", "-o", path("n.vdag")}), 2,
+      "--threshold");
 }
 
 }  // namespace

@@ -115,8 +115,9 @@ void add_import_command(const Command& program, Session& session) {
                                       "voxdag import cloud.xyz -r 2048 -o cloud.vdag");
   command
       .text("file", session.subject, "FILE",
-            "Points: .xyz, .txt or .csv, or an array .npy of N x 3 float32 or float64. Voxels: an "
-            "array .npy of N x 3 int32, or .binvox")
+            "Points: .ply, .las, .pcd, .xyz, .txt, .csv, or .npy of N x 3 floats. Voxels: .vox, "
+            ".binvox, or .npy of N x 3 int32. Volumes: .npy of X x Y x Z, .nrrd, .nii, .vdb, or a "
+            "folder of .png slices")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
   ImportOptions& options = arguments->options;
