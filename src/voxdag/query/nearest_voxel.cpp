@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "voxdag/core/vec_order.hpp"
 #include "voxdag/layout/svdag_lookup.hpp"
 
 namespace voxdag {
@@ -16,10 +17,6 @@ double distance2_to_cube(Vec3d point, Vec3i first, std::int32_t side) {
     sum += d * d;
   }
   return sum;
-}
-
-bool is_before(Vec3i a, Vec3i b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
 class Search {

@@ -3,14 +3,10 @@
 #include <cstdint>
 #include <utility>
 
+#include "voxdag/core/vec_order.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
-
-/// Compares x, then y, then z.
-inline bool is_before(Vec3i a, Vec3i b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
 
 /// Returns 64 bits of an edge, whatever its direction. Different edges have equal bits with a
 /// probability of 2^-64.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <span>
 
+#include "voxdag/core/vec_order.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/parallel/polled_sort.hpp"
-#include "voxdag/solid/mesh_edges.hpp"
 
 namespace voxdag {
 namespace {

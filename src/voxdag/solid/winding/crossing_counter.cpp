@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "voxdag/solid/mesh_edges.hpp"
+#include "voxdag/core/vec_order.hpp"
 #include "voxdag/solid/winding/winding_point.hpp"
 
 namespace voxdag {
