@@ -17,7 +17,7 @@ enum class SolidRule {
   kParity,
   /// A voxel is inside if the absolute generalised winding number of the mesh at its centre is at
   /// least a threshold. For meshes with holes, overlapping bodies and triangles of both windings.
-  /// Exact, except where the winding number is within 1e-6 of the threshold.
+  /// Exact, except where the winding number is within 1e-8 of the threshold.
   kWinding,
   /// An empty voxel is inside if no way over faces through empty voxels connects it with the sides
   /// of the grid. For meshes whose voxels leave no gap. It fills cavities, too.

@@ -79,14 +79,23 @@ class LoopCutter {
   }
 
   void add_cap(std::span<const std::size_t> loop) {
-    const std::size_t count = loop.size();
+    const std::size_t count = loop.size(), first = count / 3, second = 2 * count / 3;
     const auto at = [&](std::size_t i) { return points_[loop[i % count]]; };
-    if (count == 3) return caps_.push_back({at(0), at(1), at(2)});
-    Vec3l sum{};
-    for (std::size_t i = 0; i < count; ++i) sum = sum + static_cast<Vec3l>(at(i));
-    const auto size = static_cast<std::int64_t>(count);
-    const auto middle = static_cast<Vec3i>(Vec3l{sum.x / size, sum.y / size, sum.z / size});
-    for (std::size_t i = 0; i < count; ++i) caps_.push_back({middle, at(i), at(i + 1)});
+    caps_.push_back({at(0), at(first), at(second)});
+    add_part(at, 0, first);
+    add_part(at, first, second);
+    add_part(at, second, count);
+  }
+
+  /// Caps a part of a loop and the line from its last point to its first one. Halves it, so that
+  /// most triangles are small.
+  template <class At>
+  void add_part(const At& at, std::size_t first, std::size_t last) {
+    if (last - first < 2) return;
+    const std::size_t middle = first + (last - first) / 2;
+    caps_.push_back({at(first), at(middle), at(last)});
+    add_part(at, first, middle);
+    add_part(at, middle, last);
   }
 
   CountedVector<BoundaryEdge> edges_;

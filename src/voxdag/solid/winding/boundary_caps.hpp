@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-/// Returns triangles that have this boundary and no other: a fan for each of the loops that it
+/// Returns triangles that have this boundary and no other: they cap each of the loops that it
 /// consists of. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
 PageVector<QuantizedTriangle> cap_boundary(CountedVector<BoundaryEdge> boundary,
                                            MemoryBudget* memory, Progress* progress);

@@ -19,7 +19,7 @@ double distance_around(double a, double b) {
 }
 
 /// The error of a winding number that is as good as none.
-constexpr double kFinest = 1e-7;
+constexpr double kFinest = 1e-9;
 
 /// Calls add(i) for all i below `count` on many threads.
 template <class Add>

@@ -26,7 +26,7 @@ class WindingField {
                      progress) {}
 
   /// Returns whether each voxel is inside; no triangle may meet these voxels. Voxels whose winding
-  /// number is within 1e-6 of the threshold may be on either side. Time grows with the triangles,
+  /// number is within 1e-8 of the threshold may be on either side. Time grows with the triangles,
   /// and with the voxels that lie behind each of them along x. Throws OverMemory and Cancelled.
   std::vector<bool> are_inside(std::span<const Vec3i> voxels, MemoryBudget* memory,
                                Progress* progress) const;

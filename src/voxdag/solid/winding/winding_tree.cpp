@@ -155,6 +155,7 @@ WindingTree::Sums WindingTree::add_node(std::size_t first, std::size_t count) {
   // centre times the third derivatives of 1 / distance, which are at most 6 / distance⁴.
   node.spread = 3 / kSphere * sums.second;
   node.share = sums.area;
+  node.area = sums.area / kSphere;
   node.next = static_cast<std::uint32_t>(nodes_.size());
   return sums;
 }
@@ -167,7 +168,8 @@ WindingValue WindingTree::around(Vec3d point, double tolerance) const {
     const double squared = dot(to, to), distance = std::sqrt(squared),
                  gap = std::max(distance - node.radius, 0.0);
     const double gap4 = gap * gap * gap * gap;
-    if (gap > 0 && node.spread <= tolerance * node.share * gap4) {
+    // Errors are shared out by area, or by area over distance², whichever allows more.
+    if (gap > 0 && node.spread <= tolerance * std::max(node.share * gap4, node.area * gap * gap)) {
       const double* const m = node.moments;
       const double along = m[0] * to.x * to.x + m[1] * to.y * to.y + m[2] * to.z * to.z +
                            2 * (m[3] * to.x * to.y + m[4] * to.x * to.z + m[5] * to.y * to.z);

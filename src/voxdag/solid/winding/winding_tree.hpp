@@ -24,8 +24,9 @@ class WindingTree {
   WindingTree(PageVector<QuantizedTriangle> triangles, MemoryBudget* memory, Progress* progress);
 
   /// Returns the sum of the solid angles of all triangles, seen from `point` in units of 1/256
-  /// voxel, over 4 pi. The error is at most `tolerance`; 0: sums all triangles. A point on the
-  /// surface is on either side of it.
+  /// voxel, over 4 pi. The error is at most `tolerance` times 1 and the part of the sphere around
+  /// the point that the triangles would cover if they all faced it; 0: sums all triangles. A point
+  /// on the surface is on either side of it.
   WindingValue around(Vec3d point, double tolerance) const;
 
   const PageVector<QuantizedTriangle>& triangles() const { return triangles_; }
@@ -37,6 +38,7 @@ class WindingTree {
     Vec3d dipole;        ///< Sum of area times normal, over 4 pi.
     double moments[6];   ///< xx, yy, zz, xy, xz, yz of the sum of dipole times place, symmetric.
     double spread;       ///< Bounds the error: times 1 / distance⁴.
+    double area;         ///< Over 4 pi.
     double share;        ///< Of the area of all triangles.
     double radius;       ///< All triangles are so near to the centre.
     std::uint32_t next;  ///< The node after this subtree.
