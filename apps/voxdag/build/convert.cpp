@@ -78,9 +78,7 @@ void add_output_form(const Command& command, ConvertArguments& arguments) {
 
 void add_work_options(const Command& command, const std::shared_ptr<ConvertArguments>& arguments,
                       Session& session) {
-  command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
-                 "Maximum memory, including the program (default: three quarters of the available "
-                 "memory)");
+  add_memory_option(command, arguments->memory_limit);
   add_threads_option(command, session);
   add_quiet_option(command, session);
   command.when_parsed([arguments, &session] {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "cli/parse.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/resolved_output.hpp"
 #include "voxdag/report/human.hpp"
@@ -19,6 +20,12 @@ namespace voxdag {
 Option add_threads_option(const Command& command, Session& session) {
   return command.optional_number<int>("--threads", session.threads, NumberRange::whole(1, 4096),
                                       "N", "Number of threads (default: one per processor)");
+}
+
+Option add_memory_option(const Command& command, std::uint64_t& limit) {
+  return command.parsed("--memory", limit, parse_memory, "LIMIT",
+                        "Maximum memory, including the program (default: three quarters of the "
+                        "available memory)");
 }
 
 Option add_quiet_option(const Command& command, Session& session) {

@@ -1,5 +1,6 @@
 #pragma once
 /// The state that subcommands share: common options, progress and cancellation.
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -29,6 +30,8 @@ struct Session {
 };
 
 Option add_threads_option(const Command& command, Session& session);
+/// Adds --memory for commands whose limit includes the program.
+Option add_memory_option(const Command& command, std::uint64_t& limit);
 Option add_quiet_option(const Command& command, Session& session);
 Option add_json_option(const Command& command, Session& session);
 

@@ -40,12 +40,6 @@ Option add_optional_output(const Command& command, EditArguments& arguments,
   return output;
 }
 
-void add_memory_option(const Command& command, std::uint64_t& limit) {
-  command.parsed("--memory", limit, parse_memory, "LIMIT",
-                 "Maximum memory, including the program (default: three quarters of the available "
-                 "memory)");
-}
-
 void add_neighbours_option(const Command& command, Neighbours& neighbours) {
   command.parsed(
       "--neighbours", neighbours,

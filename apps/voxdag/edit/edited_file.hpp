@@ -25,9 +25,6 @@ void add_edit_options(const Command& command, EditArguments& arguments, Session&
 Option add_optional_output(const Command& command, EditArguments& arguments,
                            const std::string& help);
 
-/// Adds --memory.
-void add_memory_option(const Command& command, std::uint64_t& limit);
-
 /// Adds --neighbours.
 void add_neighbours_option(const Command& command, Neighbours& neighbours);
 

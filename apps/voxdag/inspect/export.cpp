@@ -52,9 +52,7 @@ void export_file(ExportArguments& arguments, Session& session) {
 
 void add_page_options(const Command& command, ExportArguments& arguments) {
   std::vector<Option> options = add_reduction_options(command, arguments.page.reduction);
-  options.push_back(command.parsed(
-      "--memory", arguments.page.memory_limit, parse_memory, "LIMIT",
-      "Maximum memory, including the program (default: three quarters of the available memory)"));
+  options.push_back(add_memory_option(command, arguments.page.memory_limit));
   for (const Option& option : options)
     option.in_group("Options for pages only (.html, FOLDER/)")
         .only_if([&arguments] { return arguments.is_page(); },

@@ -275,9 +275,7 @@ void add_query_command(const Command& program, Session& session) {
       .only_if([arguments = arguments.get()] { return arguments->distances || arguments->count; },
                "without --distances or --count");
   command.text("-o,--output", arguments->output, "OUT.npy", "The array to write");
-  command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
-                 "Maximum memory, including the program (default: three quarters of the available "
-                 "memory)");
+  add_memory_option(command, arguments->memory_limit);
   add_json_option(command, session);
   add_threads_option(command, session);
   add_quiet_option(command, session);

@@ -4,7 +4,7 @@
 
 namespace voxdag {
 
-/// Passes what it is given to `visit`, many at a time. Call finish() at the end.
+/// Passes points or voxels to `visit`, many at a time. Call finish() at the end.
 class BatchedVoxels {
  public:
   explicit BatchedVoxels(const VisitBatch& visit) : visit_(visit) { places_.reserve(kBatch); }

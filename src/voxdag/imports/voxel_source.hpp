@@ -34,7 +34,7 @@ class VoxelSource {
   virtual bool has_colors() const { return false; }
   /// Returns the grid of the voxels, if the file has one.
   virtual std::optional<Grid> grid() const { return std::nullopt; }
-  /// Returns what a user should know about the file, one line each.
+  /// Returns warnings for the user, one line each.
   virtual std::vector<std::string> warnings() const { return {}; }
   /// Calls visit() for all points or voxels, some at a time, in the order of the file. Throws
   /// Error, and what `visit` throws.

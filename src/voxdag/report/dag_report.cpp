@@ -170,10 +170,14 @@ void add_placement_json(Json& json, const Grid& grid, const VdagSource& source,
 
 std::string placement_table(const Grid& grid, const VdagSource& source) {
   const Vec3d lo = grid.origin, hi = grid.bounds().hi;
+  // An imported file has no triangles; its points or voxels count as vertices.
+  const bool is_mesh = source.triangles > 0 || source.vertices == 0;
+  const std::string items = is_mesh ? with_commas(source.triangles) + " triangles"
+                                    : with_commas(source.vertices) + " points or voxels";
   return fmt::format(
-      "  {:<14}{}, {} triangles\n"
+      "  {:<14}{}, {}\n"
       "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
-      "mesh", printable(source.name), with_commas(source.triangles), "grid",
+      is_mesh ? "mesh" : "source", printable(source.name), items, "grid",
       with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x, lo.y, lo.z,
       hi.x, hi.y, hi.z);
 }

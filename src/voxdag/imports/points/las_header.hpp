@@ -23,7 +23,8 @@ struct LasHeader {
 };
 
 /// Parses the header and checks it: the file has all its records, and all coordinates are finite.
-/// Of two different counts it takes the legacy one if that is not 0, as the specification says.
+/// If the two counts of version 1.4 differ, a legacy count other than 0 wins, as the specification
+/// says.
 /// Throws Error(name, byte, reason).
 LasHeader parse_las_header(std::string_view bytes, const std::string& name);
 

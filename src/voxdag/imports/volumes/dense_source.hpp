@@ -17,7 +17,7 @@ enum class Encoding : std::uint8_t {
   kPlanar,  ///< Raw, but all values of the first channel are followed by all of the second.
 };
 
-/// What the parser of a header found.
+/// A file with a dense volume, as the parser of its header describes it.
 struct DenseFile {
   DenseVolume volume = {};
   Grid grid = {};

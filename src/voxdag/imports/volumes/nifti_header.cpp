@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// What a file says about its version; a zero byte is part of each.
+/// The texts that name the version of a file. Each contains a zero byte.
 constexpr std::string_view kPairMagic = "ni1\0"sv, kMagic1 = "n+1\0"sv,
                            kMagic2 = "n+2\0\r\n\x1a\n"sv;
 

@@ -1,6 +1,6 @@
 #pragma once
-/// What the module for .vdb files has. Programs load it when they open such a file: OpenVDB and
-/// what it needs take 50 MB and a tenth of a second to start.
+/// The interface of the module that reads .vdb files. Programs load the module when they open such
+/// a file: OpenVDB and its libraries take 30 MB of memory and 0.08 s to load.
 #include "voxdag/imports/voxel_source.hpp"
 
 namespace voxdag {

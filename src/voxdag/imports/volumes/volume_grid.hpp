@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// What a header says about the place of its voxels, in world units.
+/// The place of a volume in world units, as its header gives it.
 struct VolumePlacement {
   Vec3d spacing{1, 1, 1};             ///< Between the centres of voxels, along x, y and z.
   std::optional<Vec3d> first_centre;  ///< Of voxel (0, 0, 0); without it, its corner is at 0.

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "voxdag/core/page_vector.hpp"
 #include "voxdag/parallel/polled_for.hpp"
-#include "voxdag/parallel/polled_sort.hpp"
 #include "voxdag/solid/mesh_edges.hpp"
 
 namespace voxdag {
@@ -14,7 +12,8 @@ namespace {
 /// The hash of an edge without its last bit.
 std::uint64_t key_of(Vec3i a, Vec3i b) { return hash_of_edge(a, b) >> 1; }
 
-/// How often an edge occurs forwards, from its smaller end, less how often backwards.
+/// An edge, and the number of triangles that run through it forwards, from its smaller end, less
+/// those that run backwards.
 struct Balance {
   std::uint64_t key = 0;
   std::int64_t forward = 0;
@@ -24,23 +23,10 @@ struct Balance {
 
 CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, MemoryBudget* memory,
                                                 Progress* progress) {
-  constexpr std::uint64_t kNoEdge = ~std::uint64_t{0};
-  const std::size_t count = mesh.mesh_triangle_count();
   // The key of each edge, and in the last bit whether it runs backwards.
-  PageVector<std::uint64_t> edges(memory);
-  edges.resize(3 * count);
-  constexpr std::size_t kChunk = 4096;
-  polled_for((count + kChunk - 1) / kChunk, 1, progress, "edges", [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
-      std::fill_n(edges.begin() + 3 * i, 3, kNoEdge);
-      std::size_t place = 3 * i;
-      each_edge(mesh, i, [&](Vec3i a, Vec3i b) {
-        edges[place++] = key_of(a, b) << 1 | (is_before(a, b) ? 0u : 1u);
-      });
-    }
+  PageVector<std::uint64_t> edges = sorted_edge_keys(mesh, memory, progress, [](Vec3i a, Vec3i b) {
+    return key_of(a, b) << 1 | (is_before(a, b) ? 0u : 1u);
   });
-  polled_sort(edges.begin(), edges.end(), progress);
-
   CountedVector<Balance> open(memory);
   for (std::size_t i = 0; i < edges.size() && edges[i] != kNoEdge;) {
     Balance balance{edges[i] >> 1, 0};
@@ -52,7 +38,7 @@ CountedVector<BoundaryEdge> find_boundary_edges(const QuantizedMesh& mesh, Memor
 
   CountedVector<BoundaryEdge> boundary(memory);
   boundary.reserve(open.size());
-  for (std::size_t i = 0; i < count && boundary.size() < open.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.mesh_triangle_count() && boundary.size() < open.size(); ++i) {
     poll_seldom(progress, i);
     each_edge(mesh, i, [&](Vec3i a, Vec3i b) {
       const std::uint64_t key = key_of(a, b);

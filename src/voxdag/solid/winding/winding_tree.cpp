@@ -54,7 +54,7 @@ void add_moments(double (&moments)[6], Vec3d dipole, Vec3d place) {
 
 }  // namespace
 
-/// What a node needs to know of the nodes below it.
+/// Sums over the triangles of a node, from which those of the node above follow.
 struct WindingTree::Sums {
   std::uint32_t node = 0;
   double area = 0;
