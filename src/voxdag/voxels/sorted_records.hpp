@@ -125,28 +125,40 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
   std::vector<RunReader> readers;
   readers.reserve(runs_.size());
   for (const Run& run : runs_) readers.emplace_back(run);
-  // The least record of each run, and at the end of `readers` that in memory.
+  // The records of memory come last. Returns the next record of a source, null at its end.
+  std::size_t in_memory = 0;
+  const auto head = [&](std::size_t source) -> const Record* {
+    if (source == readers.size())
+      return in_memory < records_.size() ? &records_[in_memory] : nullptr;
+    return readers[source].is_at_end() ? nullptr : &readers[source].record();
+  };
+  const auto advance = [&](std::size_t source) {
+    if (source == readers.size())
+      ++in_memory;
+    else
+      readers[source].next();
+  };
   using Head = std::pair<Record, std::size_t>;
   std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
-  for (std::size_t i = 0; i < readers.size(); ++i) heads.emplace(readers[i].record(), i);
-  std::size_t in_memory = 0;
-  if (records_.size() > 0) heads.emplace(records_[0], readers.size());
+  for (std::size_t i = 0; i <= readers.size(); ++i)
+    if (const Record* record = head(i)) heads.emplace(*record, i);
   bool is_first = true;
   Record last{};
   std::uint64_t polled = 0;
   while (!heads.empty()) {
-    poll_seldom(progress_, polled++);
-    const auto [record, source] = heads.top();
+    const std::size_t source = heads.top().second;
     heads.pop();
-    if (kRepeats == Repeats::kKept || is_first || !(record == last)) visit(record);
-    is_first = false;
-    last = record;
-    if (source < readers.size()) {
-      readers[source].next();
-      if (!readers[source].is_at_end()) heads.emplace(readers[source].record(), source);
-    } else if (++in_memory < records_.size()) {
-      heads.emplace(records_[in_memory], source);
-    }
+    // Runs of data in some order hardly overlap: stay with a source while it is the least.
+    const Record* record = head(source);
+    do {
+      poll_seldom(progress_, polled++);
+      if (kRepeats == Repeats::kKept || is_first || !(*record == last)) visit(*record);
+      is_first = false;
+      last = *record;
+      advance(source);
+      record = head(source);
+    } while (record != nullptr && (heads.empty() || !(heads.top().first < *record)));
+    if (record != nullptr) heads.emplace(*record, source);
   }
 }
 

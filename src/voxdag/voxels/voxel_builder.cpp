@@ -3,19 +3,15 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/morton.hpp"
 #include "voxdag/voxels/morton_builder.hpp"
 
 namespace voxdag {
 
-std::uint64_t code_in_grid(Vec3i voxel, int levels) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (voxel[axis] < 0 || voxel[axis] >> levels != 0)
-      throw Error("", "",
-                  "voxel (" + std::to_string(voxel.x) + ", " + std::to_string(voxel.y) + ", " +
-                      std::to_string(voxel.z) + ") lies outside of the grid of " +
-                      std::to_string(std::int64_t{1} << levels) + " voxels a side");
-  return morton_encode(voxel);
+void throw_outside_of_grid(Vec3i voxel, int levels) {
+  throw Error("", "",
+              "voxel (" + std::to_string(voxel.x) + ", " + std::to_string(voxel.y) + ", " +
+                  std::to_string(voxel.z) + ") lies outside of the grid of " +
+                  std::to_string(std::int64_t{1} << levels) + " voxels a side");
 }
 
 VoxelBuilder::VoxelBuilder(int levels, std::size_t most_voxels, const std::filesystem::path& folder,

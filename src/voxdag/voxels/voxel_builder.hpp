@@ -3,15 +3,24 @@
 #include <filesystem>
 #include <span>
 
+#include "voxdag/core/morton.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/voxels/sorted_records.hpp"
 
 namespace voxdag {
 
+/// Throws the Error that a voxel lies outside of a grid of 2^levels voxels a side.
+[[noreturn]] void throw_outside_of_grid(Vec3i voxel, int levels);
+
 /// Returns the Morton code of a voxel. Throws Error if it lies outside of a grid of 2^levels voxels
 /// a side.
-std::uint64_t code_in_grid(Vec3i voxel, int levels);
+inline std::uint64_t code_in_grid(Vec3i voxel, int levels) {
+  // A negative coordinate has a high bit, too.
+  if (static_cast<std::uint32_t>(voxel.x | voxel.y | voxel.z) >> levels != 0)
+    throw_outside_of_grid(voxel, levels);
+  return morton_encode(voxel);
+}
 
 /// Collects voxels, each any number of times, and builds their DAG. Memory is bounded: voxels that
 /// do not fit are sorted in files, and the DAG is built from the sorted ones node by node.
