@@ -144,7 +144,7 @@ void add_import_command(const Command& program, Session& session) {
   command.flag("--compact", arguments->compact, "Write the compact form");
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program: voxels that do not fit are sorted in "
-                 "files beside OUT (default: three quarters of the available memory)");
+                 "a file beside OUT (default: three quarters of the available memory)");
   add_threads_option(command, session);
   add_quiet_option(command, session);
   add_json_option(command, session);

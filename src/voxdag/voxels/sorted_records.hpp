@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <queue>
 #include <type_traits>
 #include <utility>
@@ -24,13 +25,15 @@ class SortedRecords {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
-  /// Holds `capacity` records (at least 1024 are held) and sorts them in the same memory. Files lie
-  /// in `folder`; there are none as long as all records fit. `memory`, which may be null, counts
-  /// the records. Throws OverMemory.
+  /// Holds `capacity` records (at least 1024 are held) and sorts them in the same memory. The file
+  /// of the other records lies in `folder`; there is none as long as all records fit. `memory`,
+  /// which may be null, counts the records and the buffers that the file is read through. Throws
+  /// OverMemory.
   SortedRecords(std::size_t capacity, std::filesystem::path folder, MemoryBudget* memory,
                 Progress* progress)
       : capacity_(std::max(capacity, kLeastCapacity)),
         folder_(std::move(folder)),
+        memory_(memory),
         progress_(progress),
         records_(memory) {}
 
@@ -45,13 +48,13 @@ class SortedRecords {
   template <class Visit>
   void visit_all(const Visit& visit);
 
-  /// Returns the number of runs that were written to files.
+  /// Returns the number of runs that were written to the file.
   std::size_t runs() const { return runs_.size(); }
 
  private:
+  /// Sorted records in the file, from this byte on.
   struct Run {
-    RunFile file;
-    std::uint64_t records = 0;
+    std::uint64_t begin, records;
   };
   class RunReader;
 
@@ -69,17 +72,25 @@ class SortedRecords {
     sort_in_memory();
     // Many equal records may have made room.
     if (records_.size() <= capacity_ / 2) return;
-    Run run{RunFile(folder_), records_.size()};
-    run.file.write(records_.data(), records_.size() * sizeof(Record), progress_);
-    runs_.push_back(std::move(run));
-    records_.resize(0);
+    write_run();
+  }
+  /// Writes the records in memory, which must be sorted, as a run.
+  void write_run() {
+    if (!file_) file_.emplace(folder_);
+    const std::uint64_t begin =
+        runs_.empty() ? 0 : runs_.back().begin + runs_.back().records * sizeof(Record);
+    file_->write(records_.data(), records_.size() * sizeof(Record), progress_);
+    runs_.push_back({begin, records_.size()});
+    records_.clear();
   }
 
   std::size_t capacity_;
   std::filesystem::path folder_;
+  MemoryBudget* memory_;
   Progress* progress_;
   PageVector<Record> records_;
   bool is_sorted_ = true;
+  std::optional<RunFile> file_;
   std::vector<Run> runs_;
 };
 
@@ -87,7 +98,11 @@ class SortedRecords {
 template <class Record, Repeats kRepeats>
 class SortedRecords<Record, kRepeats>::RunReader {
  public:
-  explicit RunReader(const Run& run) : run_(run) { read(); }
+  /// Reads up to `most` records at a time.
+  RunReader(const RunFile& file, const Run& run, std::size_t most)
+      : file_(file), run_(run), most_(most) {
+    read();
+  }
   bool is_at_end() const { return at_ == records_.size(); }
   const Record& record() const { return records_[at_]; }
   void next() {
@@ -95,17 +110,17 @@ class SortedRecords<Record, kRepeats>::RunReader {
   }
 
  private:
-  static constexpr std::size_t kReadBytes = std::size_t{1} << 18;
-
   void read() {
     at_ = 0;
-    records_.resize(static_cast<std::size_t>(
-        std::min<std::uint64_t>(kReadBytes / sizeof(Record), run_.records - done_)));
-    run_.file.read(records_.data(), records_.size() * sizeof(Record), done_ * sizeof(Record));
+    records_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(most_, run_.records - done_)));
+    file_.read(records_.data(), records_.size() * sizeof(Record),
+               run_.begin + done_ * sizeof(Record));
     done_ += records_.size();
   }
 
+  const RunFile& file_;
   const Run& run_;
+  std::size_t most_;
   std::vector<Record> records_;
   std::size_t at_ = 0;
   std::uint64_t done_ = 0;
@@ -122,43 +137,37 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
     }
     return;
   }
+  // The buffers of the readers take the place of the records in memory.
+  if (!records_.empty()) write_run();
+  records_.release();
+  constexpr std::size_t kLeast = 4096 / sizeof(Record),
+                        kMost = (std::size_t{1} << 18) / sizeof(Record);
+  const std::size_t buffer = std::clamp(capacity_ / runs_.size(), kLeast, kMost);
+  const MemoryReservation buffers(memory_, runs_.size() * buffer * sizeof(Record));
   std::vector<RunReader> readers;
   readers.reserve(runs_.size());
-  for (const Run& run : runs_) readers.emplace_back(run);
-  // The records of memory come last. Returns the next record of a source, null at its end.
-  std::size_t in_memory = 0;
-  const auto head = [&](std::size_t source) -> const Record* {
-    if (source == readers.size())
-      return in_memory < records_.size() ? &records_[in_memory] : nullptr;
-    return readers[source].is_at_end() ? nullptr : &readers[source].record();
-  };
-  const auto advance = [&](std::size_t source) {
-    if (source == readers.size())
-      ++in_memory;
-    else
-      readers[source].next();
-  };
+  for (const Run& run : runs_) readers.emplace_back(*file_, run, buffer);
   using Head = std::pair<Record, std::size_t>;
   std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
-  for (std::size_t i = 0; i <= readers.size(); ++i)
-    if (const Record* record = head(i)) heads.emplace(*record, i);
+  for (std::size_t i = 0; i < readers.size(); ++i)
+    if (!readers[i].is_at_end()) heads.emplace(readers[i].record(), i);
   bool is_first = true;
   Record last{};
   std::uint64_t polled = 0;
   while (!heads.empty()) {
     const std::size_t source = heads.top().second;
+    RunReader& reader = readers[source];
     heads.pop();
-    // Runs of data in some order hardly overlap: stay with a source while it is the least.
-    const Record* record = head(source);
+    // Runs of data in some order hardly overlap: stay with a run while its record is the least.
     do {
       poll_seldom(progress_, polled++);
-      if (kRepeats == Repeats::kKept || is_first || !(*record == last)) visit(*record);
+      const Record& record = reader.record();
+      if (kRepeats == Repeats::kKept || is_first || !(record == last)) visit(record);
       is_first = false;
-      last = *record;
-      advance(source);
-      record = head(source);
-    } while (record != nullptr && (heads.empty() || !(heads.top().first < *record)));
-    if (record != nullptr) heads.emplace(*record, source);
+      last = record;
+      reader.next();
+    } while (!reader.is_at_end() && (heads.empty() || !(heads.top().first < reader.record())));
+    if (!reader.is_at_end()) heads.emplace(reader.record(), source);
   }
 }
 

@@ -23,11 +23,11 @@ inline std::uint64_t code_in_grid(Vec3i voxel, int levels) {
 }
 
 /// Collects voxels, each any number of times, and builds their DAG. Memory is bounded: voxels that
-/// do not fit are sorted in files, and the DAG is built from the sorted ones node by node.
+/// do not fit are sorted in a file, and the DAG is built from the sorted ones node by node.
 class VoxelBuilder {
  public:
-  /// A grid of 2^levels voxels a side. Holds up to `most_voxels` in memory, 8 bytes each; files lie
-  /// in `folder`. `memory` and `progress` may be null. Throws OverMemory.
+  /// A grid of 2^levels voxels a side. Holds up to `most_voxels` in memory, 8 bytes each; the
+  /// file of the others lies in `folder`. `memory` and `progress` may be null. Throws OverMemory.
   VoxelBuilder(int levels, std::size_t most_voxels, const std::filesystem::path& folder,
                MemoryBudget* memory = nullptr, Progress* progress = nullptr);
 
@@ -38,7 +38,7 @@ class VoxelBuilder {
   /// pointers or a file cannot be read; OverMemory and Cancelled.
   Svdag finish();
 
-  /// Returns the number of files that voxels were sorted in.
+  /// Returns the number of sorted runs in the file; 0 if all voxels fit into memory.
   std::size_t runs() const { return codes_.runs(); }
 
  private:
