@@ -1,6 +1,4 @@
 /// `voxdag export`: writes the voxels in the formats of other programs, or as a page of the viewer.
-#include "voxdag/file/export.hpp"
-
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "cli/scene_input.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/exports/export_voxels.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,7 +10,7 @@
 #include "support/temp_dir.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/esvo/build/build_esvo.hpp"
-#include "voxdag/file/export.hpp"
+#include "voxdag/exports/export_voxels.hpp"
 
 namespace voxdag {
 namespace {

@@ -7,7 +7,9 @@
 
 #include "support/brute_svdag.hpp"
 #include "support/vdag_bytes.hpp"
-#include "voxdag/file/export.hpp"
+#include "voxdag/exports/export_arrays.hpp"
+#include "voxdag/exports/export_ply.hpp"
+#include "voxdag/exports/export_voxels.hpp"
 
 namespace voxdag {
 

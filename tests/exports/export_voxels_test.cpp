@@ -1,4 +1,4 @@
-#include "voxdag/file/export.hpp"
+#include "voxdag/exports/export_voxels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/export_count.hpp"
+#include "voxdag/exports/count_voxels.hpp"
 #include "voxdag/file/npy.hpp"
 
 namespace voxdag {

@@ -1,4 +1,5 @@
-// Exports PLY: voxel centres, or the outer faces of the voxels' cubes.
+#include "voxdag/exports/export_ply.hpp"
+
 #include <array>
 #include <bitset>
 #include <charconv>
@@ -6,7 +7,7 @@
 #include <limits>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/export_common.hpp"
+#include "voxdag/exports/export_common.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/layout/look_reader.hpp"
 

@@ -1,4 +1,4 @@
-#include "voxdag/file/export_count.hpp"
+#include "voxdag/exports/count_voxels.hpp"
 
 #include <bit>
 #include <unordered_map>

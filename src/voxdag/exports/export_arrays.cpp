@@ -1,9 +1,10 @@
-// Exports plain arrays: .npy and .raw.
+#include "voxdag/exports/export_arrays.hpp"
+
 #include <algorithm>
 #include <span>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/export_common.hpp"
+#include "voxdag/exports/export_common.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/layout/look_reader.hpp"

@@ -2,7 +2,7 @@
 /// The window, progress calls and placement file that the exporters share.
 #include <string>
 
-#include "voxdag/file/export.hpp"
+#include "voxdag/exports/export_options.hpp"
 
 namespace voxdag {
 

@@ -1,6 +1,8 @@
-#include "voxdag/file/export.hpp"
+#include "voxdag/exports/export_voxels.hpp"
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/exports/export_arrays.hpp"
+#include "voxdag/exports/export_ply.hpp"
 
 namespace voxdag {
 

@@ -1,11 +1,11 @@
-#include "voxdag/file/export_common.hpp"
+#include "voxdag/exports/export_common.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/export_count.hpp"
+#include "voxdag/exports/count_voxels.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/io/resolved_output.hpp"
 
