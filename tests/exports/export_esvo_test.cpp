@@ -91,7 +91,7 @@ TEST_F(ExportEsvo, PointsHaveNormalsAndColours) {
   const Esvo esvo = build_esvo(hills(), unit_grid());
   ExportOptions options;
   options.look = esvo.view();
-  export_voxels(dir.path() / "points.ply", esvo.view(), unit_grid(), PlyContent::kPoints, options);
+  export_voxels(dir.path() / "points.ply", esvo.view(), unit_grid(), {}, options);
   const std::string text = read_text(dir.path() / "points.ply");
   for (const char* property :
        {"property float nx", "property float nz", "property uchar red", "property uchar blue"})

@@ -30,17 +30,18 @@ TEST(Export, AWindowMustLieInTheGrid) {
 TEST(Export, TheExtensionChooses) {
   const TempDir dir;
   const ExportedScene scene(3, 20);
-  const auto run = [&](const std::string& name, PlyContent content) {
-    export_voxels(dir / name, scene.view(), scene.grid, content);
+  const auto run = [&](const std::string& name, bool ply_faces = false) {
+    export_voxels(dir / name, scene.view(), scene.grid, {ply_faces});
     return read_text(dir / name);
   };
-  EXPECT_EQ(run("a.npy", PlyContent::kPoints).substr(1, 5), "NUMPY");
-  EXPECT_EQ(run("a.raw", PlyContent::kPoints).size(), 512u);
-  EXPECT_TRUE(ExportedPly(run("a.ply", PlyContent::kPoints)).faces.empty());
-  EXPECT_FALSE(ExportedPly(run("b.ply", PlyContent::kFaces)).faces.empty());
-  EXPECT_EQ(error_of([&] { run("a.xyz", PlyContent::kPoints); }),
+  EXPECT_EQ(run("a.npy").substr(1, 5), "NUMPY");
+  EXPECT_EQ(run("a.raw").size(), 512u);
+  EXPECT_TRUE(ExportedPly(run("a.ply")).faces.empty());
+  EXPECT_FALSE(ExportedPly(run("b.ply", true)).faces.empty());
+  EXPECT_EQ(error_of([&] { run("a.xyz"); }),
             (dir / "a.xyz").string() +
-                ": cannot export to '.xyz': the extension must be .npy, .ply or .raw");
+                ": cannot export to '.xyz': the extension must be .npy, .raw, .ply, .glb, "
+                ".obj, .stl, .vox, .binvox, .schem or .voxel.json");
 }
 
 TEST(Export, AnEmptyDagMakesEmptyFiles) {
@@ -92,7 +93,7 @@ TEST(Export, AnOutputLargerThanTheDiskIsRefusedAtOnce) {
   const TempDir dir;
   for (const char* name : {"v.npy", "v.ply"})
     EXPECT_NE(error_of([&] {
-                export_voxels(dir / name, view, grid, PlyContent::kPoints);
+                export_voxels(dir / name, view, grid);
               }).find("bytes that are free on its disk"),
               std::string::npos);
   EXPECT_EQ(dir.count(), 0);

@@ -1,4 +1,6 @@
 /// `voxdag export`: writes the voxels in the formats of other programs, or as a page of the viewer.
+#include <fmt/core.h>
+
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +13,7 @@
 #include "cli/scene_input.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/exports/blocks/export_slices.hpp"
 #include "voxdag/exports/export_voxels.hpp"
 
 namespace voxdag {
@@ -20,23 +23,29 @@ struct ExportArguments {
   std::string output, look;
   bool grey = false;
   ExportOptions options;
-  bool faces = false;
+  ExportContent content;
+  std::optional<int> slices;  ///< Axis.
   ShownSceneArguments page;
 
-  bool is_page() const { return is_page_output(output); }
+  bool is_page() const { return !slices && is_page_output(output); }
+  bool carries_colors() const {
+    return slices || export_has_colors(output, options.window.has_value());
+  }
 };
 
 /// Throws Error, before the file is read, if no output has this extension.
 void check_extension(const std::string& output) {
   if (!can_export_to(output))
-    throw Error(output, "",
-                "cannot export to '" + std::filesystem::path(output).extension().string() +
-                    "': the extension must be .npy, .ply, .raw or .html; a folder ends in /");
+    throw Error(
+        output, "",
+        fmt::format("cannot export to '{}': the extension must be {}, or .html; a folder "
+                    "ends in /",
+                    std::filesystem::path(output).extension().string(), export_extensions()));
 }
 
 void export_file(ExportArguments& arguments, Session& session) {
   if (arguments.is_page()) return export_page(arguments.output, arguments.page, session);
-  check_extension(arguments.output);
+  if (!arguments.slices) check_extension(arguments.output);
   const SceneInput file(session.subject, &session.progress);
   const VoxelSet voxels = file.voxels();
   arguments.options.progress = [&session](double fraction, std::uint64_t done) {
@@ -45,8 +54,14 @@ void export_file(ExportArguments& arguments, Session& session) {
   };
   const std::optional<SceneInput> look = open_look(arguments.look, file, session);
   if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);
-  export_voxels(arguments.output, voxels, file.grid(),
-                arguments.faces ? PlyContent::kFaces : PlyContent::kPoints, arguments.options);
+  if (arguments.slices)
+    return export_slices(arguments.output, *arguments.slices, voxels, file.grid(),
+                         arguments.options);
+  const std::vector<std::filesystem::path> files =
+      export_voxels(arguments.output, voxels, file.grid(), arguments.content, arguments.options);
+  session.bar.clear();
+  if (files.size() == 1 || session.quiet) return;
+  for (const std::filesystem::path& part : files) fmt::print("{}\n", part.string());
 }
 
 void add_page_options(const Command& command, ExportArguments& arguments) {
@@ -60,8 +75,10 @@ void add_page_options(const Command& command, ExportArguments& arguments) {
 
 void check_outputs(const ExportArguments& arguments, const Session& session) {
   if (arguments.is_page()) return check_page_output(arguments.output, session);
-  check_distinct({{"--output", arguments.output}, {"--output", arguments.output + ".json"}},
-                 session);
+  std::string beside = arguments.output + ".json";
+  if (arguments.output.ends_with(".voxel.json"))
+    beside = arguments.output.substr(0, arguments.output.size() - 4) + "bin";
+  check_distinct({{"--output", arguments.output}, {"--output", beside}}, session);
 }
 
 }  // namespace
@@ -69,35 +86,38 @@ void check_outputs(const ExportArguments& arguments, const Session& session) {
 void add_export_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ExportArguments>();
   const Command command = program.add(
-      "export", "Write the voxels as .npy, .ply or .raw, or as a page that shows them",
-      "voxdag export scene.vdag -o voxels.npy\n  voxdag export scene.vdag -o scene.html");
+      "export", "Write the voxels in the formats of other programs, or as a page that shows them",
+      "voxdag export scene.vdag -o scene.glb\n  voxdag export scene.vdag -o scene.html");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
-      .text("-o,--output", arguments->output, "OUT",
-            ".npy: coordinates, or a dense array with --window; .ply: points, or with --faces the "
-            "outer faces of the voxels; .raw: a dense array; .html: a page in one file that shows "
-            "a DAG, also offline; FOLDER/: the page and the scene, for any web server")
+      .text(
+          "-o,--output", arguments->output, "OUT",
+          "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
+          "(MagicaVoxel), .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). Arrays: .npy "
+          "(coordinates, or dense with --window), .raw (dense). Pages that show a DAG: .html (one "
+          "file, also offline) or FOLDER/ (with the scene, for any web server)")
       .required();
   command
       .parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
               "Export only the voxels from the first corner (included) to the second (excluded)")
       .only_if([arguments] { return !arguments->is_page(); }, "on a page");
+  const Option faces = command
+                           .flag("--faces", arguments->content.ply_faces,
+                                 "With .ply: write the outer faces of the voxels, not points")
+                           .only_if([arguments] { return arguments->output.ends_with(".ply"); },
+                                    "on an output that does not end in .ply");
   command
-      .flag("--faces", arguments->faces,
-            "With .ply: write the outer faces of the voxels, not points")
-      .only_if([arguments] { return arguments->output.ends_with(".ply"); },
-               "on an output that does not end in .ply");
-  const auto carries_look = [arguments] {
-    return arguments->output.ends_with(".ply") ||
-           (arguments->output.ends_with(".npy") && !arguments->options.window);
-  };
-  constexpr const char* kCarriesNone =
-      "on an output that cannot hold colours, normals and materials";
+      .parsed("--slices", arguments->slices, parse_axis, "AXIS",
+              "Write a folder of PNG files, one for each layer along x, y or z: slice_0000.png and "
+              "so on")
+      .not_with(faces);
+  const auto carries_look = [arguments] { return arguments->carries_colors(); };
+  constexpr const char* kCarriesNone = "on an output that cannot hold colours";
   const Option look = add_look_option(command, arguments->look).only_if(carries_look, kCarriesNone);
   command
-      .flag(
-          "--grey", arguments->grey,
-          "Leave out colours, normals and materials: an .npy file is a plain array of coordinates")
+      .flag("--grey", arguments->grey,
+            "Leave out colours, normals and materials: an .npy file is a plain array of "
+            "coordinates, faces of a plane are merged to large rectangles")
       .only_if(carries_look, kCarriesNone)
       .not_with(look);
   add_page_options(command, *arguments);

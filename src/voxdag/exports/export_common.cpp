@@ -70,10 +70,20 @@ std::uint64_t count_for_export(const std::filesystem::path& path, const VoxelSet
   return count;
 }
 
+void refuse_export(const std::filesystem::path& path, const std::string& reason) {
+  throw Error(path.string(), "",
+              reason + ": choose a smaller --window, or make a coarser grid (voxdag coarsen)");
+}
+
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
                      const ArrayLayout& layout) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return;
+  write_placement_file(path.string() + ".json", grid, window, layout);
+}
+
+void write_placement_file(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
+                          const ArrayLayout& layout) {
   const Vec3i lo = window.lo, hi = window.hi;
   nlohmann::ordered_json json;
   json["grid"] = {{"resolution", grid.resolution()},
@@ -92,7 +102,7 @@ void write_placement(const std::filesystem::path& path, const Grid& grid, const 
           "grid.voxel_size wide") +
       (layout.axes.empty() ? "" : "; the array's first element is voxel window.lo");
 
-  AtomicFile file(path.string() + ".json");
+  AtomicFile file(path);
   file.write(json.dump(2, ' ', false, decltype(json)::error_handler_t::replace) + "\n");
   file.commit();
 }

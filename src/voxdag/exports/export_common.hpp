@@ -21,6 +21,9 @@ std::uint64_t count_for_export(const std::filesystem::path& path, const VoxelSet
 /// and devices have no limit.
 void check_disk_space(const std::filesystem::path& path, std::uint64_t bytes);
 
+/// Throws Error(path, "", `reason` and what the user can do about it): the format has a limit.
+[[noreturn]] void refuse_export(const std::filesystem::path& path, const std::string& reason);
+
 /// Reports that `done` of `count` voxels are done to options.progress, if it is set.
 inline void report_export(const ExportOptions& options, std::uint64_t done, std::uint64_t count) {
   if (options.progress)
@@ -52,5 +55,9 @@ struct ArrayLayout {
 /// Writes nothing if `path` is a pipe or device.
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
                      const ArrayLayout& layout);
+
+/// Does what write_placement() does, to this file.
+void write_placement_file(const std::filesystem::path& file, const Grid& grid, const Box3i& window,
+                          const ArrayLayout& layout);
 
 }  // namespace voxdag

@@ -2,33 +2,16 @@
 
 #include <array>
 #include <bitset>
-#include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/exports/coordinates.hpp"
 #include "voxdag/exports/export_common.hpp"
 #include "voxdag/io/atomic_file.hpp"
 #include "voxdag/layout/look_reader.hpp"
 
 namespace voxdag {
 namespace {
-
-std::string shortest(double value) {
-  char text[32];
-  const auto result = std::to_chars(text, text + sizeof text, value);
-  return {text, result.ptr};
-}
-
-/// Returns whether float coordinates are exact to 1/16 voxel in the whole grid.
-bool float_suffices(const Grid& grid) {
-  const Box3d bounds = grid.bounds();
-  double largest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    largest = std::max({largest, std::abs(bounds.lo[axis]), std::abs(bounds.hi[axis])});
-  return largest * 0x1p-24 <= grid.voxel_size / 16 && largest < std::numeric_limits<float>::max() &&
-         grid.voxel_size > 16 * std::numeric_limits<float>::min();
-}
 
 /// A PLY file whose counts are known only at the end. The header is then written again, padded with
 /// a comment to its first length.

@@ -1,29 +1,115 @@
 #include "voxdag/exports/export_voxels.hpp"
 
+#include <string>
+#include <string_view>
+
+#include "voxdag/algebra/crop.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/exports/blocks/export_binvox.hpp"
+#include "voxdag/exports/blocks/export_playcanvas.hpp"
+#include "voxdag/exports/blocks/export_schem.hpp"
+#include "voxdag/exports/blocks/export_vox.hpp"
 #include "voxdag/exports/export_arrays.hpp"
 #include "voxdag/exports/export_ply.hpp"
+#include "voxdag/exports/faces/export_faces.hpp"
 
 namespace voxdag {
+namespace {
 
-bool can_export_to(const std::filesystem::path& path) {
-  const std::filesystem::path extension = path.extension();
-  return extension == ".npy" || extension == ".ply" || extension == ".raw";
+/// All that an export is asked for.
+struct Request {
+  const std::filesystem::path& path;
+  const VoxelSet& voxels;
+  const Grid& grid;
+  const ExportContent& content;
+  const ExportOptions& options;
+};
+
+using Files = std::vector<std::filesystem::path>;
+using Exporter = void (*)(const std::filesystem::path&, const VoxelSet&, const Grid&,
+                          const ExportOptions&);
+
+template <Exporter kExport>
+Files one_file(const Request& r) {
+  kExport(r.path, r.voxels, r.grid, r.options);
+  return {r.path};
 }
 
-void export_voxels(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
-                   PlyContent ply_content, const ExportOptions& options) {
-  const std::filesystem::path extension = path.extension();
-  if (!can_export_to(path))
-    throw Error(
-        path.string(), "",
-        "cannot export to '" + extension.string() + "': the extension must be .npy, .ply or .raw");
-  if (extension == ".npy" && options.window) return export_npy_dense(path, voxels, grid, options);
-  if (extension == ".npy") return export_npy_coordinates(path, voxels, grid, options);
-  if (extension == ".raw") return export_raw(path, voxels, grid, options);
-  if (extension == ".ply" && ply_content == PlyContent::kFaces)
-    return export_ply_faces(path, voxels, grid, options);
-  export_ply_points(path, voxels, grid, options);
+Files npy(const Request& r) {
+  return r.options.window ? one_file<export_npy_dense>(r) : one_file<export_npy_coordinates>(r);
+}
+
+Files ply(const Request& r) {
+  return r.content.ply_faces ? one_file<export_ply_faces>(r) : one_file<export_ply_points>(r);
+}
+
+Files vox(const Request& r) { return export_vox(r.path, r.voxels, r.grid, r.options); }
+
+Files playcanvas(const Request& r) {
+  const SvdagView* const dag = r.voxels.dag();
+  if (dag == nullptr)
+    throw Error(r.path.string(), "", "this format is for DAGs, but the scene is an ESVO");
+  if (r.options.window)
+    export_playcanvas(r.path, crop(*dag, *r.options.window, nullptr, nullptr).view(), r.grid,
+                      r.options);
+  else
+    export_playcanvas(r.path, *dag, r.grid, r.options);
+  return {r.path};
+}
+
+struct Format {
+  std::string_view ending;
+  Files (*write)(const Request&);
+  bool has_colors;
+};
+
+constexpr Format kFormats[] = {{".npy", npy, true},
+                               {".raw", one_file<export_raw>, false},
+                               {".ply", ply, true},
+                               {".glb", one_file<export_glb>, true},
+                               {".obj", one_file<export_obj>, true},
+                               {".stl", one_file<export_stl>, false},
+                               {".vox", vox, true},
+                               {".binvox", one_file<export_binvox>, false},
+                               {".schem", one_file<export_schem>, true},
+                               {".voxel.json", playcanvas, false}};
+
+/// Returns the format of a file, or null.
+const Format* format_of(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  for (const Format& format : kFormats)
+    if (name.size() > format.ending.size() && name.ends_with(format.ending)) return &format;
+  return nullptr;
+}
+
+}  // namespace
+
+bool can_export_to(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
+std::string export_extensions() {
+  std::string text;
+  for (const Format& format : kFormats) {
+    if (!text.empty()) text += &format == std::end(kFormats) - 1 ? " or " : ", ";
+    text += format.ending;
+  }
+  return text;
+}
+
+bool export_has_colors(const std::filesystem::path& path, bool has_window) {
+  const Format* const format = format_of(path);
+  return format != nullptr && format->has_colors && !(format->write == npy && has_window);
+}
+
+std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& path,
+                                                 const VoxelSet& voxels, const Grid& grid,
+                                                 const ExportContent& content,
+                                                 const ExportOptions& options) {
+  const Format* const format = format_of(path);
+  if (format == nullptr)
+    throw Error(path.string(), "",
+                "cannot export to '" + path.extension().string() + "': the extension must be " +
+                    export_extensions());
+  return format->write({path, voxels, grid, content, options});
 }
 
 }  // namespace voxdag

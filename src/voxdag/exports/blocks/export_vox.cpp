@@ -1,0 +1,158 @@
+#include "voxdag/exports/blocks/export_vox.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <utility>
+
+#include "voxdag/exports/blocks/color_palette.hpp"
+#include "voxdag/exports/blocks/vox_writer.hpp"
+#include "voxdag/exports/count_voxels.hpp"
+#include "voxdag/exports/export_common.hpp"
+#include "voxdag/layout/look_reader.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::int32_t kModelSide = 256, kSectionSide = 2000, kHeight = 1000;
+constexpr std::uint64_t kMostVoxels = 1'000'000'000;
+constexpr int kMostColors = 255;
+constexpr Value8 kGrey{200, 198, 195};
+
+/// Calls fn(box) for the boxes of at most side³ voxels that a box is cut into, x changing fastest.
+template <class Fn>
+void for_each_part(const Box3i& box, std::int32_t side, const Fn& fn) {
+  for (std::int32_t z = box.lo.z; z < box.hi.z; z += side)
+    for (std::int32_t y = box.lo.y; y < box.hi.y; y += side)
+      for (std::int32_t x = box.lo.x; x < box.hi.x; x += side)
+        fn(Box3i{{x, y, z}, min(box.hi, Vec3i{x, y, z} + Vec3i{side, side, side})});
+}
+
+std::filesystem::path section_path(const std::filesystem::path& path, Vec3i number) {
+  std::filesystem::path section = path;
+  std::string name = path.stem().string();
+  for (int axis = 0; axis < 3; ++axis) name.append("-").append(std::to_string(number[axis]));
+  return section.replace_filename(name.append(path.extension().string()));
+}
+
+/// The voxels, their colours, and the progress of an export: each voxel is visited twice if there
+/// are colours.
+class Source {
+ public:
+  Source(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options)
+      : voxels_(voxels), options_(options), look_(options.look), has_colors_(look_.has_colors()) {
+    whole_ =
+        count_voxels(voxels, window, ~std::uint64_t{0} - 1, [&] { report_export(options, 0, 1); });
+    if (!has_colors_) return;
+    ColorCounter counter(kMostColors);
+    visit(window, [&](Vec3i, Value8 color) { counter.add(color); });
+    palette_ = counter.palette();
+  }
+
+  std::uint64_t count() const { return whole_; }
+  /// Returns the number of voxels in a box.
+  std::uint64_t count(const Box3i& box) const {
+    return count_voxels(voxels_, box, ~std::uint64_t{0} - 1, [&] { report(); });
+  }
+  std::vector<Value8> colors() const {
+    return has_colors_ ? palette_.colors() : std::vector<Value8>{kGrey};
+  }
+  /// Calls fn(voxel, palette index) for the voxels in a box; index 0 is no colour.
+  template <class Fn>
+  void for_each(const Box3i& box, const Fn& fn) {
+    visit(box, [&](Vec3i voxel, Value8 color) {
+      fn(voxel, static_cast<std::uint8_t>(has_colors_ ? palette_.index_of(color) + 1 : 1));
+    });
+  }
+
+ private:
+  template <class Fn>
+  void visit(const Box3i& box, const Fn& fn) {
+    std::uint64_t blocks = 0;
+    voxels_.for_each_leaf_block(box, [&](Vec3i origin, std::uint64_t mask) {
+      if (++blocks % 16384 == 0) report();
+      for (; mask != 0; mask &= mask - 1, ++done_) {
+        const Vec3i voxel =
+            origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
+        fn(voxel, has_colors_ ? look_.read(voxel, voxels_.levels()).color : Value8{});
+      }
+    });
+    report();
+  }
+  void report() const { report_export(options_, done_, has_colors_ ? 2 * whole_ : whole_); }
+
+  const VoxelSet& voxels_;
+  const ExportOptions& options_;
+  LookReader look_;
+  bool has_colors_;
+  ColorPalette palette_;
+  std::uint64_t whole_ = 0, done_ = 0;
+};
+
+/// Returns the position in the scene of the first voxel of a section.
+Vec3i scene_position(Vec3i size) {
+  return {-(size.x / 2), -(size.y / 2), size.z <= kHeight ? 0 : -(size.z / 2)};
+}
+
+void write_section(const std::filesystem::path& path, const Box3i& section, Source& source) {
+  const Vec3i position = scene_position(section.hi - section.lo);
+  VoxWriter file(path);
+  std::vector<VoxVoxel> model;
+  for_each_part(section, kModelSide, [&](const Box3i& box) {
+    model.clear();
+    source.for_each(box, [&](Vec3i voxel, std::uint8_t color) {
+      const Vec3i at = voxel - box.lo;
+      model.push_back({static_cast<std::uint8_t>(at.x), static_cast<std::uint8_t>(at.y),
+                       static_cast<std::uint8_t>(at.z), color});
+    });
+    if (!model.empty()) file.add_model(position + (box.lo - section.lo), box.hi - box.lo, model);
+  });
+  file.commit(source.colors());
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
+                                              const VoxelSet& voxels, const Grid& grid,
+                                              const ExportOptions& options) {
+  const Box3i window = export_window(path, voxels, options);
+  Source source(voxels, window, options);
+  const Vec3i size = window.hi - window.lo;
+  const bool is_cut = std::max({size.x, size.y, size.z}) > kSectionSide;
+  std::vector<std::pair<std::filesystem::path, Box3i>> sections;
+  for_each_part(window, kSectionSide, [&](const Box3i& box) {
+    const std::uint64_t count = source.count(box);
+    if (count > kMostVoxels)
+      refuse_export(path, std::to_string(count) +
+                              " voxels in 2000³ are more than the 1000000000 that fit into a file");
+    Vec3i number;
+    for (int axis = 0; axis < 3; ++axis)
+      number[axis] = (box.lo[axis] - window.lo[axis]) / kSectionSide;
+    if (!is_cut)
+      sections.emplace_back(path, box);
+    else if (count > 0)
+      sections.emplace_back(section_path(path, number), box);
+  });
+  check_disk_space(path, source.count() * sizeof(VoxVoxel));
+  std::vector<std::filesystem::path> files;
+  for (const auto& [file, box] : sections) {
+    write_section(file, box, source);
+    files.push_back(file);
+  }
+  const Vec3i position =
+      scene_position(is_cut ? Vec3i{kSectionSide, kSectionSide, kSectionSide} : size);
+  std::string place;
+  for (int axis = 0; axis < 3; ++axis)
+    place.append(axis == 0 ? "" : ", ").append(std::to_string(position[axis]));
+  const ArrayLayout layout{
+      is_cut ? "sections of 2000 voxels a side; the first voxel of a whole one lies at " + place
+             : "a scene; voxel window.lo lies at " + place,
+      "palette indices", ""};
+  if (is_cut)
+    write_placement_file(path.string() + ".json", grid, window, layout);
+  else
+    write_placement(path, grid, window, layout);
+  return files;
+}
+
+}  // namespace voxdag

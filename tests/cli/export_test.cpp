@@ -1,0 +1,66 @@
+/// `voxdag export` to the formats of other programs: which file holds what is tested in
+/// tests/exports.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "sponge.hpp"
+
+namespace voxdag {
+namespace {
+
+using ExportCommand = Sponge;
+
+TEST_F(ExportCommand, WritesTheFormatOfTheExtension) {
+  for (const char* name : {"a.glb", "a.obj", "a.stl", "a.vox", "a.binvox", "a.schem",
+                           "a.voxel.json", "a.ply", "a.npy", "a.raw"}) {
+    const ProcessResult result = run_voxdag({"export", path("in.vdag"), "-o", path(name)});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_GT(std::filesystem::file_size(path(name)), 0u);
+  }
+  EXPECT_TRUE(std::filesystem::exists(path("a.voxel.bin")));
+  EXPECT_TRUE(std::filesystem::exists(path("a.vox.json")));
+}
+
+TEST_F(ExportCommand, VoxelsComeBackFromOtherFormats) {
+  for (const char* name : {"r.vox", "r.binvox", "r.npy"}) {
+    ASSERT_EQ(run_voxdag({"export", path("in.vdag"), "-o", path(name), "-q"}).status, 0);
+    const std::string back = path(std::string(name) + ".vdag");
+    const ProcessResult import = run_voxdag({"import", path(name), "-o", back, "-q"});
+    ASSERT_EQ(import.status, 0) << import.err;
+    const auto voxels = [&](const std::string& file) {
+      return run_voxdag({"query", file, "--count", "--json"}).out;
+    };
+    EXPECT_EQ(voxels(back), voxels(path("in.vdag")));
+  }
+}
+
+TEST_F(ExportCommand, SlicesAreAFolderOfPictures) {
+  const ProcessResult result = run_voxdag(
+      {"export", path("in.vdag"), "--slices", "x", "--window", "0,0,0,3,8,9", "-o", path("s/")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(path("s/slice_0002.png")));
+  EXPECT_FALSE(std::filesystem::exists(path("s/slice_0003.png")));
+  expect_failure(run_voxdag({"export", path("in.vdag"), "--slices", "x", "-o", path("s")}), 1,
+                 "exists and is not an empty folder");
+  expect_failure(run_voxdag({"export", path("in.vdag"), "--slices", "w", "-o", path("t")}), 2,
+                 "--slices");
+}
+
+TEST_F(ExportCommand, UnknownExtensionsAreRefusedWithThoseThatAreKnown) {
+  expect_failure(run_voxdag({"export", path("in.vdag"), "-o", path("a.fbx")}), 1,
+                 "a.fbx: cannot export to '.fbx': the extension must be .npy, .raw, .ply, .glb, "
+                 ".obj, .stl, .vox, .binvox, .schem or .voxel.json, or .html; a folder ends in /");
+  expect_failure(run_voxdag({"export", path("in.vdag"), "-o", path("a.stl"), "--grey"}), 2,
+                 "--grey");
+}
+
+TEST_F(ExportCommand, NeverOverwritesItsInputBesideTheOutput) {
+  std::filesystem::copy_file(path("in.vdag"), path("q.voxel.bin"));
+  expect_failure(run_voxdag({"export", path("q.voxel.bin"), "-o", path("q.voxel.json")}), 2,
+                 "an input file");
+}
+
+}  // namespace
+}  // namespace voxdag
