@@ -59,6 +59,7 @@ T read_at(const std::string& bytes, std::size_t at) {
 struct Glb {
   nlohmann::json json;
   std::string data;
+  mutable Vec3d lo{1e9, 1e9, 1e9}, hi{-1e9, -1e9, -1e9};  ///< Bounds of triangles().
 
   explicit Glb(const std::string& bytes) {
     EXPECT_EQ(bytes.substr(0, 4), "glTF");
@@ -80,14 +81,25 @@ struct Glb {
     return view.value("byteOffset", std::size_t{0}) + a.value("byteOffset", std::size_t{0}) +
            i * view.value("byteStride", size);
   }
-  std::vector<Polygon> triangles(Vec3i origin) const {
+  /// Returns the triangles with coordinates in the world.
+  std::vector<Polygon> triangles() const {
     std::vector<Polygon> result;
+    const auto& node = json["nodes"][0];
+    Vec3d scale{1, 1, 1}, translation{};
+    for (int axis = 0; axis < 3 && node.contains("scale"); ++axis) {
+      scale[axis] = node["scale"][static_cast<std::size_t>(axis)];
+      translation[axis] = node["translation"][static_cast<std::size_t>(axis)];
+    }
     const auto count = json["accessors"][1]["count"].get<std::size_t>();
     for (std::size_t i = 0; i < count; ++i) {
       if (i % 3 == 0) result.emplace_back();
       const auto index = read_at<std::uint32_t>(data, place(1, i, 4));
-      const auto corner = read_at<Vec3f>(data, place(0, index, 12));
-      result.back().corners.push_back(Vec3d(corner) + Vec3d(origin));
+      const Vec3d corner(read_at<Vec3f>(data, place(0, index, 12)));
+      lo = min(lo, corner);
+      hi = max(hi, corner);
+      result.back().corners.push_back({corner.x * scale.x + translation.x,
+                                       corner.y * scale.y + translation.y,
+                                       corner.z * scale.z + translation.z});
       if (json["accessors"].size() > 2) {
         const auto color = read_at<std::array<std::uint16_t, 4>>(data, place(2, index, 8));
         EXPECT_EQ(color[3], 65535);
@@ -98,27 +110,28 @@ struct Glb {
   }
 };
 
-TEST(ExportGlb, TrianglesAreTheOuterFaces) {
+/// Changes coordinates to voxels of the grid.
+std::vector<Polygon> in_grid(std::vector<Polygon> polygons, const Grid& grid) {
+  for (Polygon& polygon : polygons)
+    for (Vec3d& corner : polygon.corners) corner = (corner - grid.origin) * (1 / grid.voxel_size);
+  return polygons;
+}
+
+TEST(ExportGlb, TrianglesAreTheOuterFacesInTheWorld) {
   const TempDir dir;
-  const ExportedScene scene(5, 2000);
-  for (const Box3i& window : {whole_grid(5), Box3i{{3, 1, 6}, {29, 32, 13}}}) {
-    export_glb(dir / "v.glb", scene.view(), scene.grid, windowed(window.lo, window.hi));
-    const Glb glb(read_text(dir / "v.glb"));
-    const std::vector<Polygon> triangles = glb.triangles(window.lo);
-    EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), window));
-    const auto& node = glb.json["nodes"][0];
-    const Vec3d corner = scene.grid.to_world(Vec3d(window.lo));
-    EXPECT_EQ(node["translation"], nlohmann::json({corner.x, corner.y, corner.z}));
-    EXPECT_EQ(node["scale"], nlohmann::json({0.25, 0.25, 0.25}));
-    Vec3d lo{1e9, 1e9, 1e9}, hi{-1, -1, -1};
-    for (const Polygon& t : triangles)
-      for (const Vec3d c : t.corners) {
-        lo = min(lo, c - Vec3d(window.lo));
-        hi = max(hi, c - Vec3d(window.lo));
-      }
-    EXPECT_EQ(glb.json["accessors"][0]["min"], nlohmann::json({lo.x, lo.y, lo.z}));
-    EXPECT_EQ(glb.json["accessors"][0]["max"], nlohmann::json({hi.x, hi.y, hi.z}));
-  }
+  ExportedScene scene(5, 2000);
+  for (const double origin : {10.0, 1e6})
+    for (const Box3i& window : {whole_grid(5), Box3i{{3, 1, 6}, {29, 32, 13}}}) {
+      scene.grid.origin.x = origin;
+      export_glb(dir / "v.glb", scene.view(), scene.grid, windowed(window.lo, window.hi));
+      const Glb glb(read_text(dir / "v.glb"));
+      EXPECT_EQ(areas_of(in_grid(glb.triangles(), scene.grid)), areas_of(scene.view(), window));
+      // Far from the origin, floats cannot tell sixteenths of a voxel.
+      EXPECT_EQ(glb.json["nodes"][0].contains("scale"), origin == 1e6);
+      const auto& places = glb.json["accessors"][0];
+      EXPECT_EQ(places["min"], nlohmann::json({glb.lo.x, glb.lo.y, glb.lo.z}));
+      EXPECT_EQ(places["max"], nlohmann::json({glb.hi.x, glb.hi.y, glb.hi.z}));
+    }
   EXPECT_EQ(dir.count(), 1);
 }
 
@@ -127,7 +140,7 @@ TEST(ExportGlb, ColorsAreThoseOfTheVoxelsInLinearLight) {
   const ColoredScene scene(6);
   export_glb(dir / "v.glb", scene.view(), scene.grid, scene.options);
   std::map<std::array<int, 3>, double> found, expected;
-  for (const Polygon& t : Glb(read_text(dir / "v.glb")).triangles({}))
+  for (const Polygon& t : in_grid(Glb(read_text(dir / "v.glb")).triangles(), scene.grid))
     found[{t.color.x, t.color.y, t.color.z}] +=
         length(cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0])) / 2;
   for_each_rectangle(scene.view(), whole_grid(6), nullptr, false, nullptr,
@@ -178,18 +191,18 @@ std::vector<Polygon> read_obj(const std::string& text, const Grid& grid) {
   return polygons;
 }
 
-TEST(ExportObj, QuadsAreTheOuterFacesInTheWorld) {
+TEST(ExportObj, TrianglesAreTheOuterFacesInTheWorld) {
   const TempDir dir;
   const ColoredScene scene(6);
   ExportOptions options = scene.options;
   options.window = Box3i{{3, 1, 6}, {64, 62, 33}};
   export_obj(dir / "v.obj", scene.view(), scene.grid, options);
-  const std::vector<Polygon> quads = read_obj(read_text(dir / "v.obj"), scene.grid);
-  EXPECT_EQ(areas_of(quads), areas_of(scene.view(), *options.window));
+  const std::vector<Polygon> triangles = read_obj(read_text(dir / "v.obj"), scene.grid);
+  EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), *options.window));
   std::set<std::array<int, 3>> colors, expected;
-  for (const Polygon& quad : quads) {
-    EXPECT_EQ(quad.corners.size(), 4u);
-    colors.insert({quad.color.x, quad.color.y, quad.color.z});
+  for (const Polygon& t : triangles) {
+    EXPECT_EQ(t.corners.size(), 3u);
+    colors.insert({t.color.x, t.color.y, t.color.z});
   }
   for (const Vec3i v : scene.voxels) {
     const Value8 color = scene.value(v);

@@ -10,8 +10,9 @@
 
 namespace voxdag {
 
-/// Returns the shortest decimal that reads back as `value`.
-inline std::string shortest(double value) {
+/// Returns the shortest decimal that reads back as `value`, a float or a double.
+template <class T>
+std::string shortest(T value) {
   char text[32];
   const auto result = std::to_chars(text, text + sizeof text, value);
   return {text, result.ptr};

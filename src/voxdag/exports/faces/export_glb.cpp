@@ -3,6 +3,7 @@
 #include <string>
 
 #include "voxdag/core/srgb.hpp"
+#include "voxdag/exports/coordinates.hpp"
 #include "voxdag/exports/faces/export_faces.hpp"
 #include "voxdag/exports/faces/exported_rectangles.hpp"
 #include "voxdag/io/atomic_file.hpp"
@@ -28,10 +29,14 @@ nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 /// The parts of a GLB file that depend on the number of its rectangles.
 struct GlbPlan {
   Grid grid;
-  Vec3i origin;  ///< The voxel at the origin of the mesh's coordinates.
+  Vec3i origin;   ///< The voxel at the origin of the mesh's coordinates, if they are in voxels.
+  bool is_world;  ///< The mesh's coordinates are in world units.
   bool has_colors;
   ExportedRectangles::Extent extent;
 
+  Vec3f place(Vec3i corner) const {
+    return is_world ? Vec3f(grid.to_world(Vec3d(corner))) : Vec3f(corner - origin);
+  }
   std::uint64_t stride() const { return has_colors ? sizeof(ColoredCorner) : sizeof(Vec3f); }
   std::uint64_t corners() const { return 4 * extent.count; }
   std::uint64_t corner_bytes() const { return corners() * stride(); }
@@ -64,8 +69,8 @@ struct GlbPlan {
                           {"componentType", kFloat},
                           {"count", corners()},
                           {"type", "VEC3"},
-                          {"min", json_of(Vec3d(extent.bounds.lo - origin))},
-                          {"max", json_of(Vec3d(extent.bounds.hi - origin))}},
+                          {"min", json_of(Vec3d(place(extent.bounds.lo)))},
+                          {"max", json_of(Vec3d(place(extent.bounds.hi)))}},
                          {{"bufferView", 1},
                           {"componentType", kUnsignedInt},
                           {"count", 6 * extent.count},
@@ -82,9 +87,11 @@ struct GlbPlan {
   /// Returns the document, padded to a multiple of 4 bytes.
   std::string document() const {
     const double side = grid.voxel_size;
-    nlohmann::ordered_json node = {{"name", "voxels"},
-                                   {"translation", json_of(grid.to_world(Vec3d(origin)))},
-                                   {"scale", json_of({side, side, side})}};
+    nlohmann::ordered_json node = {{"name", "voxels"}};
+    if (!is_world) {
+      node["translation"] = json_of(grid.to_world(Vec3d(origin)));
+      node["scale"] = json_of({side, side, side});
+    }
     if (extent.count > 0) node["mesh"] = 0;
     node["extras"] = {{"grid",
                        {{"resolution", grid.resolution()},
@@ -109,7 +116,7 @@ void write_word(AtomicFile& file, std::uint64_t word) {
 
 void write_corners(AtomicFile& file, const GlbPlan& plan, const FaceRectangle& rectangle) {
   for (const Vec3i corner : corners_of(rectangle)) {
-    const Vec3f place(corner - plan.origin);  // exact: at most 2^20
+    const Vec3f place = plan.place(corner);
     if (!plan.has_colors) {
       file.write(&place, sizeof place);
     } else {
@@ -135,7 +142,8 @@ void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const
                 const ExportOptions& options) {
   const Box3i window = export_window(path, voxels, options);
   ExportedRectangles rectangles(voxels, window, options, true);
-  const GlbPlan plan{grid, window.lo, rectangles.has_colors(), rectangles.measure()};
+  const GlbPlan plan{grid, window.lo, float_suffices(grid), rectangles.has_colors(),
+                     rectangles.measure()};
   const std::string document = plan.document();
   const std::uint64_t data = plan.data_bytes();
   const std::uint64_t bytes = 12 + 8 + document.size() + (data > 0 ? 8 + data : 0);
