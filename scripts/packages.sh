@@ -22,6 +22,10 @@ voxdag_browser_packages=(chromium firefox-esr xvfb)
 # A Node from elsewhere brings its own npm, which conflicts with Debian's package.
 command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packages+=(nodejs npm)
 
+# The tests that open exports with programs of others skip themselves without these, and without the
+# npm packages of tests/interop.
+voxdag_interop_packages=(python3-open3d python3-numpy)
+
 # install_packages PACKAGE...
 install_packages() {
   local package missing=() as_root=()

@@ -20,16 +20,20 @@ esac
 install_packages "${voxdag_packages[@]}" "${voxdag_test_packages[@]}"
 jobs=$(nproc)
 
-# Installs what the tests of the viewer in browsers need. Without it they skip themselves.
-prepare_browser_tests() {
-  install_packages "${voxdag_browser_packages[@]}" || return
-  cd tests/browser || return
-  # npm writes its copy of package-lock.json when it has installed all packages.
+# Installs the npm packages of a folder. npm writes its copy of package-lock.json when it has installed
+# all of them.
+install_npm() {
+  cd "$1" || return
   [ node_modules/.package-lock.json -nt package-lock.json ] ||
     npm ci --no-audit --no-fund --loglevel=error
 }
-(prepare_browser_tests) ||
+# Some tests skip themselves without these packages.
+(install_packages "${voxdag_browser_packages[@]}" && install_npm tests/browser) ||
   echo "Skipping the tests of the viewer in browsers: the browsers or the npm packages could not be installed"
+install_packages "${voxdag_interop_packages[@]}" ||
+  echo "Skipping the tests with Open3D: it could not be installed"
+(install_npm tests/interop) ||
+  echo "Skipping the tests with programs of others: the npm packages could not be installed"
 
 echo "== clang-format"
 find . -name '*.[ch]pp' -not -path './build*' -print0 |
