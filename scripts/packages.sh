@@ -13,7 +13,7 @@ voxdag_packages=(
 )
 voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib
-  libopenvdb-dev libboost-dev  # .vdb volumes
+  libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
   clang clang-format clang-tidy
 )
 
@@ -24,7 +24,7 @@ command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packag
 
 # The tests that open exports with programs of others skip themselves without these, and without the
 # npm packages of tests/interop.
-voxdag_interop_packages=(python3-open3d python3-numpy)
+voxdag_interop_packages=(python3-open3d python3-openvdb libopenvdb-tools libnanovdb-tools)
 
 # install_packages PACKAGE...
 install_packages() {

@@ -31,9 +31,9 @@ install_npm() {
 (install_packages "${voxdag_browser_packages[@]}" && install_npm tests/browser) ||
   echo "Skipping the tests of the viewer in browsers: the browsers or the npm packages could not be installed"
 install_packages "${voxdag_interop_packages[@]}" ||
-  echo "Skipping the tests with Open3D: it could not be installed"
+  echo "Skipping tests with programs of others: Debian's packages could not be installed"
 (install_npm tests/interop) ||
-  echo "Skipping the tests with programs of others: the npm packages could not be installed"
+  echo "Skipping tests with programs of others: npm's packages could not be installed"
 
 echo "== clang-format"
 find . -name '*.[ch]pp' -not -path './build*' -print0 |

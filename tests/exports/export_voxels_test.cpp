@@ -38,10 +38,11 @@ TEST(Export, TheExtensionChooses) {
   EXPECT_EQ(run("a.raw").size(), 512u);
   EXPECT_TRUE(ExportedPly(run("a.ply")).faces.empty());
   EXPECT_FALSE(ExportedPly(run("b.ply", true)).faces.empty());
-  EXPECT_EQ(error_of([&] { run("a.xyz"); }),
-            (dir / "a.xyz").string() +
-                ": cannot export to '.xyz': the extension must be .npy, .raw, .ply, .glb, "
-                ".obj, .stl, .vox, .binvox, .schem or .voxel.json");
+  EXPECT_EQ(
+      error_of([&] { run("a.xyz"); }),
+      (dir / "a.xyz").string() +
+          ": cannot export to '.xyz': the extension must be .spc.npy, .npy, .raw, .ply, .glb, "
+          ".obj, .stl, .vox, .binvox, .schem, .voxel.json, .vdb or .nvdb");
 }
 
 TEST(Export, AnEmptyDagMakesEmptyFiles) {

@@ -15,6 +15,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/exports/blocks/export_slices.hpp"
 #include "voxdag/exports/export_voxels.hpp"
+#include "voxdag/io/process_memory.hpp"
 
 namespace voxdag {
 namespace {
@@ -27,6 +28,7 @@ struct ExportArguments {
   std::optional<int> slices;  ///< Axis.
   ShownSceneArguments page;
 
+  bool is_vdb() const { return output.ends_with(".vdb") || output.ends_with(".nvdb"); }
   bool is_page() const { return !slices && is_page_output(output); }
   bool carries_colors() const {
     return slices || export_has_colors(output, options.window.has_value());
@@ -53,6 +55,8 @@ void export_file(ExportArguments& arguments, Session& session) {
     session.progress.report("export", fraction, done);
   };
   const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  MemoryBudget memory = command_budget(arguments.page.memory_limit);
+  arguments.options.memory = &memory;
   if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);
   if (arguments.slices)
     return export_slices(arguments.output, *arguments.slices, voxels, file.grid(),
@@ -65,12 +69,14 @@ void export_file(ExportArguments& arguments, Session& session) {
 }
 
 void add_page_options(const Command& command, ExportArguments& arguments) {
-  std::vector<Option> options = add_reduction_options(command, arguments.page.reduction);
-  options.push_back(add_memory_option(command, arguments.page.memory_limit));
-  for (const Option& option : options)
+  for (const Option& option : add_reduction_options(command, arguments.page.reduction))
     option.in_group("Options for pages only (.html, FOLDER/)")
         .only_if([&arguments] { return arguments.is_page(); },
                  "on an output that is neither .html nor a folder");
+  add_memory_option(command, arguments.page.memory_limit)
+      .only_if(
+          [&arguments] { return arguments.is_page() || arguments.is_vdb(); },
+          "on an output that is neither a page nor .vdb or .nvdb: others take less than 100 MB");
 }
 
 void check_outputs(const ExportArguments& arguments, const Session& session) {
@@ -93,7 +99,8 @@ void add_export_command(const Command& program, Session& session) {
       .text(
           "-o,--output", arguments->output, "OUT",
           "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
-          "(MagicaVoxel), .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). Arrays: .npy "
+          "(MagicaVoxel), .vdb, .nvdb, .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). "
+          "Arrays: .npy "
           "(coordinates, or dense with --window), .raw (dense). Pages that show a DAG: .html (one "
           "file, also offline) or FOLDER/ (with the scene, for any web server)")
       .required();

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "voxdag/core/grid.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/layout/look.hpp"
 #include "voxdag/layout/voxel_set.hpp"
 
@@ -28,6 +29,8 @@ struct ExportOptions {
   /// The greatest size of a dense array, in bytes; larger ones are refused before anything is
   /// written.
   std::uint64_t most_dense_bytes = std::uint64_t{16} << 30;
+  /// Counts the grids of export_vdb(); may be null.
+  MemoryBudget* memory = nullptr;
   /// Called from time to time with the fraction of the work and the number of voxels that are done.
   /// It may throw (Cancelled) to stop the export. While voxels are counted, both arguments are 0.
   std::function<void(double fraction, std::uint64_t voxels)> progress;

@@ -8,10 +8,12 @@
 #include "voxdag/exports/blocks/export_binvox.hpp"
 #include "voxdag/exports/blocks/export_playcanvas.hpp"
 #include "voxdag/exports/blocks/export_schem.hpp"
+#include "voxdag/exports/blocks/export_spc.hpp"
 #include "voxdag/exports/blocks/export_vox.hpp"
 #include "voxdag/exports/export_arrays.hpp"
 #include "voxdag/exports/export_ply.hpp"
 #include "voxdag/exports/faces/export_faces.hpp"
+#include "voxdag/exports/vdb/export_vdb.hpp"
 
 namespace voxdag {
 namespace {
@@ -45,15 +47,18 @@ Files ply(const Request& r) {
 
 Files vox(const Request& r) { return export_vox(r.path, r.voxels, r.grid, r.options); }
 
-Files playcanvas(const Request& r) {
+/// Writes a format that is for DAGs only, and that has no windows: crops the DAG.
+template <void (*kExport)(const std::filesystem::path&, const SvdagView&, const Grid&,
+                          const ExportOptions&)>
+Files dag_file(const Request& r) {
   const SvdagView* const dag = r.voxels.dag();
   if (dag == nullptr)
     throw Error(r.path.string(), "", "this format is for DAGs, but the scene is an ESVO");
   if (r.options.window)
-    export_playcanvas(r.path, crop(*dag, *r.options.window, nullptr, nullptr).view(), r.grid,
-                      r.options);
+    kExport(r.path, crop(*dag, *r.options.window, r.options.memory, nullptr).view(), r.grid,
+            r.options);
   else
-    export_playcanvas(r.path, *dag, r.grid, r.options);
+    kExport(r.path, *dag, r.grid, r.options);
   return {r.path};
 }
 
@@ -63,7 +68,9 @@ struct Format {
   bool has_colors;
 };
 
-constexpr Format kFormats[] = {{".npy", npy, true},
+/// A longer ending comes before its own ending.
+constexpr Format kFormats[] = {{".spc.npy", dag_file<export_spc>, false},
+                               {".npy", npy, true},
                                {".raw", one_file<export_raw>, false},
                                {".ply", ply, true},
                                {".glb", one_file<export_glb>, true},
@@ -72,7 +79,9 @@ constexpr Format kFormats[] = {{".npy", npy, true},
                                {".vox", vox, true},
                                {".binvox", one_file<export_binvox>, false},
                                {".schem", one_file<export_schem>, true},
-                               {".voxel.json", playcanvas, false}};
+                               {".voxel.json", dag_file<export_playcanvas>, false},
+                               {".vdb", one_file<export_vdb>, true},
+                               {".nvdb", one_file<export_vdb>, true}};
 
 /// Returns the format of a file, or null.
 const Format* format_of(const std::filesystem::path& path) {

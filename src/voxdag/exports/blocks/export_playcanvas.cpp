@@ -8,6 +8,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/exports/export_common.hpp"
+#include "voxdag/exports/full_nodes.hpp"
 #include "voxdag/io/atomic_file.hpp"
 
 namespace voxdag {
@@ -33,17 +34,13 @@ std::uint64_t row_major(std::uint64_t morton_block) {
 class NodeWords {
  public:
   NodeWords(const std::filesystem::path& path, const SvdagView& dag)
-      : dag_(dag), begins_(dag.node_words()) {
+      : dag_(dag), full_(dag), begins_(dag.node_words()) {
     if (dag.leaf_block_count > kMostIndices)
       refuse_export(path, std::to_string(dag.leaf_block_count) +
                               " different leaf blocks are more than the 16777216 of this format");
-    // From the lowest level up: a node is full if its children are.
-    for (int level = dag.levels - 3; level >= 0; --level)
-      for_each_node(level,
-                    [&](std::uint64_t at) { begins_[at] = is_full_node(level, at) ? 0 : 1; });
     for (int level = 0; level <= dag.levels - 3; ++level)
-      for_each_node(level, [&](std::uint64_t at) {
-        if (begins_[at] == 0) return;
+      for_each_node(dag, level, [&](std::uint64_t at) {
+        if (full_.is_full(level, static_cast<std::uint32_t>(at))) return;
         begins_[at] = static_cast<std::uint32_t>(count_);
         count_ += static_cast<std::uint64_t>(popcount8(child_mask(dag.nodes + at)));
         ++inner_;
@@ -62,42 +59,24 @@ class NodeWords {
     if (dag_.is_empty()) return;
     write(word(0, 0));
     for (int level = 0; level <= dag_.levels - 3; ++level)
-      for_each_node(level, [&](std::uint64_t at) {
-        if (begins_[at] == 0) return;
-        const int children = popcount8(child_mask(dag_.nodes + at));
-        for (int i = 1; i <= children; ++i)
-          write(word(level + 1, dag_.nodes[at + static_cast<std::uint64_t>(i)]));
+      for_each_node(dag_, level, [&](std::uint64_t at) {
+        const std::uint32_t* const node = dag_.nodes + at;
+        if (full_.is_full(level, static_cast<std::uint32_t>(at))) return;
+        const int children = popcount8(child_mask(node));
+        for (int i = 1; i <= children; ++i) write(word(level + 1, node[i]));
       });
   }
 
  private:
-  /// Calls fn(at) for the nodes of a level above the leaf blocks; `at` is the place of their mask.
-  template <class Fn>
-  void for_each_node(int level, const Fn& fn) const {
-    for (std::uint64_t at = dag_.level_begin[level]; at < dag_.level_begin[level + 1];
-         at += 1 + static_cast<std::uint64_t>(popcount8(child_mask(dag_.nodes + at))))
-      fn(at);
-  }
-  bool is_full(int level, std::uint32_t pointer) const {
-    if (level == dag_.levels - 2) return dag_.leaf_blocks[pointer] == ~std::uint64_t{0};
-    return begins_[pointer] == 0;
-  }
-  bool is_full_node(int level, std::uint64_t at) const {
-    const std::uint32_t* node = dag_.nodes + at;
-    if (child_mask(node) != 0xFF) return false;
-    for (int i = 0; i < 8; ++i)
-      if (!is_full(level + 1, node[1 + i])) return false;
-    return true;
-  }
   std::uint32_t word(int level, std::uint32_t pointer) const {
-    if (is_full(level, pointer)) return kFull;
+    if (full_.is_full(level, pointer)) return kFull;
     if (level == dag_.levels - 2) return pointer;
     return child_mask(dag_.nodes + pointer) << 24 | begins_[pointer];
   }
 
   SvdagView dag_;
-  /// For the first word of each node: where its children begin; 0: it is full.
-  std::vector<std::uint32_t> begins_;
+  FullNodes full_;
+  std::vector<std::uint32_t> begins_;  ///< For the first word of a node: where its children begin.
   std::uint64_t count_ = 1, inner_ = 0;
 };
 

@@ -105,7 +105,11 @@ void write_section(const std::filesystem::path& path, const Box3i& section, Sour
       model.push_back({static_cast<std::uint8_t>(at.x), static_cast<std::uint8_t>(at.y),
                        static_cast<std::uint8_t>(at.z), color});
     });
-    if (!model.empty()) file.add_model(position + (box.lo - section.lo), box.hi - box.lo, model);
+    if (model.empty()) return;
+    // Programs differ in where the middle of an odd size is.
+    const Vec3i size = box.hi - box.lo;
+    const Vec3i even{size.x + (size.x & 1), size.y + (size.y & 1), size.z + (size.z & 1)};
+    file.add_model(position + (box.lo - section.lo), even, model);
   });
   file.commit(source.colors());
 }

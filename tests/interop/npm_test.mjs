@@ -1,6 +1,6 @@
 // Opens exported files with packages of others, and compares their voxels with voxdag's .npy.
 //
-//   VOXDAG=program node formats_test.mjs
+//   VOXDAG=program node npm_test.mjs
 //
 // Ends with status 77 if the packages of package.json are not installed (`npm ci` here).
 import assert from "node:assert/strict";
@@ -13,8 +13,9 @@ import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 const require = createRequire(import.meta.url);
-let gltfValidator, nbt, readVox, viewer;
+let binvox, gltfValidator, nbt, readVox, viewer;
 try {
+  binvox = require("binvox");
   gltfValidator = require("gltf-validator");
   nbt = require("prismarine-nbt");
   readVox = require("vox-reader");
@@ -87,6 +88,13 @@ test("vox-reader finds the voxels, the scene and the palette of .vox", () => {
   const used = new Set(file.xyzi.values.map((v) => v.i));
   assert.ok(used.size > 100);
   for (const i of used) assert.ok(i >= 1 && i <= 255);
+});
+
+test("binvox finds the voxels and the placement of .binvox", () => {
+  const bytes = exported("a.binvox");
+  const file = new binvox.Parser().parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+  assert.deepEqual(file.dimension, { depth: resolution, width: resolution, height: resolution });
+  assert.deepEqual(new Set(file.voxels.map((v) => key(v.x, v.y, v.z))), voxels);
 });
 
 test("prismarine-nbt finds the blocks of .schem", async () => {

@@ -1,12 +1,13 @@
-"""Opens exported meshes and points with Open3D, and slices with Pillow, and compares what they find
-with voxdag's counts.
+"""Opens exported meshes and points with Open3D, slices with Pillow, grids with OpenVDB's and NanoVDB's
+own tools, and compares what they find with voxdag's counts.
 
-  VOXDAG=program python3 open3d_test.py
+  VOXDAG=program python3 debian_test.py
 
 Ends with status 77 if one of them is not installed.
 """
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -17,8 +18,12 @@ try:
     import matplotlib.image
     import numpy
     import open3d
+    import pyopenvdb
 except ImportError as error:
     print("skipped:", error)
+    sys.exit(77)
+if not shutil.which("nanovdb_validate") or not shutil.which("vdb_print"):
+    print("skipped: no nanovdb_validate, or no vdb_print")
     sys.exit(77)
 
 PROGRAM = os.environ["VOXDAG"]
@@ -110,6 +115,27 @@ class Exports(unittest.TestCase):
                    "0,0,0,64,64,64")
             dense = numpy.load(self.path / "dense.npy")
             numpy.testing.assert_array_equal(is_set(numpy.stack(slices)), dense.T != 0)
+
+    def test_open_vdb(self):
+        voxdag("export", self.dag, "-o", self.path / "a.vdb", "-q")
+        density, color = pyopenvdb.readAll(str(self.path / "a.vdb"))[0]
+        self.assertEqual((density.name, color.name), ("density", "Cd"))
+        points = numpy.asarray(self.points.points)
+        places = sorted(tuple(density.transform.indexToWorld(item.min))
+                        for item in density.citerOnValues())
+        numpy.testing.assert_allclose(places, sorted(map(tuple, points)), atol=1e-4)
+        self.assertEqual(color.activeVoxelCount(), len(points))
+        printed = subprocess.run(["vdb_print", self.path / "a.vdb"], check=True,
+                                 capture_output=True, text=True).stdout
+        self.assertIn("density", printed)
+
+    def test_nano_vdb(self):
+        voxdag("export", self.dag, "-o", self.path / "a.nvdb", "-q")
+        subprocess.run(["nanovdb_validate", self.path / "a.nvdb"], check=True, capture_output=True)
+        subprocess.run(["nanovdb_convert", "-f", self.path / "a.nvdb", self.path / "back.vdb"],
+                       check=True, capture_output=True)
+        density = pyopenvdb.read(str(self.path / "back.vdb"), "density")
+        self.assertEqual(density.activeVoxelCount(), self.surface["voxels"])
 
 
 if __name__ == "__main__":
