@@ -24,7 +24,7 @@ command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packag
 
 # The tests that open exports with programs of others skip themselves without these, and without the
 # npm packages of tests/interop.
-voxdag_interop_packages=(python3-open3d python3-openvdb libopenvdb-tools libnanovdb-tools)
+voxdag_interop_packages=(python3-open3d python3-openvdb libopenvdb-tools libnanovdb-tools goxel xvfb)
 
 # install_packages PACKAGE...
 install_packages() {

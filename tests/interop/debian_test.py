@@ -129,6 +129,20 @@ class Exports(unittest.TestCase):
                                  capture_output=True, text=True).stdout
         self.assertIn("density", printed)
 
+    def test_vox(self):
+        """Goxel puts the models of a scene together."""
+        if not shutil.which("goxel") or not shutil.which("xvfb-run"):
+            self.skipTest("no goxel, or no xvfb-run")
+        large = self.path / "large.vdag"
+        voxdag("build", self.path / "mesh.ply", "-r", 512, "--color", "-o", large, "-q")
+        voxdag("export", large, "-o", self.path / "a.vox", "-q")
+        voxdag("export", large, "-o", self.path / "a.npy", "-q", "--grey")
+        subprocess.run(["xvfb-run", "-a", "goxel", self.path / "a.vox", "-e",
+                        self.path / "goxel.txt"], check=True, capture_output=True)
+        found = numpy.loadtxt(self.path / "goxel.txt", usecols=(0, 1, 2), dtype=int)
+        expected = numpy.load(self.path / "a.npy") - numpy.array([256, 256, 0])
+        self.assertEqual(set(map(tuple, found)), set(map(tuple, expected)))
+
     def test_nano_vdb(self):
         voxdag("export", self.dag, "-o", self.path / "a.nvdb", "-q")
         subprocess.run(["nanovdb_validate", self.path / "a.nvdb"], check=True, capture_output=True)
