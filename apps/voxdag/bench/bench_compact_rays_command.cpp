@@ -6,7 +6,7 @@
 #include "bench/compact_rays/compact_rays.hpp"
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
-#include "cli/scene_input.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 namespace {
@@ -18,7 +18,7 @@ struct BenchCompactRaysArguments {
 
 void run(const BenchCompactRaysArguments& arguments, Session& session) {
   const auto measure = [&] {
-    const DagInput file(session.subject, &session.progress);
+    const DagModel file(session.subject, &session.progress);
     const std::string& source = file.metadata().source.name;
     return bench_compact_rays(
         source.empty() ? std::filesystem::path(session.subject).filename().string() : source,

@@ -20,9 +20,9 @@
 #include "cli/device.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
-#include "cli/scene_input.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/film/path_file.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 namespace {
@@ -41,7 +41,7 @@ struct BenchTraceArguments {
 
 /// Returns the voxels of the ESVO in a file, which `file` keeps open. Throws Error unless they are
 /// on the grid of `dag`.
-VoxelSet open_esvo(const std::string& path, const SceneInput& dag, std::optional<SceneInput>& file,
+VoxelSet open_esvo(const std::string& path, const SceneModel& dag, std::optional<SceneModel>& file,
                    Session& session) {
   file.emplace(path, &session.progress);
   if (file->voxels().esvo() == nullptr) throw Error(path, "", "is not an ESVO");
@@ -62,7 +62,7 @@ void follow_path(const BenchTraceArguments& arguments, const TraceScene& scene, 
 }
 
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
-  const SceneInput file(session.subject, &session.progress);
+  const SceneModel file(session.subject, &session.progress);
   if (file.voxels().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
     throw Error("--openvdb", "", "needs a DAG, but the file is an ESVO");
   Mesh mesh;
@@ -73,7 +73,7 @@ TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) 
   const std::string& name = file.metadata().source.name;
   TraceScene scene{name.empty() ? fs::path(session.subject).filename().string() : name, file.grid(),
                    file.voxels(), arguments.mesh_file.empty() ? nullptr : &mesh, session.subject};
-  std::optional<SceneInput> esvo;
+  std::optional<SceneModel> esvo;
   if (!arguments.esvo_file.empty())
     scene.esvo = open_esvo(arguments.esvo_file, file, esvo, session);
   TracePlan plan = arguments.plan;

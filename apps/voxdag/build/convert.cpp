@@ -44,7 +44,7 @@ void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  const DagInput file(session.subject, &session.progress, &memory);
+  const DagModel file(session.subject, &session.progress, &memory);
   const ReducedDag dag(file, session.subject,
                        reduction_of(arguments, file.grid().levels, session.subject), &memory,
                        &session.progress);

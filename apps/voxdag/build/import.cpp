@@ -4,17 +4,16 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/stopwatch.hpp"
-#include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/imports/import_voxels.hpp"
 #include "voxdag/io/process_memory.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/model/dag_model.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -66,31 +65,28 @@ void import(const ImportArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  const ImportResult result = import_file(arguments, memory, session);
-  const SvdagView dag = result.dag.view();
+  ImportResult result = import_file(arguments, memory, session);
   VdagMetadata metadata;
   metadata.grid = result.grid;
-  metadata.counts = count_svdag(dag);
   metadata.source = {std::filesystem::path(session.subject).filename().string(), result.read, 0};
   metadata.program = "voxdag " VOXDAG_VERSION;
   metadata.build = {{"cover", "imported"}};
-  const DagAttributes& attributes = result.attributes;
-  if (attributes.view().has_colors()) {
+  if (result.attributes.view().has_colors()) {
     metadata.attributes.resolution = result.grid.resolution();
-    metadata.attributes.colors = {arguments.options.color_bound, attributes.color_errors.squared};
+    metadata.attributes.colors = {arguments.options.color_bound,
+                                  result.attributes.color_errors.squared};
   }
-  if (arguments.compact)
-    write_vdag(arguments.output, encode_svdag(dag, {.memory = &memory}, &session.progress),
-               metadata, attributes.view());
-  else
-    write_vdag(arguments.output, dag, metadata, attributes.view());
+  const DagModel model(std::move(result.dag), std::move(result.attributes), std::move(metadata),
+                       &memory);
+  model.save(arguments.output, arguments.compact, &session.progress, &memory);
+  const SvdagCounts& counts = model.metadata().counts;
   session.bar.clear();
-  warn_if_empty(metadata.counts.voxels, arguments.output, session);
+  warn_if_empty(counts.voxels, arguments.output, session);
   if (session.json) {
     const nlohmann::ordered_json json = {{"read", result.read},
                                          {"outside", result.outside},
-                                         {"voxels", metadata.counts.voxels},
-                                         {"dag_nodes", metadata.counts.dag_nodes()},
+                                         {"voxels", counts.voxels},
+                                         {"dag_nodes", counts.dag_nodes()},
                                          {"seconds", watch.since_start()},
                                          {"peak_memory_bytes", peak_resident_bytes()}};
     fmt::print("{}", json_text(json));
@@ -100,7 +96,7 @@ void import(const ImportArguments& arguments, Session& session) {
     fmt::print(
         "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
-        with_commas(metadata.counts.voxels),
+        with_commas(counts.voxels),
         with_commas(static_cast<std::uint64_t>(result.grid.resolution())),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()));

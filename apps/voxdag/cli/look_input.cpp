@@ -28,12 +28,12 @@ Option add_look_option(const Command& command, std::string& file) {
       "or a .vdag file with attributes, of the same mesh");
 }
 
-std::optional<SceneInput> open_look(const std::string& file, const SceneInput& scene,
+std::optional<SceneModel> open_look(const std::string& file, const SceneModel& scene,
                                     Session& session) {
   if (file.empty()) return std::nullopt;
   if (scene.voxels().esvo() != nullptr)
     throw Error("--look", "", "needs a DAG, but the scene is an ESVO, which has a look of its own");
-  SceneInput look(file, &session.progress);
+  SceneModel look(file, &session.progress);
   if (look_of(look).is_empty())
     throw Error(file, "", "is neither an ESVO nor a DAG with attributes");
   if (!have_same_cube(look.grid(), scene.grid()))
@@ -41,7 +41,7 @@ std::optional<SceneInput> open_look(const std::string& file, const SceneInput& s
   return look;
 }
 
-LookView look_of(const SceneInput& file) {
+LookView look_of(const SceneModel& file) {
   const VoxelSet voxels = file.voxels();
   if (voxels.esvo() != nullptr) return *voxels.esvo();
   return file.colored_dag();

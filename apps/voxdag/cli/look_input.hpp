@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "cli/scene_input.hpp"
 #include "cli/session.hpp"
 #include "voxdag/layout/look.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 
@@ -14,10 +14,10 @@ Option add_look_option(const Command& command, std::string& file);
 /// Opens the file of --look for the voxels in `scene`; returns nothing if `file` is empty. Throws
 /// Error unless the file is an ESVO or a DAG with attributes, `scene` is a DAG, and their grids
 /// have the same place in the world. Their resolutions may differ.
-std::optional<SceneInput> open_look(const std::string& file, const SceneInput& scene,
+std::optional<SceneModel> open_look(const std::string& file, const SceneModel& scene,
                                     Session& session);
 
 /// Returns the colours and normals that a file stores; empty if it stores none.
-LookView look_of(const SceneInput& file);
+LookView look_of(const SceneModel& file);
 
 }  // namespace voxdag

@@ -65,7 +65,7 @@ MemoryReservation reserve_coded(const DagAttributesView& attributes, AttributeFo
                                         attributes.materials.bytes()));
 }
 
-ReducedDag::ReducedDag(const DagInput& file, const std::string& path, const DagReduction& reduction,
+ReducedDag::ReducedDag(const DagModel& file, const std::string& path, const DagReduction& reduction,
                        MemoryBudget* memory, Progress* progress)
     : dag_(file.view()), metadata_(file.metadata()) {
   if (!reduction.drop_attributes) attributes_ = file.attributes();

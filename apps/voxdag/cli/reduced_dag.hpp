@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/scene_input.hpp"
 #include "voxdag/attributes/coarsen_attributes.hpp"
 #include "voxdag/file/attribute_form.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 
@@ -32,7 +32,7 @@ class ReducedDag {
   /// `path` is the file's name, for errors. Throws Error if `reduction` asks for more levels than
   /// the file has, or if the file's metadata does not describe its attributes; OverMemory and
   /// Cancelled. `memory` may be null.
-  ReducedDag(const DagInput& file, const std::string& path, const DagReduction& reduction,
+  ReducedDag(const DagModel& file, const std::string& path, const DagReduction& reduction,
              MemoryBudget* memory, Progress* progress);
 
   const SvdagView& dag() const { return dag_; }

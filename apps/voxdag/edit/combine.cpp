@@ -38,7 +38,7 @@ class AlignedFiles {
     dag_b_ = moved(second_, aligned.second, moved_b_, memory, session);
   }
 
-  const DagInput& first() const { return first_; }
+  const DagModel& first() const { return first_; }
   const Grid& grid() const { return grid_; }
   Svdag combined(SetOperation operation, MemoryBudget& memory, Session& session) const {
     return combine(dag_a_, dag_b_, operation, &memory, &session.progress);
@@ -52,14 +52,14 @@ class AlignedFiles {
 
  private:
   /// Returns the file's DAG in the common grid; `storage` holds it if it had to move.
-  SvdagView moved(const DagInput& file, Vec3i by, Svdag& storage, MemoryBudget& memory,
+  SvdagView moved(const DagModel& file, Vec3i by, Svdag& storage, MemoryBudget& memory,
                   Session& session) const {
     if (by == Vec3i{} && file.grid().levels == grid_.levels) return file.view();
     storage = shift(file.view(), by, grid_.levels, &memory, &session.progress);
     return storage.view();
   }
 
-  DagInput first_, second_;
+  DagModel first_, second_;
   Grid grid_;
   Vec3i place_;  ///< Voxel (0,0,0) of the first file in the common grid.
   Svdag moved_a_, moved_b_;

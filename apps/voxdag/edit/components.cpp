@@ -54,7 +54,7 @@ void run(const ComponentsArguments& arguments, Session& session) {
   const EditArguments& edit = arguments.edit;
   if (!edit.output.empty()) check_writable(edit.output);
   MemoryBudget memory = command_budget(edit.memory_limit);
-  const DagInput file(session.subject, &session.progress, &memory);
+  const DagModel file(session.subject, &session.progress, &memory);
   if (!edit.output.empty()) refuse_attributes(file, session.subject, edit);
   const std::vector<ComponentSizes> sizes =
       component_sizes(file.view(), arguments.neighbours, &memory, &session.progress);

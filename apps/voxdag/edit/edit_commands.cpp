@@ -42,7 +42,7 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
     session.work = [=, &session] {
       check_writable(arguments->output);
       MemoryBudget memory = command_budget(arguments->memory_limit);
-      const DagInput file(session.subject, &session.progress, &memory);
+      const DagModel file(session.subject, &session.progress, &memory);
       refuse_attributes(file, session.subject, *arguments);
       Grid grid = file.grid();
       const Svdag dag = edit(file.view(), grid, {session.subject, &memory, &session.progress});

@@ -51,7 +51,7 @@ void add_neighbours_option(const Command& command, Neighbours& neighbours) {
       "6|26", "Neighbours share a face (6), or a face, an edge or a corner (26, the default)");
 }
 
-void refuse_attributes(const DagInput& file, const std::string& path,
+void refuse_attributes(const DagModel& file, const std::string& path,
                        const EditArguments& arguments) {
   if (!arguments.drop_attributes && !file.attributes().is_empty())
     throw Error(path, "",
@@ -60,7 +60,7 @@ void refuse_attributes(const DagInput& file, const std::string& path,
 }
 
 void write_edited(const EditArguments& arguments, const Svdag& dag, const Grid& grid,
-                  const DagInput& source, const std::string& edit, MemoryBudget& memory,
+                  const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session) {
   VdagMetadata metadata = source.metadata();
   metadata.grid = grid;

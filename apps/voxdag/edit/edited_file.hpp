@@ -3,10 +3,10 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/session.hpp"
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 
@@ -30,14 +30,14 @@ void add_neighbours_option(const Command& command, Neighbours& neighbours);
 
 /// Throws Error if the file has colours, normals or material ids and --drop-attributes was not
 /// given: a command that changes voxels keeps none.
-void refuse_attributes(const DagInput& file, const std::string& path,
+void refuse_attributes(const DagModel& file, const std::string& path,
                        const EditArguments& arguments);
 
 /// Writes `dag` in the form that the options ask for, else in that of `source`. The grid is `grid`;
 /// the metadata is that of `source` and says in `build` how the voxels were made: `edit`. Prints a
 /// summary.
 void write_edited(const EditArguments& arguments, const Svdag& dag, const Grid& grid,
-                  const DagInput& source, const std::string& edit, MemoryBudget& memory,
+                  const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session);
 
 }  // namespace voxdag

@@ -10,12 +10,12 @@
 #include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
-#include "cli/scene_input.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/exports/blocks/export_slices.hpp"
 #include "voxdag/exports/export_voxels.hpp"
 #include "voxdag/io/process_memory.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 namespace {
@@ -48,13 +48,13 @@ void check_extension(const std::string& output) {
 void export_file(ExportArguments& arguments, Session& session) {
   if (arguments.is_page()) return export_page(arguments.output, arguments.page, session);
   if (!arguments.slices) check_extension(arguments.output);
-  const SceneInput file(session.subject, &session.progress);
+  const SceneModel file(session.subject, &session.progress);
   const VoxelSet voxels = file.voxels();
   arguments.options.progress = [&session](double fraction, std::uint64_t done) {
     session.progress.throw_if_cancelled();
     session.progress.report("export", fraction, done);
   };
-  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  const std::optional<SceneModel> look = open_look(arguments.look, file, session);
   MemoryBudget memory = command_budget(arguments.page.memory_limit);
   arguments.options.memory = &memory;
   if (!arguments.grey) arguments.options.look = look_of(look ? *look : file);

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
-#include "cli/scene_input.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/wire_chunks.hpp"
+#include "voxdag/model/scene_model.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/esvo_report.hpp"
 #include "voxdag/report/human.hpp"
@@ -28,7 +28,7 @@ void esvo_info(const std::string& path, bool json) {
 
 /// Decodes a compact DAG, so that the report has the bytes of both forms.
 DagReport dag_report(const std::string& path, Progress& progress) {
-  const DagInput file(path, &progress);
+  const DagModel file(path, &progress);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
   report.attributes = sizes_of(file.attributes());
   const WireBytes wire = wire_bytes_of(path);

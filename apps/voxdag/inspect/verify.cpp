@@ -11,7 +11,6 @@
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "inspect/verify_compact.hpp"
 #include "voxdag/algebra/combine.hpp"
@@ -25,6 +24,7 @@
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/model/scene_model.hpp"
 #include "voxdag/report/human.hpp"
 #include "voxdag/solid/fill_solid.hpp"
 
@@ -107,7 +107,7 @@ VerifyCheck value_check(const char* name, const ValueCheck& values, double bound
 }
 
 /// Compares the attributes with the mesh. Returns no checks if the file has no attributes.
-std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, const DagInput& file,
+std::vector<VerifyCheck> attribute_checks(const VerifyArguments& arguments, const DagModel& file,
                                           const MeshWithAppearance& source, Session& session) {
   const DagAttributesView attributes = file.attributes();
   if (attributes.is_empty()) return {};
@@ -140,7 +140,7 @@ MeshWithAppearance without_appearance(Mesh mesh) {
 }
 
 /// Compares a solid DAG with the mesh: its surface, and then what is inside.
-std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const DagInput& file,
+std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const DagModel& file,
                                       const Mesh& mesh, Session& session) {
   const std::map<std::string, std::string>& settings = file.metadata().build;
   const std::string& rule = settings.at("solid");
@@ -171,7 +171,7 @@ std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const Da
 std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& session) {
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
-  const DagInput file(session.subject, &session.progress);
+  const DagModel file(session.subject, &session.progress);
   MeshWithAppearance source;
   if (file.attributes().has_colors() || file.attributes().has_normals())
     source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);

@@ -13,7 +13,6 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/usage_error.hpp"
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/core/error.hpp"
@@ -21,6 +20,7 @@
 #include "voxdag/file/npy.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/model/scene_model.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/query/distance_field.hpp"
 #include "voxdag/query/height_map.hpp"
@@ -83,7 +83,7 @@ Vec3i voxel_at(Vec3d point) {
   return voxel;
 }
 
-std::string answer_points(const QueryArguments& arguments, const DagInput& file, Session& session) {
+std::string answer_points(const QueryArguments& arguments, const DagModel& file, Session& session) {
   constexpr std::size_t kBytes = 29;
   const SvdagView dag = file.view();
   const Grid& grid = file.grid();
@@ -116,7 +116,7 @@ std::string answer_points(const QueryArguments& arguments, const DagInput& file,
   return fmt::format("{} points", with_commas(points));
 }
 
-std::string answer_segments(const QueryArguments& arguments, const DagInput& file,
+std::string answer_segments(const QueryArguments& arguments, const DagModel& file,
                             Session& session) {
   constexpr std::size_t kBytes = 17;
   const CpuScene scene{VoxelSet(file.view())};
@@ -147,7 +147,7 @@ std::string answer_segments(const QueryArguments& arguments, const DagInput& fil
   return fmt::format("{} segments, {} clear", with_commas(segments), with_commas(clear));
 }
 
-std::string write_distances(const QueryArguments& arguments, const DagInput& file,
+std::string write_distances(const QueryArguments& arguments, const DagModel& file,
                             MemoryBudget& memory, Session& session) {
   const Box3i& box = *arguments.window;
   std::uint64_t places = 1, size[3];
@@ -167,7 +167,7 @@ std::string write_distances(const QueryArguments& arguments, const DagInput& fil
   return fmt::format("{} x {} x {} distances", size[0], size[1], size[2]);
 }
 
-std::string write_heights(const QueryArguments& arguments, const DagInput& file,
+std::string write_heights(const QueryArguments& arguments, const DagModel& file,
                           MemoryBudget& memory, Session& session) {
   const auto side = static_cast<std::uint64_t>(file.grid().resolution());
   const MemoryReservation map(&memory, side * side * (sizeof(std::int32_t) + 1));
@@ -180,7 +180,7 @@ std::string write_heights(const QueryArguments& arguments, const DagInput& file,
   return fmt::format("{} x {} heights", side, side);
 }
 
-void print_count(const QueryArguments& arguments, const DagInput& file, MemoryBudget& memory,
+void print_count(const QueryArguments& arguments, const DagModel& file, MemoryBudget& memory,
                  Session& session) {
   std::uint64_t voxels = file.metadata().counts.voxels;
   if (arguments.window) {
@@ -196,7 +196,7 @@ void print_count(const QueryArguments& arguments, const DagInput& file, MemoryBu
     fmt::print("{}: {} voxels\n", session.subject, with_commas(voxels));
 }
 
-void print_area(const DagInput& file, MemoryBudget& memory, Session& session) {
+void print_area(const DagModel& file, MemoryBudget& memory, Session& session) {
   const VoxelSurface surface = surface_of(file.view(), &memory, &session.progress);
   const double side = file.grid().voxel_size;
   const double volume = static_cast<double>(surface.voxels) * side * side * side,
@@ -215,7 +215,7 @@ void print_area(const DagInput& file, MemoryBudget& memory, Session& session) {
 void query(const QueryArguments& arguments, Session& session) {
   if (!arguments.output.empty()) check_writable(arguments.output);
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  const DagInput file(session.subject, &session.progress, &memory);
+  const DagModel file(session.subject, &session.progress, &memory);
   if (arguments.count) return print_count(arguments, file, memory, session);
   if (arguments.area) return print_area(file, memory, session);
   const std::string done = !arguments.points.empty()     ? answer_points(arguments, file, session)

@@ -4,7 +4,7 @@
 
 namespace voxdag {
 
-LookOnDevice::LookOnDevice(const DeviceChoice& device, const SceneInput& file, bool is_own,
+LookOnDevice::LookOnDevice(const DeviceChoice& device, const SceneModel& file, bool is_own,
                            std::optional<DeviceScene>& scene) {
   if (is_own && file.voxels().esvo() != nullptr) return;
   view_ = look_of(file);

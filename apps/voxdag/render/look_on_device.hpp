@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "cli/device.hpp"
-#include "cli/scene_input.hpp"
 #include "voxdag/cuda/device_attributes.hpp"
 #include "voxdag/layout/look.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 
@@ -16,7 +16,7 @@ class LookOnDevice {
   /// --look. Copies them to the device of `scene`, if there is one. If that device lacks the
   /// memory, resets `scene` with --device auto, and throws Error otherwise. The view of an ESVO's
   /// own file is empty, because rays at an ESVO find its colours themselves.
-  LookOnDevice(const DeviceChoice& device, const SceneInput& file, bool is_own,
+  LookOnDevice(const DeviceChoice& device, const SceneModel& file, bool is_own,
                std::optional<DeviceScene>& scene);
 
   /// Returns a view for the scene's device; for the host if the scene has no device.

@@ -3,7 +3,6 @@
 
 #include "cli/commands.hpp"
 #include "cli/look_input.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "render/look_on_device.hpp"
 #include "render/picture_summary.hpp"
@@ -14,15 +13,16 @@
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
 #include "voxdag/film/frame_names.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 namespace {
 
 void render_loaded(const RenderArguments& arguments, Session& session) {
-  SceneInput file(session.subject, &session.progress);
+  SceneModel file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
   RenderOptions options = picture_options(arguments, scene.esvo() != nullptr);
-  std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  std::optional<SceneModel> look = open_look(arguments.look, file, session);
   if (arguments.materials && look)
     look->show_materials(arguments.look, &session.progress);
   else if (arguments.materials)

@@ -9,7 +9,6 @@
 #include "cli/device.hpp"
 #include "cli/look_input.hpp"
 #include "cli/output_files.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/usage_error.hpp"
 #include "trace/hit_rows.hpp"
 #include "voxdag/core/error.hpp"
@@ -17,6 +16,7 @@
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/model/scene_model.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
@@ -66,9 +66,9 @@ NpyReader ray_reader(const TraceArguments& arguments) {
 }
 
 std::string trace_scene(const TraceArguments& arguments, Session& session) {
-  const SceneInput file(session.subject, &session.progress);
+  const SceneModel file(session.subject, &session.progress);
   const VoxelSet scene = file.voxels();
-  const std::optional<SceneInput> look = open_look(arguments.look, file, session);
+  const std::optional<SceneModel> look = open_look(arguments.look, file, session);
   const std::optional<DeviceScene> device_scene = load_on_chosen_device(arguments.device, scene);
   std::optional<CudaTracer> cuda;
   if (device_scene) cuda.emplace(*device_scene, file.grid());

@@ -41,7 +41,7 @@ ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& 
   ShownScene scene;
   // make_unique() would need to move the budget, which cannot be moved.
   scene.memory_.reset(new MemoryBudget(command_budget(arguments.memory_limit)));
-  scene.file_ = std::make_unique<DagInput>(path, &session.progress, scene.memory_.get());
+  scene.file_ = std::make_unique<DagModel>(path, &session.progress, scene.memory_.get());
   scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction,
                                             scene.memory_.get(), &session.progress);
   const DagAttributesView& attributes = scene.dag_->attributes();

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "cli/reduced_dag.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/session.hpp"
 #include "viewer/scene/scene_bytes.hpp"
+#include "voxdag/model/scene_model.hpp"
 
 namespace voxdag {
 
@@ -24,7 +24,7 @@ class ShownScene {
   static ShownScene open(const std::string& path, const ShownSceneArguments& arguments,
                          Session& session);
   /// Reads a file into memory, checks all of it, and reduces it as `arguments` says. Throws what
-  /// DagInput and ReducedDag throw, and Error for an ESVO. `form` is that of bytes().
+  /// DagModel and ReducedDag throw, and Error for an ESVO. `form` is that of bytes().
   static ShownScene read(const std::string& path, const ShownSceneArguments& arguments,
                          AttributeForm form, Session& session);
 
@@ -32,7 +32,7 @@ class ShownScene {
 
  private:
   std::unique_ptr<MemoryBudget> memory_;  // The members below count their memory here.
-  std::unique_ptr<DagInput> file_;
+  std::unique_ptr<DagModel> file_;
   std::unique_ptr<ReducedDag> dag_;
   MemoryReservation coded_;
   std::unique_ptr<SceneBytes> bytes_;

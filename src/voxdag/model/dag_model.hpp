@@ -1,24 +1,34 @@
 #pragma once
-/// Opens the scene of a command: a DAG in either form, or an ESVO.
+/// A DAG with its attributes and metadata.
 #include <filesystem>
 #include <optional>
 #include <variant>
 
+#include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/file/compact_file.hpp"
-#include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
-#include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
 
-/// A DAG in memory, in the plain form. Move-only; views stay valid when it is moved.
-class DagInput {
+/// What a .vdag file holds, in memory: the DAG in the plain form, the attributes of its cells, and
+/// the metadata. Move-only; views stay valid when it is moved.
+class DagModel {
  public:
   /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts
   /// what it holds. Throws Error(path, place, reason), OverMemory and Cancelled.
-  DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
+  DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
+
+  /// Holds a DAG and the attributes of its cells, which may be empty. metadata.grid.levels must
+  /// equal dag.levels; sets metadata.counts. `memory`, which may be null, counts them. Throws
+  /// OverMemory.
+  DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata,
+           MemoryBudget* memory = nullptr);
+
+  /// Writes the file; `compact` chooses the compact form. Throws Error, OverMemory and Cancelled.
+  void save(const std::filesystem::path& path, bool compact, Progress* progress = nullptr,
+            MemoryBudget* memory = nullptr) const;
 
   SvdagView view() const;
   /// Returns the attributes of the DAG's cells; empty if the file has none.
@@ -43,32 +53,22 @@ class DagInput {
     SvdagView view() const { return dag.view(); }
     const DagAttributesView& attributes() const { return stored; }
   };
+  /// A DAG that was made in memory.
+  struct Made {
+    Svdag dag;
+    DagAttributes stored;
+
+    SvdagView view() const { return dag.view(); }
+    DagAttributesView attributes() const { return stored.view(); }
+  };
   static Decoded decode(const std::filesystem::path& path, Progress* progress,
                         MemoryBudget* memory);
 
-  std::variant<VdagFile, Decoded> dag_;
+  std::variant<VdagFile, Decoded, Made> dag_;
   std::optional<ValuePages> material_colors_;  ///< After show_materials().
   VdagMetadata metadata_;
   std::uint64_t file_bytes_ = 0;
   MemoryReservation memory_;
-};
-
-/// A scene of any kind in memory. Move-only; views stay valid when it is moved.
-class SceneInput {
- public:
-  /// Reads a DAG like DagInput, or an ESVO.
-  SceneInput(const std::filesystem::path& path, Progress* progress);
-
-  VoxelSet voxels() const;
-  /// Returns the DAG with its attributes; empty for an ESVO and a file without attributes.
-  ColoredDagView colored_dag() const;
-  const SceneMetadata& metadata() const;
-  const Grid& grid() const { return metadata().grid; }
-  /// Does what DagInput::show_materials() does. An ESVO has no material ids.
-  void show_materials(const std::filesystem::path& path, Progress* progress);
-
- private:
-  std::variant<DagInput, EsvoFile> scene_;
 };
 
 }  // namespace voxdag

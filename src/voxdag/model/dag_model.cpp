@@ -1,22 +1,18 @@
-#include "cli/scene_input.hpp"
+#include "voxdag/model/dag_model.hpp"
+
+#include <utility>
 
 #include "voxdag/attributes/material_colors.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
+#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/model/no_materials.hpp"
 
 namespace voxdag {
 namespace {
-
-std::variant<DagInput, EsvoFile> open(const std::filesystem::path& path, Progress* progress) {
-  if (is_esvo_file(path)) return EsvoFile(path);
-  return DagInput(path, progress);
-}
-
-[[noreturn]] void fail_without_materials(const std::filesystem::path& path) {
-  throw Error(path.string(), "", "has no material ids: voxdag build --material-ids stores them");
-}
 
 /// Returns the bytes that a .vdag file takes in memory before it is decoded.
 std::uint64_t bytes_in_memory(const std::filesystem::path& path) {
@@ -27,7 +23,7 @@ std::uint64_t bytes_in_memory(const std::filesystem::path& path) {
 
 }  // namespace
 
-DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* progress,
+DagModel::Decoded DagModel::decode(const std::filesystem::path& path, Progress* progress,
                                    MemoryBudget* memory) {
   Decoded decoded;
   const MemoryReservation file_bytes(memory, bytes_in_memory(path));
@@ -52,7 +48,7 @@ DagInput::Decoded DagInput::decode(const std::filesystem::path& path, Progress* 
   return decoded;
 }
 
-DagInput::DagInput(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory)
+DagModel::DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory)
     : dag_(Decoded()) {
   if (is_compact_file(path)) {
     Decoded decoded = decode(path, progress, memory);
@@ -72,43 +68,34 @@ DagInput::DagInput(const std::filesystem::path& path, Progress* progress, Memory
   }
 }
 
-SvdagView DagInput::view() const {
+DagModel::DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata, MemoryBudget* memory)
+    : dag_(Made{std::move(dag), std::move(attributes)}), metadata_(std::move(metadata)) {
+  memory_ = MemoryReservation(memory, view().bytes() + std::get<Made>(dag_).stored.bytes());
+  metadata_.counts = count_svdag(view());
+}
+
+void DagModel::save(const std::filesystem::path& path, bool compact, Progress* progress,
+                    MemoryBudget* memory) const {
+  if (compact)
+    write_vdag(path, encode_svdag(view(), {.memory = memory}, progress), metadata_, attributes());
+  else
+    write_vdag(path, view(), metadata_, attributes());
+}
+
+SvdagView DagModel::view() const {
   return std::visit([](const auto& dag) -> SvdagView { return dag.view(); }, dag_);
 }
 
-DagAttributesView DagInput::attributes() const {
+DagAttributesView DagModel::attributes() const {
   DagAttributesView view =
       std::visit([](const auto& dag) -> DagAttributesView { return dag.attributes(); }, dag_);
   if (material_colors_) view.colors = material_colors_->view();
   return view;
 }
 
-void DagInput::show_materials(const std::filesystem::path& path, Progress* progress) {
+void DagModel::show_materials(const std::filesystem::path& path, Progress* progress) {
   if (!attributes().has_materials()) fail_without_materials(path);
   material_colors_ = material_colors(attributes().materials, progress);
-}
-
-SceneInput::SceneInput(const std::filesystem::path& path, Progress* progress)
-    : scene_(open(path, progress)) {}
-
-VoxelSet SceneInput::voxels() const {
-  return std::visit([](const auto& file) { return VoxelSet(file.view()); }, scene_);
-}
-
-ColoredDagView SceneInput::colored_dag() const {
-  const DagInput* const dag = std::get_if<DagInput>(&scene_);
-  return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
-}
-
-void SceneInput::show_materials(const std::filesystem::path& path, Progress* progress) {
-  DagInput* const dag = std::get_if<DagInput>(&scene_);
-  if (dag == nullptr) fail_without_materials(path);
-  dag->show_materials(path, progress);
-}
-
-const SceneMetadata& SceneInput::metadata() const {
-  return std::visit([](const auto& file) -> const SceneMetadata& { return file.metadata(); },
-                    scene_);
 }
 
 }  // namespace voxdag
