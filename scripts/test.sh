@@ -44,7 +44,7 @@ cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=$programs >/dev/null
 cmake --build --preset clang -- -j "$jobs"
 
 echo "== g++"
-cmake --preset release -DVOXDAG_WERROR=ON >/dev/null
+cmake --preset release -DVOXDAG_WERROR=ON -DVOXDAG_PYTHON=ON >/dev/null
 cmake --build --preset release -- -j "$jobs"
 
 if [ "$tidy" = yes ]; then

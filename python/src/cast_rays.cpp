@@ -1,0 +1,94 @@
+/// Rays: Dag.cast and Dag.occluded.
+#include <cmath>
+#include <limits>
+
+#include "arrays.hpp"
+#include "dag.hpp"
+#include "run_work.hpp"
+#include "voxdag/cpu/trace_batch.hpp"
+#include "voxdag/layout/look_reader.hpp"
+
+namespace py = pybind11;
+
+namespace voxdag::python {
+namespace {
+
+/// Returns the rays of two arrays of shape (N, 3), or of one row and N.
+std::vector<Ray> rays_of(const Array<float>& origins, const Array<float>& directions, float t_min,
+                         float t_max) {
+  const std::vector<Vec3f> from = rows_of(origins, "origins");
+  const std::vector<Vec3f> along = rows_of(directions, "directions");
+  const std::size_t count = std::max(from.size(), along.size());
+  if ((from.size() != count && from.size() != 1) || (along.size() != count && along.size() != 1))
+    throw py::value_error("origins and directions must have as many rows as each other, or one");
+  std::vector<Ray> rays(count);
+  for (std::size_t i = 0; i < count; ++i)
+    rays[i] = {from[from.size() == 1 ? 0 : i], t_min, along[along.size() == 1 ? 0 : i], t_max};
+  return rays;
+}
+
+std::vector<Hit> cast_all(const Dag& dag, const std::vector<Ray>& rays) {
+  return run_work([&](Progress& progress) {
+    std::vector<Hit> hits(rays.size());
+    trace_batch(dag.scene(), dag.grid(), rays, hits, &progress);
+    return hits;
+  });
+}
+
+py::dict cast(const Dag& dag, const Array<float>& origins, const Array<float>& directions,
+              float t_min, float t_max) {
+  const std::vector<Hit> hits = cast_all(dag, rays_of(origins, directions, t_min, t_max));
+  std::vector<float> t(hits.size());
+  std::vector<Vec3i> voxels(hits.size(), Vec3i{-1, -1, -1});
+  std::vector<std::int8_t> faces(hits.size(), -1);
+  std::vector<Value8> colors(dag.look().has_colors() ? hits.size() : 0);
+  LookReader look(dag.look());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const Hit& hit = hits[i];
+    t[i] = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
+    if (!hit.hit) continue;
+    voxels[i] = hit.voxel;
+    faces[i] = static_cast<std::int8_t>(hit.face);
+    if (!colors.empty()) colors[i] = look.read(hit.voxel, hit.level).color;
+  }
+  py::dict result;
+  result["t_hit"] = array_of(t);
+  result["voxel"] = array_of(voxels);
+  result["face"] = array_of(faces);
+  if (dag.look().has_colors()) result["color"] = array_of(colors);
+  return result;
+}
+
+py::array_t<bool> occluded(const Dag& dag, const Array<float>& origins,
+                           const Array<float>& targets) {
+  const std::vector<Vec3f> from = rows_of(origins, "origins"), to = rows_of(targets, "targets");
+  if (from.size() != to.size() && from.size() != 1 && to.size() != 1)
+    throw py::value_error("origins and targets must have as many rows as each other, or one");
+  std::vector<Ray> rays(std::max(from.size(), to.size()));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3f begin = from[from.size() == 1 ? 0 : i];
+    rays[i] = {begin, 0, to[to.size() == 1 ? 0 : i] - begin, 1};
+  }
+  const std::vector<Hit> hits = cast_all(dag, rays);
+  py::array_t<bool> result(static_cast<py::ssize_t>(hits.size()));
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    result.mutable_at(static_cast<py::ssize_t>(i)) = hits[i].hit;
+  return result;
+}
+
+}  // namespace
+
+void add_rays(DagClass& dag) {
+  dag.def(
+         "cast", &cast, py::arg("origins"), py::arg("directions"), py::kw_only(),
+         py::arg("t_min") = 0.0f, py::arg("t_max") = std::numeric_limits<float>::infinity(),
+         "Cast rays, in world units. origins, directions: (N, 3), or one row for all. Returns a "
+         "dict of arrays: t_hit (N,) float32, inf for a miss, in units of the direction; voxel (N, "
+         "3) int32, -1 for a miss; face (N,) int8, 0 to 5 for -x, +x, -y, +y, -z, +z, -1 for a "
+         "miss or a ray that starts inside; color (N, 3) uint8, sRGB, if the DAG has colours.")
+      .def("occluded", &occluded, py::arg("origins"), py::arg("targets"),
+           "Whether voxels lie on the segments from origins to targets, (N, 3) each, or one row "
+           "for all. Returns (N,) bool.");
+}
+
+}  // namespace voxdag::python

@@ -1,0 +1,300 @@
+/// The functions that make DAGs from meshes, points, coordinates, dense arrays and files.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+
+#include "arrays.hpp"
+#include "dag.hpp"
+#include "run_work.hpp"
+#include "voxdag/attributes/build_attributes.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/srgb.hpp"
+#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/imports/batched_voxels.hpp"
+#include "voxdag/imports/import_voxels.hpp"
+#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/solid/fill_solid.hpp"
+#include "voxdag/surface/surface_shading.hpp"
+#include "voxdag/voxelize/grid_mapping.hpp"
+
+namespace py = pybind11;
+
+namespace voxdag::python {
+namespace {
+
+using Bounds = std::array<std::array<double, 3>, 2>;
+
+/// The grid that a caller asks for.
+struct GridChoice {
+  std::optional<std::int64_t> resolution;
+  std::optional<double> pitch;
+  std::optional<Bounds> bounds;
+
+  std::optional<int> levels() const {
+    if (!resolution) return std::nullopt;
+    const auto n = static_cast<std::uint64_t>(*resolution);
+    if (*resolution < (1 << kMinLevels) || *resolution > (1 << kMaxLevels) ||
+        !std::has_single_bit(n))
+      throw py::value_error("resolution must be a power of two from 4 to 1048576");
+    return std::countr_zero(n);
+  }
+  std::optional<Box3d> box() const {
+    if (!bounds) return std::nullopt;
+    const auto& [lo, hi] = *bounds;
+    return Box3d{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+  }
+  void check() const {
+    if (resolution.has_value() == pitch.has_value())
+      throw py::value_error("give exactly one of resolution and pitch");
+    if (pitch && !(*pitch > 0)) throw py::value_error("pitch must be positive");
+  }
+};
+
+Grid grid_of(const Mesh& mesh, const GridChoice& choice) {
+  const std::optional<int> levels = choice.levels();
+  if (const std::optional<Box3d> box = choice.box())
+    return levels ? grid_from_bounds(*box, *levels) : grid_from_bounds(*box, *choice.pitch);
+  return levels ? fit_grid(mesh, *levels) : grid_from_voxel_size(mesh, *choice.pitch);
+}
+
+std::optional<SolidRule> solid_rule(const py::object& solid) {
+  if (solid.is_none() || solid.is(py::bool_(false))) return std::nullopt;
+  if (solid.is(py::bool_(true))) return SolidRule::kParity;
+  const auto name = solid.cast<std::string>();
+  if (name == "parity") return SolidRule::kParity;
+  if (name == "winding") return SolidRule::kWinding;
+  if (name == "flood") return SolidRule::kFlood;
+  throw py::value_error("solid must be True, \"parity\", \"winding\" or \"flood\"");
+}
+
+/// Builds the DAG of a mesh, as `voxdag build` does.
+DagPointer build_mesh(const MeshWithAppearance& source, const GridChoice& choice,
+                      const std::optional<SolidRule>& solid, bool colors, const std::string& name,
+                      Progress& progress) {
+  const Mesh& mesh = source.mesh;
+  VdagMetadata metadata;
+  metadata.grid = grid_of(mesh, choice);
+  metadata.source = {name, mesh.vertices.size(), mesh.triangles.size()};
+  metadata.program = "voxdag " VOXDAG_VERSION;
+  metadata.build = {{"cover", "exact"},
+                    {"grid_from", choice.bounds ? "bounds" : "mesh"},
+                    {"scale_from", choice.resolution ? "resolution" : "voxel_size"}};
+  Svdag dag = build_svdag(mesh, metadata.grid, {}, &progress).dag;
+  if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, nullptr, &progress);
+  DagAttributes attributes;
+  if (colors) {
+    const SurfaceShading shading(mesh, source.appearance, nullptr, &progress);
+    AttributeOptions options;
+    options.colors = true;
+    options.finest_level = metadata.grid.levels;
+    attributes = build_attributes(mesh, metadata.grid, dag.view(), &shading, options, &progress);
+    metadata.attributes.resolution = metadata.grid.resolution();
+    metadata.attributes.colors = {options.color_bound, attributes.color_errors.squared};
+  }
+  return std::make_shared<Dag>(DagModel(std::move(dag), std::move(attributes), metadata));
+}
+
+/// Returns a mesh with the colours of its vertices, if there are some.
+MeshWithAppearance mesh_of(const Array<float>& vertices, const Array<std::int64_t>& faces,
+                           const std::optional<Array<std::uint8_t>>& colors) {
+  MeshWithAppearance source;
+  source.mesh.vertices = rows_of(vertices, "vertices");
+  const auto count = static_cast<std::int64_t>(source.mesh.vertices.size());
+  for (const Vec3<std::int64_t> face : rows_of(faces, "faces")) {
+    for (int i = 0; i < 3; ++i) {
+      if (face[i] < 0 || face[i] >= count)
+        throw py::value_error("faces has the index " + std::to_string(face[i]) +
+                              ", but there are " + std::to_string(count) + " vertices");
+      const Vec3f v = source.mesh.vertices[static_cast<std::size_t>(face[i])];
+      if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+        throw py::value_error("vertex " + std::to_string(face[i]) + " is not finite");
+    }
+    source.mesh.triangles.push_back({static_cast<std::uint32_t>(face.x),
+                                     static_cast<std::uint32_t>(face.y),
+                                     static_cast<std::uint32_t>(face.z)});
+  }
+  source.appearance.materials.resize(1);
+  if (!colors) return source;
+  const std::vector<Vec3<std::uint8_t>> values = rows_of(*colors, "colors");
+  if (values.size() != source.mesh.vertices.size())
+    throw py::value_error("colors must have a row for each vertex");
+  for (const Triangle& triangle : source.mesh.triangles)
+    for (const std::uint32_t vertex : triangle) {
+      const auto linear = [](std::uint8_t code) {
+        return srgb_to_linear(static_cast<float>(code) / 255);
+      };
+      const Vec3<std::uint8_t> c = values[vertex];
+      source.appearance.colors.push_back(to_rgba16({linear(c.x), linear(c.y), linear(c.z)}, 1));
+    }
+  return source;
+}
+
+DagPointer build(const Array<float>& vertices, const Array<std::int64_t>& faces,
+                 std::optional<std::int64_t> resolution, std::optional<double> pitch,
+                 std::optional<Bounds> bounds, const py::object& solid,
+                 const std::optional<Array<std::uint8_t>>& colors) {
+  const GridChoice choice{resolution, pitch, bounds};
+  choice.check();
+  choice.levels();
+  const std::optional<SolidRule> rule = solid_rule(solid);
+  if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
+  const MeshWithAppearance source = mesh_of(vertices, faces, colors);
+  return run_work([&](Progress& progress) {
+    return build_mesh(source, choice, rule, colors.has_value(), "arrays", progress);
+  });
+}
+
+DagPointer build_file(const std::filesystem::path& path, std::optional<std::int64_t> resolution,
+                      std::optional<double> pitch, std::optional<Bounds> bounds,
+                      const py::object& solid, bool colors) {
+  const GridChoice choice{resolution, pitch, bounds};
+  choice.check();
+  choice.levels();
+  const std::optional<SolidRule> rule = solid_rule(solid);
+  if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
+  return run_work([&](Progress& progress) {
+    const ReadOptions options{.progress = &progress};
+    MeshWithAppearance source;
+    if (colors)
+      source = read_mesh_with_appearance(path, options);
+    else
+      source.mesh = read_mesh(path, options);
+    try {
+      return build_mesh(source, choice, rule, colors, path.filename().string(), progress);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const OverMemory&) {
+      throw;
+    } catch (const Error& error) {
+      throw error.in_file(path.string());
+    }
+  });
+}
+
+/// Points or voxels in arrays.
+class ArraySource : public VoxelSource {
+ public:
+  ArraySource(std::vector<Vec3d> places, std::vector<Rgb8> colors, bool has_points)
+      : places_(std::move(places)), colors_(std::move(colors)), has_points_(has_points) {}
+
+  bool has_points() const override { return has_points_; }
+  bool has_colors() const override { return !colors_.empty(); }
+  void visit_all(const VisitBatch& visit) const override {
+    constexpr std::size_t kBatch = 65536;
+    for (std::size_t i = 0; i < places_.size(); i += kBatch) {
+      const std::size_t count = std::min(kBatch, places_.size() - i);
+      visit({std::span(places_).subspan(i, count),
+             colors_.empty() ? std::span<const Rgb8>() : std::span(colors_).subspan(i, count)});
+    }
+  }
+
+ private:
+  std::vector<Vec3d> places_;
+  std::vector<Rgb8> colors_;
+  bool has_points_;
+};
+
+std::vector<Rgb8> colors_of(const std::optional<Array<std::uint8_t>>& colors, std::size_t rows) {
+  std::vector<Rgb8> result;
+  if (!colors) return result;
+  for (const Vec3<std::uint8_t> c : rows_of(*colors, "colors")) result.push_back({c.x, c.y, c.z});
+  if (result.size() != rows) throw py::value_error("colors must have a row for each point");
+  return result;
+}
+
+/// Imports a source, as `voxdag import` does.
+DagPointer import_source(const VoxelSource& source, const ImportOptions& options,
+                         const std::string& name, Progress& progress) {
+  ImportResult result = import_voxels(source, options, &progress);
+  VdagMetadata metadata;
+  metadata.grid = result.grid;
+  metadata.source = {name, result.read, 0};
+  metadata.program = "voxdag " VOXDAG_VERSION;
+  metadata.build = {{"cover", "imported"}};
+  if (result.attributes.view().has_colors()) {
+    metadata.attributes.resolution = result.grid.resolution();
+    metadata.attributes.colors = {options.color_bound, result.attributes.color_errors.squared};
+  }
+  return std::make_shared<Dag>(
+      DagModel(std::move(result.dag), std::move(result.attributes), metadata));
+}
+
+ImportOptions import_options(const GridChoice& choice) {
+  ImportOptions options;
+  options.levels = choice.levels();
+  options.voxel_size = choice.pitch;
+  options.bounds = choice.box();
+  options.folder = std::filesystem::temp_directory_path();
+  return options;
+}
+
+DagPointer from_points(const Array<double>& points, std::optional<std::int64_t> resolution,
+                       std::optional<double> pitch, std::optional<Bounds> bounds,
+                       const std::optional<Array<std::uint8_t>>& colors) {
+  const GridChoice choice{resolution, pitch, bounds};
+  choice.check();
+  const ImportOptions options = import_options(choice);
+  std::vector<Vec3d> places = rows_of(points, "points");
+  std::vector<Rgb8> values = colors_of(colors, places.size());
+  const ArraySource source(std::move(places), std::move(values), true);
+  return run_work(
+      [&](Progress& progress) { return import_source(source, options, "points", progress); });
+}
+
+DagPointer from_coords(const Array<std::int32_t>& coords, std::optional<std::int64_t> resolution,
+                       const std::optional<Array<std::uint8_t>>& colors) {
+  const ImportOptions options = import_options({resolution, {}, {}});
+  std::vector<Vec3d> places;
+  for (const Vec3i v : rows_of(coords, "coords")) places.push_back(Vec3d(v));
+  std::vector<Rgb8> values = colors_of(colors, places.size());
+  const ArraySource source(std::move(places), std::move(values), false);
+  return run_work(
+      [&](Progress& progress) { return import_source(source, options, "coords", progress); });
+}
+
+DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> resolution) {
+  if (dense.ndim() != 3) throw py::value_error("dense must have three dimensions: x, y, z");
+  std::vector<Vec3d> places;
+  const auto at = dense.unchecked<3>();
+  std::int64_t side = 1 << kMinLevels;
+  for (int axis = 0; axis < 3; ++axis) side = std::max<std::int64_t>(side, dense.shape(axis));
+  for (py::ssize_t x = 0; x < dense.shape(0); ++x)
+    for (py::ssize_t y = 0; y < dense.shape(1); ++y)
+      for (py::ssize_t z = 0; z < dense.shape(2); ++z)
+        if (at(x, y, z))
+          places.push_back(
+              {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+  const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
+  const ImportOptions options = import_options({resolution.value_or(least), {}, {}});
+  const ArraySource source(std::move(places), {}, false);
+  return run_work(
+      [&](Progress& progress) { return import_source(source, options, "dense", progress); });
+}
+
+DagPointer open(const std::filesystem::path& path) {
+  return run_work(
+      [&](Progress& progress) { return std::make_shared<Dag>(DagModel(path, &progress)); });
+}
+
+}  // namespace
+
+void add_makers(py::module_& module) {
+  const auto none = py::none();
+  module.def("open", &open, py::arg("path"), "Open a .vdag file.");
+  module.def("build", &build, py::arg("vertices"), py::arg("faces"), py::kw_only(),
+             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
+             py::arg("solid") = none, py::arg("colors") = none);
+  module.def("build_mesh", &build_file, py::arg("path"), py::kw_only(),
+             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
+             py::arg("solid") = none, py::arg("colors") = false);
+  module.def("from_points", &from_points, py::arg("points"), py::kw_only(),
+             py::arg("resolution") = none, py::arg("pitch") = none, py::arg("bounds") = none,
+             py::arg("colors") = none);
+  module.def("from_coords", &from_coords, py::arg("coords"), py::kw_only(),
+             py::arg("resolution") = none, py::arg("colors") = none);
+  module.def("from_dense", &from_dense, py::arg("dense"), py::kw_only(),
+             py::arg("resolution") = none);
+}
+
+}  // namespace voxdag::python

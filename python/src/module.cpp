@@ -1,0 +1,100 @@
+/// The Python module voxdag._voxdag. voxdag/__init__.py is what users import.
+#include <pybind11/numpy.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "dag.hpp"
+#include "run_work.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/memory_budget.hpp"
+
+namespace py = pybind11;
+
+namespace voxdag::python {
+namespace {
+
+py::dict info_of(const Dag& dag) {
+  const VdagMetadata& metadata = dag.model().metadata();
+  const Grid& grid = dag.grid();
+  py::dict info;
+  info["resolution"] = grid.resolution();
+  info["voxel_size"] = grid.voxel_size;
+  info["origin"] = py::make_tuple(grid.origin.x, grid.origin.y, grid.origin.z);
+  info["voxels"] = metadata.counts.voxels;
+  info["nodes"] = metadata.counts.dag_nodes();
+  info["bytes"] = dag.view().bytes();
+  info["source"] = metadata.source.name;
+  const DagAttributesView attributes = dag.model().attributes();
+  info["has_colors"] = attributes.has_colors();
+  info["has_normals"] = attributes.has_normals();
+  info["has_materials"] = attributes.has_materials();
+  return info;
+}
+
+/// Errors of files are OSError, other bad input is ValueError, too little memory MemoryError.
+void translate(std::exception_ptr pointer) {
+  try {
+    if (pointer) std::rethrow_exception(pointer);
+  } catch (const OverMemory& error) {
+    PyErr_SetString(PyExc_MemoryError, error.what());
+  } catch (const Error& error) {
+    PyErr_SetString(error.file().empty() ? PyExc_ValueError : PyExc_OSError, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace voxdag::python
+
+PYBIND11_MODULE(_voxdag, module) {
+  using namespace voxdag;
+  using namespace voxdag::python;
+  py::register_exception_translator(translate);
+  DagClass dag(module, "Dag",
+               "A sparse voxel DAG with its place in the world. It does not change.");
+  dag.def_property_readonly("info", &info_of,
+                            "dict: resolution, voxel_size and origin (world units), voxels, nodes, "
+                            "bytes, source, has_colors, has_normals, has_materials.")
+      .def_property_readonly(
+          "resolution", [](const Dag& d) { return d.grid().resolution(); },
+          "Voxels per side of the grid.")
+      .def_property_readonly(
+          "voxel_size", [](const Dag& d) { return d.grid().voxel_size; },
+          "Side of a voxel, in world units.")
+      .def_property_readonly(
+          "origin",
+          [](const Dag& d) {
+            const Vec3d o = d.grid().origin;
+            return py::make_tuple(o.x, o.y, o.z);
+          },
+          "Lower corner of the grid, in world units.")
+      .def("__len__", [](const Dag& d) { return d.model().metadata().counts.voxels; })
+      .def(
+          "save",
+          [](const Dag& d, const std::filesystem::path& path, bool compact) {
+            run_work([&](Progress& progress) {
+              d.model().save(path, compact, &progress);
+              return 0;
+            });
+          },
+          py::arg("path"), py::kw_only(), py::arg("compact") = false,
+          "Write a .vdag file; compact=True takes about a quarter of the bytes.")
+      .def_property_readonly("_nodes",
+                             [](const py::object& self) {
+                               const SvdagView view = self.cast<const Dag&>().view();
+                               py::array_t<std::uint32_t> array(
+                                   {view.node_words()}, {sizeof(std::uint32_t)}, view.nodes, self);
+                               array.attr("setflags")(py::arg("write") = false);
+                               return array;
+                             })
+      .def_property_readonly("_leaf_blocks", [](const py::object& self) {
+        const SvdagView view = self.cast<const Dag&>().view();
+        py::array_t<std::uint64_t> array({view.leaf_block_count}, {sizeof(std::uint64_t)},
+                                         view.leaf_blocks, self);
+        array.attr("setflags")(py::arg("write") = false);
+        return array;
+      });
+  add_makers(module);
+  add_rays(dag);
+  add_queries(dag);
+  add_edits(dag);
+  add_pictures(dag);
+}

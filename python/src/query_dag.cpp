@@ -1,0 +1,142 @@
+/// Questions about voxels: contains, coords, to_dense, nearest.
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+
+#include "arrays.hpp"
+#include "dag.hpp"
+#include "run_work.hpp"
+#include "voxdag/layout/for_each_voxel.hpp"
+#include "voxdag/layout/look_reader.hpp"
+#include "voxdag/layout/svdag_lookup.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/query/nearest_voxel.hpp"
+
+namespace py = pybind11;
+
+namespace voxdag::python {
+namespace {
+
+using Window = std::array<std::array<std::int32_t, 3>, 2>;
+
+Box3i window_of(const Dag& dag, const std::optional<Window>& window) {
+  const Box3i whole = whole_grid(dag.grid().levels);
+  if (!window) return whole;
+  const auto& [lo, hi] = *window;
+  const Box3i box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.lo[axis] < 0 || box.lo[axis] >= box.hi[axis] || box.hi[axis] > whole.hi[axis])
+      throw py::value_error(
+          "window must be ((x0, y0, z0), (x1, y1, z1)) in the grid, each end "
+          "greater than its start");
+  return box;
+}
+
+/// Returns the voxel of a point in units of voxels, or one outside of any grid.
+Vec3i voxel_at(Vec3d point) {
+  Vec3i voxel;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double kOutside = -1, kMost = 1 << 21;
+    const double at = std::floor(point[axis]);
+    voxel[axis] = static_cast<std::int32_t>(at >= 0 && at < kMost ? at : kOutside);
+  }
+  return voxel;
+}
+
+Vec3d to_grid(const Grid& grid, Vec3d world) {
+  return (world - grid.origin) * (1 / grid.voxel_size);
+}
+
+py::array_t<bool> contains(const Dag& dag, const Array<double>& points) {
+  const std::vector<Vec3d> places = rows_of(points, "points");
+  py::array_t<bool> result(static_cast<py::ssize_t>(places.size()));
+  bool* const inside = result.mutable_data();
+  run_work([&](Progress& progress) {
+    polled_for(places.size(), 4096, &progress, "contains", [&](std::size_t i) {
+      inside[i] =
+          svdag_contains(dag.view(), voxel_at(to_grid(dag.grid(), places[i])), dag.grid().levels);
+    });
+    return 0;
+  });
+  return result;
+}
+
+py::dict nearest(const Dag& dag, const Array<double>& points) {
+  const std::vector<Vec3d> places = rows_of(points, "points");
+  std::vector<Vec3i> voxels(places.size(), Vec3i{-1, -1, -1});
+  std::vector<double> distances(places.size(), HUGE_VAL);
+  run_work([&](Progress& progress) {
+    polled_for(places.size(), 256, &progress, "nearest", [&](std::size_t i) {
+      const auto found = nearest_voxel(dag.view(), to_grid(dag.grid(), places[i]));
+      if (!found) return;
+      voxels[i] = found->voxel;
+      distances[i] = std::sqrt(found->distance2) * dag.grid().voxel_size;
+    });
+    return 0;
+  });
+  py::dict result;
+  result["voxel"] = array_of(voxels);
+  result["distance"] = array_of(distances);
+  return result;
+}
+
+py::array_t<std::int32_t> coords(const Dag& dag, const std::optional<Window>& window) {
+  const Box3i box = window_of(dag, window);
+  return array_of(run_work([&](Progress& progress) {
+    std::vector<Vec3i> voxels;
+    for_each_voxel(dag.view(), box, [&](Vec3i voxel) {
+      poll_seldom(&progress, voxels.size());
+      voxels.push_back(voxel);
+    });
+    return voxels;
+  }));
+}
+
+py::object colors(const Dag& dag, const Array<std::int32_t>& voxels) {
+  LookReader look(dag.look());
+  if (!look.has_colors()) throw py::value_error("the DAG has no colours");
+  std::vector<Value8> values;
+  for (const Vec3i voxel : rows_of(voxels, "voxels"))
+    values.push_back(look.read(voxel, dag.grid().levels).color);
+  return array_of(values);
+}
+
+py::array_t<bool> to_dense(const Dag& dag, const std::optional<Window>& window) {
+  const Box3i box = window_of(dag, window);
+  const Vec3<py::ssize_t> size(box.hi - box.lo);
+  py::array_t<bool> dense({size.x, size.y, size.z});
+  bool* const data = dense.mutable_data();
+  run_work([&](Progress& progress) {
+    std::fill_n(data, size.x * size.y * size.z, false);
+    std::uint64_t done = 0;
+    for_each_voxel(dag.view(), box, [&](Vec3i voxel) {
+      poll_seldom(&progress, done++);
+      const Vec3<py::ssize_t> at(voxel - box.lo);
+      data[(at.x * size.y + at.y) * size.z + at.z] = true;
+    });
+    return 0;
+  });
+  return dense;
+}
+
+}  // namespace
+
+void add_queries(DagClass& dag) {
+  const auto none = py::none();
+  dag.def("contains", &contains, py::arg("points"),
+          "Whether points (N, 3), in world units, lie in voxels. Returns (N,) bool.")
+      .def("nearest", &nearest, py::arg("points"),
+           "The voxels nearest to points (N, 3), in world units. Returns a dict of arrays: voxel "
+           "(N, 3) int32; distance (N,) float64 to the cube of the voxel, 0 in it. Without voxels: "
+           "-1 and inf.")
+      .def("coords", &coords, py::arg("window") = none,
+           "The voxels, (N, 3) int32, in Morton order. window: ((x0, y0, z0), (x1, y1, z1)), the "
+           "first voxel and one past the last on each axis.")
+      .def("colors", &colors, py::arg("voxels"),
+           "The colours of voxels (N, 3), as (N, 3) uint8, sRGB.")
+      .def("to_dense", &to_dense, py::arg("window") = none,
+           "A dense array of bool, [x, y, z], of the window or the whole grid.");
+}
+
+}  // namespace voxdag::python

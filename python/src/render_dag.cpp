@@ -1,0 +1,89 @@
+/// Pictures: Dag.render.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+
+#include "arrays.hpp"
+#include "dag.hpp"
+#include "run_work.hpp"
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/image/color.hpp"
+#include "voxdag/image/png.hpp"
+
+namespace py = pybind11;
+
+namespace voxdag::python {
+namespace {
+
+using Triple = std::array<double, 3>;
+
+std::optional<Vec3d> vector_of(const std::optional<Triple>& values) {
+  if (!values) return std::nullopt;
+  return Vec3d{(*values)[0], (*values)[1], (*values)[2]};
+}
+
+ImageRgb8 render(const Dag& dag, int width, int height, const std::optional<Triple>& eye,
+                 const std::optional<Triple>& target, const std::optional<Triple>& up,
+                 std::optional<double> fov, const std::optional<Triple>& sun, int samples,
+                 bool shadows, int occlusion, bool colors) {
+  if (width < 1 || height < 1 || width > 65536 || height > 65536)
+    throw py::value_error("width and height must be 1 to 65536");
+  if (samples < 1 || occlusion < 0 || occlusion > RenderLimits::kOcclusionSamples)
+    throw py::value_error("samples must be at least 1, occlusion 0 to 4096");
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  options.view = {vector_of(eye), vector_of(target), vector_of(up), fov};
+  options.sun = vector_of(sun);
+  options.samples_per_pixel = samples;
+  options.shadows = shadows;
+  options.occlusion_samples = occlusion;
+  if (colors) options.look = dag.look();
+  return run_work([&](Progress& progress) {
+    const RenderedImage image = render_image(dag.scene(), dag.grid(), options, &progress);
+    ImageRgb8 pixels(width, height);
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        pixels.pixels[3 * i + static_cast<std::size_t>(c)] = linear_to_srgb8(image.rgb[i][c]);
+    return pixels;
+  });
+}
+
+py::array_t<std::uint8_t> array_of_image(const ImageRgb8& image) {
+  py::array_t<std::uint8_t> array(
+      {py::ssize_t{image.height}, py::ssize_t{image.width}, py::ssize_t{3}});
+  std::memcpy(array.mutable_data(), image.pixels.data(), image.pixels.size());
+  return array;
+}
+
+}  // namespace
+
+void add_pictures(DagClass& dag) {
+  const auto none = py::none();
+  dag.def(
+      "render",
+      [](const Dag& d, int width, int height, const std::optional<Triple>& eye,
+         const std::optional<Triple>& target, const std::optional<Triple>& up,
+         std::optional<double> fov, const std::optional<Triple>& sun, int samples, bool shadows,
+         int occlusion, bool colors) {
+        return array_of_image(render(d, width, height, eye, target, up, fov, sun, samples, shadows,
+                                     occlusion, colors));
+      },
+      py::kw_only(), py::arg("width") = 960, py::arg("height") = 540, py::arg("eye") = none,
+      py::arg("target") = none, py::arg("up") = none, py::arg("fov") = none, py::arg("sun") = none,
+      py::arg("samples") = 1, py::arg("shadows") = true, py::arg("occlusion") = 64,
+      py::arg("colors") = true,
+      "A picture, (height, width, 3) uint8, sRGB. eye, target, up and sun (the direction towards "
+      "it) are in world units, fov is the vertical field of view in degrees; without them, a view "
+      "that shows the scene well. samples: rays per pixel. occlusion: rays of ambient occlusion "
+      "per pixel, 0 for none.");
+  dag.def(
+      "_write_png",
+      [](const Dag& d, const std::filesystem::path& path) {
+        write_png(path, render(d, 640, 360, {}, {}, {}, {}, {}, 4, true, 64, true));
+      },
+      py::arg("path"));
+}
+
+}  // namespace voxdag::python

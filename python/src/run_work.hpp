@@ -1,0 +1,35 @@
+#pragma once
+/// Runs long work outside of Python, so that other threads run and Ctrl-C works.
+#include <pybind11/pybind11.h>
+
+#include <chrono>
+#include <future>
+
+#include "voxdag/parallel/progress.hpp"
+
+namespace voxdag::python {
+
+/// Calls work(progress) on another thread without the GIL and returns its result. Ctrl-C cancels
+/// the work and raises KeyboardInterrupt. Passes exceptions of the work on.
+template <class Work>
+auto run_work(const Work& work) {
+  Progress progress;
+  auto result = std::async(std::launch::async, [&] { return work(progress); });
+  bool is_interrupted = false;
+  {
+    const pybind11::gil_scoped_release release;
+    while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+      const pybind11::gil_scoped_acquire acquire;
+      if (is_interrupted || PyErr_CheckSignals() == 0) continue;
+      is_interrupted = true;
+      progress.cancel();
+    }
+  }
+  if (is_interrupted) {
+    result.wait();
+    throw pybind11::error_already_set();
+  }
+  return result.get();
+}
+
+}  // namespace voxdag::python

@@ -1,0 +1,219 @@
+"""The Python module against NumPy: each answer is computed again from the coordinates."""
+import _thread
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import voxdag
+
+
+def random_coords(side, count, seed=1):
+    coords = np.random.default_rng(seed).integers(0, side, (count, 3), dtype=np.int32)
+    return np.unique(coords, axis=0)
+
+
+def as_set(coords):
+    return set(map(tuple, np.asarray(coords).tolist()))
+
+
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+CUBE_FACES = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7],
+                       [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+
+
+def test_coords_come_back():
+    coords = random_coords(64, 500)
+    dag = voxdag.from_coords(coords, resolution=64)
+    assert dag.resolution == 64 and len(dag) == len(coords)
+    assert as_set(dag.coords()) == as_set(coords)
+    window = ((3, 5, 7), (40, 41, 42))
+    inside = np.all((coords >= window[0]) & (coords < window[1]), axis=1)
+    assert as_set(dag.coords(window)) == as_set(coords[inside])
+
+
+def test_dense_comes_back():
+    dense = np.random.default_rng(2).random((20, 33, 9)) < 0.2
+    dag = voxdag.from_dense(dense)
+    assert dag.resolution == 64
+    np.testing.assert_array_equal(dag.to_dense(((0, 0, 0), dense.shape)), dense)
+    assert dag.to_dense().shape == (64, 64, 64)
+
+
+def test_points_set_their_voxels():
+    points = np.random.default_rng(3).uniform(-2, 5, (1000, 3))
+    dag = voxdag.from_points(points, pitch=0.25, bounds=((-2, -2, -2), (5, 5, 5)))
+    expected = np.floor((points - dag.origin) / 0.25).astype(int)
+    assert as_set(dag.coords()) == as_set(expected)
+    assert dag.contains(points).all()
+    assert not dag.contains([[100, 0, 0], [np.nan, 0, 0], [-1e300, 0, 0]]).any()
+
+
+def test_colors():
+    coords = random_coords(16, 100)
+    colors = np.random.default_rng(4).integers(0, 256, coords.shape, dtype=np.uint8)
+    dag = voxdag.from_coords(coords, resolution=16, colors=colors)
+    assert dag.info["has_colors"]
+    # Colours are stored with a bounded error: see docs/attributes.md.
+    assert np.abs(dag.colors(coords).astype(int) - colors).mean() < 12
+    hits = dag.cast(coords + 0.5, [[0, 0, 1]])
+    np.testing.assert_array_equal(hits["voxel"], coords)
+    np.testing.assert_array_equal(hits["color"], dag.colors(coords))
+    with pytest.raises(ValueError, match="no colours"):
+        voxdag.from_coords(coords).colors(coords)
+
+
+def test_a_cube():
+    shell = voxdag.build(CUBE, CUBE_FACES, resolution=16)
+    solid = voxdag.build(CUBE, CUBE_FACES, resolution=16, solid=True)
+    assert len(solid) == 16 ** 3 and len(shell) == 16 ** 3 - 14 ** 3
+    inside = solid - shell
+    assert len(inside) == 14 ** 3
+    assert (shell | inside) == solid and (solid & inside) == inside and len(solid ^ solid) == 0
+    assert shell.fill_cavities() == solid
+    assert inside.dilate() == solid and solid.erode() == inside
+    for rule in ("parity", "winding", "flood"):
+        assert voxdag.build(CUBE, CUBE_FACES, resolution=16, solid=rule) == solid
+
+
+def test_operators_align_grids():
+    a = voxdag.from_coords(np.array([[1, 2, 3]]), resolution=8)
+    b = voxdag.from_coords(np.array([[1, 2, 3], [15, 0, 0]]), resolution=16)
+    assert as_set((a | b).coords()) == {(1, 2, 3), (15, 0, 0)}
+    assert as_set((b - a).coords()) == {(15, 0, 0)}
+    with pytest.raises(ValueError, match="the grids do not align"):
+        a | voxdag.build(CUBE, CUBE_FACES, resolution=8)
+
+
+def test_rays():
+    dag = voxdag.build(CUBE, CUBE_FACES, resolution=64)
+    size = dag.voxel_size
+    hits = dag.cast([[0.5, 0.5, -2], [0.5, 0.5, 3], [5, 5, -2]], [[0, 0, 1], [0, 0, -2], [0, 0, 1]])
+    np.testing.assert_allclose(hits["t_hit"], [2, (3 - 64 * size) / 2, np.inf], rtol=1e-6)
+    np.testing.assert_array_equal(hits["face"], [4, 5, -1])
+    np.testing.assert_array_equal(hits["voxel"][:, 2], [0, 63, -1])
+    assert dag.cast([[0.5, 0.5, -2]], [[0, 0, 1]], t_max=1)["t_hit"][0] == np.inf
+    np.testing.assert_array_equal(
+        dag.occluded([[0.5, 0.5, -2]], [[0.5, 0.5, -1], [0.5, 0.5, 0.5]]), [False, True])
+
+
+def test_nearest():
+    coords = random_coords(32, 60)
+    dag = voxdag.from_coords(coords, resolution=32)
+    points = np.random.default_rng(5).uniform(-10, 40, (200, 3))
+    found = dag.nearest(points)
+    below, above = coords[None] - points[:, None], points[:, None] - (coords[None] + 1)
+    distances = np.linalg.norm(np.maximum(0, np.maximum(below, above)), axis=2)
+    np.testing.assert_allclose(found["distance"], distances.min(axis=1), atol=1e-12)
+    empty = voxdag.from_coords(np.zeros((0, 3)), resolution=8).nearest([[0, 0, 0]])
+    assert empty["distance"][0] == np.inf and (empty["voxel"] == -1).all()
+
+
+def test_files(tmp_path):
+    dag = voxdag.from_coords(random_coords(64, 500), resolution=64)
+    for compact in (False, True):
+        dag.save(tmp_path / "a.vdag", compact=compact)
+        assert voxdag.open(tmp_path / "a.vdag") == dag
+    with pytest.raises(OSError, match="nothing.vdag: cannot open: No such file"):
+        voxdag.open(tmp_path / "nothing.vdag")
+    with pytest.raises(OSError, match="a.vdag: .*No such file"):
+        dag.save(tmp_path / "no" / "a.vdag")
+    (tmp_path / "bad.vdag").write_bytes(b"x" * 100)
+    with pytest.raises(OSError, match="bad.vdag"):
+        voxdag.open(tmp_path / "bad.vdag")
+
+
+def test_mesh_files(tmp_path):
+    lines = [f"v {x} {y} {z}" for x, y, z in CUBE] + [f"f {a + 1} {b + 1} {c + 1}"
+                                                      for a, b, c in CUBE_FACES]
+    path = tmp_path / "cube.obj"
+    path.write_text("\n".join(lines) + "\n")
+    assert voxdag.build_mesh(path, resolution=32) == voxdag.build(CUBE, CUBE_FACES, resolution=32)
+    path.write_text("v 0 0 0\nf 1 2 99\n")
+    with pytest.raises(OSError, match=r"cube.obj: line 2"):
+        voxdag.build_mesh(path, resolution=32)
+
+
+def test_meshes_of_other_libraries():
+    class Trimesh:
+        vertices, faces = CUBE, CUBE_FACES
+
+    class Open3D:
+        vertices, triangles = CUBE, CUBE_FACES
+        vertex_colors = CUBE
+
+        def has_vertex_colors(self):
+            return True
+
+    expected = voxdag.build(CUBE, CUBE_FACES, resolution=16)
+    assert voxdag.build(Trimesh(), resolution=16) == expected
+    colored = voxdag.build(Open3D(), resolution=16)
+    assert colored == expected and colored.info["has_colors"]
+    corner = colored.colors([[15, 15, 15]])[0]
+    assert (corner > 200).all()
+    with pytest.raises(TypeError, match="trimesh"):
+        voxdag.build(3, resolution=16)
+
+
+def test_pictures():
+    dag = voxdag.build(CUBE, CUBE_FACES, resolution=16)
+    picture = dag.render(width=80, height=60, eye=(3, 2, 4), target=(0.5, 0.5, 0.5))
+    assert picture.shape == (60, 80, 3) and picture.dtype == np.uint8
+    assert picture.std() > 10
+    assert dag._repr_png_().startswith(b"\x89PNG")
+    assert "16³" in repr(dag)
+
+
+def test_views_of_the_nodes_are_read_only():
+    dag = voxdag.from_coords(random_coords(64, 500), resolution=64)
+    assert dag.nodes.dtype == np.uint32 and dag.leaf_blocks.dtype == np.uint64
+    assert dag.nodes.nbytes + dag.leaf_blocks.nbytes == dag.info["bytes"]
+    nodes = dag.nodes
+    first = int(nodes[0])
+    del dag
+    assert int(nodes[0]) == first  # the view keeps the DAG
+    with pytest.raises(ValueError):
+        nodes[0] = 0
+
+
+@pytest.mark.parametrize("call, reason", [
+    (lambda: voxdag.build(CUBE, CUBE_FACES), "exactly one of resolution and pitch"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES, resolution=100), "power of two"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES, resolution=-4), "power of two"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES, pitch=0), "pitch must be positive"),
+    (lambda: voxdag.build(CUBE[:, :2], CUBE_FACES, resolution=8), "vertices must have the shape"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES + 7, resolution=8), "has the index"),
+    (lambda: voxdag.build(CUBE * np.nan, CUBE_FACES, resolution=8), "is not finite"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES, resolution=8, solid="x"), "solid must be"),
+    (lambda: voxdag.build(CUBE, CUBE_FACES[1:], resolution=8, solid=True), "not closed"),
+    (lambda: voxdag.from_coords([[9, 0, 0]], resolution=8), "outside of the grid"),
+    (lambda: voxdag.from_dense(np.ones((3, 3))), "three dimensions"),
+    (lambda: voxdag.from_points(np.zeros((0, 3)), resolution=8), "no points"),
+    (lambda: voxdag.from_points([[0, 0, np.inf]], resolution=8), "not finite"),
+    (lambda: voxdag.from_coords([[0, 0, 0]]).coords(((0, 0, 0), (9, 9, 9))), "window must be"),
+    (lambda: voxdag.from_coords([[0, 0, 0]]).render(width=0), "width and height"),
+])
+def test_bad_arguments_are_value_errors(call, reason):
+    with pytest.raises(ValueError, match=reason):
+        call()
+
+
+def test_other_threads_run_and_ctrl_c_works():
+    coords = random_coords(1 << 12, 200_000)
+    ticks = []
+
+    def tick():
+        while len(ticks) < 5:
+            ticks.append(time.monotonic())
+            time.sleep(0.01)
+        _thread.interrupt_main()
+
+    points = np.random.default_rng(6).uniform(0, 1 << 12, (4_000_000, 3))
+    dag = voxdag.from_coords(coords, resolution=1 << 12)
+    thread = threading.Thread(target=tick)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        dag.nearest(points)
+    thread.join()
+    assert len(ticks) == 5
