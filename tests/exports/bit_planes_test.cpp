@@ -85,8 +85,8 @@ TEST(BitPlanes, RowsComeInOrder) {
 TEST(BitPlanes, BandsCoverTheBoxOnce) {
   const Box3i box{{0, 10, 20}, {5, 110, 84}};
   std::int32_t next = 10;
-  // Five planes of one word take 40 bytes a row.
-  for_each_band(box, {0, 1, 2}, 40 * 7, [&](const Box3i& band) {
+  // Six planes of one word, and a byte each, take 54 bytes a row.
+  for_each_band(box, {0, 1, 2}, 54 * 7, [&](const Box3i& band) {
     EXPECT_EQ(band.lo, (Vec3i{0, next, 20}));
     EXPECT_EQ(band.hi, (Vec3i{5, std::min(next + 7, 110), 84}));
     next = band.hi.y;

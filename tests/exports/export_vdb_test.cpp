@@ -69,7 +69,7 @@ TEST(ExportVdb, EqualVoxelsMakeEqualFiles) {
 TEST(ExportVdb, KeepsToItsMemory) {
   const TempDir dir;
   const ExportedScene scene(7, 3000);
-  MemoryBudget memory(1 << 20);
+  MemoryBudget memory(std::uint64_t{40} << 20);
   ExportOptions options;
   options.memory = &memory;
   EXPECT_THROW(export_vdb(dir / "v.vdb", scene.view(), scene.grid, options), OverMemory);

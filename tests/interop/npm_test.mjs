@@ -40,7 +40,7 @@ let voxels; // "x,y,z" of all voxels
 const key = (x, y, z) => `${x},${y},${z}`;
 
 before(() => {
-  // A ball with a colour for each vertex, and some boxes that fill whole cells.
+  // A ball with a colour for each vertex.
   const lines = [];
   const faces = [];
   const vertex = (p) => {
@@ -75,7 +75,7 @@ test("Khronos's validator finds nothing to say about .glb", async () => {
   }
 });
 
-test("vox-reader finds the voxels, the scene and the palette of .vox", () => {
+test("vox-reader finds the voxels and the scene of .vox", () => {
   const file = readVox(exported("a.vox"));
   const transforms = [file.ntrn].flat();
   const shapes = [file.nshp].flat();
@@ -90,7 +90,7 @@ test("vox-reader finds the voxels, the scene and the palette of .vox", () => {
   for (const i of used) assert.ok(i >= 1 && i <= 255);
 });
 
-test("binvox finds the voxels and the placement of .binvox", () => {
+test("binvox finds the voxels of .binvox", () => {
   const bytes = exported("a.binvox");
   const file = new binvox.Parser().parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
   assert.deepEqual(file.dimension, { depth: resolution, width: resolution, height: resolution });

@@ -28,7 +28,7 @@ struct ExportArguments {
   std::optional<int> slices;  ///< Axis.
   ShownSceneArguments page;
 
-  bool is_vdb() const { return output.ends_with(".vdb") || output.ends_with(".nvdb"); }
+  bool is_vdb() const { return !slices && (output.ends_with(".vdb") || output.ends_with(".nvdb")); }
   bool is_page() const { return !slices && is_page_output(output); }
   bool carries_colors() const {
     return slices || export_has_colors(output, options.window.has_value());
@@ -47,7 +47,10 @@ void check_extension(const std::string& output) {
 
 void export_file(ExportArguments& arguments, Session& session) {
   if (arguments.is_page()) return export_page(arguments.output, arguments.page, session);
-  if (!arguments.slices) check_extension(arguments.output);
+  if (!arguments.slices) {
+    check_extension(arguments.output);
+    check_writable(arguments.output);
+  }
   const SceneModel file(session.subject, &session.progress);
   const VoxelSet voxels = file.voxels();
   arguments.options.progress = [&session](double fraction, std::uint64_t done) {
@@ -96,13 +99,13 @@ void add_export_command(const Command& program, Session& session) {
       "voxdag export scene.vdag -o scene.glb\n  voxdag export scene.vdag -o scene.html");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
-      .text(
-          "-o,--output", arguments->output, "OUT",
-          "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
-          "(MagicaVoxel), .vdb, .nvdb, .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). "
-          "Arrays: .npy "
-          "(coordinates, or dense with --window), .raw (dense). Pages that show a DAG: .html (one "
-          "file, also offline) or FOLDER/ (with the scene, for any web server)")
+      .text("-o,--output", arguments->output, "OUT",
+            "Outer faces: .glb, .obj, .stl, or .ply with --faces. Points: .ply. Voxels: .vox "
+            "(MagicaVoxel), .vdb, .nvdb, .binvox, .schem (Minecraft), .voxel.json (PlayCanvas). "
+            "Arrays: .npy "
+            "(coordinates, or dense with --window), .raw (dense), .spc.npy (kaolin). With "
+            "--slices: a folder. Pages that show a DAG: .html (one "
+            "file, also offline) or FOLDER/ (with the scene, for any web server)")
       .required();
   command
       .parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
@@ -124,7 +127,7 @@ void add_export_command(const Command& program, Session& session) {
   command
       .flag("--grey", arguments->grey,
             "Leave out colours, normals and materials: an .npy file is a plain array of "
-            "coordinates, faces of a plane are merged to large rectangles")
+            "coordinates, and .glb and .obj merge faces to larger rectangles")
       .only_if(carries_look, kCarriesNone)
       .not_with(look);
   add_page_options(command, *arguments);

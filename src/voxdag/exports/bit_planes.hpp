@@ -81,7 +81,7 @@ void for_each_run(std::span<const std::uint64_t> row, const Fn& fn) {
 /// Calls fn(k, plane, before) for all planes of a half-open box inside the grid, k ascending: bit
 /// (row, column) of `plane` is the voxel with coordinate k on the axis of planes and
 /// box.lo + (row, column) on the others. `before` points to the plane of k - 1, null for the first
-/// plane. Both are valid during the call. Holds five planes.
+/// plane. Both are valid during the call. Holds six planes.
 template <class Fn>
 void for_each_plane(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, const Fn& fn) {
   const Vec3i size = box.hi - box.lo;
@@ -114,7 +114,7 @@ void for_each_plane(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, co
 template <class Fn>
 void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t most_bytes, const Fn& fn) {
   const auto columns = static_cast<std::uint64_t>(box.hi[axes.column] - box.lo[axes.column]);
-  const std::uint64_t row_bytes = 5 * ((columns + 63) / 64) * 8;
+  const std::uint64_t row_bytes = 6 * (((columns + 63) / 64) * 8 + 1);
   const auto rows = static_cast<std::int32_t>(
       std::clamp<std::uint64_t>(most_bytes / row_bytes, 1, std::uint64_t{1} << 30));
   for (std::int32_t begin = box.lo[axes.row]; begin < box.hi[axes.row]; begin += rows) {
@@ -126,7 +126,7 @@ void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t most_bytes, c
 }
 
 /// Calls fn(k, row, bits) for all rows of all planes of a box, in ascending order of planes, then
-/// of rows; `row` counts from 0. Holds 48 MiB.
+/// of rows; `row` counts from 0. Holds 48 MiB at most.
 template <class Fn>
 void for_each_row(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, const Fn& fn) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{48} << 20;

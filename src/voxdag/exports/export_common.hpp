@@ -56,7 +56,7 @@ struct ArrayLayout {
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
                      const ArrayLayout& layout);
 
-/// Does what write_placement() does, to this file.
+/// Writes the placement to `file`.
 void write_placement_file(const std::filesystem::path& file, const Grid& grid, const Box3i& window,
                           const ArrayLayout& layout);
 

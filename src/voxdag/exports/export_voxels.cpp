@@ -11,6 +11,7 @@
 #include "voxdag/exports/blocks/export_spc.hpp"
 #include "voxdag/exports/blocks/export_vox.hpp"
 #include "voxdag/exports/export_arrays.hpp"
+#include "voxdag/exports/export_common.hpp"
 #include "voxdag/exports/export_ply.hpp"
 #include "voxdag/exports/faces/export_faces.hpp"
 #include "voxdag/exports/vdb/export_vdb.hpp"
@@ -53,10 +54,11 @@ template <void (*kExport)(const std::filesystem::path&, const SvdagView&, const 
 Files dag_file(const Request& r) {
   const SvdagView* const dag = r.voxels.dag();
   if (dag == nullptr)
-    throw Error(r.path.string(), "", "this format is for DAGs, but the scene is an ESVO");
+    throw Error(r.path.string(), "",
+                "this format is for DAGs, but the scene is an ESVO: build a .vdag of its mesh");
+  const Box3i window = export_window(r.path, r.voxels, r.options);
   if (r.options.window)
-    kExport(r.path, crop(*dag, *r.options.window, r.options.memory, nullptr).view(), r.grid,
-            r.options);
+    kExport(r.path, crop(*dag, window, r.options.memory, nullptr).view(), r.grid, r.options);
   else
     kExport(r.path, *dag, r.grid, r.options);
   return {r.path};

@@ -62,7 +62,7 @@ void export_binvox(const std::filesystem::path& path, const VoxelSet& voxels, co
   std::uint64_t done = 0;
   for_each_row(voxels, window, axes,
                [&](std::int32_t x, std::int32_t row, std::span<const std::uint64_t> bits) {
-                 if (row == 0 && options.progress)
+                 if ((row & 255) == 0 && options.progress)
                    options.progress(static_cast<double>(x - window.lo.x) / size.x, done);
                  std::int32_t at = 0;
                  for_each_run(bits, [&](std::int32_t begin, std::int32_t end) {

@@ -135,7 +135,7 @@ void export_schem(const std::filesystem::path& path, const VoxelSet& voxels, con
   std::uint64_t done = 0;
   for_each_row(voxels, window, axes,
                [&](std::int32_t y, std::int32_t at, std::span<const std::uint64_t> bits) {
-                 if (at == 0 && options.progress)
+                 if ((at & 255) == 0 && options.progress)
                    options.progress(static_cast<double>(y - window.lo.y) / size.y, done);
                  row.assign(static_cast<std::size_t>(size.x), '\0');
                  for_each_run(bits, [&](std::int32_t begin, std::int32_t end) {

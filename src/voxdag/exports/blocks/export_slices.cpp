@@ -53,9 +53,9 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
   std::uint64_t done = 0;
   for_each_row(voxels, window, axes,
                [&](std::int32_t k, std::int32_t at, std::span<const std::uint64_t> bits) {
+                 if ((at & 255) == 0 && options.progress)
+                   options.progress(static_cast<double>(k - window.lo[axis]) / size[axis], done);
                  if (at == 0) {
-                   if (options.progress)
-                     options.progress(static_cast<double>(k - window.lo[axis]) / size[axis], done);
                    file = std::make_unique<PngRowWriter>(
                        output.inside() / slice_name(k - window.lo[axis], digits), width, height,
                        has_colors ? PngPixels::kRgba : PngPixels::kBits);

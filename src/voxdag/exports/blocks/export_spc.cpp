@@ -61,7 +61,12 @@ void export_spc(const std::filesystem::path& path, const SvdagView& dag, const G
   if (dag.levels > kMostLevels)
     refuse_export(path, std::to_string(std::int64_t{1} << dag.levels) +
                             " voxels a side are more than the 32768 of kaolin");
-  const std::uint64_t count = dag.is_empty() ? 0 : count_svdag(dag).svo_nodes();
+  constexpr std::uint64_t kMostItems = 0x7FFFFFFF;
+  const SvdagCounts counts = dag.is_empty() ? SvdagCounts{} : count_svdag(dag);
+  const std::uint64_t count = dag.is_empty() ? 0 : counts.svo_nodes();
+  if (count + counts.voxels > kMostItems)
+    refuse_export(path, std::to_string(count + counts.voxels) +
+                            " nodes and voxels are more than the 2147483647 of kaolin");
   check_disk_space(path, count);
   NpyWriter file(path, "|u1", {}, 1, count);
   std::string bytes;
@@ -76,7 +81,7 @@ void export_spc(const std::filesystem::path& path, const SvdagView& dag, const G
     LevelWalk(dag, level, add).visit(0, 0);
   file.write_bytes(bytes.data(), bytes.size());
   file.commit();
-  write_placement(path, grid, whole_grid(dag.levels),
+  write_placement(path, grid, options.window.value_or(whole_grid(dag.levels)),
                   {"octrees of kaolin.rep.Spc: child masks, breadth first", "uint8", ""});
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -15,7 +16,8 @@ namespace voxdag {
 namespace {
 
 constexpr std::int32_t kModelSide = 256, kSectionSide = 2000, kHeight = 1000;
-constexpr std::uint64_t kMostVoxels = 1'000'000'000;
+constexpr std::uint64_t kMostVoxels = 500'000'000;  ///< Sizes in the file are signed 32-bit.
+constexpr std::size_t kMostSections = 500;          ///< All files are open at the same time.
 constexpr int kMostColors = 255;
 constexpr Value8 kGrey{200, 198, 195};
 
@@ -94,9 +96,8 @@ Vec3i scene_position(Vec3i size) {
   return {-(size.x / 2), -(size.y / 2), size.z <= kHeight ? 0 : -(size.z / 2)};
 }
 
-void write_section(const std::filesystem::path& path, const Box3i& section, Source& source) {
-  const Vec3i position = scene_position(section.hi - section.lo);
-  VoxWriter file(path);
+/// Writes the models of a section whose first voxel lies at `position`.
+void write_models(VoxWriter& file, const Box3i& section, Vec3i position, Source& source) {
   std::vector<VoxVoxel> model;
   for_each_part(section, kModelSide, [&](const Box3i& box) {
     model.clear();
@@ -111,7 +112,6 @@ void write_section(const std::filesystem::path& path, const Box3i& section, Sour
     const Vec3i even{size.x + (size.x & 1), size.y + (size.y & 1), size.z + (size.z & 1)};
     file.add_model(position + (box.lo - section.lo), even, model);
   });
-  file.commit(source.colors());
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
     const std::uint64_t count = source.count(box);
     if (count > kMostVoxels)
       refuse_export(path, std::to_string(count) +
-                              " voxels in 2000³ are more than the 1000000000 that fit into a file");
+                              " voxels in 2000³ are more than the 500000000 that fit into a file");
     Vec3i number;
     for (int axis = 0; axis < 3; ++axis)
       number[axis] = (box.lo[axis] - window.lo[axis]) / kSectionSide;
@@ -138,18 +138,26 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
       sections.emplace_back(section_path(path, number), box);
   });
   check_disk_space(path, source.count() * sizeof(VoxVoxel));
-  std::vector<std::filesystem::path> files;
-  for (const auto& [file, box] : sections) {
-    write_section(file, box, source);
-    files.push_back(file);
-  }
+  if (sections.empty()) sections.emplace_back(path, Box3i{window.lo, window.lo});
+  if (sections.size() > kMostSections)
+    refuse_export(path, std::to_string(sections.size()) +
+                            " sections of 2000³ are more than the 500 that are written at once");
+  // Sections of any size begin at the same place.
   const Vec3i position =
       scene_position(is_cut ? Vec3i{kSectionSide, kSectionSide, kSectionSide} : size);
+  std::vector<std::filesystem::path> files;
+  std::vector<std::unique_ptr<VoxWriter>> writers;
+  for (const auto& [file, box] : sections) {
+    files.push_back(file);
+    writers.push_back(std::make_unique<VoxWriter>(file));
+    write_models(*writers.back(), box, position, source);
+  }
+  for (const std::unique_ptr<VoxWriter>& writer : writers) writer->commit(source.colors());
   std::string place;
   for (int axis = 0; axis < 3; ++axis)
     place.append(axis == 0 ? "" : ", ").append(std::to_string(position[axis]));
   const ArrayLayout layout{
-      is_cut ? "sections of 2000 voxels a side; the first voxel of a whole one lies at " + place
+      is_cut ? "sections of 2000 voxels a side; the first voxel of each section lies at " + place
              : "a scene; voxel window.lo lies at " + place,
       "palette indices", ""};
   if (is_cut)

@@ -13,6 +13,8 @@ namespace fs = std::filesystem;
 NewFolder::NewFolder(const fs::path& path)
     : path_(path.has_filename() ? path : path.parent_path()) {
   std::error_code error;
+  // The folder that "." or a symbolic link names.
+  if (const fs::path canonical = fs::weakly_canonical(path_, error); !error) path_ = canonical;
   if (fs::exists(path_, error) && !(fs::is_directory(path_, error) && fs::is_empty(path_, error)))
     throw Error(path_.string(), "",
                 error ? error.message() : "exists and is not an empty folder: choose another name");

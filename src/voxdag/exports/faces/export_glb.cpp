@@ -12,7 +12,7 @@ namespace voxdag {
 namespace {
 
 constexpr std::uint64_t kMostBytes = 0xFFFFFFFF;
-constexpr std::uint64_t kIndexBytes = 6 * sizeof(std::uint32_t);  ///< Of a rectangle.
+constexpr std::uint64_t kIndexBytes = 6 * sizeof(std::uint32_t);  ///< The indices of a rectangle.
 
 struct ColoredCorner {
   Vec3f place;

@@ -5,7 +5,7 @@
 
 namespace voxdag {
 
-/// Each walk has the same rectangles.
+/// Every walk visits equal rectangles in equal order.
 class ExportedRectangles {
  public:
   /// Refers to `voxels` and `options`. Faces that are not merged have no colours.

@@ -116,6 +116,17 @@ void merge_plane(Merger& merger, std::int32_t k, const BitPlane& here, const Bit
   if (!merger.is_idle()) merger.end_row(k, here.rows());
 }
 
+/// Returns the half-open box of the leaf blocks with voxels in a window, cut to the window; an
+/// empty one if there are none.
+Box3i bounds_in(const VoxelSet& voxels, const Box3i& window) {
+  Box3i bounds{window.hi, window.lo};
+  voxels.for_each_leaf_block(window, [&](Vec3i origin, std::uint64_t) {
+    bounds.lo = min(bounds.lo, max(origin, window.lo));
+    bounds.hi = max(bounds.hi, min(origin + Vec3i{4, 4, 4}, window.hi));
+  });
+  return bounds;
+}
+
 }  // namespace
 
 std::array<Vec3i, 4> corners_of(const FaceRectangle& rectangle) {
@@ -130,9 +141,12 @@ std::array<Vec3i, 4> corners_of(const FaceRectangle& rectangle) {
   return corners;
 }
 
-void for_each_rectangle(const VoxelSet& voxels, const Box3i& window, LookReader* colors, bool merge,
+void for_each_rectangle(const VoxelSet& voxels, const Box3i& whole, LookReader* colors, bool merge,
                         const std::function<void(double)>& progress,
                         const std::function<void(const FaceRectangle&)>& fn) {
+  // Planes without voxels take time, too.
+  const Box3i window = bounds_in(voxels, whole);
+  if (window.hi.x <= window.lo.x) return;
   for (int axis = 0; axis < 3; ++axis) {
     const PlaneAxes axes{axis, (axis + 2) % 3, (axis + 1) % 3};
     for_each_band(window, axes, kPlaneBytes, [&](const Box3i& band) {

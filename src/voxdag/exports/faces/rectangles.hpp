@@ -24,7 +24,8 @@ struct FaceRectangle {
 /// Calls fn for the outer faces of the voxels in the half-open `window`: those whose neighbour is
 /// no voxel of the window. Their order depends on the voxels alone. With `colors`, which may be
 /// null, only faces of one colour are merged. If not `merge`, each face is a rectangle of its own.
-/// Holds less than 80 MiB. `progress` is called from time to time with the fraction that is done.
+/// Holds less than 70 MiB, and the runs of two rows. `progress` is called from time to time with
+/// the fraction that is done.
 void for_each_rectangle(const VoxelSet& voxels, const Box3i& window, LookReader* colors, bool merge,
                         const std::function<void(double)>& progress,
                         const std::function<void(const FaceRectangle&)>& fn);

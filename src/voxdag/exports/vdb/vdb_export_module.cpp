@@ -29,7 +29,25 @@
 namespace voxdag {
 namespace {
 
-constexpr int kLeafSide = 8;  ///< Of OpenVDB's leaves, in voxels.
+/// Sides of OpenVDB's leaves and of the nodes above them, in voxels.
+constexpr std::int32_t kLeafSide = 8, kLowerSide = 128, kUpperSide = 4096;
+
+/// Returns the bytes of the nodes that a tree gets for a cell of `side` voxels at `at`.
+template <class Tree>
+std::uint64_t bytes_of_new_nodes(const Tree& tree, const openvdb::Coord& at, std::int32_t side) {
+  using Upper = typename Tree::RootNodeType::ChildNodeType;
+  using Lower = typename Upper::ChildNodeType;
+  using Leaf = typename Lower::ChildNodeType;
+  constexpr std::uint64_t kRest = 128;  // what else a node or its buffer takes
+  std::uint64_t bytes = 0;
+  if (side < kUpperSide && tree.template probeConstNode<Upper>(at) == nullptr)
+    bytes += sizeof(Upper) + kRest;
+  if (side < kLowerSide && tree.template probeConstNode<Lower>(at) == nullptr)
+    bytes += sizeof(Lower) + kRest;
+  if (side < kLeafSide && tree.probeConstLeaf(at) == nullptr)
+    bytes += sizeof(Leaf) + Leaf::SIZE * sizeof(typename Tree::ValueType) + kRest;
+  return bytes;
+}
 
 /// Writes to a file at any place. Keeps the file's error, because streams do not pass exceptions
 /// on.
@@ -113,18 +131,18 @@ class GridFiller {
     return transform;
   }
 
-  /// Counts a leaf before it is made.
-  void count_leaf() {
-    const std::size_t values = kLeafSide * kLeafSide * kLeafSide;
-    memory_.resize(memory_.bytes() + 128 +
-                   values * (sizeof(float) + (colors_ ? sizeof(openvdb::Vec3f) : 0)));
+  /// Counts the nodes of a cell before they are made.
+  void count_nodes(const openvdb::Coord& at, std::int32_t side) {
+    std::uint64_t bytes = bytes_of_new_nodes(density_->tree(), at, side);
+    if (colors_) bytes += bytes_of_new_nodes(colors_->tree(), at, side);
+    memory_.resize(memory_.bytes() + bytes);
   }
 
   void add_block(Vec3i origin, std::uint64_t mask) {
     const openvdb::Coord first(origin.x, origin.y, origin.z);
     auto* leaf = density_access_.probeLeaf(first);
     if (leaf == nullptr) {
-      count_leaf();
+      count_nodes(first, 1);
       leaf = density_access_.touchLeaf(first);
     }
     for (; mask != 0; mask &= mask - 1, ++done_) {
@@ -166,6 +184,7 @@ class GridFiller {
     }
     if (side >= kLeafSide && is_inside(origin, side) && full.is_full(level, pointer)) {
       const openvdb::Coord first(origin.x, origin.y, origin.z);
+      count_nodes(first, side);
       density_->tree().sparseFill({first, first.offsetBy(side - 1)}, 1.0f, true);
       done_ += static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) *
                static_cast<std::uint64_t>(side);
@@ -210,7 +229,11 @@ void write_nano_vdb(std::ostream& stream, const std::vector<openvdb::GridBase::P
 }
 
 /// Throws the file's error if it cannot be written, else what the libraries throw.
-void write_grids(AtomicFile& file, bool is_nano, const std::vector<openvdb::GridBase::Ptr>& grids) {
+void write_grids(AtomicFile& file, bool is_nano, const std::vector<openvdb::GridBase::Ptr>& grids,
+                 MemoryBudget* memory) {
+  std::uint64_t copy = 0;  // NanoVDB's grids, about as large
+  for (const openvdb::GridBase::Ptr& grid : grids) copy += is_nano ? grid->memUsage() : 0;
+  const MemoryReservation nano(memory, copy);
   FileBuffer buffer(file);
   std::ostream stream(&buffer);
   try {
@@ -226,12 +249,13 @@ void write_grids(AtomicFile& file, bool is_nano, const std::vector<openvdb::Grid
 void write_in_module(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                      const Box3i& window, const ExportOptions& options) {
   const bool is_nano = path.extension() == ".nvdb";
+  // What the libraries take that this module loads.
+  const MemoryReservation libraries(options.memory, std::uint64_t{36} << 20);
   try {
     AtomicFile file(path);
     openvdb::initialize();
-    const std::vector<openvdb::GridBase::Ptr> grids =
-        GridFiller(voxels, window, options).fill(grid);
-    write_grids(file, is_nano, grids);
+    GridFiller filler(voxels, window, options);  // counts the grids as long as it lives
+    write_grids(file, is_nano, filler.fill(grid), options.memory);
     if (!is_nano) clear_identifier(file);
     file.commit();
   } catch (const Error&) {
