@@ -68,7 +68,7 @@ TEST(ExportVdb, EqualVoxelsMakeEqualFiles) {
 
 TEST(ExportVdb, KeepsToItsMemory) {
   const TempDir dir;
-  const ExportedScene scene(7, 3000);
+  const ExportedScene scene(8, 30000);
   MemoryBudget memory(std::uint64_t{40} << 20);
   ExportOptions options;
   options.memory = &memory;
