@@ -44,7 +44,15 @@ def points_of(vertices):
 
 
 def ray_scene(mesh):
+    import numpy
     import open3d
+    # Debian 12's Open3D hits nothing at all.
+    box = open3d.t.geometry.RaycastingScene()
+    box.add_triangles(open3d.t.geometry.TriangleMesh.from_legacy(
+        open3d.geometry.TriangleMesh.create_box(1, 1, 1)))
+    ray = open3d.core.Tensor(numpy.array([[0.5, 0.4, -1, 0, 0, 1]], numpy.float32))
+    if not numpy.isfinite(box.cast_rays(ray)["t_hit"].numpy()).all():
+        raise SystemExit("its RaycastingScene misses a box")
     scene = open3d.t.geometry.RaycastingScene()
     scene.add_triangles(open3d.t.geometry.TriangleMesh.from_legacy(mesh))
     return scene
@@ -152,8 +160,14 @@ def main():
                        "--repeat", str(arguments.repeat), "--task", task, "--library", library]
             row = {"task": task, "library": library, "what": what}
             try:
-                row |= json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE,
-                                                 timeout=arguments.seconds).stdout)
+                result = subprocess.run(command, capture_output=True, text=True,
+                                        timeout=arguments.seconds)
+                if result.returncode != 0:
+                    reason = result.stderr.strip().splitlines()[-1]
+                    rows.append(row | {"failed": reason})
+                    print(f"{task:10}{library:10}  failed: {reason}")
+                    continue
+                row |= json.loads(result.stdout)
             except subprocess.TimeoutExpired:
                 rows.append(row | {"stopped_after": arguments.seconds})
                 print(f"{task:10}{library:10}  stopped after {arguments.seconds:g} s  {what}")
