@@ -9,7 +9,7 @@ import { accessSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "no
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import path from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 const require = createRequire(import.meta.url);
@@ -27,7 +27,7 @@ try {
 }
 
 const folder = mkdtempSync(path.join(tmpdir(), "voxdag-interop-"));
-after(() => rmSync(folder, { recursive: true }));
+process.on("exit", () => rmSync(folder, { recursive: true }));
 const at = (name) => path.join(folder, name);
 const voxdag = (...words) => execFileSync(process.env.VOXDAG, words.map(String));
 const exported = (name, ...options) => {
@@ -39,7 +39,7 @@ const resolution = 64;
 let voxels; // "x,y,z" of all voxels
 const key = (x, y, z) => `${x},${y},${z}`;
 
-before(() => {
+function makeScene() {
   // A ball with a colour for each vertex.
   const lines = [];
   const faces = [];
@@ -65,7 +65,8 @@ before(() => {
   voxels = new Set();
   for (let i = 0; i < numbers.length; i += 3) voxels.add(key(...numbers.subarray(i, i + 3)));
   assert.ok(voxels.size > 1000);
-});
+}
+makeScene();
 
 test("Khronos's validator finds nothing to say about .glb", async () => {
   for (const options of [[], ["--grey"], ["--window", "3,5,7,40,41,42"]]) {
