@@ -8,6 +8,7 @@
 #include "bench/compact/plain_sizes.hpp"
 #include "bench/report/scratch_folder.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/dag/stop_watch.hpp"
 #include "voxdag/file/compact_file.hpp"
@@ -52,14 +53,8 @@ class Bench {
 
   void measure_compact_file(const std::string& path) {
     const CompactFile file(path);
-    Svdag dag;
-    try {
-      dag = decode_svdag(file.view(), nullptr, &progress_);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const Error& error) {
-      throw error.in_file(path);
-    }
+    const Svdag dag =
+        with_file_name(path, [&] { return decode_svdag(file.view(), nullptr, &progress_); });
     measure(dag.view(), add_run(name_of(file.metadata(), path), dag.levels));
   }
 

@@ -12,7 +12,7 @@
 
 namespace voxdag::python {
 
-/// A DAG that Python shares. It does not change, so threads may use it at the same time.
+/// A DAG that Python objects share. It never changes, so several threads may use it.
 class Dag {
  public:
   explicit Dag(DagModel model) : model_(std::move(model)) {}

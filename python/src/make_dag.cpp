@@ -10,6 +10,7 @@
 #include "voxdag/attributes/build_attributes.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/srgb.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/imports/batched_voxels.hpp"
 #include "voxdag/imports/import_voxels.hpp"
@@ -160,15 +161,9 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
       source = read_mesh_with_appearance(path, options);
     else
       source.mesh = read_mesh(path, options);
-    try {
+    return with_file_name(path.string(), [&] {
       return build_mesh(source, choice, rule, colors, path.filename().string(), progress);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const OverMemory&) {
-      throw;
-    } catch (const Error& error) {
-      throw error.in_file(path.string());
-    }
+    });
   });
 }
 

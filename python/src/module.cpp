@@ -30,7 +30,7 @@ py::dict info_of(const Dag& dag) {
   return info;
 }
 
-/// Errors of files are OSError, other bad input is ValueError, too little memory MemoryError.
+/// Raises OSError for errors of files, ValueError for other bad input, and MemoryError.
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);

@@ -1,5 +1,4 @@
-/// `voxdag export` to the formats of other programs: which file holds what is tested in
-/// tests/exports.
+/// `voxdag export` to the formats of other programs. tests/exports tests the content of the files.
 #include <gtest/gtest.h>
 
 #include <filesystem>

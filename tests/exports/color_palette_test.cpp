@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/color_palette.hpp"
+#include "voxdag/exports/grids/color_palette.hpp"
 
 #include <gtest/gtest.h>
 

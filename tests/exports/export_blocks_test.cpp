@@ -1,5 +1,5 @@
-// Voxel formats against the voxels. Those that voxdag imports are read back with the importers,
-// which have tests of their own; the others have readers here.
+// Compares exported files with the voxels. The importers, which have tests of their own, read back
+// the formats that they know; the others have readers here.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -10,13 +10,13 @@
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "support/voxel_sets.hpp"
-#include "voxdag/exports/blocks/block_palette.hpp"
-#include "voxdag/exports/blocks/export_binvox.hpp"
-#include "voxdag/exports/blocks/export_playcanvas.hpp"
-#include "voxdag/exports/blocks/export_schem.hpp"
-#include "voxdag/exports/blocks/export_slices.hpp"
-#include "voxdag/exports/blocks/export_spc.hpp"
-#include "voxdag/exports/blocks/export_vox.hpp"
+#include "voxdag/exports/grids/block_palette.hpp"
+#include "voxdag/exports/grids/export_binvox.hpp"
+#include "voxdag/exports/grids/export_playcanvas.hpp"
+#include "voxdag/exports/grids/export_schem.hpp"
+#include "voxdag/exports/grids/export_slices.hpp"
+#include "voxdag/exports/grids/export_spc.hpp"
+#include "voxdag/exports/grids/export_vox.hpp"
 #include "voxdag/file/npy.hpp"
 #include "voxdag/imports/voxel_source.hpp"
 

@@ -1,5 +1,5 @@
 // Grids of OpenVDB, which the importer reads back. tests/interop opens them with other programs.
-#include "voxdag/exports/vdb/export_vdb.hpp"
+#include "voxdag/exports/grids/export_vdb.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,5 @@
 #include "viewer/site/export_site.hpp"
 
-#include <fcntl.h>
-#include <stdio.h>
-
-#include <cerrno>
 #include <set>
 #include <system_error>
 
@@ -11,7 +7,7 @@
 #include "viewer/site/scene_pieces.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/temporary_file.hpp"
+#include "voxdag/io/temporary_folder.hpp"
 
 namespace voxdag {
 namespace {
@@ -40,40 +36,6 @@ void check_replaceable(const fs::path& folder) {
   }
   if (error) fail(folder, "cannot read", error);
 }
-
-/// A folder that its destructor removes, unless take_name() gave it the name of the target.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const fs::path& target)
-      : target_(target), path_(temporary_name(target)) {
-    std::error_code error;
-    if (!fs::create_directory(path_, error)) fail(target_, "cannot create", error);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-
-  const fs::path& path() const { return path_; }
-
-  /// Gives the folder the target's name. Replaces a folder that has this name.
-  void take_name() const {
-    std::error_code error;
-    if (fs::exists(target_, error)) {
-      // The exchange leaves no moment without a folder. The destructor removes the old one.
-      if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
-        fail(target_, "cannot replace", std::error_code(errno, std::system_category()));
-      return;
-    }
-    fs::rename(path_, target_, error);
-    if (error) fail(target_, "cannot create", error);
-  }
-
- private:
-  fs::path target_, path_;
-};
 
 void write_scene(const fs::path& path, const SceneBytes& scene, Progress* progress) {
   AtomicFile file(path);

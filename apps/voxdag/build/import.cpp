@@ -11,6 +11,7 @@
 #include "cli/parse.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/imports/import_voxels.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/model/dag_model.hpp"
@@ -46,19 +47,13 @@ ImportResult import_file(const ImportArguments& arguments, MemoryBudget& memory,
   options.colors = !arguments.is_grey;
   options.folder = std::filesystem::path(arguments.output).parent_path();
   if (options.folder.empty()) options.folder = ".";
-  try {
+  return with_file_name(session.subject, [&] {
     const std::unique_ptr<VoxelSource> source =
         open_voxel_source(session.subject, {arguments.threshold});
     print_warnings(source->warnings(), session);
     check_grid_options(*source, options);
     return import_voxels(*source, options, &session.progress);
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const OverMemory&) {
-    throw;
-  } catch (const Error& error) {
-    throw error.in_file(session.subject);
-  }
+  });
 }
 
 void import(const ImportArguments& arguments, Session& session) {

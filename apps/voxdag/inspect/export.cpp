@@ -12,8 +12,8 @@
 #include "cli/parse.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/exports/blocks/export_slices.hpp"
 #include "voxdag/exports/export_voxels.hpp"
+#include "voxdag/exports/grids/export_slices.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/model/scene_model.hpp"
 

@@ -12,6 +12,7 @@
 #include "cli/usage_error.hpp"
 #include "trace/hit_rows.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/compact_file.hpp"
@@ -96,13 +97,9 @@ CompactFile compact_file(const std::string& path) {
 }
 
 InPlaceDag open_in_place(const CompactFile& file, Session& session) {
-  try {
+  return with_file_name(session.subject, [&] {
     return InPlaceDag(file.view(), InPlaceDag::kCachedUnits, &session.progress);
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& error) {
-    throw error.in_file(session.subject);
-  }
+  });
 }
 
 std::string trace_in_place(const TraceArguments& arguments, Session& session) {

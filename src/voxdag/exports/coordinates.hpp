@@ -1,5 +1,5 @@
 #pragma once
-/// How exports write the coordinates of voxels in the world.
+/// The text and the precision of coordinates in exported files.
 #include <algorithm>
 #include <charconv>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-/// What all exports have in common.
+/// The options of exports, and the rules that all exports follow.
 #include <cstdint>
 #include <filesystem>
 #include <functional>

@@ -5,21 +5,21 @@
 
 #include "voxdag/algebra/crop.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/exports/blocks/export_binvox.hpp"
-#include "voxdag/exports/blocks/export_playcanvas.hpp"
-#include "voxdag/exports/blocks/export_schem.hpp"
-#include "voxdag/exports/blocks/export_spc.hpp"
-#include "voxdag/exports/blocks/export_vox.hpp"
 #include "voxdag/exports/export_arrays.hpp"
 #include "voxdag/exports/export_common.hpp"
 #include "voxdag/exports/export_ply.hpp"
 #include "voxdag/exports/faces/export_faces.hpp"
-#include "voxdag/exports/vdb/export_vdb.hpp"
+#include "voxdag/exports/grids/export_binvox.hpp"
+#include "voxdag/exports/grids/export_playcanvas.hpp"
+#include "voxdag/exports/grids/export_schem.hpp"
+#include "voxdag/exports/grids/export_spc.hpp"
+#include "voxdag/exports/grids/export_vdb.hpp"
+#include "voxdag/exports/grids/export_vox.hpp"
 
 namespace voxdag {
 namespace {
 
-/// All that an export is asked for.
+/// The arguments of export_voxels().
 struct Request {
   const std::filesystem::path& path;
   const VoxelSet& voxels;
@@ -70,7 +70,7 @@ struct Format {
   bool has_colors;
 };
 
-/// A longer ending comes before its own ending.
+/// ".spc.npy" comes before ".npy": the first ending that matches counts.
 constexpr Format kFormats[] = {{".spc.npy", dag_file<export_spc>, false},
                                {".npy", npy, true},
                                {".raw", one_file<export_raw>, false},

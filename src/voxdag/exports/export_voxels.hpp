@@ -11,7 +11,7 @@ bool can_export_to(const std::filesystem::path& path);
 /// Returns the extensions that export_voxels() knows: ".npy, .ply, ... or .glb".
 std::string export_extensions();
 
-/// What an export writes if the extension leaves a choice.
+/// Chooses between contents of one extension.
 struct ExportContent {
   bool ply_faces = false;  ///< For .ply: outer faces, not points.
 };

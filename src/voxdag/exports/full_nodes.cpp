@@ -3,7 +3,7 @@
 namespace voxdag {
 
 FullNodes::FullNodes(const SvdagView& dag) : dag_(dag), full_(dag.node_words()) {
-  // From the lowest level up: a node is full if its children are.
+  // Go from the lowest level up: a node is full if its eight children are.
   for (int level = dag.levels - 3; level >= 0; --level)
     for_each_node(dag, level, [&](std::uint64_t at) {
       const std::uint32_t* const node = dag.nodes + at;

@@ -8,7 +8,7 @@ namespace voxdag {
 
 class FullNodes {
  public:
-  /// Takes a bit for each word of the DAG.
+  /// Takes memory for one bit per word of the DAG.
   explicit FullNodes(const SvdagView& dag);
 
   /// Returns whether the node of `level` (0 to L-2) that a pointer names is full. The root of a DAG

@@ -1,6 +1,7 @@
 #include "voxdag/file/compact_file.hpp"
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
@@ -55,20 +56,13 @@ CompactContents parse_compact(std::span<const std::byte> file) {
 }
 
 CompactFile::CompactFile(const std::filesystem::path& path) : file_(path) {
-  try {
-    contents_ = parse_compact(file_.bytes());
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  contents_ = with_file_name(path.string(), [&] { return parse_compact(file_.bytes()); });
 }
 
 bool is_compact_file(const std::filesystem::path& path) {
   const MappedFile mapping(path, MappedFile::Access::kRandom);
-  try {
-    return is_compact(read_vdag_chunks(mapping.bytes()));
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  return with_file_name(path.string(),
+                        [&] { return is_compact(read_vdag_chunks(mapping.bytes())); });
 }
 
 }  // namespace voxdag

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/io/open_input.hpp"
 
 namespace voxdag {
@@ -109,11 +110,7 @@ NpyHeader NpyReader::read_header() {
   const std::uint64_t first_byte = position_;
   std::string text(length, '\0');
   read_exactly(text.data(), length);
-  try {
-    return parse_npy_header(text, first_byte);
-  } catch (const Error& error) {
-    throw error.in_file(path_.string());
-  }
+  return with_file_name(path_.string(), [&] { return parse_npy_header(text, first_byte); });
 }
 
 NpyStart read_npy_start(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
@@ -25,23 +26,14 @@ void write_parts(const std::filesystem::path& path,
   file.commit();
 }
 
-/// Returns make(); its errors get the name of the file.
-template <class Make>
-auto with_name(const std::filesystem::path& path, const Make& make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
-}
-
 }  // namespace
 
 void write_vdag(const std::filesystem::path& path, const SvdagView& view,
                 const VdagMetadata& metadata, const DagAttributesView& attributes,
                 AttributeForm form) {
-  const auto bytes = with_name(
-      path, [&] { return std::make_unique<PlainVdagBytes>(view, metadata, attributes, form); });
+  const auto bytes = with_file_name(path.string(), [&] {
+    return std::make_unique<PlainVdagBytes>(view, metadata, attributes, form);
+  });
   write_parts(path, bytes->parts());
 }
 
@@ -49,7 +41,7 @@ void write_vdag(const std::filesystem::path& path, const CompactSvdag& compact,
                 const VdagMetadata& metadata, const DagAttributesView& attributes,
                 AttributeForm form) {
   assert(metadata.grid.levels == compact.levels);
-  const std::string json = with_name(path, [&] {
+  const std::string json = with_file_name(path.string(), [&] {
     // A reader numbers the cells down to the level that the metadata has.
     if (!attributes.is_empty()) compare_attributes(metadata.attributes, attributes);
     return checked_metadata_json(metadata);

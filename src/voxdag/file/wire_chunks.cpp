@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/io/mapped_file.hpp"
@@ -171,15 +172,13 @@ void expand_wire_chunks(std::vector<VdagChunk>& chunks, ExpandedChunks& memory) 
 WireBytes wire_bytes_of(const std::filesystem::path& path) {
   const MappedFile mapping(path, MappedFile::Access::kRandom);
   WireBytes bytes;
-  try {
+  with_file_name(path.string(), [&] {
     const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
     each_wire_chunk(chunks, [&](const VdagChunk& chunk, const WireKind& kind) {
       bytes.*kind.bytes = chunk.bytes.size();
       bytes.expanded += 8 * read_parts(chunk.bytes).expanded_words();
     });
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
   return bytes;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Loads parts of the program that need libraries which few commands use.
+/// Loads modules: parts of the program whose libraries few commands need.
 #include <string>
 
 namespace voxdag {

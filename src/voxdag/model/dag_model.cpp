@@ -5,6 +5,7 @@
 #include "voxdag/attributes/material_colors.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/layout/build_cell_index.hpp"
@@ -29,7 +30,7 @@ DagModel::Decoded DagModel::decode(const std::filesystem::path& path, Progress* 
   const MemoryReservation file_bytes(memory, bytes_in_memory(path));
   CompactFile file(path);
   const CompactContents& contents = file.contents();
-  try {
+  with_file_name(path.string(), [&] {
     decoded.dag = decode_svdag(file.view(), memory, progress);
     if (contents.has_attributes()) {
       const MemoryReservation dag_bytes(memory, decoded.view().bytes());
@@ -37,13 +38,7 @@ DagModel::Decoded DagModel::decode(const std::filesystem::path& path, Progress* 
           build_cell_index(decoded.view(), contents.metadata.attributes.level(), memory);
       decoded.stored = contents.attributes(decoded.index.view(), decoded.expanded);
     }
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const OverMemory&) {
-    throw;
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
   decoded.file = std::move(file);
   return decoded;
 }

@@ -12,8 +12,8 @@
 
 namespace voxdag {
 
-/// What a .vdag file holds, in memory: the DAG in the plain form, the attributes of its cells, and
-/// the metadata. Move-only; views stay valid when it is moved.
+/// The content of a .vdag file in memory: the DAG in the plain form, the attributes of its cells,
+/// and the metadata. Move-only; views stay valid when it is moved.
 class DagModel {
  public:
   /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts

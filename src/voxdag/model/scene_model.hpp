@@ -21,7 +21,7 @@ class SceneModel {
   ColoredDagView colored_dag() const;
   const SceneMetadata& metadata() const;
   const Grid& grid() const { return metadata().grid; }
-  /// Does what DagModel::show_materials() does. An ESVO has no material ids.
+  /// Calls DagModel::show_materials(). Throws Error for an ESVO, which has no material ids.
   void show_materials(const std::filesystem::path& path, Progress* progress);
 
  private:

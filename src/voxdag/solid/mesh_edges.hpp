@@ -35,7 +35,7 @@ void each_edge(const QuantizedMesh& mesh, std::size_t triangle, const Visit& vis
   }
 }
 
-/// A key that sorts behind those of all edges.
+/// A key that sorts after the keys of all edges.
 inline constexpr std::uint64_t kNoEdge = ~std::uint64_t{0};
 
 /// Returns key_of(a, b) for all edges of the mesh's triangles in ascending order. Edges without a

@@ -158,7 +158,8 @@ void SortedRecords<Record, kRepeats>::visit_all(const Visit& visit) {
     const std::size_t source = heads.top().second;
     RunReader& reader = readers[source];
     heads.pop();
-    // Runs of data in some order hardly overlap: stay with a run while its record is the least.
+    // Runs hardly overlap if the data came in some order: stay with a run while its record is the
+    // least.
     do {
       poll_seldom(progress_, polled++);
       const Record& record = reader.record();

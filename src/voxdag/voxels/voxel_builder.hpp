@@ -16,7 +16,7 @@ namespace voxdag {
 /// Returns the Morton code of a voxel. Throws Error if it lies outside of a grid of 2^levels voxels
 /// a side.
 inline std::uint64_t code_in_grid(Vec3i voxel, int levels) {
-  // A negative coordinate has a high bit, too.
+  // The sign bit of a negative coordinate is a high bit.
   if (static_cast<std::uint32_t>(voxel.x | voxel.y | voxel.z) >> levels != 0)
     throw_outside_of_grid(voxel, levels);
   return morton_encode(voxel);

@@ -26,7 +26,7 @@ std::uint16_t linear16(std::uint8_t srgb) {
 
 nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
-/// The parts of a GLB file that depend on the number of its rectangles.
+/// Computes the sizes and the JSON of a GLB file from the number of its rectangles.
 struct GlbPlan {
   Grid grid;
   Vec3i origin;   ///< The voxel at the origin of the mesh's coordinates, if they are in voxels.

@@ -1,5 +1,5 @@
 #pragma once
-/// The rectangles that an export of faces counts and then writes.
+/// Walks over the rectangles of an export: first to count, then to write them.
 #include "voxdag/exports/export_common.hpp"
 #include "voxdag/exports/faces/rectangles.hpp"
 
@@ -8,7 +8,7 @@ namespace voxdag {
 /// Every walk visits equal rectangles in equal order.
 class ExportedRectangles {
  public:
-  /// Refers to `voxels` and `options`. Faces that are not merged have no colours.
+  /// Keeps references to `voxels` and `options`. Faces have no colours if they are not merged.
   ExportedRectangles(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options,
                      bool merge)
       : voxels_(voxels),
@@ -24,7 +24,7 @@ class ExportedRectangles {
     std::uint64_t count = 0;
     Box3i bounds = Box3i::empty();  ///< In voxel coordinates.
   };
-  /// Counts them: half of the work.
+  /// Counts the rectangles: half of the work.
   Extent measure() {
     Extent extent;
     walk(0.5, [&](const FaceRectangle& rectangle) {
@@ -34,7 +34,7 @@ class ExportedRectangles {
     });
     return extent;
   }
-  /// Calls fn(rectangle) for each: the rest of the work.
+  /// Calls fn(rectangle) for all rectangles: the rest of the work.
   template <class Fn>
   void for_each(const Fn& fn) {
     walk(1, fn);

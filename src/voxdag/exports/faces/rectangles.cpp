@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-/// Memory for planes of voxels.
+/// The memory of the planes of voxels.
 constexpr std::uint64_t kPlaneBytes = std::uint64_t{48} << 20;
 
 /// Merges the faces of one direction. Rows of planes come in ascending order.
@@ -58,7 +58,7 @@ class Merger {
   }
   void add_part(std::int32_t row, std::int32_t begin, std::int32_t end, Value8 color) {
     Run run{begin, end, row, color};
-    // Both lists ascend: open runs before this one end in this row.
+    // Both lists ascend, so no later run can continue the open runs before this one.
     while (at_ < open_.size() && open_[at_].begin < begin) ++at_;
     if (merge_ && at_ < open_.size() && open_[at_].begin == begin && open_[at_].end == end &&
         open_[at_].color == color) {
@@ -144,7 +144,7 @@ std::array<Vec3i, 4> corners_of(const FaceRectangle& rectangle) {
 void for_each_rectangle(const VoxelSet& voxels, const Box3i& whole, LookReader* colors, bool merge,
                         const std::function<void(double)>& progress,
                         const std::function<void(const FaceRectangle&)>& fn) {
-  // Planes without voxels take time, too.
+  // The sweep takes time for each plane, also for those without voxels.
   const Box3i window = bounds_in(voxels, whole);
   if (window.hi.x <= window.lo.x) return;
   for (int axis = 0; axis < 3; ++axis) {

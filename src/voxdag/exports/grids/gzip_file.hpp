@@ -7,8 +7,8 @@
 
 namespace voxdag {
 
-/// The file appears at its path when it is complete. Equal content makes
-/// equal files: the header has no name and no time.
+/// The file appears at its path when it is complete. Equal content makes equal files: the header
+/// has no name and no time.
 class GzipFile {
  public:
   /// Throws Error if the file cannot be created.

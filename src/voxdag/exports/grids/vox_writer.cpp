@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/vox_writer.hpp"
+#include "voxdag/exports/grids/vox_writer.hpp"
 
 #include <utility>
 

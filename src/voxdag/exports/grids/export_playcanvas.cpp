@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/export_playcanvas.hpp"
+#include "voxdag/exports/grids/export_playcanvas.hpp"
 
 #include <bit>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 /// The module that writes .vdb and .nvdb files: the only exporter that links OpenVDB.
-#include "voxdag/exports/vdb/vdb_export_module.hpp"
+#include "voxdag/exports/grids/vdb_export_module.hpp"
 
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
@@ -123,7 +123,7 @@ class GridFiller {
   }
 
  private:
-  /// Whole indices are at the centres of voxels.
+  /// OpenVDB's index (i, j, k) is the centre of voxel (i, j, k).
   static openvdb::math::Transform::Ptr transform_of(const Grid& grid) {
     auto transform = openvdb::math::Transform::createLinearTransform(grid.voxel_size);
     const Vec3d first = grid.to_world({0.5, 0.5, 0.5});
@@ -210,7 +210,7 @@ class GridFiller {
   std::uint64_t whole_ = 0, done_ = 0, blocks_ = 0;
 };
 
-/// OpenVDB writes a random identifier into each file. Equal voxels are to make equal files.
+/// Overwrites the random identifier that OpenVDB writes, so that equal voxels make equal files.
 void clear_identifier(AtomicFile& file) {
   constexpr std::uint64_t kPlace = 21;  // after magic number, versions and a flag
   const std::string_view none = "00000000-0000-0000-0000-000000000000";
@@ -249,7 +249,7 @@ void write_grids(AtomicFile& file, bool is_nano, const std::vector<openvdb::Grid
 void write_in_module(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                      const Box3i& window, const ExportOptions& options) {
   const bool is_nano = path.extension() == ".nvdb";
-  // What the libraries take that this module loads.
+  // The libraries that this module loads take about 34 MB.
   const MemoryReservation libraries(options.memory, std::uint64_t{36} << 20);
   try {
     AtomicFile file(path);

@@ -1,5 +1,5 @@
 #pragma once
-/// Exports voxels as .binvox, the format of Patrick Min's voxelizer of this name.
+/// Exports voxels as .binvox, the format of Patrick Min's voxelizer binvox.
 #include "voxdag/exports/export_options.hpp"
 
 namespace voxdag {

@@ -1,10 +1,10 @@
-#include "voxdag/exports/vdb/export_vdb.hpp"
+#include "voxdag/exports/grids/export_vdb.hpp"
 
 #include <string>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/exports/export_common.hpp"
-#include "voxdag/exports/vdb/vdb_export_module.hpp"
+#include "voxdag/exports/grids/vdb_export_module.hpp"
 #include "voxdag/io/load_module.hpp"
 
 namespace voxdag {

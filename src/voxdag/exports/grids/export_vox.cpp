@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/export_vox.hpp"
+#include "voxdag/exports/grids/export_vox.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "voxdag/exports/blocks/color_palette.hpp"
-#include "voxdag/exports/blocks/vox_writer.hpp"
 #include "voxdag/exports/count_voxels.hpp"
 #include "voxdag/exports/export_common.hpp"
+#include "voxdag/exports/grids/color_palette.hpp"
+#include "voxdag/exports/grids/vox_writer.hpp"
 #include "voxdag/layout/look_reader.hpp"
 
 namespace voxdag {
@@ -37,8 +37,8 @@ std::filesystem::path section_path(const std::filesystem::path& path, Vec3i numb
   return section.replace_filename(name.append(path.extension().string()));
 }
 
-/// The voxels, their colours, and the progress of an export: each voxel is visited twice if there
-/// are colours.
+/// Walks over the voxels of an export with their palette indices, and reports the progress. With
+/// colours, each voxel is visited twice.
 class Source {
  public:
   Source(const VoxelSet& voxels, const Box3i& window, const ExportOptions& options)
@@ -107,7 +107,7 @@ void write_models(VoxWriter& file, const Box3i& section, Vec3i position, Source&
                        static_cast<std::uint8_t>(at.z), color});
     });
     if (model.empty()) return;
-    // Programs differ in where the middle of an odd size is.
+    // Programs round the middle of an odd size differently.
     const Vec3i size = box.hi - box.lo;
     const Vec3i even{size.x + (size.x & 1), size.y + (size.y & 1), size.z + (size.z & 1)};
     file.add_model(position + (box.lo - section.lo), even, model);
@@ -142,7 +142,7 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
   if (sections.size() > kMostSections)
     refuse_export(path, std::to_string(sections.size()) +
                             " sections of 2000³ are more than the 500 that are written at once");
-  // Sections of any size begin at the same place.
+  // All sections begin at one place, whatever their size.
   const Vec3i position =
       scene_position(is_cut ? Vec3i{kSectionSide, kSectionSide, kSectionSide} : size);
   std::vector<std::filesystem::path> files;

@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/export_spc.hpp"
+#include "voxdag/exports/grids/export_spc.hpp"
 
 #include <array>
 #include <string>
@@ -25,7 +25,7 @@ constexpr std::array<std::uint8_t, 256> kTurnedMasks = [] {
   return masks;
 }();
 
-/// Visits the nodes of a level in the order of the format.
+/// Visits the nodes of one level in kaolin's order.
 template <class Fn>
 class LevelWalk {
  public:

@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/export_schem.hpp"
+#include "voxdag/exports/grids/export_schem.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,9 +7,9 @@
 #include <unordered_map>
 
 #include "voxdag/exports/bit_planes.hpp"
-#include "voxdag/exports/blocks/block_palette.hpp"
-#include "voxdag/exports/blocks/gzip_file.hpp"
 #include "voxdag/exports/export_common.hpp"
+#include "voxdag/exports/grids/block_palette.hpp"
+#include "voxdag/exports/grids/gzip_file.hpp"
 #include "voxdag/layout/look_reader.hpp"
 
 namespace voxdag {
@@ -65,7 +65,7 @@ class NbtWriter {
   GzipFile& file_;
 };
 
-/// Finds blocks for colours. Remembers those of earlier calls.
+/// Finds the blocks of colours, and remembers them.
 class BlockOfColor {
  public:
   /// Returns the number of the block in the palette, which begins with air.

@@ -1,5 +1,5 @@
 #pragma once
-/// A palette of few colours for many.
+/// A palette: few colours that stand for many.
 #include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
@@ -9,7 +9,7 @@
 
 namespace voxdag {
 
-/// Colours (sRGB encoded), and which of them stands for a colour.
+/// The colours of a palette (sRGB encoded), and a map from colours to them.
 class ColorPalette {
  public:
   const std::vector<Value8>& colors() const { return colors_; }
@@ -19,7 +19,7 @@ class ColorPalette {
  private:
   friend class ColorCounter;
   std::vector<Value8> colors_;
-  /// If all colours fit, the index of each; otherwise that of each cell of ColorCounter.
+  /// The indices of all colours if they fit into the palette; `cells_` is then empty.
   std::unordered_map<std::uint32_t, std::uint8_t> exact_;
   std::vector<std::uint8_t> cells_;
 };

@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/gzip_file.hpp"
+#include "voxdag/exports/grids/gzip_file.hpp"
 
 #include <zlib.h>
 

@@ -1,14 +1,15 @@
-#include "voxdag/exports/blocks/export_slices.hpp"
+#include "voxdag/exports/grids/export_slices.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
+#include "voxdag/core/error.hpp"
 #include "voxdag/exports/bit_planes.hpp"
-#include "voxdag/exports/blocks/new_folder.hpp"
 #include "voxdag/exports/export_common.hpp"
 #include "voxdag/image/png_rows.hpp"
+#include "voxdag/io/temporary_folder.hpp"
 #include "voxdag/layout/look_reader.hpp"
 
 namespace voxdag {
@@ -28,10 +29,24 @@ void pack_bits(std::span<const std::uint64_t> bits, std::vector<std::uint8_t>& r
   });
 }
 
-/// The axes across `axis`: columns, then rows.
+/// Returns the axes of slices across `axis`.
 PlaneAxes axes_of(int axis) {
   const int column = axis == 0 ? 1 : 0, row = axis == 2 ? 1 : 2;
   return {axis, row, column};
+}
+
+/// Returns the folder that a path names. Throws Error if it exists and is not empty.
+std::filesystem::path new_folder(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path folder = path.has_filename() ? path : path.parent_path();
+  // Renaming needs the folder itself, not "." or a symbolic link to it.
+  if (fs::path canonical = fs::weakly_canonical(folder, error); !error) folder = canonical;
+  if (fs::exists(folder, error) &&
+      !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    throw Error(folder.string(), "",
+                error ? error.message() : "exists and is not an empty folder: choose another name");
+  return folder;
 }
 
 }  // namespace
@@ -47,7 +62,7 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
   const bool has_colors = look.has_colors();
   const std::size_t digits = std::max<std::size_t>(4, std::to_string(size[axis] - 1).size());
 
-  NewFolder output(folder);
+  const TemporaryFolder output(new_folder(folder));
   std::vector<std::uint8_t> row(has_colors ? std::size_t{width} * 4 : (std::size_t{width} + 7) / 8);
   std::unique_ptr<PngRowWriter> file;
   std::uint64_t done = 0;
@@ -57,7 +72,7 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
                    options.progress(static_cast<double>(k - window.lo[axis]) / size[axis], done);
                  if (at == 0) {
                    file = std::make_unique<PngRowWriter>(
-                       output.inside() / slice_name(k - window.lo[axis], digits), width, height,
+                       output.path() / slice_name(k - window.lo[axis], digits), width, height,
                        has_colors ? PngPixels::kRgba : PngPixels::kBits);
                  }
                  if (has_colors) {
@@ -85,12 +100,12 @@ void export_slices(const std::filesystem::path& folder, int axis, const VoxelSet
   file.reset();
   const std::string names = "xyz";
   write_placement_file(
-      output.inside() / "placement.json", grid, window,
+      output.path() / "placement.json", grid, window,
       {has_colors ? "RGBA, opaque where the voxel is set" : "1 where the voxel is set",
        has_colors ? "RGBA of 8 bits" : "1 bit",
        {names[static_cast<std::size_t>(axis)], names[static_cast<std::size_t>(axes.row)],
         names[static_cast<std::size_t>(axes.column)]}});
-  output.commit();
+  output.take_name();
 }
 
 }  // namespace voxdag

@@ -1,4 +1,4 @@
-#include "voxdag/exports/blocks/export_binvox.hpp"
+#include "voxdag/exports/grids/export_binvox.hpp"
 
 #include <algorithm>
 #include <string>
