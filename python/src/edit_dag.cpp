@@ -6,38 +6,26 @@
 
 #include "dag.hpp"
 #include "run_work.hpp"
-#include "voxdag/algebra/align_grids.hpp"
-#include "voxdag/algebra/coarsen.hpp"
-#include "voxdag/algebra/combine.hpp"
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/grow.hpp"
-#include "voxdag/algebra/shift.hpp"
+#include "voxdag/model/aligned_models.hpp"
+#include "voxdag/model/edited.hpp"
 
 namespace py = pybind11;
 
 namespace voxdag::python {
 namespace {
 
-/// Returns the edited DAG; `edit` says in its metadata how it was made.
-DagPointer edited(const Dag& source, Svdag dag, const Grid& grid, const std::string& edit) {
-  VdagMetadata metadata = source.model().metadata();
-  metadata.grid = grid;
-  metadata.attributes = {};
-  metadata.program = "voxdag " VOXDAG_VERSION;
-  std::string& edits = metadata.build["edits"];
-  edits += (edits.empty() ? "" : "; ") + edit;
-  return std::make_shared<Dag>(DagModel(std::move(dag), {}, metadata));
+DagPointer edited_dag(const Dag& source, Svdag dag, const std::string& edit) {
+  return std::make_shared<Dag>(edited(source.model(), std::move(dag), source.grid(), edit));
 }
 
 DagPointer combined(const Dag& a, const Dag& b, SetOperation operation, const char* name) {
   return run_work([&](Progress& progress) {
-    const AlignedGrids aligned = align_grids(a.grid(), b.grid());
-    const auto moved = [&](const Dag& dag, Vec3i by) {
-      return shift(dag.view(), by, aligned.grid.levels, nullptr, &progress);
-    };
-    const Svdag first = moved(a, aligned.first), second = moved(b, aligned.second);
-    return edited(a, combine(first.view(), second.view(), operation, nullptr, &progress),
-                  aligned.grid, std::string(name) + " " + b.model().metadata().source.name);
+    const AlignedModels aligned(a.model(), b.model(), nullptr, &progress);
+    return std::make_shared<Dag>(
+        edited(a.model(), aligned.result(operation), aligned.grid_of(operation),
+               std::string(name) + " " + b.model().metadata().source.name));
   });
 }
 
@@ -51,10 +39,10 @@ DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation) {
   if (steps < 1) throw py::value_error("steps must be at least 1");
   const Neighbours kind = neighbours_of(neighbours);
   return run_work([&](Progress& progress) {
-    return edited(dag,
-                  is_dilation ? dilate(dag.view(), steps, kind, nullptr, &progress)
-                              : erode(dag.view(), steps, kind, nullptr, &progress),
-                  dag.grid(), (is_dilation ? "dilated by " : "eroded by ") + std::to_string(steps));
+    return edited_dag(dag,
+                      is_dilation ? dilate(dag.view(), steps, kind, nullptr, &progress)
+                                  : erode(dag.view(), steps, kind, nullptr, &progress),
+                      (is_dilation ? "dilated by " : "eroded by ") + std::to_string(steps));
   });
 }
 
@@ -93,7 +81,7 @@ void add_edits(DagClass& dag) {
           "fill_cavities",
           [](const Dag& d) {
             return run_work([&](Progress& progress) {
-              return edited(d, fill_cavities(d.view(), nullptr, &progress), d.grid(), "filled");
+              return edited_dag(d, fill_cavities(d.view(), nullptr, &progress), "filled");
             });
           },
           "Fill the empty places that no way over faces connects with the sides of the grid.");

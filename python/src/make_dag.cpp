@@ -12,8 +12,7 @@
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/imports/batched_voxels.hpp"
-#include "voxdag/imports/import_voxels.hpp"
+#include "voxdag/imports/import_model.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/solid/fill_solid.hpp"
 #include "voxdag/surface/surface_shading.hpp"
@@ -77,7 +76,6 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridChoice& choice
   VdagMetadata metadata;
   metadata.grid = grid_of(mesh, choice);
   metadata.source = {name, mesh.vertices.size(), mesh.triangles.size()};
-  metadata.program = "voxdag " VOXDAG_VERSION;
   metadata.build = {{"cover", "exact"},
                     {"grid_from", choice.bounds ? "bounds" : "mesh"},
                     {"scale_from", choice.resolution ? "resolution" : "voxel_size"}};
@@ -198,21 +196,9 @@ std::vector<Rgb8> colors_of(const std::optional<Array<std::uint8_t>>& colors, st
   return result;
 }
 
-/// Imports a source, as `voxdag import` does.
 DagPointer import_source(const VoxelSource& source, const ImportOptions& options,
                          const std::string& name, Progress& progress) {
-  ImportResult result = import_voxels(source, options, &progress);
-  VdagMetadata metadata;
-  metadata.grid = result.grid;
-  metadata.source = {name, result.read, 0};
-  metadata.program = "voxdag " VOXDAG_VERSION;
-  metadata.build = {{"cover", "imported"}};
-  if (result.attributes.view().has_colors()) {
-    metadata.attributes.resolution = result.grid.resolution();
-    metadata.attributes.colors = {options.color_bound, result.attributes.color_errors.squared};
-  }
-  return std::make_shared<Dag>(
-      DagModel(std::move(result.dag), std::move(result.attributes), metadata));
+  return std::make_shared<Dag>(import_model(source, options, name, &progress).model);
 }
 
 ImportOptions import_options(const GridChoice& choice) {

@@ -11,6 +11,7 @@
 #include "voxdag/layout/look_reader.hpp"
 #include "voxdag/layout/svdag_lookup.hpp"
 #include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/query/containing_voxel.hpp"
 #include "voxdag/query/nearest_voxel.hpp"
 
 namespace py = pybind11;
@@ -33,17 +34,6 @@ Box3i window_of(const Dag& dag, const std::optional<Window>& window) {
   return box;
 }
 
-/// Returns the voxel of a point in units of voxels, or one outside of any grid.
-Vec3i voxel_at(Vec3d point) {
-  Vec3i voxel;
-  for (int axis = 0; axis < 3; ++axis) {
-    constexpr double kOutside = -1, kMost = 1 << 21;
-    const double at = std::floor(point[axis]);
-    voxel[axis] = static_cast<std::int32_t>(at >= 0 && at < kMost ? at : kOutside);
-  }
-  return voxel;
-}
-
 Vec3d to_grid(const Grid& grid, Vec3d world) {
   return (world - grid.origin) * (1 / grid.voxel_size);
 }
@@ -55,7 +45,7 @@ py::array_t<bool> contains(const Dag& dag, const Array<double>& points) {
   run_work([&](Progress& progress) {
     polled_for(places.size(), 4096, &progress, "contains", [&](std::size_t i) {
       inside[i] =
-          svdag_contains(dag.view(), voxel_at(to_grid(dag.grid(), places[i])), dag.grid().levels);
+          svdag_contains(dag.view(), containing_voxel(dag.grid(), places[i]), dag.grid().levels);
     });
     return 0;
   });

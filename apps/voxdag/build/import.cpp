@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
@@ -12,9 +11,8 @@
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/imports/import_voxels.hpp"
+#include "voxdag/imports/import_model.hpp"
 #include "voxdag/io/process_memory.hpp"
-#include "voxdag/model/dag_model.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -41,7 +39,8 @@ void check_grid_options(const VoxelSource& source, const ImportOptions& options)
 }
 
 /// Imports the file. Errors name it.
-ImportResult import_file(const ImportArguments& arguments, MemoryBudget& memory, Session& session) {
+ImportedModel import_file(const ImportArguments& arguments, MemoryBudget& memory,
+                          Session& session) {
   ImportOptions options = arguments.options;
   options.memory = &memory;
   options.colors = !arguments.is_grey;
@@ -52,7 +51,9 @@ ImportResult import_file(const ImportArguments& arguments, MemoryBudget& memory,
         open_voxel_source(session.subject, {arguments.threshold});
     print_warnings(source->warnings(), session);
     check_grid_options(*source, options);
-    return import_voxels(*source, options, &session.progress);
+    return import_model(*source, options,
+                        std::filesystem::path(session.subject).filename().string(),
+                        &session.progress);
   });
 }
 
@@ -60,19 +61,8 @@ void import(const ImportArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  ImportResult result = import_file(arguments, memory, session);
-  VdagMetadata metadata;
-  metadata.grid = result.grid;
-  metadata.source = {std::filesystem::path(session.subject).filename().string(), result.read, 0};
-  metadata.program = "voxdag " VOXDAG_VERSION;
-  metadata.build = {{"cover", "imported"}};
-  if (result.attributes.view().has_colors()) {
-    metadata.attributes.resolution = result.grid.resolution();
-    metadata.attributes.colors = {arguments.options.color_bound,
-                                  result.attributes.color_errors.squared};
-  }
-  const DagModel model(std::move(result.dag), std::move(result.attributes), std::move(metadata),
-                       &memory);
+  const ImportedModel result = import_file(arguments, memory, session);
+  const DagModel& model = result.model;
   model.save(arguments.output, arguments.compact, &session.progress, &memory);
   const SvdagCounts& counts = model.metadata().counts;
   session.bar.clear();
@@ -92,7 +82,7 @@ void import(const ImportArguments& arguments, Session& session) {
         "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
         with_commas(counts.voxels),
-        with_commas(static_cast<std::uint64_t>(result.grid.resolution())),
+        with_commas(static_cast<std::uint64_t>(model.grid().resolution())),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()));
   }

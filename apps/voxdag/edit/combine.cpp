@@ -5,14 +5,15 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "edit/edited_file.hpp"
-#include "voxdag/algebra/align_grids.hpp"
-#include "voxdag/algebra/shift.hpp"
-#include "voxdag/core/error.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/io/process_memory.hpp"
+#include "voxdag/model/aligned_models.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
@@ -26,44 +27,17 @@ class AlignedFiles {
       : first_(first, &session.progress, &memory), second_(second, &session.progress, &memory) {
     refuse_attributes(first_, first, arguments);
     refuse_attributes(second_, second, arguments);
-    AlignedGrids aligned;
-    try {
-      aligned = align_grids(first_.grid(), second_.grid());
-    } catch (const Error& error) {
-      throw error.in_file(second);
-    }
-    grid_ = aligned.grid;
-    place_ = aligned.first;
-    dag_a_ = moved(first_, aligned.first, moved_a_, memory, session);
-    dag_b_ = moved(second_, aligned.second, moved_b_, memory, session);
+    with_file_name(second, [&] { models_.emplace(first_, second_, &memory, &session.progress); });
   }
+  AlignedFiles(const AlignedFiles&) = delete;
+  AlignedFiles& operator=(const AlignedFiles&) = delete;
 
   const DagModel& first() const { return first_; }
-  const Grid& grid() const { return grid_; }
-  Svdag combined(SetOperation operation, MemoryBudget& memory, Session& session) const {
-    return combine(dag_a_, dag_b_, operation, &memory, &session.progress);
-  }
-  /// Returns the part of a DAG of the common grid that lies in the grid of the first file.
-  Svdag in_first_grid(Svdag dag, MemoryBudget& memory, Session& session) const {
-    if (grid_ == first_.grid()) return dag;
-    const Vec3i back{-place_.x, -place_.y, -place_.z};
-    return shift(dag.view(), back, first_.grid().levels, &memory, &session.progress);
-  }
+  const AlignedModels& models() const { return *models_; }
 
  private:
-  /// Returns the file's DAG in the common grid; `storage` holds it if it had to move.
-  SvdagView moved(const DagModel& file, Vec3i by, Svdag& storage, MemoryBudget& memory,
-                  Session& session) const {
-    if (by == Vec3i{} && file.grid().levels == grid_.levels) return file.view();
-    storage = shift(file.view(), by, grid_.levels, &memory, &session.progress);
-    return storage.view();
-  }
-
   DagModel first_, second_;
-  Grid grid_;
-  Vec3i place_;  ///< Voxel (0,0,0) of the first file in the common grid.
-  Svdag moved_a_, moved_b_;
-  SvdagView dag_a_, dag_b_;
+  std::optional<AlignedModels> models_;
 };
 
 struct CombineArguments {
@@ -85,13 +59,8 @@ void run_combine(const CombineArguments& arguments, Session& session) {
                      : arguments.is_difference   ? "minus "
                                                  : "symmetric difference with ";
   const std::string edit = name + std::filesystem::path(arguments.second).filename().string();
-  Svdag dag = files.combined(operation, memory, session);
-  if (arguments.is_union || arguments.is_symmetric) {
-    write_edited(arguments.edit, dag, files.grid(), files.first(), edit, memory, session);
-  } else {
-    dag = files.in_first_grid(std::move(dag), memory, session);
-    write_edited(arguments.edit, dag, files.first().grid(), files.first(), edit, memory, session);
-  }
+  write_edited(arguments.edit, files.models().result(operation), files.models().grid_of(operation),
+               files.first(), edit, memory, session);
 }
 
 struct DiffArguments {
@@ -106,9 +75,9 @@ void run_diff(const DiffArguments& arguments, Session& session) {
   voxels_only.drop_attributes = true;
   const AlignedFiles files(session.subject, arguments.second, voxels_only, memory, session);
   const auto count = [&](SetOperation operation) {
-    return count_svdag(files.combined(operation, memory, session).view()).voxels;
+    return count_svdag(files.models().combine(operation).view()).voxels;
   };
-  const Svdag dag = files.combined(SetOperation::kSymmetric, memory, session);
+  Svdag dag = files.models().combine(SetOperation::kSymmetric);
   const std::uint64_t differing = count_svdag(dag.view()).voxels;
   const std::uint64_t only_first = count(SetOperation::kDifference);
   const std::uint64_t both = count(SetOperation::kIntersection);
@@ -116,7 +85,7 @@ void run_diff(const DiffArguments& arguments, Session& session) {
     const bool quiet = session.quiet;
     session.quiet = true;
     write_edited(
-        voxels_only, dag, files.grid(), files.first(),
+        voxels_only, std::move(dag), files.models().grid(), files.first(),
         "symmetric difference with " + std::filesystem::path(arguments.second).filename().string(),
         memory, session);
     session.quiet = quiet;

@@ -61,11 +61,11 @@ void run(const ComponentsArguments& arguments, Session& session) {
   if (!edit.output.empty()) {
     const std::uint64_t least =
         arguments.largest ? (sizes.empty() ? 1 : sizes.front().voxels) : arguments.least;
-    const Svdag dag =
+    Svdag dag =
         keep_components(file.view(), least, arguments.neighbours, &memory, &session.progress);
     const bool quiet = session.quiet;
     session.quiet = quiet || session.json;
-    write_edited(edit, dag, file.grid(), file,
+    write_edited(edit, std::move(dag), file.grid(), file,
                  fmt::format("components of {} voxels or more", least), memory, session);
     session.quiet = quiet;
   }

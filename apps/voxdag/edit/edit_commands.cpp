@@ -45,8 +45,8 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
       const DagModel file(session.subject, &session.progress, &memory);
       refuse_attributes(file, session.subject, *arguments);
       Grid grid = file.grid();
-      const Svdag dag = edit(file.view(), grid, {session.subject, &memory, &session.progress});
-      write_edited(*arguments, dag, grid, file, describe(), memory, session);
+      Svdag dag = edit(file.view(), grid, {session.subject, &memory, &session.progress});
+      write_edited(*arguments, std::move(dag), grid, file, describe(), memory, session);
     };
   });
 }

@@ -4,11 +4,11 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "cli/parse.hpp"
-#include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/model/edited.hpp"
 #include "voxdag/report/human.hpp"
 
 namespace voxdag {
@@ -59,28 +59,19 @@ void refuse_attributes(const DagModel& file, const std::string& path,
                 "--drop-attributes leaves them out");
 }
 
-void write_edited(const EditArguments& arguments, const Svdag& dag, const Grid& grid,
+void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session) {
-  VdagMetadata metadata = source.metadata();
-  metadata.grid = grid;
-  metadata.counts = count_svdag(dag.view());
-  metadata.attributes = {};
-  metadata.program = "voxdag " VOXDAG_VERSION;
-  std::string& edits = metadata.build["edits"];
-  edits += (edits.empty() ? "" : "; ") + edit;
+  const DagModel model = edited(source, std::move(dag), grid, edit, &memory);
   const bool compact = arguments.compact || (!arguments.plain && source.is_compact());
-  if (compact)
-    write_vdag(arguments.output, encode_svdag(dag.view(), {.memory = &memory}, &session.progress),
-               metadata, {});
-  else
-    write_vdag(arguments.output, dag.view(), metadata, {});
+  model.save(arguments.output, compact, &session.progress, &memory);
+  const std::uint64_t voxels = model.metadata().counts.voxels;
   session.bar.clear();
-  warn_if_empty(metadata.counts.voxels, arguments.output, session);
+  warn_if_empty(voxels, arguments.output, session);
   if (session.quiet) return;
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
-  fmt::print("{}: {} voxels, {}, {} form\n", arguments.output, with_commas(metadata.counts.voxels),
+  fmt::print("{}: {} voxels, {}, {} form\n", arguments.output, with_commas(voxels),
              human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
              compact ? "compact" : "plain");
 }

@@ -36,7 +36,7 @@ void refuse_attributes(const DagModel& file, const std::string& path,
 /// Writes `dag` in the form that the options ask for, else in that of `source`. The grid is `grid`;
 /// the metadata is that of `source` and says in `build` how the voxels were made: `edit`. Prints a
 /// summary.
-void write_edited(const EditArguments& arguments, const Svdag& dag, const Grid& grid,
+void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session);
 

@@ -22,6 +22,7 @@
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/model/scene_model.hpp"
 #include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/query/containing_voxel.hpp"
 #include "voxdag/query/distance_field.hpp"
 #include "voxdag/query/height_map.hpp"
 #include "voxdag/query/nearest_voxel.hpp"
@@ -72,17 +73,6 @@ std::uint64_t answer_rows(const std::string& input, std::uint64_t columns,
   return reader.rows();
 }
 
-/// Returns the voxel that holds a point in units of voxels, as far as 32 bits reach.
-Vec3i voxel_at(Vec3d point) {
-  Vec3i voxel;
-  for (int axis = 0; axis < 3; ++axis) {
-    constexpr double kMost = 2147483647;
-    const double at = std::floor(point[axis]);
-    voxel[axis] = static_cast<std::int32_t>(at >= -kMost ? std::min(at, kMost) : -kMost);
-  }
-  return voxel;
-}
-
 std::string answer_points(const QueryArguments& arguments, const DagModel& file, Session& session) {
   constexpr std::size_t kBytes = 29;
   const SvdagView dag = file.view();
@@ -98,10 +88,10 @@ std::string answer_points(const QueryArguments& arguments, const DagModel& file,
             (count + kChunk - 1) / kChunk, 1, &session.progress, "query", [&](std::size_t chunk) {
               for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
                 const float* const p = values.data() + 3 * i;
-                const Vec3d point = (static_cast<Vec3d>(Vec3f{p[0], p[1], p[2]}) - grid.origin) *
-                                    (1 / grid.voxel_size);
-                const Vec3i voxel = voxel_at(point);
-                const auto nearest = nearest_voxel(dag, point);
+                const auto world = static_cast<Vec3d>(Vec3f{p[0], p[1], p[2]});
+                const Vec3i voxel = containing_voxel(grid, world);
+                const auto nearest =
+                    nearest_voxel(dag, (world - grid.origin) * (1 / grid.voxel_size));
                 const bool is_occupied = nearest && nearest->voxel == voxel;
                 std::byte* row = rows.data() + kBytes * i;
                 row = put(row, is_occupied);

@@ -21,8 +21,8 @@ class DagModel {
   DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
 
   /// Holds a DAG and the attributes of its cells, which may be empty. metadata.grid.levels must
-  /// equal dag.levels; sets metadata.counts. `memory`, which may be null, counts them. Throws
-  /// OverMemory.
+  /// equal dag.levels. Sets metadata.counts and metadata.program. `memory`, which may be null,
+  /// counts them. Throws OverMemory.
   DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata,
            MemoryBudget* memory = nullptr);
 

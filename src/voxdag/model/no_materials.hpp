@@ -1,4 +1,5 @@
 #pragma once
+/// The error of DAGs and ESVOs without material ids.
 #include <filesystem>
 
 #include "voxdag/core/error.hpp"
