@@ -1,7 +1,9 @@
 """The Python module against NumPy: each answer is computed again from the coordinates."""
 import _thread
+import ast
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -197,6 +199,15 @@ def test_views_of_the_nodes_are_read_only():
 def test_bad_arguments_are_value_errors(call, reason):
     with pytest.raises(ValueError, match=reason):
         call()
+
+
+def test_the_stubs_name_everything():
+    stubs = ast.parse((Path(voxdag.__file__).parent / "__init__.pyi").read_text())
+    functions = {node.name for node in stubs.body if isinstance(node, ast.FunctionDef)}
+    assert functions | {"Dag"} == set(voxdag.__all__)
+    dag = next(n for n in stubs.body if isinstance(n, ast.ClassDef) and n.name == "Dag")
+    members = {n.name for n in dag.body if not n.name.startswith("_")}
+    assert members == {name for name in dir(voxdag.Dag) if not name.startswith("_")}
 
 
 def test_other_threads_run_and_ctrl_c_works():

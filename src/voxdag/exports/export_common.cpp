@@ -75,6 +75,13 @@ void refuse_export(const std::filesystem::path& path, const std::string& reason)
               reason + ": choose a smaller --window, or make a coarser grid (voxdag coarsen)");
 }
 
+void refuse_pipe(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_fifo(path, ignored))
+    throw Error(path.string(), "",
+                "is a pipe, but this format is completed at its beginning: choose a file");
+}
+
 void write_placement(const std::filesystem::path& path, const Grid& grid, const Box3i& window,
                      const ArrayLayout& layout) {
   std::error_code ignored;

@@ -24,6 +24,9 @@ void check_disk_space(const std::filesystem::path& path, std::uint64_t bytes);
 /// Throws Error(path, "", `reason` and what the user can do about it): the format has a limit.
 [[noreturn]] void refuse_export(const std::filesystem::path& path, const std::string& reason);
 
+/// Throws Error if the output is a pipe: for formats that are completed at their beginning.
+void refuse_pipe(const std::filesystem::path& path);
+
 /// Reports that `done` of `count` voxels are done to options.progress, if it is set.
 inline void report_export(const ExportOptions& options, std::uint64_t done, std::uint64_t count) {
   if (options.progress)

@@ -186,6 +186,7 @@ void for_each_part(const BlockSurface& whole, Vec3i origin, bool by_voxel, const
 
 void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                        const ExportOptions& options) {
+  refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
   LookReader look(options.look);
   const std::uint64_t vertex_bytes = sizeof(Vec3f) + (look.has_normals() ? sizeof(Vec3f) : 0) +
@@ -206,6 +207,7 @@ void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels
 
 void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                       const ExportOptions& options) {
+  refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
   const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
   LookReader look(options.look);

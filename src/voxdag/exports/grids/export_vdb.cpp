@@ -11,6 +11,7 @@ namespace voxdag {
 
 void export_vdb(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
                 const ExportOptions& options) {
+  refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
   std::string reason;
   const auto* const module = static_cast<const VdbExportModule*>(

@@ -119,6 +119,7 @@ void write_models(VoxWriter& file, const Box3i& section, Vec3i position, Source&
 std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
                                               const VoxelSet& voxels, const Grid& grid,
                                               const ExportOptions& options) {
+  refuse_pipe(path);
   const Box3i window = export_window(path, voxels, options);
   Source source(voxels, window, options);
   const Vec3i size = window.hi - window.lo;
