@@ -241,6 +241,16 @@ TEST_F(Edit, EitherFormOnAnyNumberOfThreadsGivesTheSameBytes) {
   }
 }
 
+TEST_F(Edit, FilesNameTheProgramWithoutItsCommit) {
+  run({"combine", "or", path("a.vdag"), path("b.vdag")}, "named.vdag");
+  ASSERT_EQ(run_voxdag({"export", path("a.vdag"), "-o", path("named.npy"), "-q"}).status, 0);
+  run({"import", path("named.npy")}, "imported.vdag");
+  for (const char* file : {"a.vdag", "named.vdag", "imported.vdag"})
+    EXPECT_NE(read_text(path(file)).find("\"program\":\"voxdag " VOXDAG_VERSION "\""),
+              std::string::npos)
+        << file;
+}
+
 TEST_F(Edit, AttributesAreNotLostSilently) {
   ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "--bounds", "0,0,0,0.6,0.6,0.6",
                         "--color", "-o", path("col.vdag")})

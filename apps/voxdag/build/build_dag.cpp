@@ -13,6 +13,7 @@
 #include "voxdag/layout/compact/compact_bytes.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
+#include "voxdag/model/written_by.hpp"
 #include "voxdag/report/dag_report.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -110,7 +111,7 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
                             mesh.vertices.size(), mesh.triangles.size()};
-  report.metadata.program = "voxdag " VOXDAG_VERSION;
+  report.metadata.program = written_by();
   report.metadata.build = grid_settings(arguments);
   BuildResult result =
       build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);

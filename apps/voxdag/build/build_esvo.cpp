@@ -11,6 +11,7 @@
 #include "voxdag/file/esvo_writer.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/io/resolved_output.hpp"
+#include "voxdag/model/written_by.hpp"
 #include "voxdag/report/esvo_report.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -120,7 +121,7 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   esvo.bake.check_levels(metadata.grid.levels);
   metadata.source = {std::filesystem::path(session.subject).filename().string(),
                      source.mesh.vertices.size(), source.mesh.triangles.size()};
-  metadata.program = "voxdag " VOXDAG_VERSION;
+  metadata.program = written_by();
   metadata.build = settings_of(arguments);
   if (displaced) metadata.build["displaced"] = "yes";
   std::optional<Occluders> occluders;

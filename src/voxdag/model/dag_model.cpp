@@ -11,7 +11,7 @@
 #include "voxdag/layout/build_cell_index.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/model/no_materials.hpp"
-#include "voxdag/model/program_name.hpp"
+#include "voxdag/model/written_by.hpp"
 
 namespace voxdag {
 namespace {
@@ -68,7 +68,7 @@ DagModel::DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata, M
     : dag_(Made{std::move(dag), std::move(attributes)}), metadata_(std::move(metadata)) {
   memory_ = MemoryReservation(memory, view().bytes() + std::get<Made>(dag_).stored.bytes());
   metadata_.counts = count_svdag(view());
-  metadata_.program = program_name();
+  metadata_.program = written_by();
 }
 
 void DagModel::save(const std::filesystem::path& path, bool compact, Progress* progress,
