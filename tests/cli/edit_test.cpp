@@ -242,7 +242,7 @@ TEST_F(Edit, EitherFormOnAnyNumberOfThreadsGivesTheSameBytes) {
 }
 
 TEST_F(Edit, FilesNameTheProgramWithoutItsCommit) {
-  run({"combine", "or", path("a.vdag"), path("b.vdag")}, "named.vdag");
+  run({"combine", path("a.vdag"), path("b.vdag"), "--union"}, "named.vdag");
   ASSERT_EQ(run_voxdag({"export", path("a.vdag"), "-o", path("named.npy"), "-q"}).status, 0);
   run({"import", path("named.npy")}, "imported.vdag");
   for (const char* file : {"a.vdag", "named.vdag", "imported.vdag"})
