@@ -4,7 +4,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/trace/svdag_cast.hpp"
 #include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {

@@ -7,8 +7,7 @@
 #include <random>
 
 #include "support/brute_svdag.hpp"
-#include "voxdag/trace/cast.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/trace/svdag_cast.hpp"
 
 namespace voxdag {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "support/brute_svdag.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/trace/svdag_cast.hpp"
 
 namespace voxdag {
 namespace {

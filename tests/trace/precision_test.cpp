@@ -10,8 +10,7 @@
 #include "support/brute_svdag.hpp"
 #include "support/test_rays.hpp"
 #include "support/voxel_sets.hpp"
-#include "voxdag/trace/cast.hpp"
-#include "voxdag/trace/svdag_nodes.hpp"
+#include "voxdag/trace/svdag_cast.hpp"
 
 namespace voxdag {
 namespace {

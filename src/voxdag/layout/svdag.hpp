@@ -75,9 +75,11 @@ VOXDAG_HD inline std::uint32_t child_pointer(const std::uint32_t* node, int inde
 
 /// Returns the child mask of a leaf block: bit i is set if octant i has voxels.
 VOXDAG_HD inline std::uint32_t leaf_block_child_mask(std::uint64_t block) {
-  std::uint32_t mask = 0;
-  for (int i = 0; i < 8; ++i) mask |= ((block >> (8 * i)) & 0xFFu) != 0 ? 1u << i : 0u;
-  return mask;
+  block |= block >> 4;
+  block |= block >> 2;
+  block |= block >> 1;
+  block &= 0x0101010101010101ull;
+  return static_cast<std::uint32_t>(block * 0x0102040810204080ull >> 56);
 }
 
 }  // namespace voxdag

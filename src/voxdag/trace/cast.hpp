@@ -11,6 +11,8 @@
 /// over all planes that the ray reaches at the cell's exit T (ADVANCE). If a step leaves the
 /// parent, the walk continues at the highest level at which the positions differ (POP). Invariant:
 /// the current cell is the cell of its level that the ray is in at `t`.
+#include <type_traits>
+
 #include "voxdag/trace/cell_walk.hpp"
 #include "voxdag/trace/hit.hpp"
 
@@ -42,6 +44,8 @@ struct StopAtVoxels {
   VOXDAG_HD constexpr int first_level() const { return kMaxLevels; }
 };
 
+class SvdagNodes;  // svdag_cast.hpp casts at it
+
 /// Finds the first non-empty cell along the ray that is a voxel or for which `stop(level, t_enter,
 /// t_exit)` is true, and returns whether there is one within the ray's range. Calls `stop` for
 /// non-empty cells of levels 1 to L-1, with the range of T in them. O(cells on the way) time, one
@@ -49,7 +53,8 @@ struct StopAtVoxels {
 template <class Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   static_assert(
-      !requires { typename Nodes::Found; }, "the layout has a cast of its own");
+      !requires { typename Nodes::Found; } && !std::is_same_v<Nodes, SvdagNodes>,
+      "the layout has a cast of its own: include svdag_cast.hpp or esvo_cast.hpp");
   if (ray.misses() || nodes.is_empty()) return false;
 
   const int levels = nodes.levels();

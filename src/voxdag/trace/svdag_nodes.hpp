@@ -36,7 +36,7 @@ class SvdagNodes {
   VOXDAG_HD std::uint32_t child_mask(Node node, int level) const {
     if (level < levels_ - 2) return voxdag::child_mask(nodes_ + node);
     if (level == levels_ - 1) return node;
-    return nonzero_bytes(leaf_blocks_[node]);
+    return leaf_block_child_mask(leaf_blocks_[node]);
   }
 
   /// Returns the address that child_mask() and block() will read; `level` is at most L-2.
@@ -54,16 +54,6 @@ class SvdagNodes {
   }
 
  private:
-  /// Returns a mask whose bit i is set if byte i is not zero. Computes leaf_block_child_mask()
-  /// without a loop.
-  VOXDAG_HD static std::uint32_t nonzero_bytes(std::uint64_t v) {
-    v |= v >> 4;
-    v |= v >> 2;
-    v |= v >> 1;
-    v &= 0x0101010101010101ull;
-    return static_cast<std::uint32_t>(v * 0x0102040810204080ull >> 56);
-  }
-
   const std::uint32_t* nodes_;
   const std::uint64_t* leaf_blocks_;
   int levels_;
