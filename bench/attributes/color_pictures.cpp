@@ -52,6 +52,7 @@ GreyImage ColorPictures::render(std::size_t view, const DagAttributesView& color
   options.occlusion_samples = 0;
   options.exposure = exposure;
   options.look = ColoredDagView{dag_, colored};
+  options.with_normal = options.with_occlusion = options.with_shadow = false;
   const RenderedImage image = render_image(scene_, grid_, options, &progress);
   exposure = image.exposure;
   return luma_of(image);

@@ -39,6 +39,7 @@ PictureCost picture_cost(const EsvoFile& esvo, const DeviceScene* on_device,
     options.lod_pixels = lod_pixels;
     options.shadows = false;
     options.occlusion_samples = 0;
+    options.with_normal = options.with_occlusion = options.with_shadow = false;
     if (on_device != nullptr) {
       const auto seconds = [&](FilterKind filter) {
         options.filter = filter;

@@ -40,6 +40,7 @@ ImageRgb8 render(const Dag& dag, int width, int height, const std::optional<Trip
   options.shadows = shadows;
   options.occlusion_samples = occlusion;
   if (colors) options.look = dag.look();
+  options.with_normal = options.with_occlusion = options.with_shadow = false;
   return run_work([&](Progress& progress) {
     const RenderedImage image = render_image(dag.scene(), dag.grid(), options, &progress);
     ImageRgb8 pixels(width, height);

@@ -35,6 +35,19 @@ RenderOptions small_picture() {
   return options;
 }
 
+TEST(RenderImage, HasOnlyTheValuesThatTheOptionsAskFor) {
+  const Svdag dag = block_on_a_floor();
+  RenderOptions options = small_picture();
+  const RenderedImage all = render_image(dag.view(), picture_grid(), options);
+  options.with_normal = options.with_occlusion = options.with_shadow = false;
+  const RenderedImage few = render_image(dag.view(), picture_grid(), options);
+  EXPECT_EQ(few.rgb, all.rgb);
+  EXPECT_EQ(few.depth, all.depth);
+  EXPECT_TRUE(few.normal.empty() && few.occlusion.empty() && few.shadow.empty());
+  options.filter = FilterKind::kGuided;
+  EXPECT_EQ(render_image(dag.view(), picture_grid(), options).normal, all.normal);
+}
+
 TEST(RenderImage, PixelsDoNotDependOnThreads) {
   const Svdag dag = block_on_a_floor();
   RenderOptions options = small_picture();

@@ -90,6 +90,8 @@ inline std::vector<Picture> pictures(int scale) {
   section.section.box = {{-1, -1, -0.9}, {0.35, 1, 0.6}};
   section.section.plane = {{0, 0.3, 0}, {-0.2, 1, 0.1}};
   section.lod_pixels = 2;
+  RenderOptions& colors = add("colours and depth alone");
+  colors.with_normal = colors.with_occlusion = colors.with_shadow = false;
   RenderOptions& steps = add("steps");
   steps.with_steps = true;
   steps.view.eye = {0.1, -0.6, -0.4};

@@ -135,7 +135,9 @@ RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo) {
   options.filter = arguments.filter_kind;
   const bool is_usual = arguments.filter || (is_esvo && !arguments.no_filter);
   if (options.filter == FilterKind::kNone && is_usual) options.filter = FilterKind::kGuided;
-  for (const PicturePass& pass : arguments.passes) options.with_steps |= pass.kind->needs_steps;
+  options.with_normal = options.with_occlusion = options.with_shadow = false;
+  for (const PicturePass& pass : all_passes(arguments))
+    if (pass.kind->needs != nullptr) options.*(pass.kind->needs) = true;
   return options;
 }
 

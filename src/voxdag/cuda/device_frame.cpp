@@ -17,8 +17,7 @@ void fetch(std::vector<T>& values, const DeviceBuffer<T>& buffer) {
 
 }  // namespace
 
-DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps,
-                         FilterKind filter)
+DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, FilterKind filter)
     : setup_(plan.setup()) {
   const Camera& camera = setup_.camera;
   const std::size_t pixels =
@@ -26,22 +25,28 @@ DeviceFrame::DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_step
   const std::size_t beams = static_cast<std::size_t>(beams_across(camera.width)) *
                             static_cast<std::size_t>(beams_across(camera.height));
   const char* what = "the picture";
-  constexpr std::size_t kBytesPerPixel = 2 * sizeof(Vec3f) + 3 * sizeof(float);
+  const ImageBuffers& wanted = setup_.image;
   const bool with_filter = filter != FilterKind::kNone;
-  require_device_memory(pixels * (kBytesPerPixel + (with_steps ? sizeof(float) : 0) +
-                                  (with_filter ? sizeof(Vec3f) + 1 : 0)) +
-                            (with_beams ? beams * sizeof(float) : 0),
-                        what);
-  radiance_ = make_device_buffer<Vec3f>(pixels, what);
-  normal_ = make_device_buffer<Vec3f>(pixels, what);
-  depth_ = make_device_buffer<float>(pixels, what);
-  occlusion_ = make_device_buffer<float>(pixels, what);
-  shadow_ = make_device_buffer<float>(pixels, what);
-  if (with_steps) steps_ = make_device_buffer<float>(pixels, what);
+  const auto bytes = [](const auto* values) { return values != nullptr ? sizeof *values : 0; };
+  require_device_memory(
+      pixels * (bytes(wanted.radiance) + bytes(wanted.depth) + bytes(wanted.normal) +
+                bytes(wanted.occlusion) + bytes(wanted.shadow) + bytes(wanted.steps) +
+                bytes(wanted.cell_pixels) + (with_filter ? sizeof(Vec3f) : 0)) +
+          (with_beams ? beams * sizeof(float) : 0),
+      what);
+  const auto make = [&]<class T>(DeviceBuffer<T>& buffer, const T* values) {
+    if (values != nullptr) buffer = make_device_buffer<T>(pixels, what);
+  };
+  make(radiance_, wanted.radiance);
+  make(depth_, wanted.depth);
+  make(normal_, wanted.normal);
+  make(occlusion_, wanted.occlusion);
+  make(shadow_, wanted.shadow);
+  make(steps_, wanted.steps);
+  make(cell_pixels_, wanted.cell_pixels);
   if (with_beams) beam_starts_ = make_device_buffer<float>(beams, what);
   if (with_filter) {
     filtered_ = make_device_buffer<Vec3f>(pixels, what);
-    cell_pixels_ = make_device_buffer<std::uint8_t>(pixels, what);
     filter_samples_ = upload(std::span<const FilterSample>(filter_table()), what);
   }
   const unsigned long long none = 0;

@@ -8,9 +8,9 @@ namespace voxdag {
 
 class DeviceFrame {
  public:
-  /// Allocates on the current device. `filter` must be that of the plan's options. Throws Error if
-  /// memory is short, before it allocates anything.
-  DeviceFrame(const RenderPlan& plan, bool with_beams, bool with_steps, FilterKind filter);
+  /// Allocates a buffer on the current device for each of the plan's. `filter` must be that of the
+  /// plan's options. Throws Error if memory is short, before it allocates anything.
+  DeviceFrame(const RenderPlan& plan, bool with_beams, FilterKind filter);
 
   /// Returns the setup with pointers into device memory; beam_starts is null without beams.
   const RenderSetup& setup() const { return setup_; }

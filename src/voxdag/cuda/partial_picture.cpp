@@ -19,7 +19,7 @@ struct PartialPicture::State {
   State(const DeviceBlocks& blocks_in, const RenderPlan& plan, const RenderOptions& options,
         Progress* progress_in)
       : blocks(blocks_in),
-        frame(plan, options.beams, options.with_steps, options.filter),
+        frame(plan, options.beams, options.filter),
         has_beams(options.beams),
         progress(progress_in),
         tile_count(block_count(options.width, options.height)),

@@ -80,7 +80,7 @@ RenderedImage render_image(const DeviceScene& scene, const Grid& grid, const Ren
   scene.make_current();
   RenderPlan plan(scene.host(), grid, options);
   const bool with_beams = options.beams && source == nullptr;
-  const DeviceFrame frame(plan, with_beams, options.with_steps, options.filter);
+  const DeviceFrame frame(plan, with_beams, options.filter);
   const RenderSetup& setup = frame.setup();
   const CudaStream stream;
   if (with_beams)

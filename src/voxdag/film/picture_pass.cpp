@@ -110,11 +110,24 @@ std::span<const PictureKind> picture_kinds() {
       PictureKind{"picture", {"R", "G", "B"}, vectors<&Image::rgb>, light<&Image::rgb>},
       PictureKind{"radiance", {"R", "G", "B"}, vectors<&Image::radiance>, light<&Image::radiance>},
       PictureKind{"depth", {"Z"}, scalars<&Image::depth>, depths},
-      PictureKind{"normal", {"N.X", "N.Y", "N.Z"}, vectors<&Image::normal>, normals},
-      PictureKind{"occlusion", {"occlusion"}, scalars<&Image::occlusion>, greys<&Image::occlusion>},
-      PictureKind{"shadow", {"shadow"}, scalars<&Image::shadow>, greys<&Image::shadow>},
-      PictureKind{"steps", {"steps"}, scalars<&Image::steps>, heat, true},
-      PictureKind{"steps64", {"steps"}, scalars<&Image::steps>, grey_steps, true}};
+      PictureKind{"normal",
+                  {"N.X", "N.Y", "N.Z"},
+                  vectors<&Image::normal>,
+                  normals,
+                  &RenderOptions::with_normal},
+      PictureKind{"occlusion",
+                  {"occlusion"},
+                  scalars<&Image::occlusion>,
+                  greys<&Image::occlusion>,
+                  &RenderOptions::with_occlusion},
+      PictureKind{"shadow",
+                  {"shadow"},
+                  scalars<&Image::shadow>,
+                  greys<&Image::shadow>,
+                  &RenderOptions::with_shadow},
+      PictureKind{"steps", {"steps"}, scalars<&Image::steps>, heat, &RenderOptions::with_steps},
+      PictureKind{
+          "steps64", {"steps"}, scalars<&Image::steps>, grey_steps, &RenderOptions::with_steps}};
   return kKinds;
 }
 

@@ -16,7 +16,7 @@ struct PictureKind {
   std::vector<std::string> channels;         ///< Names of the channels in an EXR.
   ImageF (*values)(const RenderedImage&);    ///< Returns the values for an EXR.
   ImageRgb8 (*shown)(const RenderedImage&);  ///< Returns the pixels of a PNG.
-  bool needs_steps = false;                  ///< Whether RenderOptions::with_steps must be set.
+  bool RenderOptions::*needs = nullptr;      ///< The option that must be set, or null.
 };
 
 /// Returns the table of all kinds. EXR holds the values: "picture", tone mapped in linear light;

@@ -71,11 +71,15 @@ struct RenderOptions {
   FilterKind filter = FilterKind::kNone;
   float exposure = 0;  ///< Factor before tone mapping; 0: chosen to suit the picture.
 
-  bool with_steps = false;  ///< Fill RenderedImage::steps.
-  int tile_size = 32;       ///< Pixels, 1 to 32. Pictures do not depend on it.
+  bool with_normal = true;     ///< Fill RenderedImage::normal; the guided filter does, too.
+  bool with_occlusion = true;  ///< Fill RenderedImage::occlusion; the guided filter does, too.
+  bool with_shadow = true;     ///< Fill RenderedImage::shadow; the guided filter does, too.
+  bool with_steps = false;     ///< Fill RenderedImage::steps.
+  int tile_size = 32;          ///< Pixels, 1 to 32. Pictures do not depend on it.
 };
 
-/// Rows from top to bottom, pixels from left to right, width * height values each.
+/// Rows from top to bottom, pixels from left to right, width * height values each; none of those
+/// that the options do not ask for.
 struct RenderedImage {
   int width = 0, height = 0;
   View view;                     ///< The view that it shows.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/tone_map.hpp"
 
@@ -107,12 +108,12 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
   image_.height = options.height;
   image_.view =
       frame_scene(voxels, grid, static_cast<double>(options.width) / options.height, options.view);
-  image_.rgb.resize(pixels);
   image_.radiance.resize(pixels);
   image_.depth.resize(pixels);
-  image_.normal.resize(pixels);
-  image_.occlusion.resize(pixels);
-  image_.shadow.resize(pixels);
+  const bool is_guided = options.filter == FilterKind::kGuided;
+  if (options.with_normal || is_guided) image_.normal.resize(pixels);
+  if (options.with_occlusion || is_guided) image_.occlusion.resize(pixels);
+  if (options.with_shadow || is_guided) image_.shadow.resize(pixels);
   if (options.with_steps) image_.steps.resize(pixels);
   if (options.filter != FilterKind::kNone) image_.cell_pixels.resize(pixels);
 
@@ -152,9 +153,11 @@ RenderPlan::RenderPlan(const VoxelSet& voxels, const Grid& grid, const RenderOpt
 }
 
 RenderedImage RenderPlan::finish(RenderedImage image) const {
+  constexpr std::size_t kPixelsPerTask = 1 << 14;
   image.exposure = exposure_ > 0 ? exposure_ : automatic_exposure(image.radiance, image.depth);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = tone_map(image.radiance[i] * image.exposure);
+  image.rgb.resize(image.radiance.size());
+  parallel_for(image.rgb.size(), kPixelsPerTask,
+               [&](std::size_t i) { image.rgb[i] = tone_map(image.radiance[i] * image.exposure); });
   return image;
 }
 
