@@ -2,9 +2,11 @@
 /// The class Dag of the module.
 #include <pybind11/pybind11.h>
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/layout/look.hpp"
@@ -39,11 +41,22 @@ class Dag {
 using DagPointer = std::shared_ptr<Dag>;
 using DagClass = pybind11::class_<Dag, DagPointer>;
 
+/// The first voxel of a box, and one past the last on each axis.
+using Window = std::array<std::array<std::int32_t, 3>, 2>;
+
+/// Returns the box of a window, by default the whole grid. Raises ValueError if it is empty or
+/// reaches beyond the grid.
+Box3i window_of(const Dag& dag, const std::optional<Window>& window);
+
+/// Returns the number of "x", "y" or "z". Raises ValueError for other names.
+int axis_of(const std::string& name);
+
 /// Add the functions that make DAGs, and the methods of Dag, to the module.
 void add_makers(pybind11::module_& module);
 void add_rays(DagClass& dag);
 void add_queries(DagClass& dag);
 void add_edits(DagClass& dag);
+void add_exports(DagClass& dag);
 void add_pictures(DagClass& dag);
 
 }  // namespace voxdag::python

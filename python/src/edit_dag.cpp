@@ -1,13 +1,20 @@
-/// DAGs from DAGs: set operations, moves, dilation. Results have no colours.
+/// DAGs from DAGs: set operations, moves, dilation, components. Results have no colours.
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
 #include <array>
+#include <bit>
 
+#include "arrays.hpp"
 #include "dag.hpp"
 #include "run_work.hpp"
+#include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/algebra/components.hpp"
+#include "voxdag/algebra/crop.hpp"
 #include "voxdag/algebra/grow.hpp"
+#include "voxdag/algebra/reorient.hpp"
+#include "voxdag/algebra/shift.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/model/aligned_models.hpp"
 #include "voxdag/model/edited.hpp"
 
@@ -46,9 +53,108 @@ DagPointer grown(const Dag& dag, int steps, int neighbours, bool is_dilation) {
   });
 }
 
+std::string text_of(Vec3i v) {
+  return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
+}
+
+DagPointer cropped(const Dag& dag, const Window& window) {
+  const Box3i box = window_of(dag, window);
+  return run_work([&](Progress& progress) {
+    return edited_dag(dag, crop(dag.view(), box, nullptr, &progress),
+                      "cropped to " + text_of(box.lo) + "," + text_of(box.hi));
+  });
+}
+
+DagPointer shifted(const Dag& dag, const std::array<std::int32_t, 3>& offset, bool drop_outside) {
+  const Vec3i by{offset[0], offset[1], offset[2]};
+  return run_work([&](Progress& progress) {
+    DagPointer moved = edited_dag(dag, shift(dag.view(), by, dag.grid().levels, nullptr, &progress),
+                                  "shifted by " + text_of(by));
+    const std::uint64_t lost =
+        dag.model().metadata().counts.voxels - moved->model().metadata().counts.voxels;
+    if (lost != 0 && !drop_outside)
+      throw Error(std::to_string(lost) +
+                  " voxels would leave the grid: drop_outside=True leaves them out");
+    return moved;
+  });
+}
+
+DagPointer reoriented(const Dag& dag, const Orientation& orientation, const std::string& edit) {
+  return run_work([&](Progress& progress) {
+    return edited_dag(dag, reorient(dag.view(), orientation, nullptr, &progress), edit);
+  });
+}
+
+DagPointer coarser(const Dag& dag, std::int64_t resolution) {
+  const auto levels = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(resolution))) - 1;
+  if (resolution < 1 << kMinLevels || resolution > dag.grid().resolution() ||
+      resolution != std::int64_t{1} << levels)
+    throw py::value_error("resolution must be a power of two from 4 to that of the DAG");
+  return run_work([&](Progress& progress) {
+    Svdag coarse = coarsen(dag.view(), levels, nullptr, &progress);
+    VdagMetadata metadata = coarser_metadata(dag.model().metadata(), coarse.view());
+    metadata.attributes = {};
+    return std::make_shared<Dag>(DagModel(std::move(coarse), {}, std::move(metadata), nullptr));
+  });
+}
+
+py::array_t<std::uint64_t> component_table(const Dag& dag, int neighbours) {
+  const Neighbours kind = neighbours_of(neighbours);
+  const std::vector<ComponentSizes> sizes = run_work(
+      [&](Progress& progress) { return component_sizes(dag.view(), kind, nullptr, &progress); });
+  py::array_t<std::uint64_t> table({static_cast<py::ssize_t>(sizes.size()), py::ssize_t{2}});
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    table.mutable_at(static_cast<py::ssize_t>(i), 0) = sizes[i].voxels;
+    table.mutable_at(static_cast<py::ssize_t>(i), 1) = sizes[i].count;
+  }
+  return table;
+}
+
+DagPointer large_components(const Dag& dag, std::uint64_t least, int neighbours) {
+  const Neighbours kind = neighbours_of(neighbours);
+  return run_work([&](Progress& progress) {
+    return edited_dag(dag, keep_components(dag.view(), least, kind, nullptr, &progress),
+                      "components of at least " + std::to_string(least) + " voxels");
+  });
+}
+
+void add_moves(DagClass& dag) {
+  dag.def("crop", &cropped, py::arg("window"),
+          "Keep the voxels in ((x0, y0, z0), (x1, y1, z1)): the first voxel, and one past the last "
+          "on each axis. The grid stays.")
+      .def("shift", &shifted, py::arg("offset"), py::kw_only(), py::arg("drop_outside") = false,
+           "Move the voxels by (x, y, z) voxels. Voxels that would leave the grid are an error, or "
+           "left out.")
+      .def(
+          "mirror",
+          [](const Dag& d, const std::string& axis) {
+            return reoriented(d, mirrored(axis_of(axis)), "mirrored along " + axis);
+          },
+          py::arg("axis"), "Mirror along 'x', 'y' or 'z' in the middle of the grid.")
+      .def(
+          "rotate",
+          [](const Dag& d, const std::string& axis, int turns) {
+            return reoriented(
+                d, rotated(axis_of(axis), turns % 4),
+                "rotated about " + axis + " by " + std::to_string(turns) + " quarter turns");
+          },
+          py::arg("axis"), py::arg("turns") = 1,
+          "Rotate about 'x', 'y' or 'z' in the middle of the grid by quarter turns: one about z "
+          "takes x to y.")
+      .def("coarsen", &coarser, py::arg("resolution"),
+           "The same place in larger voxels, which are set if the cell has voxels.")
+      .def(
+          "components", &component_table, py::kw_only(), py::arg("neighbours") = 26,
+          "The sizes of connected components, the largest first: (K, 2) uint64, a number of voxels "
+          "and how many components have it.")
+      .def("keep_components", &large_components, py::arg("least"), py::kw_only(),
+           py::arg("neighbours") = 26, "Keep the components of at least so many voxels.");
+}
+
 }  // namespace
 
 void add_edits(DagClass& dag) {
+  add_moves(dag);
   const auto add = [&dag](const char* name, SetOperation operation, const char* text,
                           const char* help) {
     dag.def(

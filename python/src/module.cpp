@@ -96,5 +96,6 @@ PYBIND11_MODULE(_voxdag, module) {
   add_rays(dag);
   add_queries(dag);
   add_edits(dag);
+  add_exports(dag);
   add_pictures(dag);
 }

@@ -1,7 +1,6 @@
-/// Questions about voxels: contains, coords, to_dense, nearest.
+/// Questions about voxels: contains, nearest, coords, arrays, heights, distances, surfaces.
 #include <pybind11/stl.h>
 
-#include <array>
 #include <cmath>
 
 #include "arrays.hpp"
@@ -12,27 +11,15 @@
 #include "voxdag/layout/svdag_lookup.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/query/containing_voxel.hpp"
+#include "voxdag/query/distance_field.hpp"
+#include "voxdag/query/height_map.hpp"
 #include "voxdag/query/nearest_voxel.hpp"
+#include "voxdag/query/surface_area.hpp"
 
 namespace py = pybind11;
 
 namespace voxdag::python {
 namespace {
-
-using Window = std::array<std::array<std::int32_t, 3>, 2>;
-
-Box3i window_of(const Dag& dag, const std::optional<Window>& window) {
-  const Box3i whole = whole_grid(dag.grid().levels);
-  if (!window) return whole;
-  const auto& [lo, hi] = *window;
-  const Box3i box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.lo[axis] < 0 || box.lo[axis] >= box.hi[axis] || box.hi[axis] > whole.hi[axis])
-      throw py::value_error(
-          "window must be ((x0, y0, z0), (x1, y1, z1)) in the grid, each end "
-          "greater than its start");
-  return box;
-}
 
 Vec3d to_grid(const Grid& grid, Vec3d world) {
   return (world - grid.origin) * (1 / grid.voxel_size);
@@ -110,6 +97,42 @@ py::array_t<bool> to_dense(const Dag& dag, const std::optional<Window>& window) 
   return dense;
 }
 
+py::array_t<std::int32_t> heights(const Dag& dag, const std::string& axis, bool is_low) {
+  const int along = axis_of(axis);
+  const std::vector<std::int32_t> map = run_work([&](Progress& progress) {
+    return height_map(dag.view(), along, is_low ? HeightSide::kLow : HeightSide::kHigh, &progress);
+  });
+  const auto side = static_cast<py::ssize_t>(dag.grid().resolution());
+  py::array_t<std::int32_t> result({side, side});
+  for (py::ssize_t v = 0; v < side; ++v)
+    for (py::ssize_t u = 0; u < side; ++u)
+      result.mutable_at(u, v) = map[static_cast<std::size_t>(u + side * v)];
+  return result;
+}
+
+py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& window) {
+  const Box3i box = window_of(dag, window);
+  const Vec3<py::ssize_t> size(box.hi - box.lo);
+  const auto unit = static_cast<float>(dag.grid().voxel_size);
+  std::vector<float> distances = run_work(
+      [&](Progress& progress) { return voxdag::distance_field(dag.view(), box, &progress); });
+  for (float& distance : distances) distance *= unit;
+  // The library's x runs fastest, as in Fortran's arrays.
+  const py::array_t<float, py::array::f_style> field({size.x, size.y, size.z}, distances.data());
+  return Array<float>::ensure(field);
+}
+
+py::dict surface(const Dag& dag) {
+  const VoxelSurface found =
+      run_work([&](Progress& progress) { return surface_of(dag.view(), nullptr, &progress); });
+  const double unit = dag.grid().voxel_size;
+  py::dict result;
+  result["faces"] = py::make_tuple(found.faces[0], found.faces[1], found.faces[2]);
+  result["area"] = static_cast<double>(found.all_faces()) * unit * unit;
+  result["volume"] = static_cast<double>(found.voxels) * unit * unit * unit;
+  return result;
+}
+
 }  // namespace
 
 void add_queries(DagClass& dag) {
@@ -126,7 +149,18 @@ void add_queries(DagClass& dag) {
       .def("colors", &colors, py::arg("voxels"),
            "The colours of voxels (N, 3), as (N, 3) uint8, sRGB.")
       .def("to_dense", &to_dense, py::arg("window") = none,
-           "A dense array of bool, [x, y, z], of the window or the whole grid.");
+           "A dense array of bool, [x, y, z], of the window or the whole grid.")
+      .def("heights", &heights, py::arg("axis"), py::kw_only(), py::arg("low") = false,
+           "The coordinate of the last voxel of each column along axis 'x', 'y' or 'z', or of the "
+           "first one if low; -1 in empty columns. Returns (N, N) int32, indexed by the other two "
+           "axes in the order x, y, z.")
+      .def("distance_field", &distance_field, py::arg("window") = none,
+           "The distances, in world units, from the centres of the window's places to the nearest "
+           "voxel: 0 in voxels, inf without voxels. Returns float32, [x, y, z].")
+      .def(
+          "surface", &surface,
+          "dict: faces, the numbers of outer faces of voxels across x, y and z; their area and the "
+          "volume of the voxels, in world units.");
 }
 
 }  // namespace voxdag::python

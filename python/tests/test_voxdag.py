@@ -112,6 +112,74 @@ def test_nearest():
     assert empty["distance"][0] == np.inf and (empty["voxel"] == -1).all()
 
 
+def test_moves():
+    coords = random_coords(32, 90)
+    dag = voxdag.from_coords(coords, resolution=32)
+    lo, hi = (3, 0, 9), (20, 31, 32)
+    kept = coords[((coords >= lo) & (coords < hi)).all(axis=1)]
+    assert as_set(dag.crop((lo, hi)).coords()) == as_set(kept)
+    moved = coords + (5, -7, 0)
+    inside = moved[((moved >= 0) & (moved < 32)).all(axis=1)]
+    assert as_set(dag.shift((5, -7, 0), drop_outside=True).coords()) == as_set(inside)
+    with pytest.raises(ValueError, match=f"{len(moved) - len(inside)} voxels would leave the grid"):
+        dag.shift((5, -7, 0))
+    assert as_set(dag.mirror("y").coords()) == as_set(coords * (1, -1, 1) + (0, 31, 0))
+    assert as_set(dag.rotate("z").coords()) == as_set(coords[:, [1, 0, 2]] * (-1, 1, 1) + (31, 0, 0))
+    assert dag.rotate("z", -3) == dag.rotate("z") and dag.rotate("x", 4) == dag
+    coarse = dag.coarsen(8)
+    assert as_set(coarse.coords()) == as_set(coords // 4)
+    assert coarse.voxel_size == 4 * dag.voxel_size and coarse.origin == dag.origin
+
+
+def test_components():
+    coords = np.array([[0, 0, 0], [1, 1, 1], [5, 5, 5], [5, 5, 6], [5, 6, 6], [9, 0, 9]])
+    dag = voxdag.from_coords(coords, resolution=16)
+    np.testing.assert_array_equal(dag.components(), [[3, 1], [2, 1], [1, 1]])
+    np.testing.assert_array_equal(dag.components(neighbours=6), [[3, 1], [1, 3]])
+    assert as_set(dag.keep_components(2).coords()) == as_set(coords[:5])
+
+
+def test_heights_and_surface():
+    coords = random_coords(16, 70)
+    dag = voxdag.from_coords(coords, resolution=16)
+    dense = dag.to_dense()
+    for axis, name in enumerate("xyz"):
+        columns = np.moveaxis(dense, axis, 2)
+        low = np.where(columns.any(axis=2), columns.argmax(axis=2), -1)
+        high = np.where(columns.any(axis=2), 15 - columns[:, :, ::-1].argmax(axis=2), -1)
+        np.testing.assert_array_equal(dag.heights(name, low=True), low)
+        np.testing.assert_array_equal(dag.heights(name), high)
+    padded = np.pad(dense, 1)
+    faces = tuple(int(np.abs(np.diff(padded.astype(np.int8), axis=axis)).sum()) for axis in range(3))
+    assert dag.surface() == {"faces": faces, "area": sum(faces), "volume": len(dag)}
+
+
+def test_distance_field():
+    coords = random_coords(16, 12)
+    points = voxdag.from_points(coords * 0.5, pitch=0.5, bounds=((0, 0, 0), (8, 8, 8)))
+    window = ((2, 3, 4), (9, 16, 8))
+    field = points.distance_field(window)
+    places = np.stack(np.meshgrid(*(np.arange(a, b) for a, b in zip(*window)), indexing="ij"), -1)
+    away = np.abs(places[..., None, :] - points.coords()) - 0.5
+    distances = np.linalg.norm(np.maximum(away, 0), axis=-1).min(axis=-1) * points.voxel_size
+    np.testing.assert_allclose(field, distances, rtol=1e-6)
+    assert field.shape == (7, 13, 4) and field.flags.c_contiguous
+
+
+def test_exports(tmp_path):
+    coords = random_coords(16, 70)
+    dag = voxdag.from_coords(coords, resolution=16, colors=coords * 15)
+    assert dag.export(tmp_path / "a.npy", colors=False) == [tmp_path / "a.npy"]
+    assert as_set(np.load(tmp_path / "a.npy")) == as_set(coords)
+    for name in ("a.glb", "a.obj", "a.stl", "a.vox", "a.binvox", "a.schem", "a.voxel.json", "a.ply"):
+        dag.export(tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 0
+    dag.export(tmp_path / "slices", slices="z", window=((0, 0, 2), (16, 16, 5)))
+    assert len(list((tmp_path / "slices").glob("*.png"))) == 3
+    with pytest.raises(ValueError, match="the extension must be .*.glb"):
+        dag.export(tmp_path / "a.xyz")
+
+
 def test_files(tmp_path):
     dag = voxdag.from_coords(random_coords(64, 500), resolution=64)
     for compact in (False, True):
@@ -195,6 +263,9 @@ def test_views_of_the_nodes_are_read_only():
     (lambda: voxdag.from_points([[0, 0, np.inf]], resolution=8), "not finite"),
     (lambda: voxdag.from_coords([[0, 0, 0]]).coords(((0, 0, 0), (9, 9, 9))), "window must be"),
     (lambda: voxdag.from_coords([[0, 0, 0]]).render(width=0), "width and height"),
+    (lambda: voxdag.from_coords([[0, 0, 0]]).mirror("xy"), "axis must be"),
+    (lambda: voxdag.from_coords([[0, 0, 0]]).coarsen(3), "resolution must be a power of two"),
+    (lambda: voxdag.from_coords([[0, 0, 0]]).crop(((0, 0, 0), (0, 1, 1))), "window must be"),
 ])
 def test_bad_arguments_are_value_errors(call, reason):
     with pytest.raises(ValueError, match=reason):
