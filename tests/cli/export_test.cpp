@@ -43,6 +43,10 @@ TEST_F(ExportCommand, SlicesAreAFolderOfPictures) {
   EXPECT_FALSE(std::filesystem::exists(path("s/slice_0003.png")));
   expect_failure(run_voxdag({"export", path("in.vdag"), "--slices", "x", "-o", path("s")}), 1,
                  "exists and is not an empty folder");
+  expect_failure(run_voxdag({"export", path("in.vdag"), "--slices", "x", "-o", path("t.html")}), 1,
+                 "--slices writes a folder");
+  expect_failure(run_voxdag({"export", path("in.vdag"), "--grey", "-o", path("t.html")}), 2,
+                 "on a page");
   expect_failure(run_voxdag({"export", path("in.vdag"), "--slices", "w", "-o", path("t")}), 2,
                  "--slices");
 }

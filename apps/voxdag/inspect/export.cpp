@@ -50,6 +50,8 @@ void export_file(ExportArguments& arguments, Session& session) {
   if (!arguments.slices) {
     check_extension(arguments.output);
     check_writable(arguments.output);
+  } else if (can_export_to(arguments.output) || arguments.output.ends_with(".html")) {
+    throw Error(arguments.output, "", "is the name of a file, and --slices writes a folder");
   }
   const SceneModel file(session.subject, &session.progress);
   const VoxelSet voxels = file.voxels();
@@ -107,10 +109,11 @@ void add_export_command(const Command& program, Session& session) {
             "--slices: a folder. Pages that show a DAG: .html (one "
             "file, also offline) or FOLDER/ (with the scene, for any web server)")
       .required();
+  const auto is_no_page = [arguments] { return !arguments->is_page(); };
   command
       .parsed("--window", arguments->options.window, parse_window, "X0,Y0,Z0,X1,Y1,Z1",
               "Export only the voxels from the first corner (included) to the second (excluded)")
-      .only_if([arguments] { return !arguments->is_page(); }, "on a page");
+      .only_if(is_no_page, "on a page");
   const Option faces = command
                            .flag("--faces", arguments->content.ply_faces,
                                  "With .ply: write the outer faces of the voxels, not points")
@@ -123,11 +126,14 @@ void add_export_command(const Command& program, Session& session) {
       .not_with(faces);
   const auto carries_look = [arguments] { return arguments->carries_colors(); };
   constexpr const char* kCarriesNone = "on an output that cannot hold colours";
-  const Option look = add_look_option(command, arguments->look).only_if(carries_look, kCarriesNone);
+  const Option look = add_look_option(command, arguments->look)
+                          .only_if(is_no_page, "on a page")
+                          .only_if(carries_look, kCarriesNone);
   command
       .flag("--grey", arguments->grey,
             "Leave out colours, normals and materials: an .npy file is a plain array of "
             "coordinates, and .glb and .obj merge faces to larger rectangles")
+      .only_if(is_no_page, "on a page: see --drop-attributes")
       .only_if(carries_look, kCarriesNone)
       .not_with(look);
   add_page_options(command, *arguments);
