@@ -14,9 +14,9 @@
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/imports/import_model.hpp"
 #include "voxdag/readers/read_mesh.hpp"
-#include "voxdag/solid/fill_solid.hpp"
+#include "voxdag/solid/solid_settings.hpp"
 #include "voxdag/surface/surface_shading.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/voxelize/grid_request.hpp"
 
 namespace py = pybind11;
 
@@ -25,60 +25,47 @@ namespace {
 
 using Bounds = std::array<std::array<double, 3>, 2>;
 
-/// The grid that a caller asks for.
-struct GridChoice {
-  std::optional<std::int64_t> resolution;
-  std::optional<double> pitch;
-  std::optional<Bounds> bounds;
-
-  std::optional<int> levels() const {
-    if (!resolution) return std::nullopt;
-    const auto n = static_cast<std::uint64_t>(*resolution);
-    if (*resolution < (1 << kMinLevels) || *resolution > (1 << kMaxLevels) ||
-        !std::has_single_bit(n))
-      throw py::value_error("resolution must be a power of two from 4 to 1048576");
-    return std::countr_zero(n);
-  }
-  std::optional<Box3d> box() const {
-    if (!bounds) return std::nullopt;
-    const auto& [lo, hi] = *bounds;
-    return Box3d{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-  }
-  void check() const {
-    if (resolution.has_value() == pitch.has_value())
-      throw py::value_error("give exactly one of resolution and pitch");
-    if (pitch && !(*pitch > 0)) throw py::value_error("pitch must be positive");
-  }
-};
-
-Grid grid_of(const Mesh& mesh, const GridChoice& choice) {
-  const std::optional<int> levels = choice.levels();
-  if (const std::optional<Box3d> box = choice.box())
-    return levels ? grid_from_bounds(*box, *levels) : grid_from_bounds(*box, *choice.pitch);
-  return levels ? fit_grid(mesh, *levels) : grid_from_voxel_size(mesh, *choice.pitch);
+std::optional<int> levels_of(const std::optional<std::int64_t>& resolution) {
+  if (!resolution) return std::nullopt;
+  const auto n = static_cast<std::uint64_t>(*resolution);
+  if (*resolution < (1 << kMinLevels) || *resolution > (1 << kMaxLevels) || !std::has_single_bit(n))
+    throw py::value_error("resolution must be a power of two from 4 to 1048576");
+  return std::countr_zero(n);
 }
 
-std::optional<SolidRule> solid_rule(const py::object& solid) {
+GridRequest grid_request(const std::optional<std::int64_t>& resolution,
+                         const std::optional<double>& pitch, const std::optional<Bounds>& bounds) {
+  if (resolution.has_value() == pitch.has_value())
+    throw py::value_error("give exactly one of resolution and pitch");
+  if (pitch && !(*pitch > 0)) throw py::value_error("pitch must be positive");
+  GridRequest request{levels_of(resolution), pitch, {}};
+  if (bounds) {
+    const auto& [lo, hi] = *bounds;
+    request.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+  }
+  return request;
+}
+
+std::optional<SolidRule> rule_of(const py::object& solid) {
   if (solid.is_none() || solid.is(py::bool_(false))) return std::nullopt;
   if (solid.is(py::bool_(true))) return SolidRule::kParity;
-  const auto name = solid.cast<std::string>();
-  if (name == "parity") return SolidRule::kParity;
-  if (name == "winding") return SolidRule::kWinding;
-  if (name == "flood") return SolidRule::kFlood;
-  throw py::value_error("solid must be True, \"parity\", \"winding\" or \"flood\"");
+  try {
+    return solid_rule(solid.cast<std::string>());
+  } catch (const std::exception&) {
+    throw py::value_error("solid must be True, \"parity\", \"winding\" or \"flood\"");
+  }
 }
 
 /// Builds the DAG of a mesh, as `voxdag build` does.
-DagPointer build_mesh(const MeshWithAppearance& source, const GridChoice& choice,
+DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
                       const std::optional<SolidRule>& solid, bool colors, const std::string& name,
                       Progress& progress) {
   const Mesh& mesh = source.mesh;
   VdagMetadata metadata;
-  metadata.grid = grid_of(mesh, choice);
+  metadata.grid = grid_for(mesh, grid);
   metadata.source = {name, mesh.vertices.size(), mesh.triangles.size()};
-  metadata.build = {{"cover", "exact"},
-                    {"grid_from", choice.bounds ? "bounds" : "mesh"},
-                    {"scale_from", choice.resolution ? "resolution" : "voxel_size"}};
+  metadata.build = settings_of(grid);
+  if (solid) add_solid_settings({*solid}, metadata.build);
   Svdag dag = build_svdag(mesh, metadata.grid, {}, &progress).dag;
   if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, nullptr, &progress);
   DagAttributes attributes;
@@ -133,24 +120,20 @@ DagPointer build(const Array<float>& vertices, const Array<std::int64_t>& faces,
                  std::optional<std::int64_t> resolution, std::optional<double> pitch,
                  std::optional<Bounds> bounds, const py::object& solid,
                  const std::optional<Array<std::uint8_t>>& colors) {
-  const GridChoice choice{resolution, pitch, bounds};
-  choice.check();
-  choice.levels();
-  const std::optional<SolidRule> rule = solid_rule(solid);
+  const GridRequest grid = grid_request(resolution, pitch, bounds);
+  const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   const MeshWithAppearance source = mesh_of(vertices, faces, colors);
   return run_work([&](Progress& progress) {
-    return build_mesh(source, choice, rule, colors.has_value(), "arrays", progress);
+    return build_mesh(source, grid, rule, colors.has_value(), "arrays", progress);
   });
 }
 
 DagPointer build_file(const std::filesystem::path& path, std::optional<std::int64_t> resolution,
                       std::optional<double> pitch, std::optional<Bounds> bounds,
                       const py::object& solid, bool colors) {
-  const GridChoice choice{resolution, pitch, bounds};
-  choice.check();
-  choice.levels();
-  const std::optional<SolidRule> rule = solid_rule(solid);
+  const GridRequest grid = grid_request(resolution, pitch, bounds);
+  const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   return run_work([&](Progress& progress) {
     const ReadOptions options{.progress = &progress};
@@ -160,7 +143,7 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
     else
       source.mesh = read_mesh(path, options);
     return with_file_name(path.string(), [&] {
-      return build_mesh(source, choice, rule, colors, path.filename().string(), progress);
+      return build_mesh(source, grid, rule, colors, path.filename().string(), progress);
     });
   });
 }
@@ -201,11 +184,11 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
   return std::make_shared<Dag>(import_model(source, options, name, &progress).model);
 }
 
-ImportOptions import_options(const GridChoice& choice) {
+ImportOptions import_options(const GridRequest& grid) {
   ImportOptions options;
-  options.levels = choice.levels();
-  options.voxel_size = choice.pitch;
-  options.bounds = choice.box();
+  options.levels = grid.levels;
+  options.voxel_size = grid.voxel_size;
+  options.bounds = grid.bounds;
   options.folder = std::filesystem::temp_directory_path();
   return options;
 }
@@ -213,9 +196,7 @@ ImportOptions import_options(const GridChoice& choice) {
 DagPointer from_points(const Array<double>& points, std::optional<std::int64_t> resolution,
                        std::optional<double> pitch, std::optional<Bounds> bounds,
                        const std::optional<Array<std::uint8_t>>& colors) {
-  const GridChoice choice{resolution, pitch, bounds};
-  choice.check();
-  const ImportOptions options = import_options(choice);
+  const ImportOptions options = import_options(grid_request(resolution, pitch, bounds));
   std::vector<Vec3d> places = rows_of(points, "points");
   std::vector<Rgb8> values = colors_of(colors, places.size());
   const ArraySource source(std::move(places), std::move(values), true);
@@ -225,7 +206,7 @@ DagPointer from_points(const Array<double>& points, std::optional<std::int64_t> 
 
 DagPointer from_coords(const Array<std::int32_t>& coords, std::optional<std::int64_t> resolution,
                        const std::optional<Array<std::uint8_t>>& colors) {
-  const ImportOptions options = import_options({resolution, {}, {}});
+  const ImportOptions options = import_options({levels_of(resolution), {}, {}});
   std::vector<Vec3d> places;
   for (const Vec3i v : rows_of(coords, "coords")) places.push_back(Vec3d(v));
   std::vector<Rgb8> values = colors_of(colors, places.size());
@@ -247,7 +228,7 @@ DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> reso
           places.push_back(
               {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
-  const ImportOptions options = import_options({resolution.value_or(least), {}, {}});
+  const ImportOptions options = import_options({levels_of(resolution.value_or(least)), {}, {}});
   const ArraySource source(std::move(places), {}, false);
   return run_work(
       [&](Progress& progress) { return import_source(source, options, "dense", progress); });

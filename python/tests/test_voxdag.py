@@ -200,6 +200,11 @@ def test_mesh_files(tmp_path):
     path = tmp_path / "cube.obj"
     path.write_text("\n".join(lines) + "\n")
     assert voxdag.build_mesh(path, resolution=32) == voxdag.build(CUBE, CUBE_FACES, resolution=32)
+    # The file says how to build it again: `voxdag verify --mesh` does.
+    voxdag.build_mesh(path, pitch=0.1, solid="winding").save(tmp_path / "cube.vdag")
+    about = (tmp_path / "cube.vdag").read_bytes()
+    for part in (b'"scale_from":"voxel_size"', b'"solid":"winding"', b'"winding_threshold":"0.5"'):
+        assert part in about
     path.write_text("v 0 0 0\nf 1 2 99\n")
     with pytest.raises(OSError, match=r"cube.obj: line 2"):
         voxdag.build_mesh(path, resolution=32)

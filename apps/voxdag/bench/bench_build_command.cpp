@@ -7,12 +7,12 @@
 #include "bench/build/bench_build.hpp"
 #include "bench/build/bench_report.hpp"
 #include "bench/rivals/command_rival.hpp"
-#include "build/build_arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/scenes/scenes.hpp"
+#include "voxdag/solid/solid_settings.hpp"
 
 namespace voxdag {
 namespace {

@@ -30,12 +30,12 @@ BuildMethod parse_method(const std::string& text) {
 }
 
 void add_grid_options(const Command& command, BuildArguments& arguments) {
-  command.parsed("-r,--resolution", arguments.levels, parse_levels, "N",
+  command.parsed("-r,--resolution", arguments.grid.levels, parse_levels, "N",
                  "Voxels per side: a power of two from 4 to 1048576; 8K is 8192");
-  command.parsed("--voxel-size", arguments.voxel_size, parse_positive, "SIZE",
+  command.parsed("--voxel-size", arguments.grid.voxel_size, parse_positive, "SIZE",
                  "Instead of -r: side of a voxel, in the units of the mesh");
   command.parsed(
-      "--bounds", arguments.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
+      "--bounds", arguments.grid.bounds, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
       "Box that the grid holds: the grid, a cube, starts at its lower corner (default: the "
       "mesh's bounding box)");
 }
@@ -84,10 +84,10 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
     command.refuse_group(kEsvoOptions, "is for ESVOs only, but the output is a DAG (see --as)");
   arguments.access.outputs = {{"--output", arguments.output}};
   check_distinct(arguments.access.outputs, session);
-  if (arguments.levels.has_value() == arguments.voxel_size.has_value())
+  if (arguments.grid.levels.has_value() == arguments.grid.voxel_size.has_value())
     throw UsageError("give exactly one of -r/--resolution and --voxel-size");
-  if (arguments.levels) arguments.esvo.bake.check_levels(*arguments.levels);
-  if (arguments.levels) arguments.attributes.check_levels(*arguments.levels);
+  if (arguments.grid.levels) arguments.esvo.bake.check_levels(*arguments.grid.levels);
+  if (arguments.grid.levels) arguments.attributes.check_levels(*arguments.grid.levels);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@
 #include "cli/mesh_input.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/esvo/build/build_esvo.hpp"
-#include "voxdag/solid/fill_solid.hpp"
+#include "voxdag/solid/solid_settings.hpp"
+#include "voxdag/voxelize/grid_request.hpp"
 
 namespace voxdag {
 
@@ -24,9 +25,7 @@ struct EsvoArguments {
 struct BuildArguments {
   std::string output;
   MeshAccess access;
-  std::optional<int> levels;  ///< Either this or voxel_size.
-  std::optional<double> voxel_size;
-  std::optional<Box3d> bounds;
+  GridRequest grid;
   BuildMethod method = BuildMethod::kHashConsed;
   std::uint64_t memory_limit = 0;  ///< Bytes; 0: the default.
   bool stats = false;
@@ -38,19 +37,8 @@ struct BuildArguments {
   EsvoArguments esvo;
 };
 
-/// Returns the grid that the arguments ask for. `surface` is the bounding box of the displaced
-/// surface, if there is displacement.
-Grid choose_grid(const Mesh& mesh, const std::optional<Box3d>& surface,
-                 const BuildArguments& arguments);
-
-/// The names of the rules in options and metadata. solid_rule() throws std::invalid_argument.
-std::string name_of(SolidRule rule);
-SolidRule solid_rule(const std::string& name);
-/// Returns what settings of metadata, which must have "solid", say. Throws std::invalid_argument.
-SolidOptions solid_options(const std::map<std::string, std::string>& settings);
-
 /// Returns the settings that shape the voxels, for the metadata of the output.
-std::map<std::string, std::string> grid_settings(const BuildArguments& arguments);
+std::map<std::string, std::string> build_settings(const BuildArguments& arguments);
 
 /// Builds a DAG from the mesh file session.subject, writes it, and prints the summary.
 void build_dag_file(const BuildArguments& arguments, Session& session);

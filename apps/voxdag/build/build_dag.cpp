@@ -107,12 +107,12 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   seconds.read = watch.lap();
 
   DagReport report;
-  report.metadata.grid = choose_grid(mesh, std::nullopt, arguments);
+  report.metadata.grid = grid_for(mesh, arguments.grid);
   arguments.attributes.check_levels(report.metadata.grid.levels);
   report.metadata.source = {std::filesystem::path(session.subject).filename().string(),
                             mesh.vertices.size(), mesh.triangles.size()};
   report.metadata.program = written_by();
-  report.metadata.build = grid_settings(arguments);
+  report.metadata.build = build_settings(arguments);
   BuildResult result =
       build_svdag(mesh, report.metadata.grid, {arguments.method, &memory}, &progress);
   const bool has_attributes = arguments.attributes.is_wanted();

@@ -45,7 +45,7 @@ void check_regular(const std::string& path) {
 
 std::map<std::string, std::string> settings_of(const BuildArguments& arguments) {
   const EsvoSettings& settings = arguments.esvo.settings;
-  std::map<std::string, std::string> all = grid_settings(arguments);
+  std::map<std::string, std::string> all = build_settings(arguments);
   all["contours"] = settings.contours ? "yes" : "no";
   all["attributes"] = settings.attributes ? "yes" : "no";
   const std::string displace = displace_text(arguments.esvo.displace);
@@ -115,9 +115,9 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   options.settings.normal_error = static_cast<float>(esvo.normal_degrees * std::numbers::pi / 180);
   const DisplacedTriangles* const moved = displaced ? &*displaced : nullptr;
   EsvoMetadata metadata;
-  const std::optional<Box3d> bounds =
-      displaced ? std::optional(displaced_bounds(*displaced, source.mesh)) : std::nullopt;
-  metadata.grid = choose_grid(source.mesh, bounds, arguments);
+  GridRequest grid = arguments.grid;
+  if (displaced && !grid.bounds) grid.bounds = displaced_bounds(*displaced, source.mesh);
+  metadata.grid = grid_for(source.mesh, grid);
   esvo.bake.check_levels(metadata.grid.levels);
   metadata.source = {std::filesystem::path(session.subject).filename().string(),
                      source.mesh.vertices.size(), source.mesh.triangles.size()};

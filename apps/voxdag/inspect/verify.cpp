@@ -7,7 +7,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "build/build_arguments.hpp"
 #include "build/displace_option.hpp"
 #include "cli/commands.hpp"
 #include "cli/mesh_input.hpp"
@@ -26,7 +25,7 @@
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/model/scene_model.hpp"
 #include "voxdag/report/human.hpp"
-#include "voxdag/solid/fill_solid.hpp"
+#include "voxdag/solid/solid_settings.hpp"
 
 namespace voxdag {
 namespace {
