@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "voxdag/parallel/parallel_for.hpp"
-#include "voxdag/parallel/parallel_nth_element.hpp"
 
 namespace voxdag {
 namespace {
@@ -52,7 +51,7 @@ float automatic_exposure(std::span<const Vec3f> radiance, std::span<const float>
   const auto bright =
       luminances.begin() +
       static_cast<std::ptrdiff_t>(ExposureRule::kBright * static_cast<double>(luminances.size()));
-  parallel_nth_element(luminances.begin(), bright, luminances.end());
+  std::nth_element(luminances.begin(), bright, luminances.end());
   const double white = std::max(static_cast<double>(*bright), kLeast);
   return static_cast<float>(std::min(ExposureRule::kMiddle / mean, ExposureRule::kWhite / white));
 }
