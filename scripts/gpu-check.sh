@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds voxdag for the CUDA device of this machine, runs the tests that need a device, and measures
-# rays per second, pictures, and both papers again on coarse grids. Takes at most 8 minutes, with
-# --packed about 6 on 16 cores. Needs no network if the packages are installed.
+# rays per second, pictures, and both papers again on coarse grids, for at most 8 minutes. Needs no
+# network if the packages are installed.
 #
 #   scripts/gpu-check.sh [OPTION...]
 #     --tests        builds and tests, measures nothing
@@ -86,8 +86,9 @@ if [ -n "$pack" ]; then
   sponza=$(find_sponza)
   if [ -n "$sponza" ]; then
     cp "$sponza" $content
-    # Without textures, which would be too large. The rays do not see them.
-    grep -vE '^[[:space:]]*(map_|bump|disp|refl)' "${sponza%.obj}.mtl" >$content/sponza.mtl
+    # The packed materials name no textures, which would be too large. The rays do not see them.
+    materials=${sponza%.obj}.mtl
+    [ ! -f "$materials" ] || sed -E '/^[[:space:]]*(map_|bump|disp|refl)/d' "$materials" >$content/sponza.mtl
   fi
   tar -C $content -czf "$pack" .
   echo "== done: $(du -h "$pack" | cut -f 1) in $pack"
