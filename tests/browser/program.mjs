@@ -95,25 +95,29 @@ export async function serveFolder(site) {
 }
 
 /**
- * Serves another server's pages, and notes each request; may slow them down, or lack Range.
- * @param {string} url @param {{bytesPerSecond?: number, ranges?: boolean}} [options]
+ * Serves another server's pages, and notes each request. May lack Range, or hold back all parts of a file but its first
+ * until `release` is called.
+ * @param {string} url @param {{hold?: boolean, ranges?: boolean}} [options]
  */
-export async function proxy(url, { bytesPerSecond = Infinity, ranges = true } = {}) {
-  /** @type {{path: string, range: string, time: number}[]} */
+export async function proxy(url, { hold = false, ranges = true } = {}) {
+  /** @type {{path: string, range: string}[]} */
   const requests = [];
-  const server = http.createServer((request, response) => {
-    requests.push({ path: request.url ?? '', range: request.headers.range ?? '', time: performance.now() });
-    const headers = { ...request.headers, host: new URL(url).host };
+  let release = () => {};
+  const released = hold ? new Promise((resolve) => (release = () => resolve(undefined))) : Promise.resolve();
+  const server = http.createServer(async (request, response) => {
+    const { url: place = '/', headers: { ...headers } } = request;
+    requests.push({ path: place, range: headers.range ?? '' });
+    if (!/^(bytes=0-.*)?$/.test(headers.range ?? '')) await released;
+    headers.host = new URL(url).host;
     if (!ranges) delete headers.range;
-    http.get(new URL(request.url ?? '/', url), { headers }, (answer) => {
+    http.get(new URL(place, url), { headers }, (answer) => {
       const kept = { ...answer.headers };
       if (!ranges) delete kept['accept-ranges'];
       response.writeHead(answer.statusCode ?? 500, kept);
-      if (bytesPerSecond === Infinity) return answer.pipe(response);
-      slowly(answer, response, bytesPerSecond).catch(() => response.destroy());
+      answer.pipe(response);
     }).on('error', () => response.destroy());
   });
-  return { url: await listen(server), requests, close: () => server.close() };
+  return { url: await listen(server), requests, release, close: () => server.close() };
 }
 
 /** Opens a port. Returns the address. @param {http.Server} server */
@@ -122,16 +126,4 @@ async function listen(server) {
   server.unref();
   const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
   return `http://127.0.0.1:${port}/`;
-}
-
-/**
- * Passes an answer on at a bounded speed.
- * @param {http.IncomingMessage} answer @param {http.ServerResponse} response @param {number} bytesPerSecond
- */
-async function slowly(answer, response, bytesPerSecond) {
-  for await (const bytes of answer) {
-    await new Promise((resolve) => setTimeout(resolve, (1000 * bytes.length) / bytesPerSecond));
-    response.write(bytes);
-  }
-  response.end();
 }
