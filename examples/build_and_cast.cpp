@@ -7,7 +7,8 @@
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/readers/read_mesh.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 int main(int argc, char** argv) try {

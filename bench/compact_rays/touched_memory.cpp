@@ -46,6 +46,7 @@ class Touched {
 /// Notes the words that the walk at the plain form reads.
 class TouchingNodes : public SvdagNodes {
  public:
+  using Path = NodePath<TouchingNodes>;
   TouchingNodes(const SvdagView& dag, Touched& touched) : SvdagNodes(dag), touched_(&touched) {}
 
   std::uint32_t child_mask(Node node, int level) const {

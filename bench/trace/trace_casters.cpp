@@ -4,7 +4,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
 #include "voxdag/trace/scalar_caster.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {
@@ -13,6 +13,7 @@ namespace {
 /// Counts the bytes that a walk through the paper's layout reads.
 class ByteCountingNodes : public SvdagNodes {
  public:
+  using Path = NodePath<ByteCountingNodes>;
   ByteCountingNodes(const SvdagNodes& nodes, std::uint64_t& steps, std::uint64_t& bytes)
       : SvdagNodes(nodes), steps_(&steps), bytes_(&bytes) {}
 

@@ -1,5 +1,7 @@
 #include "dag.hpp"
 
+#include <bit>
+
 namespace py = pybind11;
 
 namespace voxdag::python {
@@ -15,6 +17,13 @@ Box3i window_of(const Dag& dag, const std::optional<Window>& window) {
           "window must be ((x0, y0, z0), (x1, y1, z1)) in the grid, each end "
           "greater than its start");
   return box;
+}
+
+int levels_of(std::int64_t resolution) {
+  const auto n = static_cast<std::uint64_t>(resolution);
+  if (resolution < (1 << kMinLevels) || resolution > (1 << kMaxLevels) || !std::has_single_bit(n))
+    throw py::value_error("resolution must be a power of two from 4 to 1048576");
+  return std::countr_zero(n);
 }
 
 int axis_of(const std::string& name) {

@@ -48,6 +48,9 @@ using Window = std::array<std::array<std::int32_t, 3>, 2>;
 /// reaches beyond the grid.
 Box3i window_of(const Dag& dag, const std::optional<Window>& window);
 
+/// Returns L for 2^L voxels a side. Raises ValueError unless it is a power of two from 4 to 2^20.
+int levels_of(std::int64_t resolution);
+
 /// Returns the number of "x", "y" or "z". Raises ValueError for other names.
 int axis_of(const std::string& name);
 

@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <array>
-#include <bit>
 
 #include "arrays.hpp"
 #include "dag.hpp"
@@ -86,10 +85,8 @@ DagPointer reoriented(const Dag& dag, const Orientation& orientation, const std:
 }
 
 DagPointer coarser(const Dag& dag, std::int64_t resolution) {
-  const auto levels = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(resolution))) - 1;
-  if (resolution < 1 << kMinLevels || resolution > dag.grid().resolution() ||
-      resolution != std::int64_t{1} << levels)
-    throw py::value_error("resolution must be a power of two from 4 to that of the DAG");
+  const int levels = levels_of(resolution);
+  if (levels > dag.grid().levels) throw py::value_error("resolution exceeds that of the DAG");
   return run_work([&](Progress& progress) {
     Svdag coarse = coarsen(dag.view(), levels, nullptr, &progress);
     VdagMetadata metadata = coarser_metadata(dag.model().metadata(), coarse.view());

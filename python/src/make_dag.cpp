@@ -25,20 +25,13 @@ namespace {
 
 using Bounds = std::array<std::array<double, 3>, 2>;
 
-std::optional<int> levels_of(const std::optional<std::int64_t>& resolution) {
-  if (!resolution) return std::nullopt;
-  const auto n = static_cast<std::uint64_t>(*resolution);
-  if (*resolution < (1 << kMinLevels) || *resolution > (1 << kMaxLevels) || !std::has_single_bit(n))
-    throw py::value_error("resolution must be a power of two from 4 to 1048576");
-  return std::countr_zero(n);
-}
-
 GridRequest grid_request(const std::optional<std::int64_t>& resolution,
                          const std::optional<double>& pitch, const std::optional<Bounds>& bounds) {
   if (resolution.has_value() == pitch.has_value())
     throw py::value_error("give exactly one of resolution and pitch");
   if (pitch && !(*pitch > 0)) throw py::value_error("pitch must be positive");
-  GridRequest request{levels_of(resolution), pitch, {}};
+  GridRequest request{std::nullopt, pitch, std::nullopt};
+  if (resolution) request.levels = levels_of(*resolution);
   if (bounds) {
     const auto& [lo, hi] = *bounds;
     request.bounds = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
@@ -184,6 +177,13 @@ DagPointer import_source(const VoxelSource& source, const ImportOptions& options
   return std::make_shared<Dag>(import_model(source, options, name, &progress).model);
 }
 
+/// Returns the grid of voxels that have numbers: by default the smallest one that holds them.
+GridRequest coords_grid(const std::optional<std::int64_t>& resolution) {
+  GridRequest request;
+  if (resolution) request.levels = levels_of(*resolution);
+  return request;
+}
+
 ImportOptions import_options(const GridRequest& grid) {
   ImportOptions options;
   options.levels = grid.levels;
@@ -206,7 +206,7 @@ DagPointer from_points(const Array<double>& points, std::optional<std::int64_t> 
 
 DagPointer from_coords(const Array<std::int32_t>& coords, std::optional<std::int64_t> resolution,
                        const std::optional<Array<std::uint8_t>>& colors) {
-  const ImportOptions options = import_options({levels_of(resolution), {}, {}});
+  const ImportOptions options = import_options(coords_grid(resolution));
   std::vector<Vec3d> places;
   for (const Vec3i v : rows_of(coords, "coords")) places.push_back(Vec3d(v));
   std::vector<Rgb8> values = colors_of(colors, places.size());
@@ -228,7 +228,7 @@ DagPointer from_dense(const Array<bool>& dense, std::optional<std::int64_t> reso
           places.push_back(
               {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
   const auto least = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(side)));
-  const ImportOptions options = import_options({levels_of(resolution.value_or(least)), {}, {}});
+  const ImportOptions options = import_options(coords_grid(resolution.value_or(least)));
   const ArraySource source(std::move(places), {}, false);
   return run_work(
       [&](Progress& progress) { return import_source(source, options, "dense", progress); });

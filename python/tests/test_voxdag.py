@@ -270,6 +270,7 @@ def test_views_of_the_nodes_are_read_only():
     (lambda: voxdag.from_coords([[0, 0, 0]]).render(width=0), "width and height"),
     (lambda: voxdag.from_coords([[0, 0, 0]]).mirror("xy"), "axis must be"),
     (lambda: voxdag.from_coords([[0, 0, 0]]).coarsen(3), "resolution must be a power of two"),
+    (lambda: voxdag.from_coords([[0, 0, 0]]).coarsen(8), "resolution exceeds"),
     (lambda: voxdag.from_coords([[0, 0, 0]]).crop(((0, 0, 0), (0, 1, 1))), "window must be"),
 ])
 def test_bad_arguments_are_value_errors(call, reason):

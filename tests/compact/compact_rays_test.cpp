@@ -9,9 +9,10 @@
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/cpu/packets/in_place_nodes.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
+#include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/compact_svdag_nodes.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

@@ -7,7 +7,8 @@
 #include <random>
 
 #include "support/brute_svdag.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

@@ -13,7 +13,7 @@
 #include "voxdag/cuda/beam_start.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/source_view_samples.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {

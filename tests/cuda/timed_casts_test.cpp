@@ -8,7 +8,7 @@
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/voxel_view_samples.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,7 +3,7 @@
 #include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_tile.hpp"
 #include "voxdag/render/tone_map.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 

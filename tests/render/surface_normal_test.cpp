@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "support/brute_svdag.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

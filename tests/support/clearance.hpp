@@ -7,7 +7,8 @@
 
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/film/camera_path.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

@@ -11,9 +11,10 @@
 
 namespace voxdag {
 
-/// The paper's layout, at which the cast of all layouts runs.
+/// The paper's layout, walked by the path of all layouts.
 class PlainNodes : public SvdagNodes {
  public:
+  using Path = NodePath<PlainNodes>;
   using SvdagNodes::SvdagNodes;
 };
 

@@ -10,9 +10,10 @@
 #include "support/brute_svdag.hpp"
 #include "support/test_esvo.hpp"
 #include "support/voxel_sets.hpp"
+#include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "support/brute_svdag.hpp"
 #include "voxdag/core/morton.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

@@ -12,7 +12,7 @@
 #include "voxdag/core/morton.hpp"
 #include "voxdag/trace/cell_blocks.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

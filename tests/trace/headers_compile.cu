@@ -1,7 +1,8 @@
 // Instantiates the traversal in a kernel. The test is that it compiles as device code.
+#include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/compact_svdag_nodes.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 

@@ -10,7 +10,8 @@
 #include "support/brute_svdag.hpp"
 #include "support/test_rays.hpp"
 #include "support/voxel_sets.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 namespace {

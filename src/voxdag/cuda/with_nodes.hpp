@@ -2,7 +2,7 @@
 /// Selects the types for which kernels are compiled by the layout at run time.
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 #include "voxdag/trace/wide_cast.hpp"
 
 namespace voxdag {

@@ -11,10 +11,9 @@
 /// over all planes that the ray reaches at the cell's exit T (ADVANCE). If a step leaves the
 /// parent, the walk continues at the highest level at which the positions differ (POP). Invariant:
 /// the current cell is the cell of its level that the ray is in at `t`.
-#include <type_traits>
-
 #include "voxdag/trace/cell_walk.hpp"
 #include "voxdag/trace/hit.hpp"
+#include "voxdag/trace/node_path.hpp"
 
 namespace voxdag {
 
@@ -44,8 +43,6 @@ struct StopAtVoxels {
   VOXDAG_HD constexpr int first_level() const { return kMaxLevels; }
 };
 
-class SvdagNodes;  // svdag_cast.hpp casts at it
-
 /// Finds the first non-empty cell along the ray that is a voxel or for which `stop(level, t_enter,
 /// t_exit)` is true, and returns whether there is one within the ray's range. Calls `stop` for
 /// non-empty cells of levels 1 to L-1, with the range of T in them. O(cells on the way) time, one
@@ -53,8 +50,7 @@ class SvdagNodes;  // svdag_cast.hpp casts at it
 template <class Nodes, class Stop>
 VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& stop, CellHit& hit) {
   static_assert(
-      !requires { typename Nodes::Found; } && !std::is_same_v<Nodes, SvdagNodes>,
-      "the layout has a cast of its own: include svdag_cast.hpp or esvo_cast.hpp");
+      !requires { typename Nodes::Found; }, "the layout has a cast of its own");
   if (ray.misses() || nodes.is_empty()) return false;
 
   const int levels = nodes.levels();
@@ -62,23 +58,21 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
   float t = ray.t_min;
   if (ray.exit_t() <= t) return false;
 
-  typename Nodes::Node stack[kMaxLevels];
-  typename Nodes::Node node = nodes.root();
-  std::uint32_t mask = nodes.child_mask(node, 0);
+  using Path = typename PathOf<Nodes>::Type;
+  typename Path::Entry stack[kMaxLevels];
+  Path path(nodes);
   CellWalk cell(ray, t);
   for (;;) {
     if constexpr (requires { nodes.on_step(); }) nodes.on_step();
     const CellWalk::Exit exit = cell.exit();
     const std::uint32_t index = cell.child() ^ mirrored;
-    if ((mask >> index & 1u) != 0) {
+    if ((path.mask() >> index & 1u) != 0) {
       const int level = cell.level();
       if (level == levels || stop(level, t, exit.t)) {
         hit = {t, cell.x(), cell.y(), cell.z(), level};
         return true;
       }
-      stack[level - 1] = node;
-      node = nodes.child(node, level - 1, static_cast<int>(index));
-      mask = nodes.child_mask(node, level);
+      path.push(stack, level, index);
       cell.push(t);
       continue;
     }
@@ -86,8 +80,7 @@ VOXDAG_HD inline bool cast(const Nodes& nodes, const GridRay& ray, const Stop& s
     t = exit.t;
     if (cell.advance(exit)) continue;
     if (!cell.pop()) return false;
-    node = stack[cell.level() - 1];
-    mask = nodes.child_mask(node, cell.level() - 1);
+    path.pop(stack, cell.level());
   }
 }
 

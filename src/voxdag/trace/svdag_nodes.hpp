@@ -9,16 +9,21 @@
 ///   child_mask(n, l)    the 8-bit child mask of node n of level l
 ///   child(n, l, i)      child i, which is present, of node n of level l < L-1
 /// Children of nodes of level L-1 are voxels: a bit in the mask and nothing else. A layout may also
-/// have on_step(), called at each step of a walk: see counting_nodes.hpp.
+/// have on_step(), called at each step of a walk: see counting_nodes.hpp; and Path: see
+/// node_path.hpp.
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
+
+class SvdagPath;
 
 /// A node is a word index (level < L-2), the index of a leaf block (level L-2), or its own child
 /// mask, a byte of a leaf block (level L-1).
 class SvdagNodes {
  public:
   using Node = std::uint32_t;
+  /// Reads the words by itself: a derived layout with its own child() needs its own Path, too.
+  using Path = SvdagPath;
 
   VOXDAG_HD explicit SvdagNodes(const SvdagView& dag)
       : nodes_(dag.nodes),
@@ -59,6 +64,57 @@ class SvdagNodes {
   int levels_;
   bool is_empty_;
   SvdagView view_;
+};
+
+/// A NodePath with fewer instructions, which are what limits GPUs: the stack holds child masks, and
+/// a walk reads a leaf block once.
+class SvdagPath {
+ public:
+  struct Entry {
+    std::uint32_t node, mask;
+  };
+
+  VOXDAG_HD explicit SvdagPath(const SvdagNodes& layout)
+      : nodes_(layout.view().nodes),
+        leaf_blocks_(layout.view().leaf_blocks),
+        leaf_level_(layout.levels() - 2),
+        mask_(layout.child_mask(layout.root(), 0)),
+        block_mask_(mask_) {
+    if (leaf_level_ == 0) block_ = leaf_blocks_[node_];
+  }
+
+  VOXDAG_HD std::uint32_t mask() const { return mask_; }
+  VOXDAG_HD void push(Entry* stack, int level, std::uint32_t index) {
+    if (level > leaf_level_) {
+      mask_ = static_cast<std::uint32_t>(block_ >> (8 * index)) & 0xFFu;
+      return;
+    }
+    stack[level - 1] = {node_, mask_};
+    node_ = nodes_[node_ + 1 + popcount8(mask_ & ((1u << index) - 1u))];
+    if (level == leaf_level_) {
+      block_ = leaf_blocks_[node_];
+      mask_ = block_mask_ = leaf_block_child_mask(block_);
+    } else {
+      mask_ = child_mask(nodes_ + node_);
+    }
+  }
+  VOXDAG_HD void pop(const Entry* stack, int level) {
+    if (level > leaf_level_) {
+      mask_ = block_mask_;  // the walk was in a byte of the block
+      return;
+    }
+    node_ = stack[level - 1].node;
+    mask_ = stack[level - 1].mask;
+  }
+
+ private:
+  const std::uint32_t* nodes_;
+  const std::uint64_t* leaf_blocks_;
+  int leaf_level_;  ///< L-2
+  std::uint32_t node_ = 0, mask_;
+  /// The last leaf block that the walk was in.
+  std::uint64_t block_ = 0;
+  std::uint32_t block_mask_;
 };
 
 }  // namespace voxdag

@@ -2,7 +2,7 @@
 /// Chooses the node layout for rays at voxels of either kind, DAG or ESVO.
 #include "voxdag/layout/voxel_set.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "voxdag/cpu/packets/bounded_node.hpp"
-#include "voxdag/trace/svdag_cast.hpp"
+#include "voxdag/trace/svdag_nodes.hpp"
 
 namespace voxdag {
 
