@@ -78,7 +78,8 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
 MeshWithAppearance mesh_of(const Array<float>& vertices, const Array<std::int64_t>& faces,
                            const std::optional<Array<std::uint8_t>>& colors) {
   MeshWithAppearance source;
-  source.mesh.vertices = rows_of(vertices, "vertices");
+  const std::vector<Vec3f> points = rows_of(vertices, "vertices");
+  source.mesh.vertices.assign(points.begin(), points.end());
   const auto count = static_cast<std::int64_t>(source.mesh.vertices.size());
   for (const Vec3<std::int64_t> face : rows_of(faces, "faces")) {
     for (int i = 0; i < 3; ++i) {

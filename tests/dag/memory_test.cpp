@@ -1,7 +1,6 @@
 /// Tests that memory limits of builds are kept, or refused with a correct estimate. It is a
 /// separate program, because it measures the process's resident memory.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <tbb/task_arena.h>
 
 #include <atomic>
@@ -12,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/peak_memory.hpp"
 #include "voxdag/dag/build_svdag.hpp"
 #include "voxdag/dag/check_cover.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
@@ -27,16 +27,6 @@ std::uint64_t resident_bytes() {
   std::uint64_t total = 0, resident = 0;
   statm >> total >> resident;
   return resident * 4096;
-}
-
-/// Resets the process's peak of resident memory to its current value.
-void reset_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
-
-std::uint64_t peak_bytes() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
-  return 0;
 }
 
 /// Returns triangles much smaller than a voxel, all in a few voxels of a grid of the unit cube.

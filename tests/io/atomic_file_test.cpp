@@ -6,19 +6,18 @@
 #include <linux/seccomp.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstddef>
 #include <iterator>
 #include <string>
 
 #include "support/error_of.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/io/nameless_file.hpp"
@@ -316,19 +315,13 @@ TEST(AtomicFile, AFullDeviceIsAnErrorForLargeWritesToo) {
 
 TEST(AtomicFile, AFileThatGrowsPastTheLimitIsAnErrorAndIsRemoved) {
   const TempDir dir;
-  rlimit old_limit{};
-  getrlimit(RLIMIT_FSIZE, &old_limit);
-  const rlimit limit{3 << 20, old_limit.rlim_max};
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &limit);
+  const FileSizeLimit limit(3 << 20);
   const std::string message = error_of([&] {
     AtomicFile file(dir / "out");
     const std::string piece(700000, 'x');
     for (int i = 0; i < 10; ++i) file.write(piece);
     file.commit();
   });
-  setrlimit(RLIMIT_FSIZE, &old_limit);
-  std::signal(SIGXFSZ, old_handler);
   EXPECT_EQ(message, (dir / "out").string() + ": byte 3145728: cannot write: File too large");
   EXPECT_EQ(dir.count(), 0);
 }

@@ -343,7 +343,7 @@ TEST(Polygon, EveryReaderCutsConcaveFaces) {
 
   std::vector<Triangle> dart{{1, 2, 3}, {1, 3, 0}};
   cut_polygon(dart, kDart);
-  const std::vector<Triangle> expected{{0, 1, 2}, dart[0], dart[1], {0, 2, 3}};
+  const StoredVector<Triangle> expected{{0, 1, 2}, dart[0], dart[1], {0, 2, 3}};
   EXPECT_EQ(read_text(read_obj, obj + "f 1 2 3\nf 2 3 4 1\nf 1 3 4\n").triangles, expected);
   EXPECT_EQ(read_text(read_obj, "f 1 2 3\nf 2 3 4 1\nf 1 3 4\n" + obj).triangles, expected);
   EXPECT_EQ(read_text(read_ply, ply + points + faces).triangles, expected);

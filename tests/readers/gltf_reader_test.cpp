@@ -72,7 +72,7 @@ struct Asset {
 };
 
 const std::vector<float> kPoints = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-const std::vector<Vec3f> kVertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const StoredVector<Vec3f> kVertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
 Asset square() {
   Asset asset;
@@ -86,7 +86,7 @@ TEST(GltfReader, IndexedTrianglesFromJsonAndBinary) {
   for (const std::string& bytes : {square().text(), square().glb()}) {
     const Mesh mesh = read_text(read_gltf, bytes);
     EXPECT_EQ(mesh.vertices, kVertices);
-    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
     EXPECT_TRUE(mesh.materials.empty());
   }
 }
@@ -113,7 +113,7 @@ TEST(GltfReader, EveryIndexTypeAndEveryTriangleMode) {
   EXPECT_EQ(mesh.vertices, kVertices);  // shared by all primitives of the mesh
   EXPECT_EQ(
       mesh.triangles,
-      (std::vector<Triangle>{
+      (StoredVector<Triangle>{
           {0, 1, 2}, {1, 3, 2}, {2, 1, 3}, {1, 0, 3}, {1, 2, 3}, {0, 1, 2}, {0, 1, 2}, {1, 3, 2}}));
 }
 
@@ -154,10 +154,10 @@ TEST(GltfReader, SparseValuesReplaceDenseOnesOrZeros) {
       {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
       {"values", {{"bufferView", values}}}};
   EXPECT_EQ(read_text(read_gltf, asset.text()).vertices,
-            (std::vector<Vec3f>{{0, 0, 0}, {7, 8, 9}, {1, 1, 0}, {4, 5, 6}}));
+            (StoredVector<Vec3f>{{0, 0, 0}, {7, 8, 9}, {1, 1, 0}, {4, 5, 6}}));
   asset.json["accessors"][0].erase("bufferView");
   EXPECT_EQ(read_text(read_gltf, asset.text()).vertices,
-            (std::vector<Vec3f>{{0, 0, 0}, {7, 8, 9}, {0, 0, 0}, {4, 5, 6}}));
+            (StoredVector<Vec3f>{{0, 0, 0}, {7, 8, 9}, {0, 0, 0}, {4, 5, 6}}));
   asset.json["accessors"][0]["count"] = 3'000'000'000u;
   EXPECT_EQ(
       refusal(read_gltf, asset.text()),
@@ -186,7 +186,7 @@ TEST(GltfReader, MaterialsAreKeptAndTheDefaultOneIsUnnamed) {
   asset.primitive({{"attributes", {{"POSITION", 0}}}, {"indices", 1}});
   const Mesh mesh = read_text(read_gltf, asset.text());
   EXPECT_EQ(mesh.materials, (std::vector<std::string>{"Brass", "Glass", ""}));
-  EXPECT_EQ(mesh.triangle_materials, (std::vector<std::uint32_t>{1, 1, 2, 2}));
+  EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{1, 1, 2, 2}));
 }
 
 TEST(GltfReader, RefusalsNameTheValueAndTheReason) {

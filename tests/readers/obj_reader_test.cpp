@@ -13,14 +13,14 @@ Mesh square_with(std::string_view faces) {
 
 TEST(ObjReader, TriangleKeepsItsVerticesAndOrder) {
   const Mesh mesh = read_text(read_obj, "v 1 2 3\nv 4 5 6\nv 7 8 9.5\nf 3 1 2\n");
-  EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9.5f}}));
-  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{2, 0, 1}}));
+  EXPECT_EQ(mesh.vertices, (StoredVector<Vec3f>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9.5f}}));
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{2, 0, 1}}));
   EXPECT_TRUE(mesh.materials.empty());
   EXPECT_TRUE(mesh.triangle_materials.empty());
 }
 
 TEST(ObjReader, EveryFormOfCornerGivesTheVertex) {
-  const std::vector<Triangle> expected{{0, 1, 2}};
+  const StoredVector<Triangle> expected{{0, 1, 2}};
   EXPECT_EQ(square_with("f 1 2 3").triangles, expected);
   EXPECT_EQ(square_with("f 1/7 2/8 3/9").triangles, expected);
   EXPECT_EQ(square_with("f 1//7 2//8 3//9").triangles, expected);
@@ -30,14 +30,14 @@ TEST(ObjReader, EveryFormOfCornerGivesTheVertex) {
 }
 
 TEST(ObjReader, PolygonBecomesAFan) {
-  EXPECT_EQ(square_with("f 1 2 3 4").triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(square_with("f 1 2 3 4").triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(ObjReader, NegativeIndicesCountFromTheLineTheyAreOn) {
   const Mesh mesh = read_text(read_obj,
                               "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"
                               "v 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n");
-  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
 }
 
 TEST(ObjReader, FacesMayComeBeforeTheirVertices) {
@@ -59,13 +59,13 @@ TEST(ObjReader, MaterialNamesAreKeptInOrderOfUse) {
       "mtllib none.mtl\nusemtl red wine \r\nf 1 2 3\nusemtl blue\nf 1 3 4\n"
       "usemtl red wine\nf 1 2 4\n");
   EXPECT_EQ(mesh.materials, (std::vector<std::string>{"red wine", "blue"}));
-  EXPECT_EQ(mesh.triangle_materials, (std::vector<std::uint32_t>{0, 1, 0}));
+  EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 1, 0}));
 }
 
 TEST(ObjReader, FacesBeforeAnyMaterialHaveTheUnnamedOne) {
   const Mesh mesh = square_with("f 1 2 3\nusemtl blue\nf 1 3 4\n");
   EXPECT_EQ(mesh.materials, (std::vector<std::string>{"", "blue"}));
-  EXPECT_EQ(mesh.triangle_materials, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 1}));
 }
 
 TEST(ObjReader, BackslashContinuesALine) {
@@ -117,7 +117,7 @@ TEST(ObjReader, AnyPrefixIsSafe) {
 
 TEST(ObjReader, ALargeFileReadsLikeItsParts) {
   std::string text;
-  std::vector<Triangle> expected;
+  StoredVector<Triangle> expected;
   for (std::uint32_t i = 0; i < 60'000; ++i) {
     for (const char* rest : {" 0 0\n", " 1 0.5\n", " 0 1\n"})
       text.append("v ").append(std::to_string(i)).append(rest);

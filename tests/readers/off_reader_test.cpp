@@ -10,8 +10,8 @@ const std::string kSquare =
 
 TEST(OffReader, PolygonBecomesAFan) {
   const Mesh mesh = read_text(read_off, kSquare);
-  EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5f}, {0, 1, 0}}));
-  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.vertices, (StoredVector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5f}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(OffReader, VariantsWithMorePerVertexAreRead) {

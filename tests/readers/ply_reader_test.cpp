@@ -57,8 +57,8 @@ std::string binary_square(bool big_endian, bool with_lists = true) {
 
 TEST(PlyReader, AsciiPolygonBecomesAFan) {
   const Mesh mesh = read_text(read_ply, kSquare);
-  EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
-  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.vertices, (StoredVector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
 
 TEST(PlyReader, BinaryInBothOrdersSkipsWhatItDoesNotKnow) {
@@ -66,10 +66,10 @@ TEST(PlyReader, BinaryInBothOrdersSkipsWhatItDoesNotKnow) {
     for (const bool with_lists : {false, true}) {
       const Mesh mesh = read_text(read_ply, binary_square(big_endian, with_lists));
       EXPECT_EQ(mesh.vertices,
-                (std::vector<Vec3f>{{0, 0, -7}, {1.5f, 0, -7}, {1.5f, 0.1f, -7}, {0, 0.1f, -7}}));
-      EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 1}}));
+                (StoredVector<Vec3f>{{0, 0, -7}, {1.5f, 0, -7}, {1.5f, 0.1f, -7}, {0, 0.1f, -7}}));
+      EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 1}}));
       EXPECT_EQ(mesh.materials, (std::vector<std::string>{"Stone wall", "Wood"}));
-      EXPECT_EQ(mesh.triangle_materials, (std::vector<std::uint32_t>{0, 0, 1}));
+      EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 0, 1}));
     }
 }
 

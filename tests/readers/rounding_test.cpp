@@ -1,6 +1,7 @@
 /// Tests that float32 values are correctly rounded in every text format.
 #include <cstdlib>
 #include <random>
+#include <span>
 
 #include "readers/mesh_text.hpp"
 #include "voxdag/readers/obj/obj_reader.hpp"
@@ -52,7 +53,7 @@ std::vector<std::string> hard_numbers() {
   return numbers;
 }
 
-void expect_rounded(const std::vector<std::string>& numbers, const std::vector<Vec3f>& vertices) {
+void expect_rounded(const std::vector<std::string>& numbers, std::span<const Vec3f> vertices) {
   ASSERT_EQ(vertices.size(), numbers.size());
   for (std::size_t i = 0; i < numbers.size(); ++i)
     ASSERT_EQ(std::bit_cast<std::uint32_t>(vertices[i].x),

@@ -26,8 +26,8 @@ std::string binary_stl(const std::vector<std::array<Vec3f, 3>>& facets, std::str
 
 const std::vector<std::array<Vec3f, 3>> kFacets = {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}},
                                                    {{{0, 0, 0}, {1, 1, 0}, {0, 1, 1.5f}}}};
-const std::vector<Vec3f> kWelded = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 1.5f}};
-const std::vector<Triangle> kTriangles = {{0, 1, 2}, {0, 2, 3}};
+const StoredVector<Vec3f> kWelded = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 1.5f}};
+const StoredVector<Triangle> kTriangles = {{0, 1, 2}, {0, 2, 3}};
 
 TEST(StlReader, AsciiCornersAreWelded) {
   const Mesh mesh = read_text(read_stl, kTwoFacets);
@@ -50,7 +50,7 @@ TEST(StlReader, BytesAfterTheLastFacetAreIgnored) {
 TEST(StlReader, WeldingComparesBits) {
   const Mesh mesh = read_text(read_stl, binary_stl({{{{0, 0, 0}, {-0.0f, 0, 0}, {0, 0, 0}}}}, ""));
   EXPECT_EQ(mesh.vertices.size(), 2u);
-  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 0}}));
 }
 
 TEST(StlReader, NumbersEndWhereTheirWordEnds) {

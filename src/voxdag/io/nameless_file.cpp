@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <string>
 
 namespace voxdag {
 namespace {
@@ -27,6 +29,14 @@ int open_nameless_file(const std::filesystem::path& folder) {
   if (descriptor < 0 || access(OwnPath(descriptor).text, F_OK) == 0) return descriptor;
   close(descriptor);
   return -1;
+}
+
+Descriptor open_scratch_file(const std::filesystem::path& folder) {
+  if (const int nameless = open_nameless_file(folder); nameless >= 0) return Descriptor(nameless);
+  std::string name = (folder / ".voxdag-XXXXXX").string();
+  Descriptor file(mkostemp(name.data(), O_CLOEXEC));
+  if (file.is_open()) unlink(name.c_str());
+  return file;
 }
 
 int name_file(int descriptor, const std::filesystem::path& name) noexcept {

@@ -2,11 +2,18 @@
 /// Files without a name (O_TMPFILE). The system frees them when the process ends, however it ends.
 #include <filesystem>
 
+#include "voxdag/io/descriptor.hpp"
+
 namespace voxdag {
 
 /// Creates a nameless file in `folder` (empty: the current folder), for reading and writing.
 /// Returns its descriptor, or -1 if the file system has no nameless files.
 int open_nameless_file(const std::filesystem::path& folder);
+
+/// Opens an empty file in `folder` (empty: the current folder), for reading and writing, that has
+/// no name, or loses it at once if the file system has no nameless files. Returns no descriptor,
+/// and sets errno, if that fails.
+Descriptor open_scratch_file(const std::filesystem::path& folder);
 
 /// Gives a nameless file a name in the folder that it was created for. Returns 0, or the system's
 /// error: EEXIST if the name is taken.

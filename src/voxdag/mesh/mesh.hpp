@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/array_store.hpp"
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
@@ -12,12 +13,20 @@ namespace voxdag {
 using Triangle = std::array<std::uint32_t, 3>;  ///< Three indices into Mesh::vertices.
 
 /// A mesh from a reader has only indices in range, and every vertex that a triangle references is
-/// finite.
+/// finite. Copies of a mesh are on the heap; moved arrays stay where they are.
 struct Mesh {
-  std::vector<Vec3f> vertices;  ///< World units, float32 as in the file (correctly rounded).
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> triangle_materials;  ///< Index into `materials`, or empty: no names.
-  std::vector<std::string> materials;             ///< Names as in the file.
+  StoredVector<Vec3f> vertices;  ///< World units, float32 as in the file (correctly rounded).
+  StoredVector<Triangle> triangles;
+  StoredVector<std::uint32_t> triangle_materials;  ///< Index into `materials`, or empty: no names.
+  std::vector<std::string> materials;              ///< Names as in the file.
 };
+
+/// Returns an empty mesh whose arrays will grow in `store`; on the heap if it is null.
+inline Mesh empty_mesh(ArrayStore* store) {
+  return {StoredVector<Vec3f>(store),
+          StoredVector<Triangle>(store),
+          StoredVector<std::uint32_t>(store),
+          {}};
+}
 
 }  // namespace voxdag

@@ -7,11 +7,16 @@
 
 namespace voxdag {
 
-/// Returns the bytes that the arrays of a mesh hold.
+/// Returns the bytes that a vector holds on the heap: none if it is in a store.
+template <class T>
+std::uint64_t memory_bytes(const StoredVector<T>& vector) {
+  return vector.get_allocator().store() == nullptr ? vector.capacity() * sizeof(T) : 0;
+}
+
+/// Returns the bytes that the arrays of a mesh hold on the heap. Arrays in a store do not count.
 inline std::uint64_t memory_bytes(const Mesh& mesh) {
-  std::uint64_t bytes = mesh.vertices.capacity() * sizeof(Vec3f) +
-                        mesh.triangles.capacity() * sizeof(Triangle) +
-                        mesh.triangle_materials.capacity() * sizeof(std::uint32_t) +
+  std::uint64_t bytes = memory_bytes(mesh.vertices) + memory_bytes(mesh.triangles) +
+                        memory_bytes(mesh.triangle_materials) +
                         mesh.materials.capacity() * sizeof(std::string);
   for (const std::string& name : mesh.materials) bytes += name.capacity();
   return bytes;

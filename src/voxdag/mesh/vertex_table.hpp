@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <random>
 #include <utility>
-#include <vector>
 
+#include "voxdag/core/array_store.hpp"
 #include "voxdag/core/vec.hpp"
 
 namespace voxdag {
@@ -24,7 +24,10 @@ inline std::uint64_t hash_bits(Vec3f position, std::uint64_t seed = 0) {
 class VertexTable {
  public:
   /// Makes room for `vertices` vertices and `slots` slots. Both arrays grow when they are full.
-  explicit VertexTable(std::size_t vertices = 0, std::size_t slots = 64) : slots_(slots, kFree) {
+  /// They are in `store`; on the heap if it is null.
+  explicit VertexTable(std::size_t vertices = 0, std::size_t slots = 64,
+                       ArrayStore* store = nullptr)
+      : slots_(slots, store), vertices_(store) {
     vertices_.reserve(vertices);
   }
 
@@ -32,28 +35,28 @@ class VertexTable {
   std::uint32_t find_or_add(Vec3f position) {
     std::size_t i = hash_slot(position);
     for (; slots_[i] != kFree; i = i + 1 == slots_.size() ? 0 : i + 1)
-      if (has_bits(vertices_[slots_[i]], position)) return slots_[i];
+      if (has_bits(vertices_[std::size_t{slots_[i]} - 1], position)) return slots_[i] - 1;
     const auto vertex = static_cast<std::uint32_t>(vertices_.size());
-    slots_[i] = vertex;
+    slots_[i] = vertex + 1;
     vertices_.push_back(position);
     if (vertices_.size() > slots_.size() / 16 * 15) grow();
     return vertex;
   }
 
-  const std::vector<Vec3f>& vertices() const { return vertices_; }
-  std::vector<Vec3f> take_vertices() { return std::move(vertices_); }
+  const StoredVector<Vec3f>& vertices() const { return vertices_; }
+  StoredVector<Vec3f> take_vertices() { return std::move(vertices_); }
 
   /// Returns the most bytes that the table holds while up to `more` vertices are added.
   std::uint64_t bytes_with(std::size_t more) const {
     const std::uint64_t count = vertices_.size() + more;
     const std::uint64_t vertices = vertices_.capacity(), slots = slots_.size();
-    // Arrays grow by doubling; the old array exists until it is copied.
+    // Arrays grow by doubling; the old array exists until the new one is filled.
     return sizeof(Vec3f) * (count <= vertices ? vertices : vertices + 2 * count) +
            sizeof(std::uint32_t) * (count <= slots / 16 * 15 ? slots : slots + 4 * count);
   }
 
  private:
-  static constexpr std::uint32_t kFree = ~0u;
+  static constexpr std::uint32_t kFree = 0;  // New slots are zero, also in a store.
 
   static bool has_bits(Vec3f a, Vec3f b) {
     using Bits = std::array<std::uint32_t, 3>;
@@ -69,17 +72,16 @@ class VertexTable {
   }
 
   void grow() {
-    std::fill(slots_.begin(), slots_.end(), kFree);
-    slots_.resize(2 * slots_.size(), kFree);
+    slots_ = StoredVector<std::uint32_t>(2 * slots_.size(), slots_.get_allocator());
     for (std::uint32_t vertex = 0; vertex < vertices_.size(); ++vertex) {
       std::size_t i = hash_slot(vertices_[vertex]);
       while (slots_[i] != kFree) i = i + 1 == slots_.size() ? 0 : i + 1;
-      slots_[i] = vertex;
+      slots_[i] = vertex + 1;
     }
   }
 
-  std::vector<std::uint32_t> slots_;
-  std::vector<Vec3f> vertices_;
+  StoredVector<std::uint32_t> slots_;  ///< A vertex plus 1, or kFree.
+  StoredVector<Vec3f> vertices_;
 };
 
 }  // namespace voxdag

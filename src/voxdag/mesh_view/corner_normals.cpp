@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "voxdag/mesh/vertex_table.hpp"
 #include "voxdag/parallel/parallel_for.hpp"
@@ -22,7 +23,7 @@ struct CornersByPosition {
 };
 
 /// Returns a number for each vertex; vertices at equal positions get the same number.
-std::vector<std::uint32_t> position_numbers(const std::vector<Vec3f>& vertices) {
+std::vector<std::uint32_t> position_numbers(std::span<const Vec3f> vertices) {
   std::vector<std::uint32_t> numbers(vertices.size());
   VertexTable table(vertices.size(), 2 * vertices.size() + 1);
   for (std::size_t i = 0; i < vertices.size(); ++i) {

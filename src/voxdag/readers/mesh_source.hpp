@@ -21,15 +21,26 @@ struct MeshSource {
   const MappedFile* file = nullptr;  ///< The mapping that `bytes` views. Null: plain memory.
   ReadOptions options;
 
-  /// Drops the mapped pages of `part` from memory after it has been read. Reports progress. Throws
-  /// Cancelled.
+  /// Drops the mapped pages of `part` from memory after it has been read, and from time to time
+  /// those of the mesh. Reports progress. Throws Cancelled.
   void done_with(std::string_view part, std::string_view stage) const {
     if (file != nullptr) file->release(part);
+    count_work(part.size());
     if (options.progress == nullptr) return;
     options.progress->throw_if_cancelled();
     const auto end = static_cast<std::size_t>(part.data() + part.size() - bytes.data());
     options.progress->report(stage, static_cast<double>(end) / static_cast<double>(bytes.size()),
                              end);
+  }
+
+  /// Counts work on the arrays of the mesh: the bytes of input that were processed, or the bytes
+  /// of the arrays themselves. Drops the arrays' pages from memory once per 64 MiB.
+  void count_work(std::uint64_t work_bytes) const {
+    if (options.arrays != nullptr) options.arrays->count_work(work_bytes);
+  }
+  /// Drops the pages of the mesh from memory at the end of a pass over it.
+  void end_pass() const {
+    if (options.arrays != nullptr) options.arrays->release();
   }
 
   Error error(const std::string& reason) const { return {name, "", reason}; }

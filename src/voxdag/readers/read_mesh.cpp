@@ -58,6 +58,7 @@ MeshWithAppearance read(const std::filesystem::path& path, const ReadOptions& op
   if (source.bytes.empty()) throw source.error("the file is empty");
   try {
     MeshWithAppearance result = read_format(source, path.extension().string(), parts);
+    source.end_pass();
     if (options.memory != nullptr)
       options.memory->reserve(memory_bytes(result.mesh) + memory_bytes(result.appearance));
     return result;

@@ -17,10 +17,11 @@ namespace voxdag {
 ///
 /// Memory: if ReadOptions::memory is set, reads within that budget. memory_bytes(mesh) stay
 /// reserved; the caller releases them when it frees the mesh. Pages of mapped files do not count:
-/// they are released as they are read.
+/// they are released as they are read. With ReadOptions::arrays, a mesh can be larger than memory:
+/// its arrays are in files, and few of their pages stay resident.
 ///
-/// Throws Error with the line, byte or JSON value at fault, OverMemory with the file's name, and
-/// Cancelled.
+/// Throws Error with the line, byte or JSON value at fault, Error with the folder's name if the
+/// folder of ReadOptions::arrays is full, OverMemory with the file's name, and Cancelled.
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads a mesh as read_mesh() does, and its appearance, in one pass. Image files are named,

@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -33,7 +34,10 @@ struct SoupSize {
 template <class Visit>
 SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_view>& parts,
                       char line_end, const Visit& visit) {
-  constexpr unsigned kOneIn = 16;  // one in 16 vertices is in the sample, by hash
+  // One in so many vertices is in the sample, by hash: 16, and fewer in files over 1 GiB, so that
+  // the sample stays small. A power of two.
+  const std::uint64_t one_in =
+      std::max<std::uint64_t>(16, std::bit_floor(source.bytes.size() >> 26));
   SoupSize size{std::vector<std::size_t>(parts.size() + 1), 0};
   MemoryBudget* const memory = source.options.memory;
   std::vector<CountedVector<Vec3f>> samples(parts.size(), CountedVector<Vec3f>(memory));
@@ -42,7 +46,7 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
     std::size_t corners = 0;
     visit(part, [&](Vec3f position) {
       ++corners;
-      if (hash_bits(position) % kOneIn == 0) sample.find_or_add(position);
+      if ((hash_bits(position) & (one_in - 1)) == 0) sample.find_or_add(position);
     });
     size.first_triangles[part + 1] = corners / 3;
     samples[part].assign(sample.vertices().begin(), sample.vertices().end());
@@ -56,7 +60,8 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
   }
   // The true number hardly ever exceeds the estimate by four standard deviations.
   const auto sampled = static_cast<double>(sample.vertices().size());
-  size.vertices = static_cast<std::size_t>(kOneIn * (sampled + 4 * std::sqrt(sampled) + 4));
+  size.vertices = static_cast<std::size_t>(static_cast<double>(one_in) *
+                                           (sampled + 4 * std::sqrt(sampled) + 4));
   size.vertices = std::min(size.vertices, 3 * size.first_triangles.back());
   return size;
 }
@@ -66,17 +71,19 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
 template <class Visit>
 Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, char line_end,
           const Visit& visit, const SoupSize& size) {
-  Mesh mesh;
+  const ReadOptions& options = source.options;
+  Mesh mesh = empty_mesh(options.arrays);
   const std::vector<std::size_t>& starts = size.first_triangles;
   const std::size_t triangles = starts.back();
   // A full table is slow. This one is full only if almost no corners are shared.
   const std::size_t slots =
       64 + std::min(size.vertices * 8 / 5, (triangles + size.vertices) / 5 * 4);
   const std::uint64_t triangle_bytes = triangles * sizeof(Triangle);
-  MemoryReservation memory(source.options.memory, triangle_bytes + size.vertices * sizeof(Vec3f) +
-                                                      slots * sizeof(std::uint32_t));
+  MemoryReservation memory(options.memory,
+                           options.counted(triangle_bytes + size.vertices * sizeof(Vec3f) +
+                                           slots * sizeof(std::uint32_t)));
   mesh.triangles.resize(triangles);
-  VertexTable table(size.vertices, slots);
+  VertexTable table(size.vertices, slots, options.arrays);
 
   const auto threads =
       static_cast<std::size_t>(std::max(tbb::this_task_arena::max_concurrency(), 1));
@@ -88,9 +95,9 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
     };
     // Each corner may need a vertex and a slot in the part's table; both arrays may double.
     const MemoryReservation scratch(
-        source.options.memory,
+        options.memory,
         3 * (starts[last] - starts[first]) * (2 * sizeof(Vec3f) + 5 * sizeof(std::uint32_t)));
-    std::vector<std::vector<Vec3f>> vertices(last - first);
+    std::vector<StoredVector<Vec3f>> vertices(last - first);
     for_each_chunk(source, {at(first), at(last)}, line_end, "weld", [&](std::size_t i) {
       VertexTable own;
       std::uint32_t* corner = mesh.triangles.data()->data() + 3 * starts[first + i];
@@ -107,7 +114,7 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
     });
     std::vector<std::vector<std::uint32_t>> numbers(last - first);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      memory.resize(triangle_bytes + table.bytes_with(vertices[i].size()));
+      memory.resize(options.counted(triangle_bytes + table.bytes_with(vertices[i].size())));
       numbers[i].reserve(vertices[i].size());
       for (const Vec3f position : vertices[i]) numbers[i].push_back(table.find_or_add(position));
     }

@@ -1,6 +1,5 @@
 #include "voxdag/voxels/run_file.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,11 +22,8 @@ namespace {
 }
 
 Descriptor make_file(const std::filesystem::path& folder) {
-  if (const int nameless = open_nameless_file(folder); nameless >= 0) return Descriptor(nameless);
-  std::string name = (folder / ".voxdag-sort-XXXXXX").string();
-  Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
+  Descriptor file = open_scratch_file(folder);
   if (!file.is_open()) fail(folder, "create");
-  ::unlink(name.c_str());
   return file;
 }
 

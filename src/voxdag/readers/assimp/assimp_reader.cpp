@@ -141,8 +141,9 @@ Mesh read_with_assimp(const MeshSource& source, const std::string& extension) {
   }
   const MemoryReservation mesh_memory(
       source.options.memory,
-      vertices * sizeof(Vec3f) + faces * (sizeof(Triangle) + sizeof(std::uint32_t)));
-  Mesh mesh;
+      source.options.counted(vertices * sizeof(Vec3f) +
+                             faces * (sizeof(Triangle) + sizeof(std::uint32_t))));
+  Mesh mesh = empty_mesh(source.options.arrays);
   mesh.vertices.reserve(vertices);
   mesh.triangles.reserve(faces);
   mesh.triangle_materials.reserve(faces);

@@ -27,7 +27,8 @@ class GltfReader {
         file_(source),
         accessors_(file_),
         meshes_(source.options.memory),
-        memory_(source.options.memory, 0) {}
+        memory_(source.options.memory, 0),
+        mesh_(empty_mesh(source.options.arrays)) {}
 
   MeshWithAppearance read() {
     const CountedVector<GltfInstance> instances = find_gltf_instances(file_);
@@ -95,8 +96,9 @@ class GltfReader {
                                      (has_uvs_ ? sizeof(Vec2f) : 0) +
                                      (has_colors_ ? sizeof(Rgba16) : 0);
     const std::uint64_t per_triangle =
-        sizeof(Triangle) + 3 * per_corner + (materials.empty() ? 0 : sizeof(std::uint32_t));
-    memory_.resize(vertices * sizeof(Vec3f) + triangles * per_triangle + names);
+        sizeof(Triangle) + (materials.empty() ? 0 : sizeof(std::uint32_t));
+    memory_.resize(source_.options.counted(vertices * sizeof(Vec3f) + triangles * per_triangle) +
+                   3 * triangles * per_corner + names);
     mesh_.vertices.reserve(vertices);
     mesh_.triangles.reserve(triangles);
     if (!materials.empty()) mesh_.triangle_materials.reserve(triangles);
@@ -165,10 +167,11 @@ class GltfReader {
   }
 
   /// Counts a vertex or triangle. Once in 65,536, reports, polls cancellation, and drops the
-  /// buffers' pages from memory.
+  /// buffers' pages from memory, and from time to time those of the mesh.
   void step() {
     if ((++steps_ & 0xFFFF) != 0) return;
     file_.release_pages();
+    source_.count_work(0x10000 * sizeof(Triangle));
     Progress* const progress = source_.options.progress;
     if (progress == nullptr) return;
     progress->throw_if_cancelled();

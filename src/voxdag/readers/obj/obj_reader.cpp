@@ -74,14 +74,19 @@ class ObjReader {
         texts_(split_lines(without_byte_order_mark(source.bytes), line_end_)),
         memory_(source.options.memory, 0),
         material_ids_(source.options.memory),
-        libraries_(source.options.memory) {}
+        libraries_(source.options.memory),
+        mesh_(empty_mesh(source.options.arrays)) {}
 
   MeshWithAppearance read() {
     count_chunks();
     report_obj_libraries(source_, libraries_);
     for_each_chunk(source_, texts_, line_end_, "read", [this](std::size_t i) { parse(i); });
     check_finite();
-    parallel_for(chunks_.size(), [this](std::size_t i) { cut_faces(chunks_[i]); });
+    source_.end_pass();
+    parallel_for(chunks_.size(), [this](std::size_t i) {
+      cut_faces(chunks_[i]);
+      source_.count_work(texts_[i].size());
+    });
     MeshWithAppearance result;
     if (has_appearance_) {
       attributes_->finish(mesh_, result.appearance);
@@ -127,9 +132,10 @@ class ObjReader {
 
   void make_room(bool has_colors) {
     const bool has_materials = material_ids_.size() > (material_ids_.find("") ? 1 : 0);
-    std::uint64_t bytes = totals_.vertices * sizeof(Vec3f) + totals_.triangles * sizeof(Triangle);
+    std::uint64_t bytes = source_.options.counted(
+        totals_.vertices * sizeof(Vec3f) +
+        totals_.triangles * (sizeof(Triangle) + (has_materials ? sizeof(std::uint32_t) : 0)));
     if (has_materials) {
-      bytes += totals_.triangles * sizeof(std::uint32_t);
       for (std::size_t i = 0; i < material_ids_.size(); ++i)
         bytes += sizeof(std::string) + material_ids_[i].size() + 1;
     }
@@ -245,7 +251,7 @@ class ObjReader {
     if (std::none_of(chunks_.begin(), chunks_.end(),
                      [](const PlacedChunk& chunk) { return chunk.has_bad_vertex; }))
       return;
-    if (const auto bad = find_bad_vertex(mesh_, source_.options.progress))
+    if (const auto bad = find_bad_vertex(source_, mesh_))
       throw_fault(source_, {vertex_line(*bad), kBadVertex}, line_end_);
   }
 

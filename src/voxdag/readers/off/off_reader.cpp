@@ -16,7 +16,8 @@ class OffReader {
         poll_(source.options.progress),
         memory_(source.options.memory, 0),
         cutter_(source),
-        rest_(without_byte_order_mark(source.bytes)) {}
+        rest_(without_byte_order_mark(source.bytes)),
+        mesh_(empty_mesh(source.options.arrays)) {}
 
   Mesh read() {
     try {
@@ -24,7 +25,7 @@ class OffReader {
       read_vertices(count(line, "vertices", kLeastVertexBytes));
       const std::size_t faces = count(line, "faces", kLeastFaceBytes);
       const std::size_t triangles = count_triangles(faces);
-      memory_.resize(memory_.bytes() + triangles * sizeof(Triangle));
+      memory_.resize(memory_.bytes() + source_.options.counted(triangles * sizeof(Triangle)));
       mesh_.triangles.resize(triangles);
       if (mesh_.triangles.empty())
         throw source_.error("no face has three corners or more: there is no surface to read");
@@ -73,7 +74,7 @@ class OffReader {
   }
 
   void read_vertices(std::size_t vertices) {
-    memory_.resize(vertices * sizeof(Vec3f));
+    memory_.resize(source_.options.counted(vertices * sizeof(Vec3f)));
     mesh_.vertices.resize(vertices);
     for (Vec3f& vertex : mesh_.vertices) {
       std::string_view row = next_row();

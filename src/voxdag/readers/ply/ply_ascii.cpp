@@ -26,7 +26,8 @@ class AsciiReader {
         texts_(split_lines(source_.bytes.substr(header_.body), header_.line_end)),
         first_rows_(texts_.size() + 1),
         first_triangles_(texts_.size() + 1),
-        has_bad_vertex_(texts_.size(), 0) {}
+        has_bad_vertex_(texts_.size(), 0),
+        mesh_(empty_mesh(source_.options.arrays)) {}
 
   Mesh read() {
     count_rows();
@@ -42,6 +43,7 @@ class AsciiReader {
     for_each_row("read", vertex_rows_, [this](Chunk& chunk, std::size_t i, std::string_view row) {
       parse_vertex(chunk, i, row);
     });
+    source_.end_pass();
     for_each_row("read", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
       parse_face(chunk, row);
     });
@@ -198,7 +200,7 @@ class AsciiReader {
   void check_finite() {
     if (std::find(has_bad_vertex_.begin(), has_bad_vertex_.end(), 1) == has_bad_vertex_.end())
       return;
-    const auto bad = find_bad_vertex(mesh_, source_.options.progress);
+    const auto bad = find_bad_vertex(source_, mesh_);
     if (!bad) return;
     for_each_row("read", vertex_rows_, [&](Chunk&, std::size_t i, std::string_view row) {
       if (i == *bad) throw Fault{row.data(), kBadVertex};

@@ -39,7 +39,8 @@ class BinaryReader {
         memory_(memory),
         swap_((header_.format == PlyFormat::kBigEndian) !=
               (std::endian::native == std::endian::big)),
-        rest_(source_.bytes.substr(header_.body)) {}
+        rest_(source_.bytes.substr(header_.body)),
+        mesh_(empty_mesh(source_.options.arrays)) {}
 
   Mesh read() {
     std::size_t triangles = 0;
@@ -55,6 +56,7 @@ class BinaryReader {
     }
     resize_ply_vertices(body_, memory_, mesh_);
     read_vertices();
+    source_.end_pass();
     resize_ply_triangles(body_, triangles, memory_, mesh_);
     read_faces();
     if (has_bad_vertex_) check_finite();
@@ -245,7 +247,7 @@ class BinaryReader {
   }
 
   void check_finite() const {
-    const auto bad = find_bad_vertex(mesh_, source_.options.progress);
+    const auto bad = find_bad_vertex(source_, mesh_);
     if (!bad) return;
     std::size_t i = vertices_.blocks.size() - 1;
     while (vertices_.blocks[i].first_row > *bad) --i;

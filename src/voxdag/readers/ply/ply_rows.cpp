@@ -5,7 +5,7 @@
 namespace voxdag {
 
 void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& mesh) {
-  memory.resize(body.fields.vertex.count * sizeof(Vec3f));
+  memory.resize(body.source.options.counted(body.fields.vertex.count * sizeof(Vec3f)));
   mesh.vertices.resize(body.fields.vertex.count);
   if (body.attributes != nullptr) body.attributes->resize_vertices(mesh.vertices.size());
 }
@@ -15,9 +15,11 @@ void resize_ply_triangles(const PlyBody& body, std::size_t triangles, MemoryRese
   if (triangles == 0)
     throw body.source.error("no face has three corners or more: there is no surface to read");
   const bool has_materials = body.fields.material >= 0;
-  std::uint64_t bytes = memory.bytes() + triangles * sizeof(Triangle);
+  std::uint64_t bytes =
+      memory.bytes() +
+      body.source.options.counted(triangles *
+                                  (sizeof(Triangle) + (has_materials ? sizeof(std::uint32_t) : 0)));
   if (has_materials) {
-    bytes += triangles * sizeof(std::uint32_t);
     for (const std::string_view name : body.header.materials)
       bytes += sizeof(std::string) + name.size() + 1;
   }
