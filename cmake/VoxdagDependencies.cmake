@@ -1,6 +1,6 @@
 # Finds the packages of the parts that are built. All packages are in Debian 12. If an optional
 # package is missing, one line says so.
-set(optional_packages assimp embree OpenVDB CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
+set(optional_packages assimp embree OpenVDB MPI CUDAToolkit)  # CUDAToolkit: cmake/VoxdagCuda.cmake
 
 # The packages that an installed voxdag needs, by part: voxdagConfig.cmake.in reads them.
 set(VOXDAG_LIBRARY_PACKAGES Threads)
@@ -39,6 +39,14 @@ if("OpenVDB" IN_LIST VOXDAG_LIBRARY_PACKAGES)
   find_package(OpenVDB QUIET)
   if(NOT OpenVDB_FOUND)
     message(STATUS "voxdag: OpenVDB (libopenvdb-dev, libboost-dev) not found: voxdag reads no .vdb volumes")
+  endif()
+endif()
+
+if("MPI" IN_LIST VOXDAG_LIBRARY_PACKAGES)
+  set(MPI_CXX_SKIP_MPICXX TRUE)  # MPI's old classes for C++
+  find_package(MPI QUIET COMPONENTS CXX)
+  if(NOT MPI_CXX_FOUND)
+    message(STATUS "voxdag: MPI (libopenmpi-dev, openmpi-bin) not found: no builds under mpirun")
   endif()
 endif()
 

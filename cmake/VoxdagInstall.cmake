@@ -11,7 +11,7 @@ get_property(parts GLOBAL PROPERTY VOXDAG_TARGETS)
 set(VOXDAG_ROOM_TABLE "")
 foreach(room ${VOXDAG_ROOMS})
   set(packages ${VOXDAG_ROOM_${room}_PACKAGES})
-  list(REMOVE_ITEM packages OpenVDB)  # only the module links it
+  list(REMOVE_ITEM packages OpenVDB MPI)  # only modules link them
   foreach(optional assimp embree CUDAToolkit)
     if(NOT ${optional}_FOUND)
       list(REMOVE_ITEM packages ${optional})
@@ -34,7 +34,7 @@ install(CODE "
   include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/installed_headers/voxdag DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-foreach(module voxdag_vdb voxdag_vdb_export)
+foreach(module voxdag_vdb voxdag_vdb_export voxdag_mpi)
   if(TARGET ${module})
     install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/voxdag)
   endif()

@@ -15,6 +15,7 @@ voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib
   pybind11-dev python3-dev python3-numpy python3-pytest  # the Python module
   libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
+  libopenmpi-dev openmpi-bin  # several processes under mpirun
   clang clang-format clang-tidy
 )
 

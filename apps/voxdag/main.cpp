@@ -76,9 +76,11 @@ int run(int argc, char** argv) {
   const auto fail = [&](const std::string& text, int status) {
     session.bar.clear();
     // After a signal, system calls may fail.
-    if (const int signal = cancelling_signal(); signal != 0 && status != kCancelled)
-      return report("cancelled: " + text, kSignalBase + signal);
-    return report(text, status == kCancelled ? kSignalBase + cancelling_signal() : status);
+    const int signal = cancelling_signal();
+    report(signal != 0 && status != kCancelled ? "cancelled: " + text : text, status);
+    if (signal != 0 || status == kCancelled) status = kSignalBase + signal;
+    if (session.after_failure) session.after_failure(status);
+    return status;
   };
   try {
     work(session);

@@ -40,6 +40,21 @@ void add_grid_options(const Command& command, BuildArguments& arguments) {
       "mesh's bounding box)");
 }
 
+void add_parts_options(const Command& command, BuildArguments& arguments) {
+  command
+      .text("--work", arguments.work_folder, "DIR",
+            "Build in parts, whose files lie in this folder until the output is complete. If the "
+            "build ends early, the same command goes on with them. Under mpirun or srun all "
+            "processes build together; they must see the folder")
+      .in_group(kDagOptions);
+  command
+      .optional_number<int>(
+          "--parts", arguments.parts, NumberRange::whole(1, 1000000), "K",
+          "Build in at least K parts, one after the other, with less memory (default "
+          "with --work: as many as memory and processes need)")
+      .in_group(kDagOptions);
+}
+
 void add_esvo_options(const Command& command, EsvoArguments& arguments) {
   EsvoSettings& settings = arguments.settings;
   const auto has_contours = [&settings] { return settings.contours; };
@@ -75,6 +90,10 @@ void add_esvo_options(const Command& command, EsvoArguments& arguments) {
       .in_group(kEsvoOptions);
 }
 
+bool is_in_parts(const BuildArguments& arguments) {
+  return !arguments.work_folder.empty() || arguments.parts != 0;
+}
+
 /// Throws UsageError for options that belong to the other kind of output, and for wrong
 /// combinations.
 void check_build_arguments(const Command& command, BuildArguments& arguments, Session& session) {
@@ -82,6 +101,12 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
     command.refuse_group(kDagOptions, "is for DAGs only, but the output is an ESVO (see --as)");
   else
     command.refuse_group(kEsvoOptions, "is for ESVOs only, but the output is a DAG (see --as)");
+  if (is_in_parts(arguments) && (arguments.solid || arguments.attributes.is_wanted() ||
+                                 arguments.compact || arguments.method != BuildMethod::kHashConsed))
+    throw UsageError(
+        "--work and --parts build the surface's voxels by --method hash: not with --solid, "
+        "--color, "
+        "--normal, --material-ids, --compact or another method");
   arguments.access.outputs = {{"--output", arguments.output}};
   check_distinct(arguments.access.outputs, session);
   if (arguments.grid.levels.has_value() == arguments.grid.voxel_size.has_value())
@@ -141,6 +166,7 @@ void add_build_command(const Command& program, Session& session) {
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
                  "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "
                  "quarters of the available memory)");
+  add_parts_options(command, *arguments);
   add_mesh_access_options(command, arguments->access);
   command.flag("--stats", arguments->stats, "Also print the number of nodes of each level")
       .only_if([&session] { return !session.json; }, "with --json, which always prints all levels")
@@ -153,8 +179,9 @@ void add_build_command(const Command& program, Session& session) {
     if (!as.is_given()) arguments->as_esvo = arguments->output.ends_with(".esvo");
     check_build_arguments(command, *arguments, session);
     session.work = [arguments, &session] {
-      arguments->as_esvo ? build_esvo_file(*arguments, session)
-                         : build_dag_file(*arguments, session);
+      if (arguments->as_esvo) return build_esvo_file(*arguments, session);
+      is_in_parts(*arguments) ? build_dag_in_parts(*arguments, session)
+                              : build_dag_file(*arguments, session);
     };
   });
 }

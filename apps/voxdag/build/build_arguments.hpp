@@ -33,7 +33,9 @@ struct BuildArguments {
   AttributeArguments attributes;   ///< For DAGs.
   std::optional<SolidRule> solid;  ///< For DAGs.
   double winding_threshold = 0.5;
-  bool compact = false;  ///< Write the compact form.
+  bool compact = false;     ///< Write the compact form.
+  std::string work_folder;  ///< For DAGs: where the work of many processes lies; empty: none.
+  std::uint64_t parts = 0;  ///< For DAGs: least number of parts; 0: not given.
   EsvoArguments esvo;
 };
 
@@ -42,6 +44,9 @@ std::map<std::string, std::string> build_settings(const BuildArguments& argument
 
 /// Builds a DAG from the mesh file session.subject, writes it, and prints the summary.
 void build_dag_file(const BuildArguments& arguments, Session& session);
+
+/// Builds a DAG in parts, alone or with the other processes of the job; see cluster/parts_job.hpp.
+void build_dag_in_parts(const BuildArguments& arguments, Session& session);
 
 /// Builds an ESVO from the mesh file session.subject with its textures, writes it, and prints the
 /// summary.

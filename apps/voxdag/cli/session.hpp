@@ -22,6 +22,8 @@ struct Session {
   int threads = 0;      ///< 0: one per processor.
   bool quiet = false;   ///< No progress bar and no summary.
   bool json = false;    ///< Print the result as JSON.
+  /// Called with the exit status after a failure was reported: ends the other processes of the job.
+  std::function<void(int status)> after_failure;
 
   ProgressBar bar;
   Progress progress{[this](std::string_view stage, double fraction, std::uint64_t items) {

@@ -86,11 +86,15 @@ int hash_bin_level(int levels, std::size_t triangles) {
 HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& report,
                                      StageBytes& bytes) {
   StopWatch watch;
-  MemoryBudget& budget = input.budget;
-  const int levels = input.grid.levels;
   const BinnedMesh binned = bin_mesh(input);
-  const SubvolumeBins& bins = binned.bins;
   report.quantize_seconds = watch.lap();
+  return voxelize_binned(binned, input.grid.levels, input.budget, input.progress, report, bytes);
+}
+
+HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, MemoryBudget& budget,
+                                Progress* progress, BuildReport& report, StageBytes& bytes) {
+  StopWatch watch;
+  const SubvolumeBins& bins = binned.bins;
   report.subvolumes = bins.cells.size();
   const std::size_t threads = thread_count(bins.cells.size());
   const int log2_sets = log2_memo_sets(budget, threads);
@@ -107,10 +111,10 @@ HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& repor
   using Context = SubvolumeContext<DagSink>;
   tbb::enumerable_thread_specific<Context> contexts([&] {
     return Context(binned.mesh, levels, DagSink(result.stores, log2_sets, budget), budget,
-                   input.progress);
+                   progress);
   });
   std::vector<NodeId> ids(bins.cells.size(), kNoNode);
-  polled_for(bins.cells.size(), 1, input.progress, "voxelize", [&](std::size_t i) {
+  polled_for(bins.cells.size(), 1, progress, "voxelize", [&](std::size_t i) {
     const Vec3i cell = morton_decode(bins.cells[i]);
     const SubvolumeJob job{
         {cell.x << log2_size, cell.y << log2_size, cell.z << log2_size}, log2_size, bins.list(i)};
@@ -127,14 +131,15 @@ HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& repor
   return result;
 }
 
-Svdag number_nodes(HashConsedNodes nodes, const BuildInput& input, BuildReport& report) {
+Svdag number_nodes(HashConsedNodes nodes, int levels, MemoryBudget& budget, Progress* progress,
+                   BuildReport& report) {
   Svdag dag;
-  dag.levels = input.grid.levels;
+  dag.levels = levels;
   if (nodes.root == kNoNode) return dag;
   StopWatch watch;
   for (const auto& store : nodes.stores) store->release_slots();
-  StoreSource source(nodes.stores, input.budget);
-  dag = canonical_order(source, dag.levels, nodes.root, &input.budget, input.progress);
+  StoreSource source(nodes.stores, budget);
+  dag = canonical_order(source, levels, nodes.root, &budget, progress);
   report.canonical_seconds = watch.lap();
   return dag;
 }

@@ -61,8 +61,14 @@ int hash_bin_level(int levels, std::size_t triangles);
 /// Builds the unique nodes. Adds to `report` and `bytes`. Throws OverMemory and Cancelled.
 HashConsedNodes voxelize_hash_consed(const BuildInput& input, BuildReport& report,
                                      StageBytes& bytes);
-/// Converts the nodes to the canonical DAG. Throws Error, OverMemory and Cancelled.
-Svdag number_nodes(HashConsedNodes nodes, const BuildInput& input, BuildReport& report);
+/// Builds the unique nodes of the sub-volumes that `binned` lists, in a grid of 2^levels voxels a
+/// side. Adds to `report` and `bytes`. Throws OverMemory and Cancelled; `progress` may be null.
+HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, MemoryBudget& budget,
+                                Progress* progress, BuildReport& report, StageBytes& bytes);
+/// Converts the nodes to the canonical DAG of 2^levels voxels a side. Throws Error, OverMemory and
+/// Cancelled; `progress` may be null.
+Svdag number_nodes(HashConsedNodes nodes, int levels, MemoryBudget& budget, Progress* progress,
+                   BuildReport& report);
 
 /// Returns the level whose cells are the sub-volumes of kSort and kPaper.
 int sort_bin_level(int levels);

@@ -33,7 +33,8 @@ void check_memory(const BuildInput& input) {
 Svdag build(const BuildInput& input, BuildReport& report) {
   StageBytes bytes;
   return input.method == BuildMethod::kHashConsed
-             ? number_nodes(voxelize_hash_consed(input, report, bytes), input, report)
+             ? number_nodes(voxelize_hash_consed(input, report, bytes), input.grid.levels,
+                            input.budget, input.progress, report)
              : merge_and_number(voxelize_by_sorting(input, report, bytes), input, report);
 }
 

@@ -17,41 +17,50 @@ namespace {
 using Entries = PageVector<std::uint64_t>;  // Morton code of the cell << 32 | triangle
 using Cursors = std::array<std::size_t, 4096>;
 
-/// Walks down to the sub-volumes from a cell that the triangle meets.
-void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i cell, int log2_size,
-             int log2_bin, std::uint32_t triangle, Entries& entries) {
-  if (log2_size == log2_bin) {
-    const Vec3i bin{cell.x >> log2_bin, cell.y >> log2_bin, cell.z >> log2_bin};
-    entries.push_back(morton_encode(bin) << 32 | triangle);
-    return;
-  }
-  const std::int32_t half = std::int32_t{1} << (log2_size - 1);
-  const ChildConditions children = classify_children(setup, conditions, cell, half);
-  for (std::uint32_t left = children.alive; left != 0; left &= left - 1) {
-    const int child = std::countr_zero(left);
-    const Vec3i at = cell + child_offset(child) * half;
-    descend(setup, children.conditions(child), at, log2_size - 1, log2_bin, triangle, entries);
-  }
-}
+/// Appends the cells of one level and range that triangles meet.
+class TriangleBinner {
+ public:
+  TriangleBinner(int levels, int level, const CellRange& range)
+      : levels_(levels), level_(level), log2_bin_(levels - level), range_(range) {}
 
-void bin_one(const QuantizedMesh& mesh, std::uint32_t index, int levels, int log2_bin,
-             Entries& entries) {
-  const QuantizedTriangle t = mesh.triangle(index);
-  const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
-  const int shift = log2_bin + 8;
-  Vec3i first, last;
-  for (int axis = 0; axis < 3; ++axis) {
-    first[axis] = lo[axis] >> shift;
-    last[axis] = hi[axis] >> shift;
-    if (last[axis] < 0 || first[axis] >= 1 << (levels - log2_bin)) return;
+  void bin(const QuantizedTriangle& t, std::uint32_t index, Entries& entries) const {
+    const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
+    const int shift = log2_bin_ + 8;
+    Vec3i first, last;
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = lo[axis] >> shift;
+      last[axis] = hi[axis] >> shift;
+      if (last[axis] < 0 || first[axis] >= 1 << level_) return;
+    }
+    if (first == last) return add(morton_encode(first), index, entries);
+    const TriangleSetup setup = make_triangle_setup(t, {0, 0, 0});
+    descend(setup, setup.conditions, {0, 0, 0}, 0, 0, index, entries);
   }
-  if (first == last) {
-    entries.push_back(morton_encode(first) << 32 | index);
-    return;
+
+ private:
+  void add(std::uint64_t code, std::uint32_t index, Entries& entries) const {
+    if (range_.meets(level_, static_cast<std::uint32_t>(code)))
+      entries.push_back(code << 32 | index);
   }
-  const TriangleSetup setup = make_triangle_setup(t, {0, 0, 0});
-  descend(setup, setup.conditions, {0, 0, 0}, levels, log2_bin, index, entries);
-}
+
+  /// Walks down to the sub-volumes from a cell that the triangle meets. The cell's first voxel is
+  /// `origin`, its Morton code `code`.
+  void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i origin, int level,
+               std::uint32_t code, std::uint32_t index, Entries& entries) const {
+    if (!range_.meets(level, code)) return;
+    if (level == level_) return add(code, index, entries);
+    const std::int32_t half = std::int32_t{1} << (levels_ - level - 1);
+    const ChildConditions children = classify_children(setup, conditions, origin, half);
+    for (std::uint32_t left = children.alive; left != 0; left &= left - 1) {
+      const int child = std::countr_zero(left);
+      descend(setup, children.conditions(child), origin + child_offset(child) * half, level + 1,
+              code << 3 | static_cast<std::uint32_t>(child), index, entries);
+    }
+  }
+
+  int levels_, level_, log2_bin_;
+  CellRange range_;
+};
 
 /// Moves the entries of all `parts` to one array, sorted stably by the 12 bits of the cell from bit
 /// `shift` up. Frees the parts.
@@ -84,12 +93,13 @@ Entries sort_by_digit(std::vector<Entries>& parts, int shift, MemoryBudget& budg
 
 // Sorts the cells' codes by a radix sort with 12-bit digits, the lowest first.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
-                            const IndexSet& excluded, MemoryBudget& budget, Progress* progress) {
-  const int log2_bin = levels - level;
+                            const CellRange& range, const IndexSet& excluded, MemoryBudget& budget,
+                            Progress* progress) {
+  const TriangleBinner binner(levels, level, range);
   tbb::enumerable_thread_specific<Entries> per_thread([&] { return Entries(&budget); });
   polled_for(mesh.triangle_count(), 1024, progress, "bin", [&](std::size_t i) {
     if (!mesh.in_range(i) || excluded.contains(i)) return;
-    bin_one(mesh, static_cast<std::uint32_t>(i), levels, log2_bin, per_thread.local());
+    binner.bin(mesh.triangle(i), static_cast<std::uint32_t>(i), per_thread.local());
   });
   std::vector<Entries> parts;
   for (Entries& entries : per_thread) parts.push_back(std::move(entries));

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "voxdag/core/page_vector.hpp"
+#include "voxdag/dag/cell_range.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/voxelize/duplicate_triangles.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
@@ -24,11 +25,13 @@ struct SubvolumeBins {
   }
 };
 
-/// Bins the triangles that are not in `excluded` into the cells of `level`, <= levels - 2 and <=
-/// 10. A triangle is in the list of every cell that it meets and, except in the largest grids, of
-/// no other. The order in a list depends on timing. Time is linear in the size of the lists. Memory
-/// is at most 16 bytes per entry during the call and 4 afterwards. Throws OverMemory and Cancelled.
+/// Bins the triangles that are not in `excluded` into those cells of `level`, <= levels - 2 and <=
+/// 10, that lie in `range`, which is of the same or a coarser level. A triangle is in the list of
+/// every such cell that it meets and, except in the largest grids, of no other. The order in a list
+/// depends on timing. Time is linear in the size of the lists. Memory is at most 16 bytes per entry
+/// during the call and 4 afterwards. Throws OverMemory and Cancelled.
 SubvolumeBins bin_triangles(const QuantizedMesh& mesh, int levels, int level,
-                            const IndexSet& excluded, MemoryBudget& budget, Progress* progress);
+                            const CellRange& range, const IndexSet& excluded, MemoryBudget& budget,
+                            Progress* progress);
 
 }  // namespace voxdag

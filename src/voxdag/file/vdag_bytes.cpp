@@ -12,26 +12,11 @@ namespace {
 
 constexpr std::byte kZeros[kVdagAlignment] = {};
 
-/// Returns the bytes before the first chunk: header and table with checksums, padded.
-std::vector<std::byte> make_head(const std::vector<OutputChunk>& chunks) {
-  const std::size_t table_end = sizeof(VdagHeader) + chunks.size() * sizeof(VdagChunkEntry);
-  std::vector<std::byte> head(vdag_align(table_end));
-  std::uint64_t offset = head.size();
-  for (std::size_t i = 0; i < chunks.size(); ++i) {
-    const VdagChunkEntry entry{chunks[i].id, chunks[i].flags, offset, chunks[i].length(),
-                               chunks[i].checksum()};
-    std::memcpy(head.data() + sizeof(VdagHeader) + i * sizeof entry, &entry, sizeof entry);
-    offset += vdag_align(entry.length);
-  }
-  VdagHeader header{};
-  std::memcpy(header.magic, kVdagMagic, sizeof kVdagMagic);
-  header.version = kVdagVersion;
-  header.chunk_count = static_cast<std::uint32_t>(chunks.size());
-  header.file_bytes = offset;
-  std::memcpy(head.data(), &header, sizeof header);
-  header.checksum = xxh3_64({head.data(), table_end});
-  std::memcpy(head.data(), &header, sizeof header);
-  return head;
+std::vector<ChunkSummary> summaries_of(const std::vector<OutputChunk>& chunks) {
+  std::vector<ChunkSummary> summaries;
+  for (const OutputChunk& chunk : chunks)
+    summaries.push_back({chunk.id, chunk.flags, chunk.length(), chunk.checksum()});
+  return summaries;
 }
 
 template <class T>
@@ -59,7 +44,29 @@ const std::uint64_t* copy_level_begin(const SvdagView& view, std::uint64_t* copy
 
 }  // namespace
 
-VdagBytes::VdagBytes(const std::vector<OutputChunk>& chunks) : head_(make_head(chunks)) {
+std::vector<std::byte> vdag_head(std::span<const ChunkSummary> chunks) {
+  const std::size_t table_end = sizeof(VdagHeader) + chunks.size() * sizeof(VdagChunkEntry);
+  std::vector<std::byte> head(vdag_align(table_end));
+  std::uint64_t offset = head.size();
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const VdagChunkEntry entry{chunks[i].id, chunks[i].flags, offset, chunks[i].length,
+                               chunks[i].checksum};
+    std::memcpy(head.data() + sizeof(VdagHeader) + i * sizeof entry, &entry, sizeof entry);
+    offset += vdag_align(entry.length);
+  }
+  VdagHeader header{};
+  std::memcpy(header.magic, kVdagMagic, sizeof kVdagMagic);
+  header.version = kVdagVersion;
+  header.chunk_count = static_cast<std::uint32_t>(chunks.size());
+  header.file_bytes = offset;
+  std::memcpy(head.data(), &header, sizeof header);
+  header.checksum = xxh3_64({head.data(), table_end});
+  std::memcpy(head.data(), &header, sizeof header);
+  return head;
+}
+
+VdagBytes::VdagBytes(const std::vector<OutputChunk>& chunks)
+    : head_(vdag_head(summaries_of(chunks))) {
   const auto add = [this](std::span<const std::byte> part) {
     if (!part.empty()) parts_.push_back(part);
     size_ += part.size();

@@ -13,6 +13,17 @@
 
 namespace voxdag {
 
+/// What the chunk table says of a chunk, but for its offset.
+struct ChunkSummary {
+  std::uint32_t id = 0;
+  std::uint32_t flags = 0;  ///< See VdagChunkEntry.
+  std::uint64_t length = 0, checksum = 0;
+};
+
+/// Returns the bytes before the first chunk: header and chunk table, padded. The chunks follow,
+/// each padded to a multiple of kVdagAlignment.
+std::vector<std::byte> vdag_head(std::span<const ChunkSummary> chunks);
+
 /// The parts of a file with these chunks. Refers to the chunks' bytes and owns the rest.
 class VdagBytes {
  public:

@@ -23,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 }  // namespace
 
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
@@ -32,7 +31,8 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
   file.commit();
 }
 
-AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
+AtomicFile::AtomicFile(const fs::path& path, std::size_t buffer_bytes)
+    : path_(path), target_(path), buffer_bytes_(buffer_bytes) {
   const ResolvedOutput output = resolve_output(path);
   if (output.error != 0) fail(0, output.error);
   target_ = output.file;
@@ -77,6 +77,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
       start_(other.start_),
       is_appended_(other.is_appended_),
       flushed_(other.flushed_),
+      buffer_bytes_(other.buffer_bytes_),
       buffer_(std::move(other.buffer_)) {}
 
 AtomicFile::~AtomicFile() { discard(); }
@@ -84,9 +85,9 @@ AtomicFile::~AtomicFile() { discard(); }
 void AtomicFile::write(const void* data, std::size_t bytes) {
   assert(descriptor_ >= 0);
   const auto* from = static_cast<const std::byte*>(data);
-  if (buffer_.size() + bytes > kBufferBytes) flush();
-  if (bytes >= kBufferBytes) return write_through(from, bytes);
-  if (buffer_.capacity() == 0) buffer_.reserve(kBufferBytes);
+  if (buffer_.size() + bytes > buffer_bytes_) flush();
+  if (bytes >= buffer_bytes_) return write_through(from, bytes);
+  if (buffer_.capacity() == 0) buffer_.reserve(buffer_bytes_);
   buffer_.insert(buffer_.end(), from, from + bytes);
 }
 

@@ -34,8 +34,11 @@ namespace voxdag {
 /// writes to pipes must ignore SIGPIPE. Not thread-safe.
 class AtomicFile {
  public:
-  /// Creates the file, so that an unwritable folder is an error before the work begins.
-  explicit AtomicFile(const std::filesystem::path& path);
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+  /// Creates the file, so that an unwritable folder is an error before the work begins. Collects
+  /// `buffer_bytes` before it writes; 0: the caller writes large pieces.
+  explicit AtomicFile(const std::filesystem::path& path, std::size_t buffer_bytes = kBufferBytes);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();
@@ -78,6 +81,7 @@ class AtomicFile {
   off_t start_ = 0;  ///< Offset in the file at which the output starts.
   bool is_appended_ = false;
   std::uint64_t flushed_ = 0;
+  std::size_t buffer_bytes_;
   std::vector<std::byte> buffer_;
 };
 

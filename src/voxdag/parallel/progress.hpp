@@ -19,6 +19,9 @@ class Progress {
 
   Progress() = default;
   explicit Progress(Report report) : report_(std::move(report)) {}
+  /// Makes the progress of a step of longer work: it reports nothing, and is cancelled when `whole`
+  /// is, which may be null.
+  explicit Progress(const Progress* whole) : whole_(whole) {}
 
   /// Calls the callback, unless another thread is calling it.
   void report(std::string_view stage, double fraction, std::uint64_t items = 0) {
@@ -29,7 +32,9 @@ class Progress {
 
   /// Asks the work to stop. Async-signal-safe.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const noexcept {
+    return cancelled_.load(std::memory_order_relaxed) || (whole_ != nullptr && whole_->cancelled());
+  }
   /// Throws Cancelled if cancel() was called.
   void throw_if_cancelled() const {
     if (cancelled()) throw Cancelled();
@@ -37,6 +42,7 @@ class Progress {
 
  private:
   Report report_;
+  const Progress* whole_ = nullptr;
   std::atomic<bool> cancelled_{false};
   std::atomic_flag busy_ = ATOMIC_FLAG_INIT;
 };

@@ -26,6 +26,11 @@ void require_voxel_size(double voxel_size) {
     throw Error("the voxel size must be a positive number");
 }
 
+/// Refuses the bounds of a mesh without triangles.
+void require_triangles(const Box3d& bounds) {
+  if (bounds.is_empty()) throw Error("the mesh has no triangles");
+}
+
 double longest_side(const Box3d& box) {
   const Vec3d side = box.hi - box.lo;
   return std::max({side.x, side.y, side.z});
@@ -41,12 +46,50 @@ int levels_for(double voxels) {
   return levels;
 }
 
+const Mesh kNoMesh;
+
+// Clips by Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
+void clip(const Vec3<Vec3d>& corners, const Grid& grid, std::vector<QuantizedTriangle>& pieces) {
+  std::vector<Vec3d> polygon, kept;
+  for (int corner = 0; corner < 3; ++corner)
+    polygon.push_back((corners[corner] - grid.origin) * grid.quantization_scale);
+  constexpr double kLimit = kMaxUnits;
+  for (int plane = 0; plane < 6 && !polygon.empty(); ++plane) {
+    const int axis = plane / 2;
+    const double sign = plane % 2 == 0 ? 1 : -1;
+    kept.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+      const double inside_a = kLimit - sign * a[axis], inside_b = kLimit - sign * b[axis];
+      if (inside_a >= 0) kept.push_back(a);
+      if ((inside_a >= 0) == (inside_b >= 0)) continue;
+      Vec3d cut = a + (b - a) * (inside_a / (inside_a - inside_b));
+      cut[axis] = sign * kLimit;
+      kept.push_back(cut);
+    }
+    polygon.swap(kept);
+  }
+  std::vector<Vec3i> rounded;
+  for (const Vec3d& p : polygon) {
+    Vec3i q;
+    for (int axis = 0; axis < 3; ++axis)
+      q[axis] = static_cast<std::int32_t>(std::llround(std::clamp(p[axis], -kLimit, kLimit)));
+    rounded.push_back(q);
+  }
+  for (std::size_t i = 2; i < rounded.size(); ++i)
+    pieces.push_back({rounded[0], rounded[i - 1], rounded[i]});
+}
+
 }  // namespace
 
 Grid fit_grid(const Mesh& mesh, int levels) {
   require_levels(levels);
-  if (mesh.triangles.empty()) throw Error("the mesh has no triangles");
-  const Box3d bounds = referenced_bounds(mesh);
+  return fit_grid(referenced_bounds(mesh), levels);
+}
+
+Grid fit_grid(const Box3d& bounds, int levels) {
+  require_levels(levels);
+  require_triangles(bounds);
   const double ext = longest_side(bounds);
   const double units = static_cast<double>((std::int64_t{1} << levels) * kSubvoxels - 1);
   Grid grid;
@@ -60,8 +103,11 @@ Grid fit_grid(const Mesh& mesh, int levels) {
 }
 
 Grid grid_from_voxel_size(const Mesh& mesh, double voxel_size) {
-  if (mesh.triangles.empty()) throw Error("the mesh has no triangles");
-  const Box3d bounds = referenced_bounds(mesh);
+  return grid_from_voxel_size(referenced_bounds(mesh), voxel_size);
+}
+
+Grid grid_from_voxel_size(const Box3d& bounds, double voxel_size) {
+  require_triangles(bounds);
   require_voxel_size(voxel_size);
   // The farthest vertex must round to a unit inside the grid.
   const double scale = kSubvoxels / voxel_size;
@@ -111,11 +157,22 @@ QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* b
   });
   if (!any_out_of_range.load()) return;
   const std::size_t count = mesh.triangles.size();
+  std::vector<QuantizedTriangle> pieces;
   for (std::size_t i = 0; i < count; ++i) {
     poll_seldom(progress, i);
-    if (!in_range(i)) clip(mesh, grid, static_cast<std::uint32_t>(i));
+    if (in_range(i)) continue;
+    const Triangle& t = mesh.triangles[i];
+    pieces.clear();
+    clip({static_cast<Vec3d>(mesh.vertices[t[0]]), static_cast<Vec3d>(mesh.vertices[t[1]]),
+          static_cast<Vec3d>(mesh.vertices[t[2]])},
+         grid, pieces);
+    clipped_.insert(clipped_.end(), pieces.begin(), pieces.end());
+    clipped_source_.insert(clipped_source_.end(), pieces.size(), static_cast<std::uint32_t>(i));
   }
 }
+
+QuantizedMesh::QuantizedMesh(CountedVector<QuantizedTriangle> triangles)
+    : mesh_(&kNoMesh), clipped_(std::move(triangles)) {}
 
 bool QuantizedMesh::in_range(std::size_t index) const {
   if (index >= mesh_->triangles.size()) return true;
@@ -131,39 +188,15 @@ QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
   return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
 }
 
-// Clips by Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
-void QuantizedMesh::clip(const Mesh& mesh, const Grid& grid, std::uint32_t index) {
-  std::vector<Vec3d> polygon, kept;
-  for (const std::uint32_t vertex : mesh.triangles[index])
-    polygon.push_back((static_cast<Vec3d>(mesh.vertices[vertex]) - grid.origin) *
-                      grid.quantization_scale);
-  constexpr double kLimit = kMaxUnits;
-  for (int plane = 0; plane < 6 && !polygon.empty(); ++plane) {
-    const int axis = plane / 2;
-    const double sign = plane % 2 == 0 ? 1 : -1;
-    kept.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-      const double inside_a = kLimit - sign * a[axis], inside_b = kLimit - sign * b[axis];
-      if (inside_a >= 0) kept.push_back(a);
-      if ((inside_a >= 0) == (inside_b >= 0)) continue;
-      Vec3d cut = a + (b - a) * (inside_a / (inside_a - inside_b));
-      cut[axis] = sign * kLimit;
-      kept.push_back(cut);
-    }
-    polygon.swap(kept);
+void quantize_triangle(const Grid& grid, const Vec3<Vec3d>& corners,
+                       std::vector<QuantizedTriangle>& triangles) {
+  QuantizedTriangle quantized;
+  for (int corner = 0; corner < 3; ++corner) {
+    const auto q = quantize(grid, corners[corner]);
+    if (!q) return clip(corners, grid, triangles);
+    quantized[corner] = *q;
   }
-  std::vector<Vec3i> rounded;
-  for (const Vec3d& p : polygon) {
-    Vec3i q;
-    for (int axis = 0; axis < 3; ++axis)
-      q[axis] = static_cast<std::int32_t>(std::llround(std::clamp(p[axis], -kLimit, kLimit)));
-    rounded.push_back(q);
-  }
-  for (std::size_t i = 2; i < rounded.size(); ++i) {
-    clipped_.push_back({rounded[0], rounded[i - 1], rounded[i]});
-    clipped_source_.push_back(index);
-  }
+  triangles.push_back(quantized);
 }
 
 }  // namespace voxdag

@@ -5,6 +5,7 @@
 /// quantization_scale), component by component; everything after that is integer.
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
@@ -18,10 +19,14 @@ namespace voxdag {
 /// [kMinLevels, kMaxLevels] or the mesh has no triangles. A mesh that is one point gets a grid of
 /// voxels of size 1.
 Grid fit_grid(const Mesh& mesh, int levels);
+/// Returns the grid that fits a mesh with these bounds: of the vertices that its triangles use.
+Grid fit_grid(const Box3d& bounds, int levels);
 
 /// Returns the smallest grid that holds the mesh, with voxels of `voxel_size` world units and the
 /// origin of fit_grid(). Throws Error if it needs more than kMaxLevels levels.
 Grid grid_from_voxel_size(const Mesh& mesh, double voxel_size);
+/// Returns that grid for a mesh with these bounds.
+Grid grid_from_voxel_size(const Box3d& bounds, double voxel_size);
 
 /// Returns the grid of 2^levels voxels a side whose origin is bounds.lo and whose side is the
 /// longest side of `bounds`. Parts of a mesh outside the grid are clipped away.
@@ -39,6 +44,12 @@ std::optional<Vec3i> quantize(const Grid& grid, Vec3d world);
 
 using QuantizedTriangle = Vec3<Vec3i>;  ///< Three vertices in units of 1/256 voxel.
 
+/// Appends a triangle on the grid's integers to `triangles`. If a corner lies beyond ±kMaxUnits,
+/// appends the pieces, at most 7, that are left when the triangle is clipped to that box in double
+/// precision.
+void quantize_triangle(const Grid& grid, const Vec3<Vec3d>& corners,
+                       std::vector<QuantizedTriangle>& triangles);
+
 /// A mesh's triangles on the grid's integers. Refers to the mesh, which must outlive it.
 class QuantizedMesh {
  public:
@@ -47,6 +58,9 @@ class QuantizedMesh {
   /// counts the memory and `progress` is polled; both may be null. Throws OverMemory and Cancelled.
   QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget = nullptr,
                 Progress* progress = nullptr);
+  /// Takes triangles that are on the grid's integers already. There is no mesh behind them, so
+  /// source() has no meaning.
+  explicit QuantizedMesh(CountedVector<QuantizedTriangle> triangles);
 
   /// Returns the number of triangles, with the pieces of clipped ones.
   std::size_t triangle_count() const { return mesh_->triangles.size() + clipped_.size(); }
@@ -64,8 +78,6 @@ class QuantizedMesh {
   }
 
  private:
-  void clip(const Mesh& mesh, const Grid& grid, std::uint32_t index);
-
   const Mesh* mesh_;
   CountedVector<Vec3i> vertices_;
   CountedVector<QuantizedTriangle> clipped_;

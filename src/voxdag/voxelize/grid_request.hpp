@@ -18,6 +18,8 @@ struct GridRequest {
 
 /// Returns the grid for a mesh. Throws Error if there is none: see grid_mapping.hpp.
 Grid grid_for(const Mesh& mesh, const GridRequest& request);
+/// Returns the grid for a mesh with these bounds: of the vertices that its triangles use.
+Grid grid_for(const Box3d& mesh_bounds, const GridRequest& request);
 
 /// Returns the entries of VdagMetadata::build that say how the grid was chosen.
 std::map<std::string, std::string> settings_of(const GridRequest& request);

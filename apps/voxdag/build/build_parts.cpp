@@ -1,0 +1,129 @@
+/// `voxdag build` in parts: in bounded memory, or by many processes.
+#include <fmt/core.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "build/build_arguments.hpp"
+#include "voxdag/cluster/join_ranks.hpp"
+#include "voxdag/cluster/parts_job.hpp"
+#include "voxdag/io/process_memory.hpp"
+#include "voxdag/io/temporary_folder.hpp"
+#include "voxdag/model/written_by.hpp"
+#include "voxdag/report/dag_report.hpp"
+#include "voxdag/report/human.hpp"
+
+namespace voxdag {
+namespace {
+
+DagReport report_of_file(const PartsReport& parts, const std::string& output) {
+  DagReport report;
+  report.metadata = parts.metadata;
+  report.node_bytes = parts.node_bytes;
+  report.leaf_bytes = parts.leaf_bytes;
+  std::error_code unknown;
+  report.file_bytes = std::filesystem::file_size(output, unknown);
+  if (unknown) report.file_bytes = 0;  // the output is a pipe or a device
+  return report;
+}
+
+double total_seconds(const PartsReport& parts) {
+  double sum = 0;
+  for (const double seconds : parts.seconds) sum += seconds;
+  return sum;
+}
+
+nlohmann::ordered_json json_of(const DagReport& report, const PartsReport& parts, int ranks) {
+  nlohmann::ordered_json json = dag_json(report);
+  json["ranks"] = ranks;
+  json["parts"] = parts.parts;
+  json["parts_built"] = parts.built;
+  json["mailboxes"] = parts.mailboxes;
+  for (std::size_t i = 0; i < kPartsSteps.size(); ++i) {
+    json["seconds"][kPartsSteps[i]] = parts.seconds[i];
+    json["bytes_sent"][kPartsSteps[i]] = parts.bytes_sent[i];
+  }
+  json["seconds"]["total"] = total_seconds(parts);
+  json["peak_memory_bytes"] = parts.peak_bytes;
+  return json;
+}
+
+std::string table_of(const DagReport& report, const PartsReport& parts, int ranks) {
+  std::string steps;
+  for (std::size_t i = 0; i < kPartsSteps.size(); ++i)
+    steps +=
+        fmt::format("{}{} {}", i == 0 ? "" : ", ", kPartsSteps[i], human_seconds(parts.seconds[i]));
+  return fmt::format(
+      "{}\n"
+      "  time          {}: {}\n"
+      "  parts         {}, {} of them built now, by {} {}\n"
+      "  peak memory   {}\n",
+      dag_table(report), human_seconds(total_seconds(parts)), steps, parts.parts, parts.built,
+      ranks, ranks == 1 ? "process" : "processes", human_bytes(parts.peak_bytes));
+}
+
+/// Shares the processors among the ranks of this machine, unless mpirun has bound each to some.
+int threads_of_rank() {
+  int ranks = 1;
+  for (const char* name : {"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"})
+    if (const char* text = std::getenv(name)) ranks = std::max(ranks, std::atoi(text));
+  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, std::min(tbb::this_task_arena::max_concurrency(), processors / ranks));
+}
+
+}  // namespace
+
+void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
+  const std::shared_ptr<Ranks> ranks = join_ranks(&session.progress);
+  if (ranks->count() > 1) session.after_failure = [ranks](int status) { ranks->abort(status); };
+  const bool is_first = ranks->rank() == 0;
+  std::optional<tbb::global_control> threads;
+  if (session.threads == 0 && ranks->count() > 1)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, threads_of_rank());
+  session.bar.enable(!session.quiet && is_first);
+  if (arguments.work_folder.empty() && ranks->count() > 1)
+    throw Error("several processes need --work: a folder that all of them see");
+  if (is_first) check_writable(arguments.output);
+
+  MemoryBudget memory = command_budget(arguments.memory_limit);
+  PartsJob job;
+  job.mesh = session.subject;
+  job.output = arguments.output;
+  job.grid = arguments.grid;
+  job.parts = arguments.parts;
+  arguments.access.give_rights(job.reading);
+  std::optional<TemporaryFolder> temporary;
+  if (arguments.work_folder.empty()) temporary.emplace(arguments.output);
+  job.work_folder =
+      temporary ? temporary->path() / "work" : std::filesystem::path(arguments.work_folder);
+  PartsReport parts;
+  try {
+    parts = build_in_parts(job, written_by(), *ranks, memory, &session.progress);
+  } catch (const Cancelled&) {
+    if (!temporary && is_first)
+      print_line("the work is kept in " + arguments.work_folder +
+                 "; the same command again goes on with it");
+    throw;
+  }
+  if (!is_first) return;
+
+  const DagReport report = report_of_file(parts, arguments.output);
+  warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
+  session.bar.clear();
+  if (session.json) {
+    fmt::print("{}", json_text(json_of(report, parts, ranks->count())));
+  } else if (!session.quiet) {
+    fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
+               table_of(report, parts, ranks->count()));
+    if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,16 @@
+#include "voxdag/cluster/mpi/mpi_module.hpp"
+
+#include "voxdag/cluster/mpi/mpi_ranks.hpp"
+
+namespace voxdag {
+namespace {
+
+Ranks* join_in_module(const Progress* progress, const RankOptions& options) {
+  return new MpiRanks(progress, options);
+}
+
+}  // namespace
+}  // namespace voxdag
+
+// NOLINTNEXTLINE(readability-identifier-naming): kMpiModuleName
+extern "C" const voxdag::MpiModule voxdag_mpi_module = {voxdag::join_in_module};

@@ -1,0 +1,56 @@
+#pragma once
+/// Builds the DAG of a mesh in parts, by one process or by many. The file is that of a plain build,
+/// to the byte.
+///
+/// The steps lie in a work folder, which all ranks see, so that a job that ended early goes on
+/// where it was:
+///
+///   triangles   rank 0 reads the mesh and writes its triangles with an index of coarse cells
+///   parts       the grid is cut into parts; each rank takes one after the other and builds its DAG
+///   merge       equal nodes of the parts become one, level by level
+///   number      the nodes get their canonical order
+///   write       the ranks write the output
+#include <array>
+#include <cstdint>
+#include <filesystem>
+
+#include "voxdag/cluster/ranks.hpp"
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/parallel/progress.hpp"
+#include "voxdag/readers/read_options.hpp"
+#include "voxdag/voxelize/grid_request.hpp"
+
+namespace voxdag {
+
+struct PartsJob {
+  std::filesystem::path mesh, work_folder, output;
+  GridRequest grid;
+  /// Least number of parts, if the mesh meets enough cells; 0: a number that fits the ranks and
+  /// their memory.
+  std::uint64_t parts = 0;
+  ReadOptions reading;  ///< `progress` and `memory` are set by the job.
+};
+
+enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };
+inline constexpr std::array kPartsSteps = {"triangles", "parts", "merge", "number", "write"};
+
+/// What a job did: the same on all ranks, but for the seconds.
+struct PartsReport {
+  VdagMetadata metadata;
+  std::array<double, kPartsSteps.size()> seconds{};            ///< Wall-clock, per step.
+  std::array<std::uint64_t, kPartsSteps.size()> bytes_sent{};  ///< Between ranks, per step.
+  std::uint64_t parts = 0;
+  std::uint64_t built = 0;  ///< Parts that this run built; the others were whole already.
+  std::uint32_t mailboxes = 0;
+  std::uint64_t peak_bytes = 0;                  ///< Most resident memory of a rank.
+  std::uint64_t node_bytes = 0, leaf_bytes = 0;  ///< Of the DAG in the paper's layout.
+};
+
+/// Runs the job, and removes all but the log from the work folder. Collective. `budget` limits the
+/// memory of this rank; mapped files do not count. Throws Error, OverMemory and Cancelled; the work
+/// folder then holds what is done, and the same call goes on with it.
+PartsReport build_in_parts(const PartsJob& job, const std::string& program, Ranks& ranks,
+                           MemoryBudget& budget, Progress* progress);
+
+}  // namespace voxdag
