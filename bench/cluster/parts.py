@@ -4,7 +4,8 @@
   parts.py VOXDAG MESH -r N [--ranks 1,2,4,8] [--memory LIMIT] [--no-plain] [--work DIR] [-o OUT]
 
 Writes OUT.json and OUT.txt (default: parts). Compares the bytes of all outputs. With more ranks
-than processors, times say little: read the bytes and the numbers of parts instead.
+than processors, times say little: read the bytes and the numbers of parts instead. As root, set
+OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1.
 """
 import argparse
 import hashlib
@@ -49,7 +50,7 @@ def machine():
 
 
 def row(name, seconds, steps, memory, sent):
-    cells = [f"{seconds[step]:9.1f}" if step in seconds else " " * 9 for step in steps]
+    cells = [f"{seconds[step]:11.1f}" if step in seconds else " " * 11 for step in steps]
     return f"{name:<10}{seconds['total']:9.1f}{''.join(cells)}{memory / 2**20:10.0f}{sent / 1e6:10.1f}"
 
 
@@ -77,7 +78,7 @@ def main():
     text = [f"{result['mesh']} at {arguments.resolution}, {result['mesh_bytes'] / 1e6:.0f} MB; "
             f"{result['machine']['cpu']}, {result['machine']['processors']} processors; memory per rank: "
             f"{arguments.memory or 'default'}", "",
-            f"{'':<10}{'seconds':>9}" + "".join(f"{step:>9}" for step in steps) +
+            f"{'':<10}{'seconds':>9}" + "".join(f"{step:>11}" for step in steps) +
             f"{'MiB/rank':>10}{'MB sent':>10}"]
     digests = set()
     if not arguments.no_plain:
@@ -86,7 +87,7 @@ def main():
         digests.add(digest(output))
         os.remove(output)
         result["runs"].append({"ranks": 0, "report": report})
-        text.append(row("plain", report["seconds"], [], report["peak_memory_bytes"], 0))
+        text.append(row("plain", {"total": report["seconds"]["total"]}, steps, report["peak_memory_bytes"], 0))
     for ranks in [int(count) for count in arguments.ranks.split(",")]:
         work, output = os.path.join(folder, "work"), os.path.join(folder, "parts.vdag")
         command = [*build, "--work", work, "-o", output]
