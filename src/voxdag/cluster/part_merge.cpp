@@ -78,7 +78,6 @@ class LevelMerge {
     intern(questions, answers);
     collect(answers, cells);
     voxdag::for_each_own(job_.ranks, job_.mailboxes, nullptr, [&](std::uint32_t box) {
-      if (!is_leaf_) job_.folder.remove(ids_name(level_ + 1, box));
       job_.folder.remove(mailbox_name(questions, box));
       job_.folder.remove(mailbox_name(answers, box));
       job_.folder.remove(mailbox_name(cells, box));
@@ -333,6 +332,9 @@ MergedNodes merge_parts(const MergeJob& job) {
         job.progress->report("merge", 1 - (level + 1.0) / (job.levels - 1));
       LevelMerge(job, level).run();
       mark_done_for_all(job.ranks, job.folder, step);
+      // Until then, a new run needs them to merge this level again.
+      for_each_own(job.ranks, job.mailboxes, nullptr,
+                   [&](std::uint32_t box) { job.folder.remove(ids_name(level + 1, box)); });
     }
   }
   const WorkFile file = job.folder.open_written(top_name(0), job.progress);

@@ -3,7 +3,7 @@
 namespace voxdag {
 
 double CellLoad::bytes() const {
-  // Measured on scanned meshes and buildings: a triangle with its lists and its setup, and a
+  // Rough: a triangle with its lists and its setup, and a
   // voxel's share of leaf blocks, inner nodes and tables.
   constexpr double kTriangleBytes = 120, kVoxelBytes = 2;
   return static_cast<double>(triangles) * kTriangleBytes + voxels * kVoxelBytes;
