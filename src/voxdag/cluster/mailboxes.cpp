@@ -7,7 +7,8 @@
 namespace voxdag {
 namespace {
 
-/// Bytes that wait for other ranks before they are sent: for all ranks, and for one.
+/// A rank exchanges messages when the bytes for one other rank reach kMostWaiting divided by the
+/// number of ranks, but at least kLeastWaiting.
 constexpr std::uint64_t kMostWaiting = std::uint64_t{8} << 20,
                         kLeastWaiting = std::uint64_t{64} << 10;
 

@@ -60,7 +60,7 @@ class Mailboxes {
   /// Takes the messages of a mailbox. Thread-safe.
   void put(std::uint32_t mailbox, std::span<const std::byte> messages);
   void put_own(std::uint32_t mailbox, std::span<const std::byte> messages);
-  /// Sends what waits for other ranks. Returns whether all ranks have closed.
+  /// Sends the messages that wait for other ranks. Returns whether all ranks have closed.
   bool exchange(bool is_closed);
 
   Ranks& ranks_;

@@ -12,7 +12,7 @@
 
 namespace voxdag {
 
-/// What the job knows of its mesh.
+/// The grid of a mesh, its size, and the segments that it is stored in.
 struct MeshFacts {
   Grid grid;
   std::uint64_t vertices = 0, triangles = 0;

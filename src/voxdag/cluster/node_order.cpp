@@ -1,23 +1,17 @@
 #include "voxdag/cluster/node_order.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
-#include <mutex>
 
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/node_record.hpp"
+#include "voxdag/cluster/ordered_level.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
-
-/// Precedes the record of an ordered node: how often it is in the octree.
-struct OrderedNode {
-  std::uint64_t copies;
-};
 
 /// A reference to a child of number `number`, the `position`-th of its level.
 struct Reference {
@@ -31,7 +25,7 @@ struct FirstReference {
   std::uint64_t mailbox;
 };
 
-/// Where a node went: its first word in its level, or the index of its leaf block.
+/// The place of a node in its level: the offset of its first word, or the index of its leaf block.
 struct Place {
   std::uint64_t number, place;
 };
@@ -41,28 +35,9 @@ struct PlacedReference {
   std::uint64_t position, place;
 };
 
-/// What is known of the runs of a level, and of the whole level.
-struct LevelRuns {
-  std::vector<std::uint64_t> first_reference;  ///< Per run; then the number of all references.
-  std::vector<std::uint64_t> first_place;      ///< Per run: words or leaf blocks; then all of them.
-  std::uint64_t nodes = 0, copies = 0;
-};
-
 std::string name_of(const char* kind, int level) {
   return "merge/" + std::string(kind) + "-" + std::to_string(level);
 }
-std::string order_name(int level, std::uint32_t box) {
-  return mailbox_name(name_of("order", level), box);
-}
-
-template <class T>
-T take(const std::byte*& at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  at += sizeof value;
-  return value;
-}
-
 class NodeOrder {
  public:
   explicit NodeOrder(const MergeJob& job) : job_(job), leaf_level_(job.levels - 2) {}
@@ -88,11 +63,11 @@ class NodeOrder {
     const std::string references = name_of("references", level),
                       firsts = name_of("firsts", level + 1), places = name_of("places", level + 1),
                       placed = name_of("placed", level);
-    const LevelRuns runs = runs_of(level);
+    const LevelRuns runs = runs_of(job_, level);
     send_references(level, runs, references);
     send_firsts(level, runs, references, firsts);
     order_runs(level + 1, firsts, places);
-    const LevelRuns below = runs_of(level + 1);
+    const LevelRuns below = runs_of(job_, level + 1);
     answer_references(level, runs, references, places, placed);
     write_words(level, runs, below, placed);
     for_each_own([&](std::uint32_t box) {
@@ -106,81 +81,12 @@ class NodeOrder {
     for_each_own([&](std::uint32_t box) {
       const WorkFile file = job_.folder.open_written(order_name(leaf_level_, box), job_.progress);
       WorkFileWriter out = job_.folder.create(words_name(leaf_level_, box));
-      for_each_node(file, leaf_level_, [&](const OrderedNode&, const std::byte* record) {
+      for_each_node(file, true, job_.progress, [&](const OrderedNode&, const std::byte* record) {
         out.write({record, kLeafRecordBytes});
       });
       out.commit();
     });
     job_.ranks.barrier();
-  }
-
-  /// Counts a level from the files of its runs. Collective.
-  LevelRuns runs_of(int level) {
-    const bool is_leaf = level == leaf_level_;
-    // Per mailbox: nodes, references, copies.
-    std::vector<std::uint64_t> mine(3 * most_own());
-    for_each_own([&](std::uint32_t box) {
-      const WorkFile file = job_.folder.open_written(order_name(level, box), job_.progress);
-      std::uint64_t nodes = 0, references = 0, copies = 0;
-      for_each_node(file, level, [&](const OrderedNode& node, const std::byte* record) {
-        ++nodes;
-        copies += node.copies;
-        references += static_cast<std::uint64_t>(record_ids(record, is_leaf));
-      });
-      const std::uint64_t values[] = {nodes, references, copies};
-      std::copy_n(values, 3, &mine[3 * own_index(box)]);
-    });
-    const std::vector<std::uint64_t> all = gather(mine, 3);
-    LevelRuns runs;
-    std::uint64_t reference = 0, place = 0;
-    for (std::uint32_t box = 0; box < job_.mailboxes; ++box) {
-      const std::uint64_t *of_box = &all[3 * box], nodes = of_box[0];
-      runs.first_reference.push_back(reference);
-      runs.first_place.push_back(place);
-      reference += of_box[1];
-      place += is_leaf ? nodes : nodes + of_box[1];
-      runs.nodes += nodes;
-      runs.copies += of_box[2];
-    }
-    runs.first_reference.push_back(reference);
-    runs.first_place.push_back(place);
-    return runs;
-  }
-
-  /// Adds the counts of the octants below the leaf blocks, and of the voxels. Collective.
-  void count_leaves(SvdagCounts& counts) {
-    // Copies of octants, voxels, and a bit for each octant that occurs.
-    std::vector<std::uint64_t> mine(2 + 4);
-    std::mutex mutex;
-    for_each_own([&](std::uint32_t box) {
-      std::uint64_t sums[2] = {}, bits[4] = {};
-      const WorkFile file = job_.folder.open_written(order_name(leaf_level_, box), job_.progress);
-      for_each_node(file, leaf_level_, [&](const OrderedNode& node, const std::byte* record) {
-        std::uint64_t block;
-        std::memcpy(&block, record, sizeof block);
-        sums[0] +=
-            node.copies * static_cast<std::uint64_t>(std::popcount(leaf_block_child_mask(block)));
-        sums[1] += node.copies * static_cast<std::uint64_t>(std::popcount(block));
-        for (; block != 0; block >>= 8) bits[(block & 0xFF) / 64] |= 1ull << (block & 63);
-      });
-      const std::lock_guard guard(mutex);
-      for (int i = 0; i < 2; ++i) mine[i] += sums[i];
-      for (int i = 0; i < 4; ++i) mine[2 + i] |= bits[i];
-    });
-    const std::vector<std::uint64_t> all = job_.ranks.all_gather(mine);
-    std::uint64_t octants = 0;
-    std::uint64_t seen[4] = {};
-    for (std::size_t i = 0; i < all.size(); i += mine.size()) {
-      octants += all[i];
-      counts.voxels += all[i + 1];
-      for (std::size_t w = 0; w < 4; ++w) seen[w] |= all[i + 2 + w];
-    }
-    seen[0] &= ~1ull;  // the empty octant
-    counts.svo_nodes_per_level.push_back(octants);
-    std::uint64_t different = 0;
-    for (const std::uint64_t bits : seen)
-      different += static_cast<std::uint64_t>(std::popcount(bits));
-    counts.dag_nodes_per_level.push_back(different);
   }
 
  private:
@@ -197,42 +103,6 @@ class NodeOrder {
       body(box, sender);
       sender.flush();
     });
-  }
-
-  std::size_t own_index(std::uint32_t box) const {
-    return box / static_cast<std::uint32_t>(job_.ranks.count());
-  }
-  /// Returns the most mailboxes that a rank has.
-  std::size_t most_own() const {
-    const auto ranks = static_cast<std::size_t>(job_.ranks.count());
-    return (job_.mailboxes + ranks - 1) / ranks;
-  }
-
-  /// Returns the values of all mailboxes, `each` of them per mailbox; `mine` has those of this
-  /// rank, most_own() times `each`. Collective.
-  std::vector<std::uint64_t> gather(const std::vector<std::uint64_t>& mine, std::size_t each) {
-    const auto ranks = static_cast<std::size_t>(job_.ranks.count());
-    const std::vector<std::uint64_t> gathered = job_.ranks.all_gather(mine);
-    std::vector<std::uint64_t> all(job_.mailboxes * each);
-    for (std::size_t box = 0; box < job_.mailboxes; ++box)
-      std::copy_n(&gathered[box % ranks * mine.size() + box / ranks * each], each,
-                  &all[box * each]);
-    return all;
-  }
-
-  /// Calls body(OrderedNode, record) for the nodes of a run.
-  template <class Body>
-  void for_each_node(const WorkFile& file, int level, const Body& body) {
-    const std::byte* at = file.bytes().data();
-    const std::byte* const end = at + file.bytes().size();
-    for (std::uint64_t count = 0; at != end; ++count) {
-      poll_seldom(job_.progress, count);
-      if ((count & 0xFFFFF) == 0xFFFFF)
-        file.release(static_cast<std::size_t>(at - file.bytes().data()));
-      const auto node = take<OrderedNode>(at);
-      body(node, at);
-      at += record_bytes(at, level == leaf_level_);
-    }
   }
 
   template <class T, class Body>
@@ -255,13 +125,14 @@ class NodeOrder {
     for_each_own(mail, [&](std::uint32_t box, Mailboxes::Sender& sender) {
       const WorkFile file = job_.folder.open_written(order_name(level, box), job_.progress);
       std::uint64_t position = runs.first_reference[box];
-      for_each_node(file, level, [&](const OrderedNode& node, const std::byte* record) {
-        for (int i = 0; i < record_ids(record, false); ++i) {
-          const std::uint64_t id = record_id(record, i);
-          sender.send_value(static_cast<std::uint32_t>(id % job_.mailboxes),
-                            Reference{id / job_.mailboxes, position++, node.copies});
-        }
-      });
+      for_each_node(file, false, job_.progress,
+                    [&](const OrderedNode& node, const std::byte* record) {
+                      for (int i = 0; i < record_ids(record, false); ++i) {
+                        const std::uint64_t id = record_id(record, i);
+                        sender.send_value(static_cast<std::uint32_t>(id % job_.mailboxes),
+                                          Reference{id / job_.mailboxes, position++, node.copies});
+                      }
+                    });
     });
     mail.close();
   }
@@ -314,7 +185,7 @@ class NodeOrder {
       const std::byte* const begin = file.bytes().data();
       for (const std::byte *at = begin, *end = at + file.bytes().size(); at != end;) {
         const std::byte* const message = at;
-        const auto head = take<FirstReference>(at);
+        const auto head = take_value<FirstReference>(at);
         at += record_bytes(at, is_leaf);
         entries.push_back({head.position, static_cast<std::uint64_t>(message - begin)});
       }
@@ -325,7 +196,7 @@ class NodeOrder {
       for (std::size_t i = 0; i < entries.size(); ++i) {
         poll_seldom(job_.progress, i);
         const std::byte* at = begin + entries[i].begin;
-        const auto head = take<FirstReference>(at);
+        const auto head = take_value<FirstReference>(at);
         out.write_value(OrderedNode{head.copies});
         out.write({at, static_cast<std::size_t>(record_bytes(at, is_leaf))});
         // The run's number in the upper bits: where the run begins is not known yet.
@@ -386,7 +257,7 @@ class NodeOrder {
       const WorkFile file = job_.folder.open_written(order_name(level, box), job_.progress);
       WorkFileWriter out = job_.folder.create(words_name(level, box));
       std::uint64_t next = 0;
-      for_each_node(file, level, [&](const OrderedNode&, const std::byte* record) {
+      for_each_node(file, false, job_.progress, [&](const OrderedNode&, const std::byte* record) {
         out.write_value(static_cast<std::uint32_t>(*record));
         for (int i = 0; i < record_ids(record, false); ++i) out.write_value(pointers[next++]);
       });
@@ -435,7 +306,7 @@ OrderedDag order_nodes(const MergeJob& job, const MergedNodes& merged) {
       if (job.progress != nullptr) job.progress->report("number", level / (leaf_level + 1.0));
       level == leaf_level ? order.finish() : order.advance(level);
     });
-    const LevelRuns runs = order.runs_of(level);
+    const LevelRuns runs = runs_of(job, level);
     dag.counts.dag_nodes_per_level.push_back(runs.nodes);
     dag.counts.svo_nodes_per_level.push_back(runs.copies);
     if (level < leaf_level) {
@@ -447,7 +318,7 @@ OrderedDag order_nodes(const MergeJob& job, const MergedNodes& merged) {
       dag.leaf_blocks = runs.nodes;
     }
   }
-  order.count_leaves(dag.counts);
+  count_leaves(job, dag.counts);
   return dag;
 }
 

@@ -293,7 +293,8 @@ std::string merged_name(int level, std::uint32_t mailbox) {
 }
 
 std::uint32_t mailboxes_for(Ranks& ranks, PartFiles& parts, const MemoryBudget& budget) {
-  // Of each node: its record, its place in a table, and its first place among the references.
+  // A leaf block takes its record, its slot in a table and its first reference; so does a word of
+  // a node, on average.
   constexpr std::uint64_t kNodeBytes = 64, kWordBytes = 24;
   constexpr std::uint32_t kMostMailboxes = 4096;
   std::vector<std::uint64_t> bytes(kMaxLevels);

@@ -21,7 +21,7 @@
 
 namespace voxdag {
 
-/// What all ranks know of a merge.
+/// The inputs and the limits of a merge.
 struct MergeJob {
   Ranks& ranks;
   const WorkFolder& folder;
@@ -41,9 +41,10 @@ struct MergedNodes {
 /// Returns the name of the file with the nodes of a level that a mailbox owns.
 std::string merged_name(int level, std::uint32_t mailbox);
 
-/// Returns the number of mailboxes with which each needs at most a part of what is left of the
-/// budget; at least one for each rank. Throws OverMemory if that would be too many. Every rank gets
-/// the same number. Collective.
+/// Returns the number of mailboxes, at least one for each rank. The mailboxes that all threads of a
+/// rank handle at once need at most a quarter of what is left of the budget. Ranks with other
+/// numbers of threads get other results; use that of rank 0. Throws OverMemory if more than 4096
+/// would be needed. Collective.
 std::uint32_t mailboxes_for(Ranks& ranks, PartFiles& parts, const MemoryBudget& budget);
 
 /// Merges the parts. Goes on after the last level that is complete. Collective. Throws Error,

@@ -3,8 +3,8 @@
 namespace voxdag {
 
 double CellLoad::bytes() const {
-  // Rough: a triangle with its lists and its setup, and a
-  // voxel's share of leaf blocks, inner nodes and tables.
+  // Estimates, not measured: a triangle with its lists and its setup; a voxel's share of leaf
+  // blocks, inner nodes and tables.
   constexpr double kTriangleBytes = 120, kVoxelBytes = 2;
   return static_cast<double>(triangles) * kTriangleBytes + voxels * kVoxelBytes;
 }

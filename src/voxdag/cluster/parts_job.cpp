@@ -141,7 +141,7 @@ class PartsRun {
   }
 
   void write_plan(const MeshFacts& facts, std::span<const TriangleSegment> segments) {
-    // Parts of another plan have other cells.
+    // Removes the parts of an older plan, which have other cells.
     for (const char* folder : {"parts", "done"}) folder_.remove(folder);
     folder_.remove(kMergeFolder);
     const int level = segment_cell_level(facts.grid.levels);
@@ -151,7 +151,7 @@ class PartsRun {
     double sum = 0;
     for (const CellLoad& load : loads) sum += load.bytes();
     const double memory = static_cast<double>(std::min(budget_.left(), std::uint64_t{1} << 40));
-    // Many more parts than ranks, so that all end at about the same time.
+    // Eight parts per rank, so that all ranks finish at about one time.
     const double count = job_.parts != 0 ? static_cast<double>(job_.parts) : 8.0 * ranks_.count();
     double part_bytes = sum / count;
     if (job_.parts == 0) part_bytes = std::min(part_bytes, memory / 3);
@@ -181,7 +181,7 @@ class PartsRun {
     report_.built = missing_parts(parts.size());
     if (report_.built == 0) return;
     if (ranks_.rank() == 0) {
-      // A merge of other parts is worthless.
+      // Removes the merge of the older parts.
       folder_.remove(kMergeFolder);
       folder_.remove("done");
     }

@@ -35,7 +35,7 @@ struct PartsJob {
 enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };
 inline constexpr std::array kPartsSteps = {"triangles", "parts", "merge", "number", "write"};
 
-/// What a job did: the same on all ranks, but for the seconds.
+/// The result and the costs of a job. All ranks get equal values, but for the seconds.
 struct PartsReport {
   VdagMetadata metadata;
   std::array<double, kPartsSteps.size()> seconds{};            ///< Wall-clock, per step.

@@ -3,15 +3,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
-#include "voxdag/core/morton.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 #include "voxdag/parallel/polled_sort.hpp"
-#include "voxdag/voxelize/cell_classify.hpp"
-#include "voxdag/voxelize/triangle_setup.hpp"
+#include "voxdag/voxelize/cell_finder.hpp"
 
 namespace voxdag {
 namespace {
@@ -34,60 +31,16 @@ struct Batch {
   std::vector<Entry> entries;
 };
 
-/// Finds the cells of one level that triangles meet.
-class CellFinder {
- public:
-  CellFinder(int levels, int level) : levels_(levels), level_(level) {}
-
-  /// Adds the entries of the last triangle of `batch`.
-  void add(Batch& batch) const {
-    const auto index = static_cast<std::uint32_t>(batch.triangles.size() - 1);
-    const QuantizedTriangle& t = batch.triangles.back();
-    const std::size_t before = batch.entries.size();
-    const Vec3i lo = min(t.x, min(t.y, t.z)), hi = max(t.x, max(t.y, t.z));
-    Vec3i first, last;
-    bool is_in_grid = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      first[axis] = lo[axis] >> (levels_ - level_ + 8);
-      last[axis] = hi[axis] >> (levels_ - level_ + 8);
-      is_in_grid &= last[axis] >= 0 && first[axis] < std::int32_t{1} << level_;
-    }
-    if (is_in_grid && first == last) {
-      batch.entries.push_back({static_cast<std::uint32_t>(morton_encode(first)), index});
-    } else if (is_in_grid) {
-      const TriangleSetup setup = make_triangle_setup(t, {0, 0, 0});
-      descend(setup, setup.conditions, {0, 0, 0}, 0, 0, index, batch.entries);
-    }
-    const auto cells = static_cast<double>(batch.entries.size() - before);
-    batch.voxels.push_back(voxels_of(t) / std::max(cells, 1.0));
-  }
-
- private:
-  void descend(const TriangleSetup& setup, std::uint32_t conditions, Vec3i origin, int level,
-               std::uint32_t code, std::uint32_t index, std::vector<Entry>& entries) const {
-    if (level == level_) return entries.push_back({code, index});
-    const std::int32_t half = std::int32_t{1} << (levels_ - level - 1);
-    const ChildConditions children = classify_children(setup, conditions, origin, half);
-    for (std::uint32_t left = children.alive; left != 0; left &= left - 1) {
-      const int child = std::countr_zero(left);
-      descend(setup, children.conditions(child), origin + child_offset(child) * half, level + 1,
-              code << 3 | static_cast<std::uint32_t>(child), index, entries);
-    }
-  }
-
-  /// Estimates the voxels of a triangle: its area, its longest side, and one.
-  static double voxels_of(const QuantizedTriangle& t) {
-    const auto side = [&](int a, int b) {
-      return static_cast<Vec3d>(t[b] - t[a]) * (1.0 / kSubvoxels);
-    };
-    const Vec3d ab = side(0, 1), ac = side(0, 2), bc = side(1, 2);
-    const Vec3d normal = cross(ab, ac);
-    const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}));
-    return std::sqrt(dot(normal, normal)) / 2 + longest + 1;
-  }
-
-  int levels_, level_;
-};
+/// Estimates the number of voxels that a triangle meets: area plus longest side plus one.
+double voxels_of(const QuantizedTriangle& t) {
+  const auto side = [&](int a, int b) {
+    return static_cast<Vec3d>(t[b] - t[a]) * (1.0 / kSubvoxels);
+  };
+  const Vec3d ab = side(0, 1), ac = side(0, 2), bc = side(1, 2);
+  const Vec3d normal = cross(ab, ac);
+  const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}));
+  return std::sqrt(dot(normal, normal)) / 2 + longest + 1;
+}
 
 Batch map_batch(const Mesh& mesh, const Grid& grid, const CellFinder& finder, std::uint64_t first,
                 std::uint64_t last) {
@@ -102,8 +55,12 @@ Batch map_batch(const Mesh& mesh, const Grid& grid, const CellFinder& finder, st
          static_cast<Vec3d>(mesh.vertices[t[2]])},
         pieces);
     for (const QuantizedTriangle& piece : pieces) {
+      const auto index = static_cast<std::uint32_t>(batch.triangles.size());
+      const std::size_t before = batch.entries.size();
+      finder.for_each(piece, [&](std::uint32_t code) { batch.entries.push_back({code, index}); });
+      const auto cells = static_cast<double>(batch.entries.size() - before);
       batch.triangles.push_back(piece);
-      finder.add(batch);
+      batch.voxels.push_back(voxels_of(piece) / std::max(cells, 1.0));
     }
   }
   return batch;

@@ -15,9 +15,9 @@
 
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/dag/cell_range.hpp"
 #include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/voxelize/cell_range.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

@@ -12,8 +12,8 @@
 
 namespace voxdag {
 
-/// What a job is about: names and values, such as "resolution": "8192". Jobs with other values
-/// cannot use its folder.
+/// The settings that decide the output of a job, by name: "resolution": "8192". A job with other
+/// settings cannot use its folder.
 using JobSettings = std::map<std::string, std::string>;
 
 class WorkFolder {

@@ -1,9 +1,9 @@
 #pragma once
 /// Builds the DAG of a part of a grid.
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/dag/cell_range.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/voxelize/cell_range.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 
 namespace voxdag {

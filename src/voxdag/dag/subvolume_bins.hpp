@@ -4,8 +4,8 @@
 #include <span>
 
 #include "voxdag/core/page_vector.hpp"
-#include "voxdag/dag/cell_range.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/voxelize/cell_range.hpp"
 #include "voxdag/voxelize/duplicate_triangles.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
 

@@ -13,7 +13,7 @@
 
 namespace voxdag {
 
-/// What the chunk table says of a chunk, but for its offset.
+/// An entry of the chunk table, without the chunk's offset.
 struct ChunkSummary {
   std::uint32_t id = 0;
   std::uint32_t flags = 0;  ///< See VdagChunkEntry.

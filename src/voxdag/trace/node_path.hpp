@@ -1,5 +1,6 @@
 #pragma once
-/// Where a walk is in the tree: the nodes from the root down to the one whose children it visits.
+/// The position of a walk in the tree: the nodes from the root down to the one whose children it
+/// visits.
 #include <cstdint>
 
 #include "voxdag/core/grid.hpp"
