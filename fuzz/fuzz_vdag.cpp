@@ -14,7 +14,9 @@
 
 #include "chunk_mutator.hpp"
 #include "support/brute_svdag.hpp"
+#include "support/long_form.hpp"
 #include "support/number_colors.hpp"
+#include "voxdag/algebra/crop.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/layout/for_each_voxel.hpp"
@@ -118,16 +120,34 @@ std::string seed_file(std::mt19937& rng) {
   const int levels = 2 + static_cast<int>(rng() % 7);
   const Svdag dag = brute_svdag(
       levels, random_voxels(levels, static_cast<int>(rng() % 20), static_cast<unsigned>(rng())));
+  if (rng() % 4 == 0) return long_vdag_bytes(dag);
   if (rng() % 2 == 0) return vdag_file_bytes(dag);
   const int finest = static_cast<int>(rng() % static_cast<unsigned>(levels + 1));
   const NumberColors colors(dag.view(), finest);
   return vdag_file_bytes(dag, colors.view().attributes);
 }
 
+LongSvdagView parse_long(std::span<const std::byte> bytes) {
+  const std::vector<VdagChunk> chunks = read_vdag_chunks(bytes);
+  check_vdag_checksums(chunks);
+  const LongSvdagView view = read_vdag_long_svdag(chunks, read_vdag_metadata(chunks).grid.levels);
+  check_vdag_svdag(view, validate_svdag);
+  return view;
+}
+
+/// Walks a valid DAG with long pointers: all its voxels are those of the plain DAG that crop()
+/// makes.
+void walk_long(const LongSvdagView& view) {
+  const std::int32_t side = std::int32_t{1} << view.levels;
+  const Svdag plain = crop(view, {{0, 0, 0}, {side, side, side}});
+  if (count_svdag(view).voxels != count_svdag(plain.view()).voxels) std::abort();
+}
+
 }  // namespace
 }  // namespace voxdag
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  voxdag::read_and_walk(data, size, voxdag::parse_long, voxdag::walk_long);
   return voxdag::read_and_walk(data, size, voxdag::parse_vdag, voxdag::walk);
 }
 

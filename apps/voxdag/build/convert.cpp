@@ -2,6 +2,7 @@
 /// levels.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,8 +12,10 @@
 #include "cli/parse.hpp"
 #include "cli/reduced_dag.hpp"
 #include "cli/stopwatch.hpp"
+#include "voxdag/algebra/coarsen.hpp"
 #include "voxdag/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/report/human.hpp"
@@ -40,14 +43,33 @@ DagReduction reduction_of(const ConvertArguments& arguments, int levels, const s
   return reduction;
 }
 
+/// Reads the input. A DAG with long pointers is read with the levels of the result, and `reduction`
+/// asks for no fewer afterwards.
+DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
+                    MemoryBudget& memory, Session& session) {
+  const std::string& path = session.subject;
+  if (!has_long_pointers(path)) {
+    DagModel file(path, &session.progress, &memory);
+    reduction = reduction_of(arguments, file.grid().levels, path);
+    return file;
+  }
+  const LongVdagFile file(path);
+  reduction = reduction_of(arguments, file.view().levels, path);
+  const int levels = std::min(reduction.levels.value_or(kMaxLevels), file.view().levels);
+  if (reduction.levels == levels) reduction.levels.reset();
+  Svdag dag = coarsen(file.view(), levels, &memory, &session.progress);
+  VdagMetadata metadata = file.metadata();
+  if (levels < file.view().levels) metadata = coarser_metadata(metadata, dag.view());
+  return {std::move(dag), {}, std::move(metadata), &memory};
+}
+
 void convert(const ConvertArguments& arguments, Session& session) {
   check_writable(arguments.output);
   const Stopwatch watch;
   MemoryBudget memory = command_budget(arguments.memory_limit);
-  const DagModel file(session.subject, &session.progress, &memory);
-  const ReducedDag dag(file, session.subject,
-                       reduction_of(arguments, file.grid().levels, session.subject), &memory,
-                       &session.progress);
+  DagReduction reduction;
+  const DagModel file = read_input(arguments, reduction, memory, session);
+  const ReducedDag dag(file, session.subject, reduction, &memory, &session.progress);
   const bool compact = arguments.compact || (!arguments.plain && file.is_compact());
   const DagAttributesView attributes = dag.attributes();
   const AttributeForm form = arguments.wire ? AttributeForm::kWire : AttributeForm::kPages;

@@ -16,7 +16,9 @@
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/io/process_memory.hpp"
+#include "voxdag/model/edited.hpp"
 
 namespace voxdag {
 namespace {
@@ -31,9 +33,13 @@ struct EditContext {
 /// Makes the DAG of a command. May change the grid.
 using Edit = std::function<Svdag(const SvdagView& dag, Grid& grid, const EditContext& context)>;
 
-/// Lets the command read FILE, apply the edit and write OUT. describe() says what was done.
+/// Makes the plain DAG of a command from one with long pointers.
+using LongEdit = std::function<Svdag(const LongSvdagView& dag, const EditContext& context)>;
+
+/// Lets the command read FILE, apply the edit and write OUT. describe() says what was done. Without
+/// `long_edit`, files with long pointers are refused.
 void add_edit(const Command& command, Session& session, const Edit& edit,
-              const std::function<std::string()>& describe) {
+              const std::function<std::string()>& describe, const LongEdit& long_edit = {}) {
   const auto arguments = std::make_shared<EditArguments>();
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   add_edit_options(command, *arguments, session);
@@ -42,10 +48,20 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
     session.work = [=, &session] {
       check_writable(arguments->output);
       MemoryBudget memory = command_budget(arguments->memory_limit);
+      const EditContext context{session.subject, &memory, &session.progress};
+      if (long_edit && has_long_pointers(session.subject)) {
+        const LongVdagFile file(session.subject);
+        Svdag dag = long_edit(file.view(), context);
+        write_edited(
+            *arguments,
+            edited(file.metadata(), std::move(dag), file.metadata().grid, describe(), &memory),
+            arguments->compact, memory, session);
+        return;
+      }
       const DagModel file(session.subject, &session.progress, &memory);
       refuse_attributes(file, session.subject, *arguments);
       Grid grid = file.grid();
-      Svdag dag = edit(file.view(), grid, {session.subject, &memory, &session.progress});
+      Svdag dag = edit(file.view(), grid, context);
       write_edited(*arguments, std::move(dag), grid, file, describe(), memory, session);
     };
   });
@@ -79,7 +95,10 @@ void add_crop_command(const Command& program, Session& session) {
       [box](const SvdagView& dag, Grid&, const EditContext& context) {
         return crop(dag, *box, context.memory, context.progress);
       },
-      [box] { return "cropped to " + text_of(box->lo) + "," + text_of(box->hi); });
+      [box] { return "cropped to " + text_of(box->lo) + "," + text_of(box->hi); },
+      [box](const LongSvdagView& dag, const EditContext& context) {
+        return crop(dag, *box, context.memory, context.progress);
+      });
 }
 
 void add_shift_command(const Command& program, Session& session) {

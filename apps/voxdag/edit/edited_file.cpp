@@ -63,7 +63,12 @@ void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session) {
   const DagModel model = edited(source, std::move(dag), grid, edit, &memory);
-  const bool compact = arguments.compact || (!arguments.plain && source.is_compact());
+  write_edited(arguments, model, arguments.compact || (!arguments.plain && source.is_compact()),
+               memory, session);
+}
+
+void write_edited(const EditArguments& arguments, const DagModel& model, bool compact,
+                  MemoryBudget& memory, Session& session) {
   model.save(arguments.output, compact, &session.progress, &memory);
   const std::uint64_t voxels = model.metadata().counts.voxels;
   session.bar.clear();

@@ -39,5 +39,8 @@ void refuse_attributes(const DagModel& file, const std::string& path,
 void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
                   const DagModel& source, const std::string& edit, MemoryBudget& memory,
                   Session& session);
+/// Writes `model` in the compact or the plain form. Prints a summary.
+void write_edited(const EditArguments& arguments, const DagModel& model, bool compact,
+                  MemoryBudget& memory, Session& session);
 
 }  // namespace voxdag

@@ -7,6 +7,7 @@
 #include "voxdag/core/printable.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/model/scene_model.hpp"
 #include "voxdag/report/dag_report.hpp"
@@ -28,6 +29,15 @@ void esvo_info(const std::string& path, bool json) {
 
 /// Decodes a compact DAG, so that the report has the bytes of both forms.
 DagReport dag_report(const std::string& path, Progress& progress) {
+  if (has_long_pointers(path)) {
+    const LongVdagFile file(path);
+    DagReport report;
+    report.metadata = file.metadata();
+    report.node_bytes = file.view().node_words() * 4;
+    report.leaf_bytes = file.view().leaf_block_count * 8;
+    report.file_bytes = file.file_bytes();
+    return report;
+  }
   const DagModel file(path, &progress);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
   report.attributes = sizes_of(file.attributes());

@@ -2,42 +2,38 @@
 
 #include <cassert>
 
+#include "voxdag/algebra/long_source_dag.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {
 namespace {
 
 /// A key is a node. Cells of the coarser grid's level L-2 become leaf blocks.
+template <class Source>
 class CoarsenRule {
  public:
-  static constexpr std::size_t kWords = 1;
-  using Key = std::array<std::uint32_t, kWords>;
+  using Key = typename Source::Key;
+  static constexpr std::size_t kWords = std::tuple_size_v<Key>;
 
-  CoarsenRule(const SvdagView& dag, int levels) : source_(dag), levels_(levels) {}
+  CoarsenRule(const Source& source, int levels) : source_(source), levels_(levels) {}
 
-  Key root() const { return {source_.root()}; }
+  Key root() const { return source_.root_key(); }
   void children(int level, const Key& key, Key (&keys)[8]) const {
-    for (int i = 0; i < 8; ++i) keys[i] = {source_.child(level, key[0], i)};
+    for (int i = 0; i < 8; ++i) keys[i] = source_.child_key(level, key, i);
   }
   std::uint64_t block(const Key& key) const {
-    if (levels_ == source_.view().levels) return source_.block(key[0]);
+    if (levels_ == source_.levels()) return source_.block(key);
     std::uint64_t block = 0;
     for (int i = 0; i < 8; ++i) {
-      const std::uint32_t child = source_.child(levels_ - 2, key[0], i);
-      if (child != kNoCell) block |= static_cast<std::uint64_t>(mask_of(child)) << (8 * i);
+      const Key child = source_.child_key(levels_ - 2, key, i);
+      if (child != empty_key<kWords>())
+        block |= std::uint64_t{source_.mask(levels_ - 1, child)} << (8 * i);
     }
     return block;
   }
 
  private:
-  /// Returns the child mask of a node of level levels_ - 1.
-  std::uint32_t mask_of(std::uint32_t node) const {
-    const SvdagView& dag = source_.view();
-    return levels_ - 1 == dag.levels - 2 ? leaf_block_child_mask(dag.leaf_blocks[node])
-                                         : child_mask(dag.nodes + node);
-  }
-
-  SourceDag source_;
+  Source source_;
   int levels_;
 };
 
@@ -45,7 +41,12 @@ class CoarsenRule {
 
 Svdag coarsen(const SvdagView& dag, int levels, MemoryBudget* memory, Progress* progress) {
   assert(levels >= kMinLevels && levels <= dag.levels);
-  return rewrite(CoarsenRule(dag, levels), levels, memory, progress);
+  return rewrite(CoarsenRule(SourceDag(dag), levels), levels, memory, progress);
+}
+
+Svdag coarsen(const LongSvdagView& dag, int levels, MemoryBudget* memory, Progress* progress) {
+  assert(levels >= kMinLevels && levels <= dag.levels);
+  return rewrite(CoarsenRule(LongSourceDag(dag), levels), levels, memory, progress);
 }
 
 }  // namespace voxdag

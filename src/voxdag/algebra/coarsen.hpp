@@ -1,6 +1,7 @@
 #pragma once
 /// The DAG of a coarser grid.
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/long_svdag.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -10,6 +11,10 @@ namespace voxdag {
 /// those of `dag`, in which a voxel is set if its cell in `dag` has voxels. `dag` must be valid.
 /// O(DAG) time. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
 Svdag coarsen(const SvdagView& dag, int levels, MemoryBudget* memory = nullptr,
+              Progress* progress = nullptr);
+/// Does so for a DAG with long pointers. Throws Error if a level of the result has too many nodes
+/// for 32-bit pointers, OverMemory and Cancelled.
+Svdag coarsen(const LongSvdagView& dag, int levels, MemoryBudget* memory = nullptr,
               Progress* progress = nullptr);
 
 }  // namespace voxdag

@@ -2,6 +2,7 @@
 /// Keeps the voxels in a box.
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/long_svdag.hpp"
 #include "voxdag/layout/svdag.hpp"
 #include "voxdag/parallel/progress.hpp"
 
@@ -11,6 +12,10 @@ namespace voxdag {
 /// not. The box may reach beyond the grid. `dag` must be valid. Throws OverMemory and Cancelled;
 /// `memory` and `progress` may be null.
 Svdag crop(const SvdagView& dag, const Box3i& box, MemoryBudget* memory = nullptr,
+           Progress* progress = nullptr);
+/// Does so for a DAG with long pointers. Throws Error if a level of the result has too many nodes
+/// for 32-bit pointers, OverMemory and Cancelled.
+Svdag crop(const LongSvdagView& dag, const Box3i& box, MemoryBudget* memory = nullptr,
            Progress* progress = nullptr);
 
 }  // namespace voxdag

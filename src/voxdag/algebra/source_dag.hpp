@@ -32,6 +32,20 @@ class SourceDag {
   }
   const SvdagView& view() const { return dag_; }
 
+  // A node as the words of a key, for rules that also take a LongSourceDag.
+  using Key = std::array<std::uint32_t, 1>;
+  Key root_key() const { return {root()}; }
+  Key child_key(int level, const Key& node, int index) const {
+    return {child(level, node[0], index)};
+  }
+  std::uint64_t block(const Key& node) const { return block(node[0]); }
+  /// Returns the child mask of a node of `level` of a DAG without levels above its root.
+  std::uint32_t mask(int level, const Key& node) const {
+    return level == dag_.levels - 2 ? leaf_block_child_mask(dag_.leaf_blocks[node[0]])
+                                    : child_mask(dag_.nodes + node[0]);
+  }
+  int levels() const { return dag_.levels; }
+
  private:
   static constexpr std::uint32_t kAboveRoot = kNoCell - 1;
 

@@ -1,6 +1,7 @@
 #include "voxdag/cluster/node_order.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "voxdag/cluster/mailboxes.hpp"
@@ -8,6 +9,7 @@
 #include "voxdag/cluster/ordered_level.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/page_vector.hpp"
+#include "voxdag/layout/long_svdag.hpp"
 #include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
@@ -235,15 +237,11 @@ class NodeOrder {
   /// Writes the words of a level.
   void write_words(int level, const LevelRuns& runs, const LevelRuns& below,
                    const std::string& placed) {
-    // Pointers to nodes are indices of words of the whole DAG.
-    const std::uint64_t begin =
-        level + 1 == leaf_level_ ? 0 : words_before_ + runs.first_place.back();
-    if (words_before_ + runs.first_place.back() > kMostWords ||
-        begin + below.first_place.back() > kMostWords)
+    if (below.first_place.back() > kMostLongWords)
       throw Error(
-          "the DAG is too large: its nodes have more words than 32-bit pointers can address");
+          "the DAG is too large: one level has more words than 35-bit pointers can address");
     for_each_own([&](std::uint32_t box) {
-      PageVector<std::uint32_t> pointers(&job_.budget);
+      PageVector<std::uint64_t> pointers(&job_.budget);
       const std::uint64_t first = runs.first_reference[box];
       pointers.resize(runs.first_reference[box + 1] - first);
       for_each_message<PlacedReference>(
@@ -251,33 +249,31 @@ class NodeOrder {
           [&](const PlacedReference& reference) {
             const std::uint64_t run = reference.place >> kPlaceBits,
                                 place = reference.place & ((std::uint64_t{1} << kPlaceBits) - 1);
-            pointers[reference.position - first] =
-                static_cast<std::uint32_t>(begin + below.first_place[run] + place);
+            pointers[reference.position - first] = below.first_place[run] + place;
           });
       const WorkFile file = job_.folder.open_written(order_name(level, box), job_.progress);
       WorkFileWriter out = job_.folder.create(words_name(level, box));
       std::uint64_t next = 0;
       for_each_node(file, false, job_.progress, [&](const OrderedNode&, const std::byte* record) {
-        out.write_value(static_cast<std::uint32_t>(*record));
-        for (int i = 0; i < record_ids(record, false); ++i) out.write_value(pointers[next++]);
+        std::uint32_t words[9] = {static_cast<std::uint32_t>(*record)};
+        std::size_t size = 1;
+        for (std::uint32_t left = words[0]; left != 0; left &= left - 1) {
+          const std::uint64_t pointer = pointers[next++];
+          words[0] |= upper_bits_of(pointer, std::countr_zero(left));
+          words[size++] = static_cast<std::uint32_t>(pointer);
+        }
+        out.write(std::as_bytes(std::span<const std::uint32_t>(words, size)));
       });
       out.commit();
     });
     job_.ranks.barrier();
   }
 
- public:
-  /// Call it after level `level` is done, before advance(level + 1).
-  void add_words(std::uint64_t words) { words_before_ += words; }
-
- private:
   /// Bits of a place within its run.
   static constexpr int kPlaceBits = 48;
-  static constexpr std::uint64_t kMostWords = 0xFFFFFFFFull - 256;
 
   const MergeJob& job_;
   int leaf_level_;
-  std::uint64_t words_before_ = 0;  ///< Words of the levels above the current one.
 };
 
 }  // namespace
@@ -311,13 +307,13 @@ OrderedDag order_nodes(const MergeJob& job, const MergedNodes& merged) {
     dag.counts.svo_nodes_per_level.push_back(runs.copies);
     if (level < leaf_level) {
       const std::uint64_t words = runs.first_place.back();
-      order.add_words(words);
       dag.level_begin[static_cast<std::size_t>(level) + 1] =
           dag.level_begin[static_cast<std::size_t>(level)] + words;
     } else {
       dag.leaf_blocks = runs.nodes;
     }
   }
+  dag.has_long_pointers = dag.level_begin.back() > job.most_plain_words;
   count_leaves(job, dag.counts);
   return dag;
 }

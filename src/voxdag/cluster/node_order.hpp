@@ -10,7 +10,7 @@
 /// Files, per level l and mailbox b, which owns run b:
 ///   merge/order-l-b   run b of the level: OrderedNode and the record of each node, until level
 ///                     l + 1 is done
-///   merge/words-l-b   run b of the words of SvdagView::nodes, or of the leaf blocks
+///   merge/words-l-b   run b of the words of LongSvdagView::nodes, or of the leaf blocks
 #include <cstdint>
 #include <vector>
 
@@ -24,13 +24,16 @@ struct OrderedDag {
   SvdagCounts counts;
   std::vector<std::uint64_t> level_begin;  ///< levels - 1 values, as LEVL in docs/format.md.
   std::uint64_t leaf_blocks = 0;
+  /// Whether the words need the layout of long_svdag.hpp: there are more than
+  /// MergeJob::most_plain_words.
+  bool has_long_pointers = false;
 };
 
 /// Returns the name of the file with a run of the words of a level.
 std::string words_name(int level, std::uint32_t mailbox);
 
 /// Orders the nodes. Goes on after the last level that is complete. Collective. Throws Error (also
-/// if the DAG outgrows 32-bit pointers), OverMemory and Cancelled.
+/// if a level outgrows long pointers), OverMemory and Cancelled.
 OrderedDag order_nodes(const MergeJob& job, const MergedNodes& merged);
 
 }  // namespace voxdag

@@ -21,6 +21,9 @@
 
 namespace voxdag {
 
+/// Number of node words that 32-bit pointers address, less some for headers that hold counts.
+inline constexpr std::uint64_t kMostPlainWords = 0xFFFFFFFFull - 256;
+
 /// The inputs and the limits of a merge.
 struct MergeJob {
   Ranks& ranks;
@@ -30,6 +33,8 @@ struct MergeJob {
   std::uint32_t mailboxes;  ///< Number of owners of nodes.
   MemoryBudget& budget;
   Progress* progress;  ///< May be null.
+  /// The plain layout of nodes holds so many words; more need long pointers.
+  std::uint64_t most_plain_words = kMostPlainWords;
 };
 
 /// The nodes of merged levels. Ids are those of node_record.hpp.

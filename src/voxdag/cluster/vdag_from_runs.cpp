@@ -1,8 +1,11 @@
 #include "voxdag/cluster/vdag_from_runs.hpp"
 
+#include <cstring>
 #include <memory>
+#include <optional>
 
 #include "voxdag/cluster/shared_file.hpp"
+#include "voxdag/core/bits.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
@@ -14,14 +17,46 @@ namespace {
 
 constexpr std::size_t kStep = std::size_t{16} << 20;
 
+/// Makes nodes of the plain layout from nodes with long pointers that fit into 32 bits.
+class PlainNodes {
+ public:
+  /// `base` is the first word of the level below, which plain pointers count from.
+  explicit PlainNodes(std::uint64_t base) : base_(static_cast<std::uint32_t>(base)) {}
+
+  /// Returns the words that follow those of the last call; valid until the next.
+  std::span<const std::byte> convert(std::span<const std::byte> bytes) {
+    words_.resize(bytes.size() / sizeof(std::uint32_t));
+    std::memcpy(words_.data(), bytes.data(), bytes.size());
+    for (std::uint32_t& word : words_) {
+      if (pointers_ == 0) {
+        pointers_ = popcount(word);
+      } else {
+        word += base_;
+        --pointers_;
+      }
+    }
+    return std::as_bytes(std::span<const std::uint32_t>(words_));
+  }
+
+ private:
+  std::uint32_t base_;
+  int pointers_ = 0;  ///< Of the current node, that are still to come.
+  std::vector<std::uint32_t> words_;
+};
+
 /// Calls body(bytes) for the bytes of a run, some at a time, and drops their pages.
 template <class Body>
-void read_run(const MergeJob& job, int level, std::uint32_t box, const Body& body) {
+void read_run(const MergeJob& job, const OrderedDag& dag, int level, std::uint32_t box,
+              const Body& body) {
   const WorkFile file = job.folder.open_written(words_name(level, box), job.progress);
   const std::span<const std::byte> bytes = file.bytes();
+  std::optional<PlainNodes> plain;
+  if (!dag.has_long_pointers && level + 1 < job.levels - 2)
+    plain.emplace(dag.level_begin[static_cast<std::size_t>(level) + 1]);
   for (std::size_t at = 0; at < bytes.size(); at += kStep) {
     if (job.progress != nullptr) job.progress->throw_if_cancelled();
-    body(bytes.subspan(at, std::min(kStep, bytes.size() - at)));
+    const auto step = bytes.subspan(at, std::min(kStep, bytes.size() - at));
+    body(plain ? plain->convert(step) : step);
     file.release(std::min(at + kStep, bytes.size()));
   }
 }
@@ -44,7 +79,7 @@ ChunkSummary summary_of_runs(const MergeJob& job, const OrderedDag& dag, std::ui
   ChunkSummary summary{id, kVdagChunkRequired, 0, 0};
   Xxh3Stream checksum;
   for_each_run(job, dag, id == kChunkLeafBlocks, [&](int level, std::uint32_t box) {
-    read_run(job, level, box, [&](std::span<const std::byte> bytes) {
+    read_run(job, dag, level, box, [&](std::span<const std::byte> bytes) {
       checksum.add(bytes);
       summary.length += bytes.size();
     });
@@ -69,7 +104,8 @@ Layout make_layout(const MergeJob& job, const OrderedDag& dag, const VdagMetadat
   layout.json = checked_metadata_json(metadata);
   const ChunkSummary chunks[] = {
       summary_of(kChunkMeta, std::as_bytes(std::span<const char>(layout.json))),
-      summary_of(kChunkLevels, level_bytes(dag)), summary_of_runs(job, dag, kChunkNodes),
+      summary_of(kChunkLevels, level_bytes(dag)),
+      summary_of_runs(job, dag, dag.has_long_pointers ? kChunkLongNodes : kChunkNodes),
       summary_of_runs(job, dag, kChunkLeafBlocks)};
   layout.head = vdag_head(chunks);
   layout.meta = layout.head.size();
@@ -92,7 +128,7 @@ void write_alone(const MergeJob& job, const OrderedDag& dag, const Layout& layou
   pad_to(layout.nodes);
   for (const bool is_leaf : {false, true}) {
     for_each_run(job, dag, is_leaf, [&](int level, std::uint32_t box) {
-      read_run(job, level, box, [&](std::span<const std::byte> bytes) { file.write(bytes); });
+      read_run(job, dag, level, box, [&](std::span<const std::byte> bytes) { file.write(bytes); });
     });
     pad_to(is_leaf ? layout.end : layout.leaf_blocks);
   }
@@ -132,7 +168,7 @@ void write_together(const MergeJob& job, const OrderedDag& dag, const Layout& la
           static_cast<std::uint32_t>(job.ranks.rank()))
         continue;
       std::uint64_t at = offset;
-      read_run(job, level, box, [&](std::span<const std::byte> bytes) {
+      read_run(job, dag, level, box, [&](std::span<const std::byte> bytes) {
         file.write_at(at, bytes);
         at += bytes.size();
       });

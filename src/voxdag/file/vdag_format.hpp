@@ -58,6 +58,8 @@ inline constexpr std::uint32_t kChunkMeta =
     vdag_chunk_id("META");  ///< JSON, see vdag_metadata.hpp.
 inline constexpr std::uint32_t kChunkLevels = vdag_chunk_id("LEVL");  ///< u64 level_begin[0..L-2].
 inline constexpr std::uint32_t kChunkNodes = vdag_chunk_id("NODE");   ///< u32 SvdagView::nodes.
+inline constexpr std::uint32_t kChunkLongNodes =
+    vdag_chunk_id("NODX");  ///< u32 LongSvdagView::nodes; instead of NODE.
 inline constexpr std::uint32_t kChunkLeafBlocks = vdag_chunk_id("LEAF");  ///< u64 leaf_blocks.
 inline constexpr std::uint32_t kChunkCompactHead =
     vdag_chunk_id("CHED");  ///< See layout/compact/compact_bytes.hpp.

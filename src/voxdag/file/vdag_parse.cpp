@@ -77,9 +77,9 @@ VdagChunk read_entry(std::span<const std::byte> file, const VdagChunkEntry& entr
       vdag_align(entry.length) > file.size() - expected_offset)
     fail(place, "extends past the end of the file");
   const bool required = (entry.flags & kVdagChunkRequired) != 0;
-  constexpr std::uint32_t kKnown[] = {kChunkMeta,       kChunkLevels,      kChunkNodes,
-                                      kChunkLeafBlocks, kChunkCompactHead, kChunkCompactStream,
-                                      kChunkEsvo,       kChunkEsvoBlocks};
+  constexpr std::uint32_t kKnown[] = {kChunkMeta,          kChunkLevels,     kChunkNodes,
+                                      kChunkLongNodes,     kChunkLeafBlocks, kChunkCompactHead,
+                                      kChunkCompactStream, kChunkEsvo,       kChunkEsvoBlocks};
   if (required && std::find(std::begin(kKnown), std::end(kKnown), entry.id) == std::end(kKnown))
     fail(place, "unknown required chunk: this file needs a newer version of voxdag");
   return {entry.id, required, entry.offset, entry.checksum,
@@ -145,19 +145,22 @@ VdagMetadata read_vdag_metadata(const std::vector<VdagChunk>& chunks) {
   return read_metadata_chunk(chunks, parse_vdag_metadata);
 }
 
-SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
+namespace {
+
+template <class Dag>
+Dag read_dag(const std::vector<VdagChunk>& chunks, int levels, std::uint32_t node_chunk) {
   const auto table = chunk_values<std::uint64_t>(chunks, kChunkLevels);
-  const auto nodes = chunk_values<std::uint32_t>(chunks, kChunkNodes);
+  const auto nodes = chunk_values<std::uint32_t>(chunks, node_chunk);
   const auto leaf_blocks = chunk_values<std::uint64_t>(chunks, kChunkLeafBlocks);
   if (table.size() != static_cast<std::size_t>(levels - 1))
     fail(chunk_place(kChunkLevels), "has " + std::to_string(table.size()) +
                                         " values, but a grid of " + std::to_string(levels) +
                                         " levels needs " + std::to_string(levels - 1));
   if (table.back() != nodes.size())
-    fail(chunk_place(kChunkNodes), "has " + std::to_string(nodes.size()) +
-                                       " words, but the level table says " +
-                                       std::to_string(table.back()));
-  SvdagView view;
+    fail(chunk_place(node_chunk), "has " + std::to_string(nodes.size()) +
+                                      " words, but the level table says " +
+                                      std::to_string(table.back()));
+  Dag view;
   view.levels = levels;
   view.nodes = nodes.data();
   view.leaf_blocks = leaf_blocks.data();
@@ -167,15 +170,31 @@ SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
   return view;
 }
 
-void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&)) {
+template <class Dag>
+void check_dag(const Dag& view, void (*check)(const Dag&), std::uint32_t node_chunk) {
   try {
     check(view);
   } catch (const Error& error) {
     const bool leaf = error.place().has(ErrorPlace::Kind::kLeafBlock);
     const bool table = error.place().has(ErrorPlace::Kind::kLevelTable);
-    const std::uint32_t id = leaf ? kChunkLeafBlocks : table ? kChunkLevels : kChunkNodes;
-    throw error.within(chunk_place(id));
+    throw error.within(chunk_place(leaf ? kChunkLeafBlocks : table ? kChunkLevels : node_chunk));
   }
+}
+
+}  // namespace
+
+SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
+  return read_dag<SvdagView>(chunks, levels, kChunkNodes);
+}
+LongSvdagView read_vdag_long_svdag(const std::vector<VdagChunk>& chunks, int levels) {
+  return read_dag<LongSvdagView>(chunks, levels, kChunkLongNodes);
+}
+
+void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&)) {
+  check_dag(view, check, kChunkNodes);
+}
+void check_vdag_svdag(const LongSvdagView& view, void (*check)(const LongSvdagView&)) {
+  check_dag(view, check, kChunkLongNodes);
 }
 
 VdagContents parse_vdag(std::span<const std::byte> file) {
@@ -184,6 +203,10 @@ VdagContents parse_vdag(std::span<const std::byte> file) {
   if (has_chunk(contents.chunks, kChunkEsvo)) fail("", "holds an ESVO, but a DAG is needed");
   if (has_chunk(contents.chunks, kChunkCompactStream))
     fail("", "holds a compact DAG, but one in the plain form is needed: voxdag convert --plain");
+  if (has_chunk(contents.chunks, kChunkLongNodes))
+    fail("",
+         "has long pointers (more than 2^32 node words), but a plain DAG is needed: voxdag crop "
+         "and voxdag coarsen make one");
   check_vdag_checksums(contents.chunks);
   expand_wire_chunks(contents.chunks, contents.expanded);
   contents.metadata = read_vdag_metadata(contents.chunks);

@@ -10,6 +10,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/layout/long_svdag.hpp"
 #include "voxdag/layout/stored_attributes.hpp"
 #include "voxdag/layout/svdag.hpp"
 
@@ -81,9 +82,12 @@ std::span<const T> chunk_values(const std::vector<VdagChunk>& chunks, std::uint3
 
 /// Returns the DAG of LEVL, NODE and LEAF for a grid of `levels`. Checks lengths, but not contents.
 SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels);
+/// Returns the DAG of LEVL, NODX and LEAF in the same way.
+LongSvdagView read_vdag_long_svdag(const std::vector<VdagChunk>& chunks, int levels);
 
 /// Runs validate_svdag, check_canonical or check_minimal. Errors name the chunk.
 void check_vdag_svdag(const SvdagView& view, void (*check)(const SvdagView&));
+void check_vdag_svdag(const LongSvdagView& view, void (*check)(const LongSvdagView&));
 
 /// Runs all steps, validate_svdag() and the checks of attributes. The result is safe to walk.
 VdagContents parse_vdag(std::span<const std::byte> file);

@@ -5,6 +5,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/esvo_parse.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/io/file_copy.hpp"
@@ -81,6 +82,27 @@ VerifyReport verify_esvo(std::span<const std::byte> file) {
   return report;
 }
 
+VerifyReport verify_long(std::span<const std::byte> file) {
+  VerifyReport report;
+  std::vector<VdagChunk> chunks;
+  VdagMetadata metadata;
+  LongSvdagView dag;
+  enum : std::size_t { kContainer, kChecksums, kMetadata, kStructure };
+  run_check(report, "container", {}, [&] { chunks = read_vdag_chunks(file); });
+  run_check(report, "checksums", {kContainer}, [&] { check_vdag_checksums(chunks); });
+  run_check(report, "metadata", {kContainer}, [&] { metadata = read_vdag_metadata(chunks); });
+  run_check(report, "structure", {kContainer, kMetadata}, [&] {
+    dag = read_vdag_long_svdag(chunks, metadata.grid.levels);
+    check_vdag_svdag(dag, validate_svdag);
+  });
+  run_check(report, "canonical order", {kStructure},
+            [&] { check_vdag_svdag(dag, check_canonical); });
+  run_check(report, "minimality", {kStructure}, [&] { check_vdag_svdag(dag, check_minimal); });
+  run_check(report, "counts", {kStructure, kMetadata},
+            [&] { compare_counts(metadata.counts, count_svdag(dag)); });
+  return report;
+}
+
 /// Returns whether the file holds an ESVO; false for files that are not containers.
 bool holds_esvo(std::span<const std::byte> file) {
   try {
@@ -98,6 +120,10 @@ bool VerifyReport::passed() const {
 }
 
 VerifyReport verify_vdag(const std::filesystem::path& path) {
+  if (has_long_pointers(path)) {
+    const MappedFile file(path, MappedFile::Access::kRandom);
+    return verify_long(file.bytes());
+  }
   const FileCopy file(path);
   if (holds_esvo(file.bytes())) return verify_esvo(file.bytes());
   VerifyReport report;

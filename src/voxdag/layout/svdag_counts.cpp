@@ -13,7 +13,10 @@ std::uint64_t SvdagCounts::dag_nodes() const {
   return std::accumulate(dag_nodes_per_level.begin(), dag_nodes_per_level.end(), std::uint64_t{0});
 }
 
-SvdagCounts count_svdag(const SvdagView& dag) {
+namespace {
+
+template <class Dag>
+SvdagCounts count(const Dag& dag) {
   const int levels = dag.levels;
   SvdagCounts counts;
   counts.svo_nodes_per_level.resize(levels);
@@ -27,7 +30,7 @@ SvdagCounts count_svdag(const SvdagView& dag) {
   for (int level = 0; level < levels - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     const bool above_leaf_blocks = level + 1 == levels - 2;
-    const std::uint64_t below_begin = above_leaf_blocks ? 0 : end;
+    const std::uint64_t base = pointer_base(dag, level);
     const int shift = above_leaf_blocks ? 0 : 1;
     below.assign(above_leaf_blocks ? dag.leaf_block_count : (dag.level_begin[level + 2] - end) / 2,
                  0);
@@ -35,11 +38,13 @@ SvdagCounts count_svdag(const SvdagView& dag) {
       const std::uint32_t* node = dag.nodes + at;
       const std::uint64_t paths_here = paths[(at - begin) / 2];
       const int children = popcount(child_mask(node));
-      for (int i = 1; i <= children; ++i) below[(node[i] - below_begin) >> shift] += paths_here;
+      for_each_child_place(dag, level, at, [&](std::uint64_t, std::uint64_t place) {
+        below[place >> shift] += paths_here;
+      });
       // Prefetches the sums, which are scattered over the next level. Words that are masks are
       // harmless.
       for (int i = 1; i <= children && at + i + kAhead < end; ++i)
-        if (const std::uint64_t sum = (node[i + kAhead] - below_begin) >> shift; sum < below.size())
+        if (const std::uint64_t sum = (node[i + kAhead] - base) >> shift; sum < below.size())
           __builtin_prefetch(&below[sum], 1);
       counts.svo_nodes_per_level[level] += paths_here;
       ++counts.dag_nodes_per_level[level];
@@ -61,5 +66,10 @@ SvdagCounts count_svdag(const SvdagView& dag) {
   counts.dag_nodes_per_level[levels - 1] = unique_octants.count();
   return counts;
 }
+
+}  // namespace
+
+SvdagCounts count_svdag(const SvdagView& dag) { return count(dag); }
+SvdagCounts count_svdag(const LongSvdagView& dag) { return count(dag); }
 
 }  // namespace voxdag

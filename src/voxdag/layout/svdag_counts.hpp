@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "voxdag/layout/long_svdag.hpp"
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
@@ -22,5 +23,6 @@ struct SvdagCounts {
 /// Counts the nodes in one pass over the DAG from the root down. Serial; O(DAG) time, 16 bytes per
 /// node of the two largest neighbouring levels. The view must be valid (see validate_svdag).
 SvdagCounts count_svdag(const SvdagView& dag);
+SvdagCounts count_svdag(const LongSvdagView& dag);
 
 }  // namespace voxdag

@@ -8,9 +8,6 @@
 namespace voxdag {
 namespace {
 
-/// Pointers have 32 bits.
-constexpr std::uint64_t kMostWords = std::uint64_t{1} << 32;
-
 [[noreturn]] void fail_at_word(int level, std::uint64_t word, const std::string& reason) {
   throw Error("", ErrorPlace::level(level) / ErrorPlace::word(word), reason);
 }
@@ -21,7 +18,8 @@ constexpr std::uint64_t kMostWords = std::uint64_t{1} << 32;
   throw Error("", ErrorPlace::level_table(), reason);
 }
 
-void validate_level_table(const SvdagView& dag) {
+template <class Dag>
+void validate_level_table(const Dag& dag) {
   if (dag.levels < kMinLevels || dag.levels > kMaxLevels)
     fail_level_table(std::to_string(dag.levels) + " levels are not in the range " +
                      std::to_string(kMinLevels) + " to " + std::to_string(kMaxLevels));
@@ -35,8 +33,7 @@ void validate_level_table(const SvdagView& dag) {
     if (level < dag.levels - 2 && end == begin && !dag.is_empty())
       fail_level_table(name + " has no nodes");
   }
-  if (dag.node_words() > kMostWords || dag.leaf_block_count > kMostWords)
-    fail_level_table("there are more words than 32-bit pointers can address");
+  if (!fits_pointers(dag)) fail_level_table("there are more words than pointers can address");
   if (dag.is_empty() && dag.node_words() != 0)
     fail_level_table("there are nodes, but no leaf blocks");
   if (dag.levels == 2 && dag.leaf_block_count > 1) fail_level_table("there is more than one root");
@@ -44,14 +41,16 @@ void validate_level_table(const SvdagView& dag) {
 
 /// Checks the masks of one level and marks in `starts` (bit i: word level_begin + i) where its
 /// nodes start.
-void mark_nodes(const SvdagView& dag, int level, std::vector<std::uint64_t>& starts) {
+template <class Dag>
+void mark_nodes(const Dag& dag, int level, std::vector<std::uint64_t>& starts) {
   const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
   starts.assign((end - begin + 63) / 64, 0);
   for (std::uint64_t at = begin; at < end;) {
     const std::uint32_t mask = dag.nodes[at];
-    if (mask == 0) fail_at_word(level, at, "node has no children");
-    if (mask > 0xFF) fail_at_word(level, at, "child mask has more than eight bits");
-    const std::uint64_t next = at + 1 + popcount(mask);
+    if ((mask & 0xFF) == 0) fail_at_word(level, at, "node has no children");
+    if ((mask & ~allowed_mask_bits(dag, mask & 0xFF)) != 0)
+      fail_at_word(level, at, mask_fault(dag));
+    const std::uint64_t next = at + 1 + popcount(mask & 0xFF);
     if (next > end) fail_at_word(level, at, "node reaches past the end of its level");
     starts[(at - begin) / 64] |= std::uint64_t{1} << ((at - begin) % 64);
     at = next;
@@ -60,30 +59,26 @@ void mark_nodes(const SvdagView& dag, int level, std::vector<std::uint64_t>& sta
 
 /// Checks the pointers of a level above the leaf blocks' parents. mark_nodes() must have accepted
 /// its nodes.
-void check_pointers(const SvdagView& dag, int level, const std::vector<std::uint64_t>& starts) {
+template <class Dag>
+void check_pointers(const Dag& dag, int level, const std::vector<std::uint64_t>& starts) {
   const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
   const std::uint64_t below_words = dag.level_begin[level + 2] - end;
-  for (std::uint64_t at = begin; at < end;) {
-    const int children = popcount(dag.nodes[at]);
-    for (int i = 1; i <= children; ++i) {
-      const std::uint64_t offset = std::uint64_t{dag.nodes[at + i]} - end;  // wraps if below `end`
-      if (offset >= below_words)
-        fail_at_word(level, at + i, "pointer points outside the next level");
-      if ((starts[offset / 64] >> (offset % 64) & 1) == 0)
-        fail_at_word(level, at + i, "pointer does not point to the first word of a node");
-    }
-    at += 1 + children;
-  }
+  for (std::uint64_t at = begin; at < end; at += 1 + popcount(dag.nodes[at] & 0xFF))
+    for_each_child_place(dag, level, at, [&](std::uint64_t word, std::uint64_t place) {
+      if (place >= below_words) fail_at_word(level, word, "pointer points outside the next level");
+      if ((starts[place / 64] >> (place % 64) & 1) == 0)
+        fail_at_word(level, word, "pointer does not point to the first word of a node");
+    });
 }
 
-void check_leaf_pointers(const SvdagView& dag, int level) {
-  for (std::uint64_t at = dag.level_begin[level]; at < dag.level_begin[level + 1];) {
-    const int children = popcount(dag.nodes[at]);
-    for (int i = 1; i <= children; ++i)
-      if (dag.nodes[at + i] >= dag.leaf_block_count)
-        fail_at_word(level, at + i, "pointer is past the last leaf block");
-    at += 1 + children;
-  }
+template <class Dag>
+void check_leaf_pointers(const Dag& dag, int level) {
+  const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
+  for (std::uint64_t at = begin; at < end; at += 1 + popcount(dag.nodes[at] & 0xFF))
+    for_each_child_place(dag, level, at, [&](std::uint64_t word, std::uint64_t place) {
+      if (place >= dag.leaf_block_count)
+        fail_at_word(level, word, "pointer is past the last leaf block");
+    });
 }
 
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
@@ -91,7 +86,8 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
   return hash ^ hash >> 32;
 }
 
-/// A hash set of 32-bit positions in a level, compared by the nodes at these positions.
+/// A hash set of positions in a level, compared by the nodes at these positions.
+template <class Position>
 class PositionSet {
  public:
   explicit PositionSet(std::uint64_t count) {
@@ -104,7 +100,7 @@ class PositionSet {
   bool has_or_add(std::uint64_t position, std::uint64_t hash, const Equals& equals) {
     for (std::size_t slot = hash & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
       if (slots_[slot] == kFree) {
-        slots_[slot] = static_cast<std::uint32_t>(position);
+        slots_[slot] = static_cast<Position>(position);
         return false;
       }
       if (equals(slots_[slot])) return true;
@@ -113,22 +109,23 @@ class PositionSet {
 
  private:
   /// Marks a free slot. It is not a valid position, because no node starts at a level's last word
-  /// and a level has at most 2^32 words.
-  static constexpr std::uint32_t kFree = 0xFFFFFFFF;
-  std::vector<std::uint32_t> slots_;
+  /// and a level of the plain layout has at most 2^32 words.
+  static constexpr Position kFree = static_cast<Position>(~Position{0});
+  std::vector<Position> slots_;
 };
 
-void check_minimal_level(const SvdagView& dag, int level) {
+template <class Position, class Dag>
+void check_minimal_level(const Dag& dag, int level) {
   const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
   std::uint64_t count = 0;
-  for (std::uint64_t at = begin; at < end; at += 1 + popcount(dag.nodes[at])) ++count;
-  PositionSet seen(count);
+  for (std::uint64_t at = begin; at < end; at += 1 + popcount(dag.nodes[at] & 0xFF)) ++count;
+  PositionSet<Position> seen(count);
   for (std::uint64_t at = begin; at < end;) {
     const std::uint32_t* node = dag.nodes + at;
-    const int words = 1 + popcount(node[0]);
+    const int words = 1 + popcount(node[0] & 0xFF);
     std::uint64_t hash = 0;
     for (int i = 0; i < words; ++i) hash = mix(hash, node[i]);
-    const auto equals = [&](std::uint32_t other) {
+    const auto equals = [&](std::uint64_t other) {
       return std::equal(node, node + words, dag.nodes + begin + other);
     };
     if (seen.has_or_add(at - begin, hash, equals))
@@ -137,25 +134,26 @@ void check_minimal_level(const SvdagView& dag, int level) {
   }
 }
 
-void check_minimal_leaf_blocks(const SvdagView& dag) {
-  PositionSet seen(dag.leaf_block_count);
+template <class Position, class Dag>
+void check_minimal_leaf_blocks(const Dag& dag) {
+  PositionSet<Position> seen(dag.leaf_block_count);
   for (std::uint64_t i = 0; i < dag.leaf_block_count; ++i) {
     const std::uint64_t block = dag.leaf_blocks[i];
-    const auto equals = [&](std::uint32_t other) { return dag.leaf_blocks[other] == block; };
+    const auto equals = [&](std::uint64_t other) { return dag.leaf_blocks[other] == block; };
     if (seen.has_or_add(i, mix(0, block), equals))
       fail_at_leaf_block(i, "leaf block equals an earlier leaf block");
   }
 }
 
-}  // namespace
-
-void validate_svdag(const SvdagView& dag) {
+template <class Dag>
+void validate(const Dag& dag) {
   validate_level_table(dag);
   if (dag.is_empty()) return;
   std::vector<std::uint64_t> starts;
   for (int level = 0; level < dag.levels - 2; ++level) {
     if (level == 0) mark_nodes(dag, 0, starts);
-    if (level == 0 && dag.level_begin[1] != 1u + static_cast<unsigned>(popcount(dag.nodes[0])))
+    if (level == 0 &&
+        dag.level_begin[1] != 1u + static_cast<unsigned>(popcount(dag.nodes[0] & 0xFF)))
       fail_at_word(0, 0, "level 0 must be exactly one node");
     if (level + 1 == dag.levels - 2) {
       check_leaf_pointers(dag, level);
@@ -168,33 +166,43 @@ void validate_svdag(const SvdagView& dag) {
     if (dag.leaf_blocks[i] == 0) fail_at_leaf_block(i, "leaf block has no voxels");
 }
 
-void check_canonical(const SvdagView& dag) {
+template <class Dag>
+void check_order(const Dag& dag) {
   for (int level = 0; level < dag.levels - 2; ++level) {
     const std::uint64_t begin = dag.level_begin[level], end = dag.level_begin[level + 1];
     const bool above_leaf_blocks = level + 1 == dag.levels - 2;
-    // The first node of the next level that the scan of this level has not met. The next new child
-    // must be this node.
-    std::uint64_t next = above_leaf_blocks ? 0 : end;
-    const std::uint64_t below_end =
-        above_leaf_blocks ? dag.leaf_block_count : dag.level_begin[level + 2];
-    for (std::uint64_t at = begin; at < end;) {
-      const int children = popcount(dag.nodes[at]);
-      for (int i = 1; i <= children; ++i) {
-        const std::uint64_t child = dag.nodes[at + i];
-        if (child > next) fail_at_word(level, at + i, "child is not the next in depth-first order");
-        if (child == next) next += above_leaf_blocks ? 1 : 1 + popcount(dag.nodes[child]);
-      }
-      at += 1 + children;
-    }
-    if (next == below_end) continue;
+    const std::uint64_t below_count =
+        above_leaf_blocks ? dag.leaf_block_count : dag.level_begin[level + 2] - end;
+    // The place of the first child that the scan of this level has not met. The next new child must
+    // be there.
+    std::uint64_t next = 0;
+    for (std::uint64_t at = begin; at < end; at += 1 + popcount(dag.nodes[at] & 0xFF))
+      for_each_child_place(dag, level, at, [&](std::uint64_t word, std::uint64_t place) {
+        if (place > next) fail_at_word(level, word, "child is not the next in depth-first order");
+        if (place == next)
+          next += above_leaf_blocks ? 1 : 1 + popcount(dag.nodes[end + place] & 0xFF);
+      });
+    if (next == below_count) continue;
     if (above_leaf_blocks) fail_at_leaf_block(next, "leaf block has no parent");
-    fail_at_word(level + 1, next, "node has no parent");
+    fail_at_word(level + 1, end + next, "node has no parent");
   }
 }
 
-void check_minimal(const SvdagView& dag) {
-  for (int level = 0; level < dag.levels - 2; ++level) check_minimal_level(dag, level);
-  check_minimal_leaf_blocks(dag);
+template <class Position, class Dag>
+void check_all_differ(const Dag& dag) {
+  for (int level = 0; level < dag.levels - 2; ++level) check_minimal_level<Position>(dag, level);
+  check_minimal_leaf_blocks<Position>(dag);
 }
+
+}  // namespace
+
+void validate_svdag(const SvdagView& dag) { validate(dag); }
+void validate_svdag(const LongSvdagView& dag) { validate(dag); }
+
+void check_canonical(const SvdagView& dag) { check_order(dag); }
+void check_canonical(const LongSvdagView& dag) { check_order(dag); }
+
+void check_minimal(const SvdagView& dag) { check_all_differ<std::uint32_t>(dag); }
+void check_minimal(const LongSvdagView& dag) { check_all_differ<std::uint64_t>(dag); }
 
 }  // namespace voxdag

@@ -4,9 +4,9 @@
 
 namespace voxdag {
 
-DagModel edited(const DagModel& source, Svdag dag, const Grid& grid, const std::string& edit,
+DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const std::string& edit,
                 MemoryBudget* memory) {
-  VdagMetadata metadata = source.metadata();
+  VdagMetadata metadata = source;
   metadata.grid = grid;
   metadata.attributes = {};
   std::string& edits = metadata.build["edits"];

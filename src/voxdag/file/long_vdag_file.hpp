@@ -1,0 +1,32 @@
+#pragma once
+/// Reads a DAG with long pointers from a .vdag file.
+#include <filesystem>
+
+#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/io/mapped_file.hpp"
+
+namespace voxdag {
+
+/// Returns whether a file is a .vdag file with long pointers (chunk NODX). Returns false for other
+/// files, and for files that are malformed. Throws Error if it cannot be read.
+bool has_long_pointers(const std::filesystem::path& path);
+
+/// A mapped file: the DAG can be larger than memory. Checks every chunk, and that the DAG is safe
+/// to walk. The view stays valid when the object is moved. Another process must not truncate the
+/// file.
+class LongVdagFile {
+ public:
+  /// Maps the file. Throws Error(path, place, reason).
+  explicit LongVdagFile(const std::filesystem::path& path);
+
+  const LongSvdagView& view() const { return view_; }
+  const VdagMetadata& metadata() const { return metadata_; }
+  std::uint64_t file_bytes() const { return file_.bytes().size(); }
+
+ private:
+  MappedFile file_;
+  VdagMetadata metadata_;
+  LongSvdagView view_;
+};
+
+}  // namespace voxdag
