@@ -41,15 +41,20 @@ int launched_count() {
 
 std::unique_ptr<Ranks> join_ranks(const Progress* progress, const RankOptions& options) {
   assert(options.message_bytes >= 1 && options.message_bytes <= std::uint64_t{1} << 30);
-  if (!is_launched()) return std::make_unique<OneRank>();
+  if (!is_launched()) {
+    // srun without PMI, which is its default.
+    if (number_in("SLURM_STEP_NUM_TASKS") > 1)
+      throw Error("srun started " + std::to_string(number_in("SLURM_STEP_NUM_TASKS")) +
+                  " processes that cannot find each other: use mpirun, or `srun --mpi=pmix`");
+    return std::make_unique<OneRank>();
+  }
   std::string reason;
   const auto* const module =
       static_cast<const MpiModule*>(load_module(kMpiModuleFile, kMpiModuleName, reason));
   if (module == nullptr)
     throw Error(
         "mpirun or srun started this process, but the module for MPI cannot be loaded. Build "
-        "voxdag "
-        "where MPI is installed (Debian: libopenmpi-dev): " +
+        "voxdag where MPI is installed (Debian: libopenmpi-dev): " +
         reason);
   std::unique_ptr<Ranks> ranks(module->join(progress, options));
   const int launched = launched_count();

@@ -1,56 +1,77 @@
 #include "voxdag/cluster/mpi/mpi_counters.hpp"
 
+#include <array>
 #include <chrono>
 
 #include "voxdag/core/error.hpp"
 
 namespace voxdag {
+namespace {
 
-MpiCounters::MpiCounters(MpiSession& session, int counters) : session_(session) {
-  constexpr int kStride = sizeof(std::uint64_t);
-  session.run("MPI_Win_allocate", [&] {
-    const MPI_Aint bytes = session.rank() == 0 ? MPI_Aint{counters} * kStride : 0;
-    return MPI_Win_allocate(bytes, kStride, MPI_INFO_NULL, session.comm(), &values_, &window_);
-  });
-  MPI_Win_set_errhandler(window_, MPI_ERRORS_RETURN);
-  session.run("MPI_Win_lock_all", [&] { return MPI_Win_lock_all(0, window_); });
-  if (session.rank() == 0)
-    for (int counter = 0; counter < counters; ++counter) set_zero(counter);
+constexpr int kQuestion = 1, kAnswer = 2;  // tags
+
+}  // namespace
+
+MpiCounters::MpiCounters(MpiSession& session, int counters)
+    : session_(session), values_(static_cast<std::size_t>(counters)) {
+  session.run("MPI_Comm_dup", [&] { return MPI_Comm_dup(session.comm(), &comm_); });
+  MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN);
   session.barrier();
   if (session.rank() == 0 && session.count() > 1)
     server_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
 }
 
-std::uint64_t MpiCounters::next(int counter) { return fetch(counter, 1, MPI_SUM); }
-
-void MpiCounters::set_zero(int counter) { fetch(counter, 0, MPI_REPLACE); }
-
-/// Does what MPI_Fetch_and_op does, but gives a request, so that the wait can be cancelled. The
-/// request is complete when the old value has arrived.
-std::uint64_t MpiCounters::fetch(int counter, std::uint64_t value, MPI_Op operation) {
-  std::uint64_t old = 0;
-  MPI_Request request = MPI_REQUEST_NULL;
-  session_.run("MPI_Rget_accumulate", [&] {
-    return MPI_Rget_accumulate(&value, 1, MPI_UINT64_T, &old, 1, MPI_UINT64_T, 0, counter, 1,
-                               MPI_UINT64_T, operation, window_, &request);
+std::uint64_t MpiCounters::next(int counter) {
+  if (session_.rank() == 0) return draw(counter);
+  const std::lock_guard one_question(mutex_);
+  question_ = counter;
+  std::array<MPI_Request, 2> requests = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+  session_.run("MPI_Irecv", [&] {
+    return MPI_Irecv(&answer_, 1, MPI_UINT64_T, 0, kAnswer, comm_, &requests[0]);
   });
-  session_.wait(request, "MPI_Rget_accumulate");
-  return old;
+  session_.run("MPI_Isend", [&] {
+    return MPI_Isend(&question_, 1, MPI_INT, 0, kQuestion, comm_, &requests[1]);
+  });
+  session_.wait_all(requests, "MPI_Isend and MPI_Irecv");
+  return answer_;
+}
+
+std::uint64_t MpiCounters::draw(int counter) {
+  const std::lock_guard guard(mutex_);
+  return values_[static_cast<std::size_t>(counter)]++;
+}
+
+void MpiCounters::set_zero(int counter) {
+  const std::lock_guard guard(mutex_);
+  values_[static_cast<std::size_t>(counter)] = 0;
 }
 
 void MpiCounters::serve(const std::stop_token& stop) {
   try {
-    while (!stop.stop_requested()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      session_.call([] {
-        // Finds nothing, because nobody sends here; MPI serves its network meanwhile.
-        int found = 0;
-        return MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_SELF, &found, MPI_STATUS_IGNORE);
-      });
-    }
+    while (!stop.stop_requested())
+      if (!answer()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } catch (const Cancelled&) {
   } catch (const Error&) {
     // The session was stopped.
   }
+}
+
+bool MpiCounters::answer() {
+  int found = 0, counter = 0;
+  MPI_Status status;
+  session_.run("MPI_Iprobe",
+               [&] { return MPI_Iprobe(MPI_ANY_SOURCE, kQuestion, comm_, &found, &status); });
+  if (found == 0) return false;
+  session_.run("MPI_Recv", [&] {
+    return MPI_Recv(&counter, 1, MPI_INT, status.MPI_SOURCE, kQuestion, comm_, MPI_STATUS_IGNORE);
+  });
+  answer_ = draw(counter);
+  MPI_Request request = MPI_REQUEST_NULL;
+  session_.run("MPI_Isend", [&] {
+    return MPI_Isend(&answer_, 1, MPI_UINT64_T, status.MPI_SOURCE, kAnswer, comm_, &request);
+  });
+  session_.wait(request, "MPI_Isend");
+  return true;
 }
 
 void MpiCounters::close() {
@@ -58,8 +79,7 @@ void MpiCounters::close() {
     server_.request_stop();
     server_.join();
   }
-  session_.run("MPI_Win_unlock_all", [&] { return MPI_Win_unlock_all(window_); });
-  session_.run("MPI_Win_free", [&] { return MPI_Win_free(&window_); });
+  session_.run("MPI_Comm_free", [&] { return MPI_Comm_free(&comm_); });
 }
 
 }  // namespace voxdag

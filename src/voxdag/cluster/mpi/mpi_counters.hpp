@@ -1,17 +1,20 @@
 #pragma once
-/// Counters in the memory of rank 0 that all ranks change with one-sided operations.
+/// Counters that rank 0 keeps and all ranks draw from.
+///
+/// A rank asks rank 0 with a message, and waits for the answer. MPI's one-sided operations would do
+/// without rank 0, but Debian's Open MPI turns off all of them that work between hosts over TCP.
 #include <mpi.h>
 
 #include <cstdint>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include "voxdag/cluster/mpi/mpi_session.hpp"
 
 namespace voxdag {
 
-/// Rank 0 need not call anything while others draw numbers. Where the network has no hardware for
-/// that (TCP), MPI serves other ranks only inside its calls. So rank 0 has a thread that calls MPI
-/// every millisecond.
+/// Rank 0 has a thread that answers, so its other threads need not call anything.
 class MpiCounters {
  public:
   /// Makes the counters, all 0. Collective.
@@ -19,21 +22,27 @@ class MpiCounters {
   MpiCounters(const MpiCounters&) = delete;
   MpiCounters& operator=(const MpiCounters&) = delete;
 
-  /// Returns the value of a counter and adds 1.
+  /// Returns the value of a counter and adds 1. Any thread may call it.
   std::uint64_t next(int counter);
-  /// Sets a counter to 0. Other ranks must not draw from it meanwhile. Called on one rank.
+  /// Sets a counter to 0. Other ranks must not draw from it meanwhile. Called on rank 0.
   void set_zero(int counter);
-  /// Frees the counters. Collective, after a barrier; before MPI_Finalize.
+  /// Ends the answers. Collective, after a barrier; before MPI_Finalize.
   void close();
 
  private:
-  std::uint64_t fetch(int counter, std::uint64_t value, MPI_Op operation);
+  std::uint64_t draw(int counter);
   void serve(const std::stop_token& stop);
+  /// Answers one question. Returns whether there was one.
+  bool answer();
 
   MpiSession& session_;
-  std::uint64_t* values_ = nullptr;
-  MPI_Win window_ = MPI_WIN_NULL;
-  std::jthread server_;  ///< On rank 0 only.
+  MPI_Comm comm_ = MPI_COMM_NULL;      ///< For these messages only.
+  std::mutex mutex_;                   ///< Rank 0: guards values_. Others: allows one question.
+  std::vector<std::uint64_t> values_;  ///< On rank 0.
+  // The buffers of a message, which MPI may use after a cancelled wait. On rank 0, the server's.
+  int question_ = 0;
+  std::uint64_t answer_ = 0;
+  std::jthread server_;  ///< On rank 0.
 };
 
 }  // namespace voxdag

@@ -13,8 +13,7 @@
 namespace voxdag {
 
 /// Every call of MPI goes through call() or run(), which allow one thread at a time. So MPI needs
-/// to support MPI_THREAD_SERIALIZED only. It is not asked for MPI_THREAD_MULTIPLE, because Open MPI
-/// 4's one-sided operations over TCP (osc/pt2pt) refuse that.
+/// to support MPI_THREAD_SERIALIZED only.
 ///
 /// Waits test requests and sleep in between, instead of MPI's own waits, which keep a CPU busy and
 /// cannot be cancelled.
