@@ -105,6 +105,13 @@ def main():
                         sum(report["bytes_sent"].values())) +
                     f"   {report['parts']} parts, {report['mailboxes']} mailboxes")
     shutil.rmtree(folder)
+    in_parts = [run for run in result["runs"] if run["ranks"] > 0]
+    for title, key, unit in (("processor seconds of all ranks", "cpu_seconds", 1), ("MB sent", "bytes_sent", 1e6)):
+        text += ["", f"{title:<30}" + "".join(f"{step:>11}" for step in steps)]
+        for of_ranks in in_parts:
+            values = of_ranks["report"][key]
+            text.append(f"{of_ranks['ranks']} rank(s)".ljust(30) +
+                        "".join(f"{values[step] / unit:11.1f}" for step in steps))
     text += ["", f"The outputs are {'equal' if len(digests) == 1 else 'NOT EQUAL'}: "
              f"{result['runs'][0]['report']['voxels']:,} voxels, "
              f"{result['runs'][0]['report']['bytes']['svdag_paper'] / 2**20:.1f} MiB"]

@@ -10,10 +10,16 @@
 #include "ranks_under_test.hpp"
 #include "shared_folder.hpp"
 #include "support/error_of.hpp"
+#include "support/file_size_limit.hpp"
+#include "support/mesh_files.hpp"
 #include "support/random_triangles.hpp"
+#include "voxdag/algebra/crop.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
+#include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/layout/svdag_counts.hpp"
 #include "voxdag/readers/read_mesh.hpp"
 #include "voxdag/scenes/ply_writer.hpp"
@@ -143,6 +149,71 @@ TEST_P(PartsJobScenes, GiveTheFileOfAPlainBuild) {
 INSTANTIATE_TEST_SUITE_P(Scenes, PartsJobScenes, testing::Range<std::size_t>(0, scenes().size()),
                          [](const auto& tested) { return scenes()[tested.param].name; });
 
+/// A mesh file that the ranks read in chunks, or that rank 0 reads alone.
+struct MeshFile {
+  const char* name;
+  std::string text;
+};
+
+std::vector<MeshFile> mesh_files() {
+  return {{"polygons.obj", random_obj(400, "\n")},
+          {"triangles.ply", random_ply(600, false, 3)},
+          {"big_endian.ply", random_ply(600, true, 3)},
+          {"quads.ply", random_ply(300, false, 4)},
+          {"facets.stl", random_stl(500)},
+          {"mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0.5\n3 0 1 2\n"}};
+}
+
+class PartsJobFiles : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(PartsJobFiles, GiveTheFileOfAPlainBuild) {
+  const MeshFile file = mesh_files()[GetParam()];
+  const SharedFolder folder(ranks());
+  PartsJob job = {folder / file.name, folder / "work", folder / "parts.vdag", levels(7), 3, {}};
+  job.chunk_bytes = 64;  // the ranks share several tasks of the file
+  if (ranks().rank() == 0) {
+    write_text(job.mesh, file.text);
+    build_plainly(job.mesh, job.grid, folder / "plain.vdag");
+  }
+  ranks().barrier();
+  // In all memory, and in little.
+  for (const std::uint64_t limit : {std::uint64_t{1} << 40, std::uint64_t{24} << 20}) {
+    MemoryBudget budget(limit);
+    build_in_parts(job, kProgram, ranks(), budget, nullptr);
+    if (ranks().rank() != 0) continue;
+    EXPECT_EQ(read_text(folder / "parts.vdag"), read_text(folder / "plain.vdag"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, PartsJobFiles, testing::Range<std::size_t>(0, mesh_files().size()),
+                         [](const auto& tested) {
+                           std::string name = mesh_files()[tested.param].name;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+TEST(PartsJob, ADagOfTooManyWordsGetsLongPointers) {
+  const SharedFolder folder(ranks());
+  const Scene scene{"courtyard", make_scene("courtyard", {.size = 0.1}), levels(8)};
+  PartsJob job = job_of(folder, scene, 5);
+  if (ranks().rank() == 0) {
+    write_ply(job.mesh, scene.mesh, nullptr);
+    build_plainly(job.mesh, scene.grid, folder / "plain.vdag");
+  }
+  ranks().barrier();
+  MemoryBudget unlimited;
+  job.most_plain_words = 1000;  // instead of some 2^32
+  build_in_parts(job, kProgram, ranks(), unlimited, nullptr);
+  if (ranks().rank() != 0) return;
+  ASSERT_TRUE(has_long_pointers(job.output));
+  EXPECT_TRUE(verify_vdag(job.output).passed());
+  const LongVdagFile file(job.output);
+  const VdagFile plain(folder / "plain.vdag");
+  EXPECT_EQ(file.metadata().counts, plain.metadata().counts);
+  const Svdag all = crop(file.view(), {{0, 0, 0}, {256, 256, 256}});
+  EXPECT_EQ(all, crop(plain.view(), {{0, 0, 0}, {256, 256, 256}}));
+}
+
 TEST(PartsJob, SplitsPartsThatDoNotFitIntoMemory) {
   const SharedFolder folder(ranks());
   const Scene scene{"courtyard", make_scene("courtyard", {.size = 0.2}), levels(10)};
@@ -265,6 +336,37 @@ TEST_F(PartsJobFailures, DamagedAndLostFilesAreMadeAnew) {
   }
 }
 
+TEST_F(PartsJobFailures, AFullDiskEndsTheJobInAnyStepAndTheNextRunGoesOn) {
+  int failures = 0;
+  for (std::uint64_t bytes = 64; bytes < (std::uint64_t{1} << 22); bytes += bytes / 8) {
+    std::string error;
+    bool is_done = false;
+    {
+      const FileSizeLimit limit(bytes);
+      try {
+        is_done = run(kNever);
+      } catch (const Error& full) {
+        error = full.what();
+      }
+    }
+    if (is_done) break;
+    ++failures;
+    // One line names a file of the job and the system's reason.
+    EXPECT_NE(error.find("File too large"), std::string::npos) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    EXPECT_FALSE(std::filesystem::exists(*folder_ / "parts.vdag")) << bytes;
+    if (failures % 3 == 0) {  // else the next run begins with what is there
+      ASSERT_TRUE(run(kNever)) << bytes;
+      EXPECT_EQ(output(), plain_) << bytes;
+      std::filesystem::remove(*folder_ / "parts.vdag");
+    }
+  }
+  EXPECT_GT(failures, 20);
+  EXPECT_EQ(output(), plain_);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_->path()))
+    EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
+}
+
 TEST_F(PartsJobFailures, AFolderOfAnotherJobIsRefused) {
   ASSERT_FALSE(run(3));
   MemoryBudget unlimited;
@@ -297,6 +399,20 @@ TEST_F(PartsJobFailures, AFolderInUseIsRefused) {
   const WorkFolder other(work(), {}, true);
   EXPECT_EQ(error_of([&] { run(kNever); }),
             work().string() + ": another job is working in this folder");
+}
+
+TEST_F(PartsJobFailures, AVertexThatIsNotFiniteIsTheErrorOfReadMesh) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\n";
+  for (int i = 0; i < 3000; ++i) text += "f 1 2 3\n";
+  PartsJob job = job_of(*folder_, scene_, 5);
+  job.mesh = *folder_ / "scene.obj";
+  job.chunk_bytes = 64;
+  MemoryBudget unlimited;
+  write_text(job.mesh, text);  // an unused vertex may be anything
+  build_in_parts(job, kProgram, ranks(), unlimited, nullptr);
+  write_text(job.mesh, text + "f 2 3 4\n");
+  EXPECT_EQ(error_of([&] { build_in_parts(job, kProgram, ranks(), unlimited, nullptr); }),
+            error_of([&] { read_mesh(job.mesh); }));
 }
 
 TEST_F(PartsJobFailures, AnErrorOfTheMeshIsReported) {

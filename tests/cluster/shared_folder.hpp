@@ -29,6 +29,7 @@ class SharedFolder {
   ~SharedFolder() { ranks_.barrier(); }
 
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
   /// Creates an empty file.
   void touch(const std::string& name) const { write_text(path_ / name, ""); }
   /// Returns the number of files.

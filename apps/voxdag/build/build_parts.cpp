@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "build/build_arguments.hpp"
@@ -48,6 +49,7 @@ nlohmann::ordered_json json_of(const DagReport& report, const PartsReport& parts
   json["mailboxes"] = parts.mailboxes;
   for (std::size_t i = 0; i < kPartsSteps.size(); ++i) {
     json["seconds"][kPartsSteps[i]] = parts.seconds[i];
+    json["cpu_seconds"][kPartsSteps[i]] = parts.cpu_seconds[i];
     json["bytes_sent"][kPartsSteps[i]] = parts.bytes_sent[i];
   }
   json["seconds"]["total"] = total_seconds(parts);
@@ -74,6 +76,13 @@ int threads_of_rank() {
   int ranks = 1;
   for (const char* name : {"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"})
     if (const char* text = std::getenv(name)) ranks = std::max(ranks, std::atoi(text));
+  // Slurm lists the ranks of all nodes: "2(x3),1". The largest number is safe.
+  if (const char* text = std::getenv("SLURM_STEP_TASKS_PER_NODE"); text != nullptr && ranks == 1)
+    for (std::stringstream list(text); list.good();) {
+      std::string nodes;
+      std::getline(list, nodes, ',');
+      ranks = std::max(ranks, std::atoi(nodes.c_str()));
+    }
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   return std::max(1, std::min(tbb::this_task_arena::max_concurrency(), processors / ranks));
 }

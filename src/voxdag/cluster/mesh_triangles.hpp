@@ -12,6 +12,16 @@
 
 namespace voxdag {
 
+/// The mesh of a job, and where to put its triangles.
+struct MeshJob {
+  Ranks& ranks;
+  const WorkFolder& folder;
+  const std::filesystem::path& mesh;
+  const GridRequest& grid;
+  ReadOptions reading;      ///< Has the budget and the progress.
+  std::size_t chunk_bytes;  ///< Of the mesh file; see SharedMesh.
+};
+
 /// The grid of a mesh, its size, and the segments that it is stored in.
 struct MeshFacts {
   Grid grid;
@@ -19,16 +29,13 @@ struct MeshFacts {
   std::uint64_t segments = 0, triangles_per_segment = 0;
 };
 
-/// Returns the facts of the mesh. If the folder does not have them, rank 0 reads the mesh and
-/// writes them, and all segments. Collective. `reading` has the budget and the progress. Throws the
-/// errors of read_mesh() and of grid_for(), OverMemory and Cancelled.
-MeshFacts mesh_facts(Ranks& ranks, const WorkFolder& folder, const std::filesystem::path& mesh,
-                     const GridRequest& request, const ReadOptions& reading);
+/// Returns the facts of the mesh. If the folder does not have them, the ranks read the mesh and
+/// write them, and all segments. Collective. Throws the errors of read_mesh() and of grid_for(),
+/// OverMemory and Cancelled.
+MeshFacts mesh_facts(const MeshJob& job);
 
-/// Returns all segments, mapped. Rank 0 reads the mesh again and writes those that are missing or
-/// damaged. Collective. Throws as mesh_facts() does.
-std::vector<TriangleSegment> mesh_segments(Ranks& ranks, const WorkFolder& folder,
-                                           const std::filesystem::path& mesh,
-                                           const MeshFacts& facts, const ReadOptions& reading);
+/// Returns all segments, mapped. If some are missing or damaged, the ranks read the mesh again and
+/// write them. Collective. Throws as mesh_facts() does.
+std::vector<TriangleSegment> mesh_segments(const MeshJob& job, const MeshFacts& facts);
 
 }  // namespace voxdag

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 
 #include "voxdag/cluster/build_part.hpp"
+#include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/mesh_triangles.hpp"
 #include "voxdag/cluster/node_order.hpp"
@@ -23,7 +25,6 @@ namespace voxdag {
 namespace {
 
 constexpr const char* kPlan = "parts/plan";
-constexpr int kPartCounter = 0;
 
 /// Returns the checksum of a file, as text.
 std::string checksum_of(const std::filesystem::path& path, Progress* progress) {
@@ -85,14 +86,14 @@ class PartsRun {
         folder_(folder),
         budget_(budget),
         progress_(progress),
-        reading_(job.reading),
+        mesh_job_{ranks, folder, job.mesh, job.grid, job.reading, job.chunk_bytes},
         log_(folder, ranks.rank()) {
-    reading_.progress = progress;
-    reading_.memory = &budget;
+    mesh_job_.reading.progress = progress;
+    mesh_job_.reading.memory = &budget;
   }
 
   PartsReport run(const std::string& program) {
-    const MeshFacts facts = mesh_facts(ranks_, folder_, job_.mesh, job_.grid, reading_);
+    const MeshFacts facts = mesh_facts(mesh_job_);
     const std::vector<CellRange> parts = plan(facts);
     end(PartsStep::kTriangles);
     build(facts, parts);
@@ -101,8 +102,8 @@ class PartsRun {
 
     PartFiles files(folder_, parts.size(), progress_);
     report_.mailboxes = mailboxes(files);
-    const MergeJob merge{ranks_,  folder_,  facts.grid.levels, files, report_.mailboxes,
-                         budget_, progress_};
+    const MergeJob merge{ranks_,  folder_,   facts.grid.levels,    files, report_.mailboxes,
+                         budget_, progress_, job_.most_plain_words};
     const MergedNodes merged = merge_parts(merge);
     end(PartsStep::kMerge);
     const OrderedDag dag = order_nodes(merge, merged);
@@ -130,8 +131,7 @@ class PartsRun {
   std::vector<CellRange> plan(const MeshFacts& facts) {
     const std::uint64_t has_plan = ranks_.rank() == 0 && folder_.open(kPlan, progress_) ? 1 : 0;
     if (ranks_.all_gather({&has_plan, 1})[0] == 0) {
-      const std::vector<TriangleSegment> segments =
-          mesh_segments(ranks_, folder_, job_.mesh, facts, reading_);
+      const std::vector<TriangleSegment> segments = mesh_segments(mesh_job_, facts);
       if (ranks_.rank() == 0) write_plan(facts, segments);
     }
     ranks_.barrier();
@@ -185,8 +185,7 @@ class PartsRun {
       folder_.remove(kMergeFolder);
       folder_.remove("done");
     }
-    const std::vector<TriangleSegment> segments =
-        mesh_segments(ranks_, folder_, job_.mesh, facts, reading_);
+    const std::vector<TriangleSegment> segments = mesh_segments(mesh_job_, facts);
     ranks_.reset(kPartCounter);
     Progress quiet(progress_);
     for (std::uint64_t p; (p = ranks_.next(kPartCounter)) < parts.size();) {
@@ -227,10 +226,17 @@ class PartsRun {
     const auto index = static_cast<std::size_t>(step);
     report_.seconds[index] = std::chrono::duration<double>(now - last_).count();
     last_ = now;
-    const std::uint64_t sent = ranks_.bytes_sent(), mine = sent - sent_before_;
-    for (const std::uint64_t of_rank : ranks_.all_gather({&mine, 1}))
-      report_.bytes_sent[index] += of_rank;
+    const std::uint64_t sent = ranks_.bytes_sent();
+    const std::clock_t cpu = std::clock();
+    const std::uint64_t mine[] = {sent - sent_before_,
+                                  static_cast<std::uint64_t>(cpu - cpu_before_)};
+    const std::vector<std::uint64_t> all = ranks_.all_gather(mine);
+    for (std::size_t r = 0; r < all.size(); r += 2) {
+      report_.bytes_sent[index] += all[r];
+      report_.cpu_seconds[index] += static_cast<double>(all[r + 1]) / CLOCKS_PER_SEC;
+    }
     sent_before_ = ranks_.bytes_sent();
+    cpu_before_ = cpu;
   }
 
   const PartsJob& job_;
@@ -238,10 +244,11 @@ class PartsRun {
   const WorkFolder& folder_;
   MemoryBudget& budget_;
   Progress* progress_;
-  ReadOptions reading_;
+  MeshJob mesh_job_;
   PartsLog log_;
   PartsReport report_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_before_ = std::clock();
   std::uint64_t sent_before_ = 0;
 };
 

@@ -5,7 +5,9 @@
 /// The steps lie in a work folder, which all ranks see, so that a job that ended early goes on
 /// where it was:
 ///
-///   triangles   rank 0 reads the mesh and writes its triangles with an index of coarse cells
+///   triangles   the ranks read the mesh, each some ranges of its file, and write its triangles
+///   with
+///               an index of coarse cells
 ///   parts       the grid is cut into parts; each rank takes one after the other and builds its DAG
 ///   merge       equal nodes of the parts become one, level by level
 ///   number      the nodes get their canonical order
@@ -14,10 +16,12 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "voxdag/cluster/part_merge.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/readers/chunks.hpp"
 #include "voxdag/readers/read_options.hpp"
 #include "voxdag/voxelize/grid_request.hpp"
 
@@ -30,6 +34,10 @@ struct PartsJob {
   /// their memory.
   std::uint64_t parts = 0;
   ReadOptions reading;  ///< `progress` and `memory` are set by the job.
+  /// Bytes of the mesh file that a thread reads at once. All runs of a job need the same number.
+  std::size_t chunk_bytes = kChunkBytes;
+  /// A DAG with more node words gets long pointers (layout/long_svdag.hpp). For tests.
+  std::uint64_t most_plain_words = kMostPlainWords;
 };
 
 enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };
@@ -38,7 +46,8 @@ inline constexpr std::array kPartsSteps = {"triangles", "parts", "merge", "numbe
 /// The result and the costs of a job. All ranks get equal values, but for the seconds.
 struct PartsReport {
   VdagMetadata metadata;
-  std::array<double, kPartsSteps.size()> seconds{};            ///< Wall-clock, per step.
+  std::array<double, kPartsSteps.size()> seconds{};      ///< Wall-clock, per step.
+  std::array<double, kPartsSteps.size()> cpu_seconds{};  ///< Of the threads of all ranks, per step.
   std::array<std::uint64_t, kPartsSteps.size()> bytes_sent{};  ///< Between ranks, per step.
   std::uint64_t parts = 0;
   std::uint64_t built = 0;  ///< Parts that this run built; the others were whole already.

@@ -42,18 +42,19 @@ double voxels_of(const QuantizedTriangle& t) {
   return std::sqrt(dot(normal, normal)) / 2 + longest + 1;
 }
 
-Batch map_batch(const Mesh& mesh, const Grid& grid, const CellFinder& finder, std::uint64_t first,
-                std::uint64_t last) {
+Batch map_batch(const SharedMesh& mesh, const Grid& grid, const CellFinder& finder,
+                std::uint64_t first, std::uint64_t last) {
   Batch batch;
   std::vector<QuantizedTriangle> pieces;
+  ArrayFiles<Vec3f>::Reader vertices(mesh.vertices());
+  ArrayFiles<Triangle>::Reader triangles(mesh.triangles());
   for (std::uint64_t i = first; i < last; ++i) {
-    const Triangle& t = mesh.triangles[i];
+    const Triangle& t = triangles[i];
     pieces.clear();
-    quantize_triangle(
-        grid,
-        {static_cast<Vec3d>(mesh.vertices[t[0]]), static_cast<Vec3d>(mesh.vertices[t[1]]),
-         static_cast<Vec3d>(mesh.vertices[t[2]])},
-        pieces);
+    quantize_triangle(grid,
+                      {static_cast<Vec3d>(vertices[t[0]]), static_cast<Vec3d>(vertices[t[1]]),
+                       static_cast<Vec3d>(vertices[t[2]])},
+                      pieces);
     for (const QuantizedTriangle& piece : pieces) {
       const auto index = static_cast<std::uint32_t>(batch.triangles.size());
       const std::size_t before = batch.entries.size();
@@ -119,7 +120,7 @@ std::uint64_t segment_triangles(const MemoryBudget& budget) {
   return std::clamp<std::uint64_t>(budget.left() / 4 / kBytes, kBatch, std::uint64_t{1} << 21);
 }
 
-void write_segment(const WorkFolder& folder, std::uint64_t index, const Mesh& mesh,
+void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMesh& mesh,
                    const Grid& grid, std::uint64_t first, std::uint64_t last, MemoryBudget& budget,
                    Progress* progress) {
   const CellFinder finder(grid.levels, segment_cell_level(grid.levels));

@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
+#include "voxdag/cluster/shared_mesh.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/parallel/progress.hpp"
 #include "voxdag/voxelize/cell_range.hpp"
 #include "voxdag/voxelize/grid_mapping.hpp"
@@ -48,7 +48,7 @@ std::uint64_t segment_triangles(const MemoryBudget& budget);
 
 /// Writes segment `index`: the triangles of `mesh` from `first` to `last` - 1. The file depends on
 /// these and the grid alone. Throws Error, OverMemory and Cancelled.
-void write_segment(const WorkFolder& folder, std::uint64_t index, const Mesh& mesh,
+void write_segment(const WorkFolder& folder, std::uint64_t index, const SharedMesh& mesh,
                    const Grid& grid, std::uint64_t first, std::uint64_t last, MemoryBudget& budget,
                    Progress* progress);
 

@@ -18,7 +18,8 @@ namespace {
 constexpr const char *kJobFile = "job.json", *kLockFile = "lock";
 constexpr const char* kLogFolder = "log";
 /// Everything that a job writes into its folder, but its log.
-constexpr const char* kJobFiles[] = {"triangles", "parts", "merge", "done", kJobFile, kLockFile};
+constexpr const char* kJobFiles[] = {"mesh", "triangles", "parts",  "merge",
+                                     "done", kJobFile,    kLockFile};
 constexpr SizeLimit kJobLimit{std::uint64_t{1} << 20, "a job's settings"};
 
 std::string json_of(const JobSettings& settings) { return nlohmann::json(settings).dump(2) + "\n"; }
@@ -116,6 +117,15 @@ WorkFile WorkFolder::open_written(std::string_view name, const Progress* progres
     throw Error((folder_ / name).string(), "",
                 "the file is missing or damaged; the same command again makes it anew");
   }
+  return std::move(*file);
+}
+
+WorkFile WorkFolder::open_seen(std::string_view name, const Progress* progress) const {
+  std::optional<WorkFile> file = open(name, progress, WorkFile::Check::kHeader);
+  if (!file)
+    throw Error((folder_ / name).string(), "",
+                "this rank cannot see the file that another rank wrote: all ranks need the same "
+                "folder, and nobody may change it while they work");
   return std::move(*file);
 }
 

@@ -37,6 +37,10 @@ class WorkFolder {
   /// the folder of unfinished merges, so that the next run makes it again from the parts.
   WorkFile open_written(std::string_view name, const Progress* progress) const;
 
+  /// Opens a file that a rank has written or checked in this run; trusts its contents. Throws Error
+  /// if this rank cannot see it.
+  WorkFile open_seen(std::string_view name, const Progress* progress) const;
+
   /// Writes an empty file that says that a step is done, and asks for it.
   void mark_done(std::string_view step) const;
   bool is_done(std::string_view step) const;

@@ -21,6 +21,10 @@ inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 std::vector<std::string_view> split_lines(std::string_view text, char line_end,
                                           std::size_t chunk_bytes = kChunkBytes);
 
+/// Returns where the line that holds byte `at` of the text ends, after its line end. A line that
+/// ends with a backslash goes on. Returns the text's size if `at` is beyond it.
+std::size_t end_of_line(std::string_view text, std::size_t at, char line_end);
+
 /// A value for `line_end`: the file is binary, and errors name the byte.
 inline constexpr char kBinary = '\0';
 

@@ -173,7 +173,7 @@ class AsciiReader {
       std::size_t corner = 0;
       take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
         if (property == fields_.material)
-          material = checked_material(to_int(token), mesh_, token.data());
+          material = checked_material(to_int(token), mesh_.materials.size(), token.data());
         if (has_values) take_value(body_.attributes->face_columns(), p, token, chunk.values);
         if (property != fields_.indices) return;
         const std::uint32_t index =

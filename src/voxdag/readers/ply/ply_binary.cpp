@@ -240,8 +240,8 @@ class BinaryReader {
     layout.walk(row, end, swap_, [&](std::size_t run, const char* fixed, std::size_t) {
       if (run != place.run) return;
       const char* const at = fixed + place.offset;
-      const std::uint32_t material =
-          checked_material(load_int(fields_.face.properties[property].type, at, swap_), mesh_, at);
+      const std::uint32_t material = checked_material(
+          load_int(fields_.face.properties[property].type, at, swap_), mesh_.materials.size(), at);
       for (std::size_t t = first; t < last; ++t) mesh_.triangle_materials[t] = material;
     });
   }

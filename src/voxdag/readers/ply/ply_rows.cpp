@@ -39,10 +39,10 @@ std::uint32_t checked_index(std::int64_t index, std::size_t vertices, const char
   return static_cast<std::uint32_t>(index);
 }
 
-std::uint32_t checked_material(std::int64_t index, const Mesh& mesh, const char* position) {
-  if (index < 0 || static_cast<std::uint64_t>(index) >= mesh.materials.size())
-    throw Fault{position, "material index " + std::to_string(index) + " is out of range: " +
-                              std::to_string(mesh.materials.size()) + " materials"};
+std::uint32_t checked_material(std::int64_t index, std::size_t materials, const char* position) {
+  if (index < 0 || static_cast<std::uint64_t>(index) >= materials)
+    throw Fault{position, "material index " + std::to_string(index) +
+                              " is out of range: " + std::to_string(materials) + " materials"};
   return static_cast<std::uint32_t>(index);
 }
 

@@ -54,6 +54,6 @@ void resize_ply_triangles(const PlyBody& body, std::size_t triangles, MemoryRese
 
 /// Returns the index if it is in range, else throws Fault.
 std::uint32_t checked_index(std::int64_t index, std::size_t vertices, const char* position);
-std::uint32_t checked_material(std::int64_t index, const Mesh& mesh, const char* position);
+std::uint32_t checked_material(std::int64_t index, std::size_t materials, const char* position);
 
 }  // namespace voxdag

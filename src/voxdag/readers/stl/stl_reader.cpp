@@ -1,62 +1,33 @@
 #include "voxdag/readers/stl/stl_reader.hpp"
 
 #include "voxdag/readers/chunks.hpp"
+#include "voxdag/readers/stl/stl_binary.hpp"
 #include "voxdag/readers/stl/stl_text.hpp"
 #include "voxdag/readers/weld_soup.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
-constexpr std::size_t kMaxFacets = 0xFFFFFFFF / 3;
 constexpr std::size_t kFacetsPerPart = 2048;  ///< About the number in a part of an ascii file.
-
-/// Returns the number of facets in the header of a binary file.
-std::uint32_t binary_facet_count(std::string_view bytes) {
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    count |= std::uint32_t{static_cast<unsigned char>(bytes[80 + i])} << 8 * i;
-  return count;
-}
-
-float load_float(const char* p) {
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    bits |= std::uint32_t{static_cast<unsigned char>(p[i])} << 8 * i;
-  return std::bit_cast<float>(bits);
-}
 
 /// Returns the facets of a binary file in parts.
 std::vector<std::string_view> split_binary(const MeshSource& source) {
-  if (source.bytes.size() < kHeaderBytes)
+  if (source.bytes.size() < kStlHeaderBytes)
     throw source.error("not an STL file: it is not ASCII STL, and it is too short for binary STL");
-  std::size_t left = binary_facet_count(source.bytes);
-  const std::size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
+  std::size_t left = stl_facet_count(source.bytes);
+  const std::size_t room = (source.bytes.size() - kStlHeaderBytes) / kStlFacetBytes;
   if (left > room)
     throw source.error_at_byte(source.bytes.size(), "the file ends after " + std::to_string(room) +
                                                         " of " + std::to_string(left) + " facets");
   if (left == 0) throw source.error("STL with 0 facets: there is no surface to read");
   std::vector<std::string_view> parts;
-  for (std::size_t offset = kHeaderBytes; left > 0;) {
+  for (std::size_t offset = kStlHeaderBytes; left > 0;) {
     const std::size_t count = std::min(left, kFacetsPerPart);
-    parts.push_back(source.bytes.substr(offset, count * kFacetBytes));
-    offset += count * kFacetBytes;
+    parts.push_back(source.bytes.substr(offset, count * kStlFacetBytes));
+    offset += count * kStlFacetBytes;
     left -= count;
   }
   return parts;
-}
-
-/// Calls body(Vec3f) for each corner of a part of a binary file. Throws Fault for a vertex that is
-/// not finite.
-template <class Body>
-void parse_binary(std::string_view facets, const Body& body) {
-  for (std::size_t facet = 0; facet < facets.size(); facet += kFacetBytes)
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const char* p = facets.data() + facet + 12 * (corner + 1);
-      const Vec3f position{load_float(p), load_float(p + 4), load_float(p + 8)};
-      if (!is_finite(position)) throw Fault{p, "vertex is not finite"};
-      body(position);
-    }
 }
 
 template <class Visit>
@@ -65,15 +36,15 @@ Mesh weld_facets(const MeshSource& source, const std::vector<std::string_view>& 
   const SoupSize size = measure_soup(source, parts, line_end, visit);
   const std::size_t facets = size.first_triangles.back();
   if (facets == 0) throw source.error("STL without facets: there is no surface to read");
-  if (facets > kMaxFacets) throw source.error("the mesh has more than 1,431,655,765 facets");
+  if (facets > kMostStlFacets) throw source.error("the mesh has more than 1,431,655,765 facets");
   return weld(source, parts, line_end, visit, size);
 }
 
 }  // namespace
 
 bool is_exact_binary_stl(std::string_view bytes) {
-  if (bytes.size() < kHeaderBytes) return false;
-  return bytes.size() == kHeaderBytes + kFacetBytes * std::uint64_t{binary_facet_count(bytes)};
+  if (bytes.size() < kStlHeaderBytes) return false;
+  return bytes.size() == kStlHeaderBytes + kStlFacetBytes * std::uint64_t{stl_facet_count(bytes)};
 }
 
 bool is_ascii_stl(std::string_view bytes) {
@@ -96,7 +67,7 @@ Mesh read_stl(const MeshSource& source) {
   }
   const std::vector<std::string_view> parts = split_binary(source);
   return weld_facets(source, parts, kBinary,
-                     [&](std::size_t i, auto&& body) { parse_binary(parts[i], body); });
+                     [&](std::size_t i, auto&& body) { parse_stl_binary(parts[i], body); });
 }
 
 }  // namespace voxdag

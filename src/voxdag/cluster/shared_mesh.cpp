@@ -1,0 +1,293 @@
+#include "voxdag/cluster/shared_mesh.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <mutex>
+
+#include "voxdag/cluster/job_counters.hpp"
+#include "voxdag/cluster/mailboxes.hpp"
+#include "voxdag/cluster/unique_records.hpp"
+#include "voxdag/io/mapped_arrays.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
+#include "voxdag/mesh/vertex_table.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/readers/read_mesh.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Tasks have at least so many chunks, and a mesh has at most so many tasks, about.
+constexpr std::uint64_t kLeastChunks = 64, kMostTasks = 1024;
+
+/// The pages of the mesh are dropped from memory after so many triangles.
+constexpr std::uint64_t kReleaseTriangles = std::uint64_t{1} << 20;
+
+constexpr const char *kCounts = "mesh/counts", *kVertices = "mesh/vertices",
+                     *kTriangles = "mesh/triangles";
+
+std::string task_name(const std::string& name, std::uint64_t task) {
+  return name + "-" + std::to_string(task);
+}
+
+template <class T>
+std::span<const std::byte> bytes_of(std::span<const T> values) {
+  return std::as_bytes(values);
+}
+
+}  // namespace
+
+SharedMesh::SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesystem::path& path,
+                       const ReadOptions& reading, std::size_t chunk_bytes)
+    : ranks_(ranks),
+      folder_(folder),
+      path_(path),
+      progress_(reading.progress),
+      quiet_(progress_),
+      reading_(reading) {
+  reading_.progress = &quiet_;
+  // Rank 0 reports a malformed header alone.
+  if (ranks.rank() == 0) chunks_ = open_mesh_chunks(path, reading_, chunk_bytes);
+  ranks.barrier();
+  if (ranks.rank() != 0) chunks_ = open_mesh_chunks(path, reading_, chunk_bytes);
+  if (chunks_) {
+    chunks_per_task_ = std::max(kLeastChunks, chunks_->count() / kMostTasks);
+    tasks_ = (chunks_->count() + chunks_per_task_ - 1) / chunks_per_task_;
+    count_chunks();
+  }
+  if (chunks_)
+    read_chunks();
+  else
+    read_alone();
+  vertices_.emplace(folder_, kVertices, tasks_, progress_);
+  triangles_.emplace(folder_, kTriangles, tasks_, progress_);
+}
+
+template <class Body>
+void SharedMesh::for_each_missing(int counter, const std::string& name, const Body& body) {
+  ranks_.reset(counter);
+  for (std::uint64_t task; (task = ranks_.next(counter)) < tasks_;) {
+    poll(progress_);
+    if (progress_ != nullptr)
+      progress_->report("read", static_cast<double>(task) / static_cast<double>(tasks_));
+    if (folder_.open(task_name(name, task), progress_)) continue;
+    WorkFileWriter file = folder_.create(task_name(name, task));
+    body(task, file);
+    file.commit();
+  }
+  ranks_.barrier();
+}
+
+std::uint64_t SharedMesh::first_chunk(std::uint64_t task) const {
+  return std::min(task * chunks_per_task_, chunks_->count());
+}
+
+/// Counts all chunks. If a chunk cannot be read, or there is an error that read_mesh() tells
+/// better, chunks_ is null afterwards.
+void SharedMesh::count_chunks() {
+  for_each_missing(kMeshCountsCounter, kCounts, [&](std::uint64_t task, WorkFileWriter& file) {
+    const std::uint64_t first = first_chunk(task);
+    std::vector<std::optional<ChunkCounts>> counts(first_chunk(task + 1) - first);
+    parallel_for(counts.size(), [&](std::size_t i) { counts[i] = chunks_->counts(first + i); });
+    if (std::find(counts.begin(), counts.end(), std::nullopt) != counts.end()) return;
+    for (const std::optional<ChunkCounts>& of_chunk : counts) file.write_value(*of_chunk);
+  });
+  starts_ = {{}};
+  for (std::uint64_t task = 0; task < tasks_; ++task) {
+    const WorkFile file = folder_.open_seen(task_name(kCounts, task), progress_);
+    for (const ChunkCounts& counts : file.values<ChunkCounts>())
+      starts_.push_back(
+          {starts_.back().vertices + counts.vertices, starts_.back().triangles + counts.triangles});
+  }
+  constexpr std::uint64_t kMostVertices = 0xFFFFFFFE;
+  const bool is_readable = starts_.size() == chunks_->count() + 1 && starts_.back().triangles > 0 &&
+                           starts_.back().vertices <= kMostVertices;
+  if (is_readable) return;
+  chunks_.reset();
+  tasks_ = 1;
+}
+
+void SharedMesh::read_chunks() {
+  for_each_missing(kMeshVerticesCounter, kVertices, [&](std::uint64_t task, WorkFileWriter& file) {
+    write_values<Vec3f>(task, &ChunkCounts::vertices, file,
+                        [&](std::uint64_t chunk, std::span<Vec3f> vertices) {
+                          chunks_->read_vertices(chunk, vertices);
+                        });
+  });
+  const ArrayFiles<Vec3f> vertices(folder_, kVertices, tasks_, progress_);
+  for_each_missing(
+      kMeshTrianglesCounter, kTriangles, [&](std::uint64_t task, WorkFileWriter& file) {
+        write_values<Triangle>(task, &ChunkCounts::triangles, file,
+                               [&](std::uint64_t chunk, std::span<Triangle> triangles) {
+                                 ArrayFiles<Vec3f>::Reader reader(vertices);
+                                 chunks_->read_triangles(
+                                     chunk,
+                                     {starts_[chunk].vertices, vertices.size(),
+                                      [&](std::uint32_t vertex) { return reader[vertex]; }},
+                                     triangles);
+                               });
+        vertices.release();
+      });
+}
+
+/// Reads a few chunks at a time, on all threads, and writes them in order.
+template <class T, class Read>
+void SharedMesh::write_values(std::uint64_t task, std::uint64_t ChunkCounts::*count,
+                              WorkFileWriter& file, const Read& read) {
+  const std::uint64_t last = first_chunk(task + 1);
+  const auto step = 2 * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+  for (std::uint64_t first = first_chunk(task); first < last; first += step) {
+    const std::uint64_t end = std::min(first + step, last), begin = starts_[first].*count;
+    CountedVector<T> values(starts_[end].*count - begin, T{}, CountedAllocator<T>(reading_.memory));
+    parallel_for(end - first, [&](std::size_t i) {
+      const std::uint64_t chunk = first + i;
+      read(chunk, std::span<T>(values).subspan(starts_[chunk].*count - begin,
+                                               starts_[chunk + 1].*count - starts_[chunk].*count));
+    });
+    file.write(bytes_of<T>(values));
+  }
+}
+
+void SharedMesh::read_alone() {
+  if (ranks_.rank() == 0 && !(folder_.open(task_name(kVertices, 0), progress_) &&
+                              folder_.open(task_name(kTriangles, 0), progress_))) {
+    MappedArrays arrays(folder_.file(task_name(kVertices, 0)).parent_path());
+    ReadOptions reading = reading_;
+    reading.progress = progress_;
+    reading.arrays = &arrays;
+    const Mesh mesh = read_mesh(path_, reading);
+    // read_mesh() left the bytes reserved; this releases them at the end.
+    reading.memory->release(memory_bytes(mesh));
+    const MemoryReservation held(reading.memory, memory_bytes(mesh));
+    const auto write = [&](const char* name, std::span<const std::byte> bytes) {
+      constexpr std::size_t kStep = std::size_t{16} << 20;
+      WorkFileWriter file = folder_.create(task_name(name, 0));
+      for (std::size_t at = 0; at < bytes.size(); at += kStep) {
+        poll(progress_);
+        file.write(bytes.subspan(at, std::min(kStep, bytes.size() - at)));
+        arrays.release();
+      }
+      file.commit();
+    };
+    write(kVertices, bytes_of<Vec3f>(mesh.vertices));
+    write(kTriangles, bytes_of<Triangle>(mesh.triangles));
+  }
+  ranks_.barrier();
+}
+
+void SharedMesh::release() const {
+  vertices_->release();
+  triangles_->release();
+}
+
+Box3d SharedMesh::used_bounds() {
+  constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  const auto rank = static_cast<std::uint64_t>(ranks_.rank()),
+             count = static_cast<std::uint64_t>(ranks_.count());
+  const std::uint64_t all = triangles_->size(),
+                      steps = (all + kReleaseTriangles - 1) / kReleaseTriangles,
+                      own = steps > rank ? (steps - rank - 1) / count + 1 : 0;
+  std::mutex mutex;
+  Box3f box = Box3f::empty();
+  std::uint64_t bad_triangle = kNone;  // the first triangle with a vertex that is not finite
+  parallel_for(own, [&](std::size_t i) {
+    poll(progress_);
+    ArrayFiles<Vec3f>::Reader vertices(*vertices_);
+    ArrayFiles<Triangle>::Reader triangles(*triangles_);
+    Box3f of_step = Box3f::empty();
+    std::uint64_t bad = kNone;
+    const std::uint64_t first = (rank + i * count) * kReleaseTriangles,
+                        last = std::min(first + kReleaseTriangles, all);
+    for (std::uint64_t t = first; t < last; ++t)
+      for (const std::uint32_t vertex : triangles[t]) {
+        const Vec3f& position = vertices[vertex];
+        if (!is_finite(position)) bad = std::min(bad, t);
+        of_step.extend(position);
+      }
+    release();
+    const std::lock_guard guard(mutex);
+    bad_triangle = std::min(bad_triangle, bad);
+    if (!of_step.is_empty()) {
+      box.extend(of_step.lo);
+      box.extend(of_step.hi);
+    }
+  });
+  std::vector<std::uint64_t> mine = {bad_triangle};
+  for (const Vec3f corner : {box.lo, box.hi})
+    for (int axis = 0; axis < 3; ++axis) mine.push_back(std::bit_cast<std::uint32_t>(corner[axis]));
+  const std::vector<std::uint64_t> gathered = ranks_.all_gather(mine);
+  box = Box3f::empty();
+  for (std::size_t r = 0; r < gathered.size(); r += mine.size()) {
+    bad_triangle = std::min(bad_triangle, gathered[r]);
+    const auto number = [&](std::size_t i) {
+      return std::bit_cast<float>(static_cast<std::uint32_t>(gathered[r + i]));
+    };
+    box.lo = min(box.lo, {number(1), number(2), number(3)});
+    box.hi = max(box.hi, {number(4), number(5), number(6)});
+  }
+  if (bad_triangle != kNone) {
+    if (ranks_.rank() == 0)
+      for (const std::uint32_t vertex : ArrayFiles<Triangle>::Reader(*triangles_)[bad_triangle])
+        if (!is_finite(ArrayFiles<Vec3f>::Reader(*vertices_)[vertex])) throw_bad_vertex(vertex);
+    ranks_.barrier();
+  }
+  return {static_cast<Vec3d>(box.lo), static_cast<Vec3d>(box.hi)};
+}
+
+void SharedMesh::throw_bad_vertex(std::uint64_t vertex) const {
+  // read_mesh() has checked the vertices of a mesh without chunks.
+  const auto after = std::upper_bound(
+      starts_.begin(), starts_.end(), vertex,
+      [](std::uint64_t index, const ChunkCounts& start) { return index < start.vertices; });
+  const auto chunk = static_cast<std::uint64_t>(after - starts_.begin()) - 1;
+  chunks_->throw_bad_vertex(chunk, vertex - starts_[chunk].vertices);
+}
+
+std::uint64_t SharedMesh::count_vertices() {
+  if (!chunks_ || !chunks_->repeats_vertices()) return vertices_->size();
+  // Sends each vertex to the mailbox that its hash decides, which counts different ones.
+  constexpr std::uint64_t kVertexBytes = 64;  // with its slot in the table
+  constexpr std::uint32_t kMostMailboxes = 4096;
+  const std::uint64_t room = std::max<std::uint64_t>(reading_.memory->left() / 8, 1);
+  std::uint64_t wanted = std::clamp<std::uint64_t>(vertices_->size() * kVertexBytes / room + 1,
+                                                   static_cast<std::uint64_t>(ranks_.count()),
+                                                   std::uint64_t{kMostMailboxes});
+  wanted = ranks_.all_gather({&wanted, 1})[0];
+  const auto mailboxes = static_cast<std::uint32_t>(wanted);
+  const std::string name = "mesh/different";
+  {
+    Mailboxes mail(ranks_, folder_, name, mailboxes, *reading_.memory);
+    Mailboxes::Sender sender(mail);
+    const auto rank = static_cast<std::uint64_t>(ranks_.rank()),
+               count = static_cast<std::uint64_t>(ranks_.count());
+    const std::uint64_t all = vertices_->size();
+    ArrayFiles<Vec3f>::Reader vertices(*vertices_);
+    for (std::uint64_t first = rank * kReleaseTriangles; first < all;
+         first += count * kReleaseTriangles) {
+      poll(progress_);
+      for (std::uint64_t v = first; v < std::min(first + kReleaseTriangles, all); ++v)
+        sender.send_value(static_cast<std::uint32_t>((hash_bits(vertices[v]) >> 32) % mailboxes),
+                          vertices[v]);
+      vertices_->release();
+    }
+    sender.flush();
+    mail.close();
+  }
+  std::mutex mutex;
+  std::uint64_t mine = 0, sum = 0;
+  for_each_own(ranks_, mailboxes, progress_, [&](std::uint32_t box) {
+    const WorkFile file = folder_.open_written(mailbox_name(name, box), progress_);
+    UniqueRecords different(reading_.memory);
+    for (std::size_t at = 0; at < file.bytes().size(); at += sizeof(Vec3f)) {
+      const auto record = file.bytes().subspan(at, sizeof(Vec3f));
+      different.find_or_add(record, xxh3_64(record));
+    }
+    const std::lock_guard guard(mutex);
+    mine += different.count();
+  });
+  for (const std::uint64_t of_rank : ranks_.all_gather({&mine, 1})) sum += of_rank;
+  return sum;
+}
+
+}  // namespace voxdag

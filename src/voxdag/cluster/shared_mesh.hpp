@@ -1,0 +1,77 @@
+#pragma once
+/// The vertices and triangles of a mesh, in files of the work folder that all ranks see.
+///
+/// The mesh file is read in chunks (readers/mesh_chunks.hpp). A task is a run of chunks; the ranks
+/// take one after the other. Formats that cannot be read in chunks make one task, for rank 0.
+///
+///   mesh/counts-T      ChunkCounts of each chunk of task T; nothing if rank 0 must read the mesh
+///   mesh/vertices-T    Vec3f of each vertex
+///   mesh/triangles-T   Triangle: three indices into all vertices
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "voxdag/cluster/array_files.hpp"
+#include "voxdag/cluster/ranks.hpp"
+#include "voxdag/core/box.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/readers/mesh_chunks.hpp"
+
+namespace voxdag {
+
+/// The folder of the mesh, within the work folder. It can be removed when the segments are written.
+inline constexpr std::string_view kMeshFolder = "mesh";
+
+class SharedMesh {
+ public:
+  /// Reads the mesh, or what the folder lacks of it. Chunks have about `chunk_bytes` bytes, equally
+  /// many in all runs of a job. Collective. `reading` has the budget and the progress. Throws the
+  /// errors of read_mesh(), OverMemory and Cancelled. An error of the mesh names one of its faults,
+  /// not always the first.
+  SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesystem::path& path,
+             const ReadOptions& reading, std::size_t chunk_bytes);
+
+  const ArrayFiles<Vec3f>& vertices() const { return *vertices_; }
+  const ArrayFiles<Triangle>& triangles() const { return *triangles_; }
+  /// Returns the number of vertices that read_mesh() gives: vertices() can repeat some. Collective.
+  std::uint64_t count_vertices();
+  /// Returns the box of the vertices that triangles use. Collective. Throws Error if a triangle
+  /// uses a vertex that is not finite.
+  Box3d used_bounds();
+
+  /// Drops the pages of the mesh from this process's memory. Thread-safe.
+  void release() const;
+
+ private:
+  /// Calls body(task) for the tasks that lack their file, shared among the ranks. Collective.
+  template <class Body>
+  void for_each_missing(int counter, const std::string& name, const Body& body);
+  void count_chunks();
+  void read_chunks();
+  void read_alone();
+  void write_vertices(std::uint64_t task, WorkFileWriter& file);
+  void write_triangles(std::uint64_t task, WorkFileWriter& file);
+  /// Calls read(chunk, start, values) for the chunks of a task and writes the values. `start`
+  /// counts the contents of all chunks before.
+  template <class T, class Read>
+  void write_values(std::uint64_t task, std::uint64_t ChunkCounts::*count, WorkFileWriter& file,
+                    const Read& read);
+  std::uint64_t first_chunk(std::uint64_t task) const;
+  void throw_bad_vertex(std::uint64_t vertex) const;
+
+  Ranks& ranks_;
+  const WorkFolder& folder_;
+  std::filesystem::path path_;
+  Progress* progress_;
+  Progress quiet_;
+  ReadOptions reading_;                 ///< With quiet_.
+  std::unique_ptr<MeshChunks> chunks_;  ///< Null if rank 0 reads the mesh alone.
+  std::uint64_t tasks_ = 1, chunks_per_task_ = 1;
+  std::vector<ChunkCounts> starts_;  ///< Contents of all chunks before each; then of all.
+  std::optional<ArrayFiles<Vec3f>> vertices_;
+  std::optional<ArrayFiles<Triangle>> triangles_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,142 @@
+#include "voxdag/readers/obj/obj_mesh_chunks.hpp"
+
+#include "voxdag/readers/bad_vertex.hpp"
+#include "voxdag/readers/face_cutter.hpp"
+#include "voxdag/readers/obj/obj_chunk.hpp"
+#include "voxdag/readers/obj/obj_values.hpp"
+
+namespace voxdag {
+namespace {
+
+class ObjMeshChunks final : public MeshChunks {
+ public:
+  ObjMeshChunks(const std::filesystem::path& path, const ReadOptions& options,
+                std::size_t chunk_bytes)
+      : MeshChunks(path, options),
+        chunk_bytes_(chunk_bytes),
+        line_end_(line_end_of(source().bytes)),
+        text_(without_byte_order_mark(source().bytes)) {}
+
+  std::uint64_t count() const override { return text_.size() / chunk_bytes_ + 1; }
+
+  std::optional<ChunkCounts> counts(std::uint64_t chunk) const override {
+    const std::string_view text = this->text(chunk);
+    ChunkCounts counts;
+    read(text, line_end_, [&] {
+      const ObjChunk counted(source(), text, line_end_);
+      counts = {counted.counts.vertices, counted.counts.triangles};
+    });
+    return counts;
+  }
+
+  void read_vertices(std::uint64_t chunk, std::span<Vec3f> vertices) const override {
+    std::size_t i = 0;
+    for_each_statement(chunk, ObjStatement::kVertex,
+                       [&](std::string_view line, const char* position) {
+                         vertices[i++] = take_vertex(line, position);
+                       });
+  }
+
+  void read_triangles(std::uint64_t chunk, const AllVertices& vertices,
+                      std::span<Triangle> triangles) const override {
+    const std::string_view text = this->text(chunk);
+    FaceReader faces(source(), vertices, triangles);
+    read(text, line_end_, [&] {
+      std::uint64_t seen = vertices.before;
+      for_each_line(text, line_end_, source().options.memory,
+                    [&](std::string_view line, const char* position) {
+                      const ObjStatement statement = take_keyword(line);
+                      if (statement == ObjStatement::kVertex) ++seen;
+                      if (statement == ObjStatement::kFace) faces.read(line, position, seen);
+                    });
+    });
+  }
+
+  [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
+    const char* found = nullptr;
+    std::uint64_t i = 0;
+    for_each_statement(chunk, ObjStatement::kVertex, [&](std::string_view, const char* position) {
+      if (i++ == index) found = position;
+    });
+    throw_fault(source(), {found, kBadVertex}, line_end_);
+  }
+
+ private:
+  /// Reads the faces of one chunk.
+  class FaceReader {
+   public:
+    FaceReader(const MeshSource& source, const AllVertices& vertices, std::span<Triangle> triangles)
+        : vertices_(vertices),
+          triangles_(triangles),
+          cutter_(source),
+          poll_(source.options.progress),
+          corners_(source.options.memory),
+          positions_(source.options.memory) {}
+
+    void read(std::string_view line, const char* position, std::uint64_t seen) {
+      corners_.clear();
+      for (;;) {
+        poll_.step();
+        const std::string_view corner = next_corner(line);
+        if (corner.empty()) break;
+        corners_.push_back(parse_vertex_index(corner, seen, vertices_.count, position));
+      }
+      if (corners_.size() < 3) return;
+      const std::span<Triangle> fan = triangles_.subspan(done_, corners_.size() - 2);
+      done_ += fan.size();
+      // Indices into corners_, until the polygon is cut.
+      for (std::uint32_t t = 0; t < fan.size(); ++t) fan[t] = {0, t + 1, t + 2};
+      if (fan.size() > 1) {
+        positions_.clear();
+        for (const std::uint32_t corner : corners_)
+          positions_.push_back(vertices_.position(corner));
+        cutter_.cut(fan, positions_);
+      }
+      for (Triangle& triangle : fan)
+        for (std::uint32_t& corner : triangle) corner = corners_[corner];
+    }
+
+   private:
+    const AllVertices& vertices_;
+    std::span<Triangle> triangles_;
+    std::size_t done_ = 0;
+    FaceCutter cutter_;
+    CancelPoll poll_;
+    CountedVector<std::uint32_t> corners_;
+    CountedVector<Vec3f> positions_;
+  };
+
+  /// Returns where a chunk begins: after the line that holds its first byte.
+  std::size_t begin(std::uint64_t chunk) const {
+    const std::uint64_t at = chunk * chunk_bytes_;
+    return chunk == 0 ? 0 : end_of_line(text_, at, line_end_);
+  }
+  std::string_view text(std::uint64_t chunk) const {
+    const std::size_t first = begin(chunk);
+    return text_.substr(first, begin(chunk + 1) - first);
+  }
+
+  template <class Body>
+  void for_each_statement(std::uint64_t chunk, ObjStatement wanted, const Body& body) const {
+    const std::string_view text = this->text(chunk);
+    read(text, line_end_, [&] {
+      for_each_line(text, line_end_, source().options.memory,
+                    [&](std::string_view line, const char* position) {
+                      if (take_keyword(line) == wanted) body(line, position);
+                    });
+    });
+  }
+
+  std::size_t chunk_bytes_;
+  char line_end_;
+  std::string_view text_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshChunks> open_obj_chunks(const std::filesystem::path& path,
+                                            const ReadOptions& options, std::size_t chunk_bytes) {
+  return std::make_unique<ObjMeshChunks>(path, options, chunk_bytes);
+}
+
+}  // namespace voxdag
