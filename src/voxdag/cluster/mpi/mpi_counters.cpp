@@ -2,8 +2,6 @@
 
 #include <chrono>
 
-#include "voxdag/core/error.hpp"
-
 namespace voxdag {
 
 MpiCounters::MpiCounters(MpiSession& session, int counters) : session_(session) {
@@ -23,33 +21,48 @@ MpiCounters::MpiCounters(MpiSession& session, int counters) : session_(session) 
 
 std::uint64_t MpiCounters::next(int counter) { return fetch(counter, 1, MPI_SUM); }
 
+std::optional<std::uint64_t> MpiCounters::next_after_failure(int counter) {
+  constexpr int kMostTests = 1000;  // of a millisecond
+  MPI_Request request = MPI_REQUEST_NULL;
+  int code =
+      session_.call_always([&] { return begin_fetch(counter, one_, answer_, MPI_SUM, request); });
+  for (int test = 0; code == MPI_SUCCESS && test < kMostTests; ++test) {
+    int is_done = 0;
+    code = session_.call_always([&] { return MPI_Test(&request, &is_done, MPI_STATUS_IGNORE); });
+    if (code == MPI_SUCCESS && is_done != 0) return answer_;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return std::nullopt;
+}
+
 void MpiCounters::set_zero(int counter) { fetch(counter, 0, MPI_REPLACE); }
 
 /// Does what MPI_Fetch_and_op does, but gives a request, so that the wait can be cancelled. The
 /// request is complete when the old value has arrived.
+int MpiCounters::begin_fetch(int counter, const std::uint64_t& value, std::uint64_t& old,
+                             MPI_Op operation, MPI_Request& request) {
+  return MPI_Rget_accumulate(&value, 1, MPI_UINT64_T, &old, 1, MPI_UINT64_T, 0, counter, 1,
+                             MPI_UINT64_T, operation, window_, &request);
+}
+
 std::uint64_t MpiCounters::fetch(int counter, std::uint64_t value, MPI_Op operation) {
   std::uint64_t old = 0;
   MPI_Request request = MPI_REQUEST_NULL;
-  session_.run("MPI_Rget_accumulate", [&] {
-    return MPI_Rget_accumulate(&value, 1, MPI_UINT64_T, &old, 1, MPI_UINT64_T, 0, counter, 1,
-                               MPI_UINT64_T, operation, window_, &request);
-  });
+  session_.run("MPI_Rget_accumulate",
+               [&] { return begin_fetch(counter, value, old, operation, request); });
   session_.wait(request, "MPI_Rget_accumulate");
   return old;
 }
 
 void MpiCounters::serve(const std::stop_token& stop) {
-  try {
-    while (!stop.stop_requested()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      session_.call([] {
-        // Finds nothing, because nobody sends here; MPI serves its network meanwhile.
-        int found = 0;
-        return MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_SELF, &found, MPI_STATUS_IGNORE);
-      });
-    }
-  } catch (const Error&) {
-    // The session was stopped.
+  // Other ranks may call next_after_failure() after this one was stopped.
+  while (!stop.stop_requested()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    session_.call_always([] {
+      // Finds nothing, because nobody sends here; MPI serves its network meanwhile.
+      int found = 0;
+      return MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_SELF, &found, MPI_STATUS_IGNORE);
+    });
   }
 }
 

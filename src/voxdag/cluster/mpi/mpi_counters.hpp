@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <optional>
 #include <thread>
 
 #include "voxdag/cluster/mpi/mpi_session.hpp"
@@ -21,6 +22,9 @@ class MpiCounters {
 
   /// Returns the value of a counter and adds 1.
   std::uint64_t next(int counter);
+  /// Does what next() does, also after the session was stopped. Returns nothing if rank 0 does not
+  /// answer within a second. Call it once.
+  std::optional<std::uint64_t> next_after_failure(int counter);
   /// Sets a counter to 0. Other ranks must not draw from it meanwhile. Called on one rank.
   void set_zero(int counter);
   /// Frees the counters. Collective, after a barrier; before MPI_Finalize.
@@ -28,12 +32,15 @@ class MpiCounters {
 
  private:
   std::uint64_t fetch(int counter, std::uint64_t value, MPI_Op operation);
+  int begin_fetch(int counter, const std::uint64_t& value, std::uint64_t& old, MPI_Op operation,
+                  MPI_Request& request);
   void serve(const std::stop_token& stop);
 
   MpiSession& session_;
   std::uint64_t* values_ = nullptr;
   MPI_Win window_ = MPI_WIN_NULL;
-  std::jthread server_;  ///< On rank 0 only.
+  std::uint64_t one_ = 1, answer_ = 0;  ///< Of next_after_failure(): MPI may use them later.
+  std::jthread server_;                 ///< On rank 0 only.
 };
 
 }  // namespace voxdag
