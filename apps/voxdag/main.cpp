@@ -13,6 +13,7 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/job.hpp"
 
 namespace voxdag {
 namespace {
@@ -77,9 +78,10 @@ int run(int argc, char** argv) {
     session.bar.clear();
     // After a signal, system calls may fail.
     const int signal = cancelling_signal();
-    report(signal != 0 && status != kCancelled ? "cancelled: " + text : text, status);
+    if (!session.job || session.job->fails_first())
+      report(signal != 0 && status != kCancelled ? "cancelled: " + text : text, status);
     if (signal != 0 || status == kCancelled) status = kSignalBase + signal;
-    if (session.after_failure) session.after_failure(status);
+    if (session.job) session.job->end(status);
     return status;
   };
   try {

@@ -57,8 +57,8 @@ std::string read_line(int file) {
 
 }  // namespace
 
-ScratchFolder::ScratchFolder() {
-  const std::string pattern = std::filesystem::temp_directory_path() / "voxdag-bench-XXXXXX";
+ScratchFolder::ScratchFolder(const std::filesystem::path& parent) {
+  const std::string pattern = parent / "voxdag-bench-XXXXXX";
   Pipe input, output;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

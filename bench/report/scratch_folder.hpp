@@ -6,12 +6,13 @@
 
 namespace voxdag {
 
-/// Creates a folder in TMPDIR, which is removed with its contents when this object is destroyed or
-/// when this process ends, even by SIGKILL.
+/// Creates a folder in another one, by default in TMPDIR. It is removed with its contents when this
+/// object is destroyed or when this process ends, even by SIGKILL.
 class ScratchFolder {
  public:
   /// Throws Error if the folder cannot be made.
-  ScratchFolder();
+  explicit ScratchFolder(
+      const std::filesystem::path& parent = std::filesystem::temp_directory_path());
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();

@@ -81,7 +81,7 @@ std::vector<SeriesRun> build_series(const PapersPlan& plan, BuildKind kind, cons
                                     const Progress& progress) {
   // An ESVO's file cannot be a device.
   const bool is_esvo = kind == BuildKind::kEsvo || kind == BuildKind::kShape;
-  const std::filesystem::path output = is_esvo ? plan.folder / "build.esvo" : "/dev/null";
+  const std::filesystem::path output = is_esvo ? plan.scratch / "build.esvo" : "/dev/null";
   std::vector<std::string> options = options_of(kind);
   if (is_esvo) options.insert(options.end(), scene.options.begin(), scene.options.end());
   const auto make_cell = [&](int level) { return build_cell(plan, scene, level, output, options); };

@@ -91,8 +91,11 @@ std::string command_of(const Cell& cell) {
   return line;
 }
 
-CellStore::CellStore(fs::path folder, Progress& progress)
-    : folder_(std::move(folder)), progress_(progress) {
+CellStore::CellStore(fs::path folder, fs::path directory, int at_once, Progress& progress)
+    : folder_(std::move(folder)),
+      directory_(std::move(directory)),
+      at_once_(at_once),
+      progress_(progress) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw Error(folder_, "", "cannot make the folder: " + error.message());
@@ -107,6 +110,7 @@ void CellStore::add_input(const fs::path& file, std::uint64_t check) {
 
 std::string CellStore::key_of(const Cell& cell) const {
   std::string text = fmt::format("{}\n{}\n", machine_, cell.seconds_limit);
+  if (at_once_ > 1) text += fmt::format("{} at once\n", at_once_);
   if (!cell.device.empty()) text += cell.device + "\n";
   const std::string extension = cell.output.extension();
   for (const std::string& argument : cell.arguments) {
@@ -136,10 +140,10 @@ CellResult CellStore::run(const Cell& cell) {
   make_inputs(cell);
   measured_.insert(key);
   CellResult result = measure(cell);
-  const Json json{{"command", command_of(cell)}, {"program", program_name()},
-                  {"machine", machine_json()},   {"cost", cost_json(result.cost)},
-                  {"failure", result.failure},   {"output_check", output_check(cell)},
-                  {"result", result.json}};
+  const Json json{{"command", command_of(cell)},        {"program", program_name()},
+                  {"machine", machine_json()},          {"at_once", at_once_},
+                  {"cost", cost_json(result.cost)},     {"failure", result.failure},
+                  {"output_check", output_check(cell)}, {"result", result.json}};
   write_whole_file(file_of(key), json.dump(2) + "\n");
   return result;
 }
@@ -147,7 +151,7 @@ CellResult CellStore::run(const Cell& cell) {
 CellResult CellStore::measure(const Cell& cell) {
   std::vector<std::string> command{this_program()};
   command.insert(command.end(), cell.arguments.begin(), cell.arguments.end());
-  const ChildResult child = run_child(command, folder_, cell.seconds_limit, progress_);
+  const ChildResult child = run_child(command, directory_, cell.seconds_limit, progress_);
   CellResult result;
   result.cost = child.cost;
   result.failure = failure_of(child, cell.seconds_limit);

@@ -38,14 +38,20 @@ struct CellResult {
 /// are named without their folders.
 std::string command_of(const Cell& cell);
 
-/// Runs cells, and keeps their results in a folder as JSON files. A result is used again only for
-/// the same arguments, contents of the inputs, program (version and commit), processor, number of
-/// cores and CUDA device. The content of textures and material files that a mesh names does not
-/// count.
+/// Runs cells, and keeps their results in a folder as JSON files, which several processes may
+/// share. A result is used again only for the same arguments, contents of the inputs, program
+/// (version and commit), processor, number of cores, number of processes that run cells at one time
+/// on a machine, and CUDA device. The content of textures and material files that a mesh names does
+/// not count.
 class CellStore {
  public:
-  /// Creates the folder if it does not exist. Throws Error if it cannot be made.
-  CellStore(std::filesystem::path folder, Progress& progress);
+  /// Creates the folder if it does not exist. Commands run in `directory`. `at_once`: most
+  /// processes that run cells at one time on a machine. Throws Error if the folder cannot be made.
+  CellStore(std::filesystem::path folder, std::filesystem::path directory, int at_once,
+            Progress& progress);
+
+  /// Returns the program, the processor and the number of cores: one line each.
+  const std::string& machine() const { return machine_; }
 
   /// States the content of a file that no cell writes.
   void add_input(const std::filesystem::path& file, std::uint64_t check);
@@ -57,7 +63,11 @@ class CellStore {
   /// Returns whether run() would return a kept result.
   bool is_kept(const Cell& cell) const;
 
-  /// Returns the number of commands that this object ran.
+  /// Returns the keys of the cells that this object ran.
+  const std::set<std::string>& measured_keys() const { return measured_; }
+  /// Counts cells that another process ran for this report.
+  void add_measured(std::string key) { measured_.insert(std::move(key)); }
+  /// Returns the number of commands that were run for this report.
   std::size_t measured() const { return measured_.size(); }
   /// Returns the number of results from earlier runs of the report.
   std::size_t kept() const {
@@ -71,7 +81,8 @@ class CellStore {
   CellResult measure(const Cell& cell);
   void make_inputs(const Cell& cell);
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, directory_;
+  int at_once_;
   Progress& progress_;
   std::string machine_;
   std::map<std::filesystem::path, std::string> contents_;

@@ -37,7 +37,7 @@ void Painter::remove_voxels() {
 void Painter::show(const FoundScene& scene, const PictureVoxels& voxels) {
   remove_voxels();
   scene_ = scene;
-  voxels_ = plan_.folder / (voxels.is_esvo ? "picture.esvo" : "picture.vdag");
+  voxels_ = plan_.scratch / (voxels.is_esvo ? "picture.esvo" : "picture.vdag");
   fs::remove(voxels_);
   std::vector<std::string> options = voxels.options;
   if (voxels.is_esvo) options.insert(options.end(), scene.options.begin(), scene.options.end());
@@ -60,11 +60,11 @@ ScenePicture Painter::paint(const std::string& file, const std::string& pass, Im
     cell.arguments.insert(cell.arguments.end(), {"-o", cell.output});
   else
     cell.arguments.insert(cell.arguments.end(),
-                          {"--pass", pass + "=" + cell.output.string(), "-o", "../picture.png"});
+                          {"--pass", pass + "=" + cell.output.string(), "-o", "picture.png"});
   cell.arguments.insert(cell.arguments.end(), options.begin(), options.end());
   plan_.device.cast(cell);
   picture.result = built_.failure.empty() ? cells_.run(cell) : built_;
-  fs::remove(plan_.folder / "picture.png");
+  fs::remove(plan_.scratch / "picture.png");
   return picture;
 }
 

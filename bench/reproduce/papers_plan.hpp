@@ -37,6 +37,7 @@ struct PapersPlan {
   std::filesystem::path scenes;   ///< Folder of meshes; empty: procedural stand-ins only.
   bool small_stand_ins = false;   ///< Procedural stand-ins of about half a million triangles.
   std::filesystem::path folder;   ///< Where the report and its results go.
+  std::filesystem::path scratch;  ///< Folder for voxels; bench_papers() sets it.
   std::vector<std::string> only;  ///< Names of paper scenes; empty: all.
   std::vector<int> table1_levels{9, 10, 11, 12, 13};
   std::vector<int> table2_levels{11, 12, 13, 14, 15, 16};

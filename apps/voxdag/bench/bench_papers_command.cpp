@@ -13,6 +13,7 @@
 #include "bench/reproduce/bench_papers.hpp"
 #include "cli/commands.hpp"
 #include "cli/device.hpp"
+#include "cli/job.hpp"
 #include "cli/parse.hpp"
 #include "voxdag/report/human.hpp"
 
@@ -45,6 +46,7 @@ std::string parse_paper_scene(const std::string& text) {
 }
 
 void run(const PapersArguments& arguments, Session& session) {
+  Job& job = join_job(session);
   PapersPlan plan = arguments.plan;
   plan.scenes = arguments.scenes;
   if (arguments.quick) make_quick(plan);
@@ -68,11 +70,15 @@ void run(const PapersArguments& arguments, Session& session) {
     fmt::print(stderr,
                "voxdag: takes about {} on two cores; finished measurements are kept in {}\n",
                human_duration(typical_seconds(plan)), arguments.folder);
-  const PapersReport report = bench_papers(plan, session.progress);
+  const PapersReport report = bench_papers(plan, job.ranks(), session.progress);
+  if (!job.is_first()) return;
   session.bar.clear();
-  fmt::print("{}: {} measured, {} kept from earlier runs{}\n", report.html.string(),
-             report.measured, report.kept,
-             report.has_charts ? "" : "; no charts, because matplotlib is not installed");
+  fmt::print(
+      "{}: {} measured{}, {} kept from earlier runs{}\n", report.html.string(), report.measured,
+      job.count() == 1
+          ? ""
+          : fmt::format(" by {} processes ({})", job.count(), fmt::join(report.measured_by, " + ")),
+      report.kept, report.has_charts ? "" : "; no charts, because matplotlib is not installed");
 }
 
 }  // namespace
@@ -83,7 +89,8 @@ void add_bench_papers_command(const Command& bench, Session& session) {
       "papers", "Measure the tables and figures of both papers again, and write a report",
       "voxdag bench papers --scenes DIR -o report\n"
       "With --quick instead of --scenes it takes a few minutes. An interrupted run continues where "
-      "it stopped if it is started again with the same folder.");
+      "it stopped if it is started again with the same folder. Under mpirun or srun, the processes "
+      "share the runs; those on one machine disturb one another's times.");
   command.text("-o,--output", arguments->folder, "DIR", "The folder for the report").required();
   const Option scenes =
       command.text("--scenes", arguments->scenes, "DIR",

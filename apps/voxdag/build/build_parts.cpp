@@ -1,19 +1,12 @@
 /// `voxdag build` in parts: in bounded memory, or by many processes.
 #include <fmt/core.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
-#include <thread>
 
 #include "build/build_arguments.hpp"
-#include "voxdag/cluster/join_ranks.hpp"
+#include "cli/job.hpp"
 #include "voxdag/cluster/parts_job.hpp"
 #include "voxdag/io/process_memory.hpp"
 #include "voxdag/io/temporary_folder.hpp"
@@ -71,35 +64,13 @@ std::string table_of(const DagReport& report, const PartsReport& parts, int rank
       ranks, ranks == 1 ? "process" : "processes", human_bytes(parts.peak_bytes));
 }
 
-/// Shares the processors among the ranks of this machine, unless mpirun has bound each to some.
-int threads_of_rank() {
-  int ranks = 1;
-  for (const char* name : {"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"})
-    if (const char* text = std::getenv(name)) ranks = std::max(ranks, std::atoi(text));
-  // Slurm lists the ranks of all nodes: "2(x3),1". The largest number is safe.
-  if (const char* text = std::getenv("SLURM_STEP_TASKS_PER_NODE"); text != nullptr && ranks == 1)
-    for (std::stringstream list(text); list.good();) {
-      std::string nodes;
-      std::getline(list, nodes, ',');
-      ranks = std::max(ranks, std::atoi(nodes.c_str()));
-    }
-  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
-  return std::max(1, std::min(tbb::this_task_arena::max_concurrency(), processors / ranks));
-}
-
 }  // namespace
 
 void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
-  const std::shared_ptr<Ranks> ranks = join_ranks(&session.progress);
-  if (ranks->count() > 1) session.after_failure = [ranks](int status) { ranks->abort(status); };
-  const bool is_first = ranks->rank() == 0;
-  std::optional<tbb::global_control> threads;
-  if (session.threads == 0 && ranks->count() > 1)
-    threads.emplace(tbb::global_control::max_allowed_parallelism, threads_of_rank());
-  session.bar.enable(!session.quiet && is_first);
-  if (arguments.work_folder.empty() && ranks->count() > 1)
+  Job& process = join_job(session);
+  if (arguments.work_folder.empty() && process.count() > 1)
     throw Error("several processes need --work: a folder that all of them see");
-  if (is_first) check_writable(arguments.output);
+  if (process.is_first()) check_writable(arguments.output);
 
   MemoryBudget memory = command_budget(arguments.memory_limit);
   PartsJob job;
@@ -114,23 +85,23 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
       temporary ? temporary->path() / "work" : std::filesystem::path(arguments.work_folder);
   PartsReport parts;
   try {
-    parts = build_in_parts(job, written_by(), *ranks, memory, &session.progress);
+    parts = build_in_parts(job, written_by(), process.ranks(), memory, &session.progress);
   } catch (const Cancelled&) {
-    if (!temporary && is_first)
+    if (!temporary && process.is_first())
       print_line("the work is kept in " + arguments.work_folder +
                  "; the same command again goes on with it");
     throw;
   }
-  if (!is_first) return;
+  if (!process.is_first()) return;
 
   const DagReport report = report_of_file(parts, arguments.output);
   warn_if_empty(report.metadata.counts.voxels, arguments.output, session);
   session.bar.clear();
   if (session.json) {
-    fmt::print("{}", json_text(json_of(report, parts, ranks->count())));
+    fmt::print("{}", json_text(json_of(report, parts, process.count())));
   } else if (!session.quiet) {
     fmt::print("{}: {}\n{}", arguments.output, human_bytes(report.file_bytes),
-               table_of(report, parts, ranks->count()));
+               table_of(report, parts, process.count()));
     if (arguments.stats) fmt::print("\n{}", level_table(report.metadata.counts));
   }
 }

@@ -44,13 +44,14 @@ void print_line(std::string text) {
 }
 
 void print_warnings(const std::vector<std::string>& warnings, Session& session) {
+  if (session.is_silent) return;
   session.bar.clear();
   for (const std::string& warning : warnings) print_line("warning: " + warning);
 }
 
 void announce_cost(const std::string& work, double seconds, Session& session) {
   constexpr double kWorthALine = 60;
-  if (seconds <= kWorthALine) return;
+  if (seconds <= kWorthALine || session.is_silent) return;
   session.bar.clear();
   print_line(fmt::format("{} takes about {}", work, human_duration(seconds)));
 }

@@ -2,6 +2,7 @@
 /// The state that subcommands share: common options, progress and cancellation.
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -12,23 +13,25 @@
 
 namespace voxdag {
 
+class Job;
+
 /// A subcommand declares its options and sets `work`, which runs after the complete command line
 /// was checked.
 struct Session {
   std::function<void()> work;
   /// Input files, which are never overwritten.
   std::vector<std::string> inputs;
-  std::string subject;  ///< The main input; errors without a file name it.
-  int threads = 0;      ///< 0: one per processor.
-  bool quiet = false;   ///< No progress bar and no summary.
-  bool json = false;    ///< Print the result as JSON.
-  /// Called with the exit status after a failure was reported: ends the other processes of the job.
-  std::function<void(int status)> after_failure;
+  std::string subject;     ///< The main input; errors without a file name it.
+  int threads = 0;         ///< 0: one per processor.
+  bool quiet = false;      ///< No progress bar and no summary.
+  bool json = false;       ///< Print the result as JSON.
+  bool is_silent = false;  ///< No warnings: rank 0 of the job prints them.
 
   ProgressBar bar;
   Progress progress{[this](std::string_view stage, double fraction, std::uint64_t items) {
     bar.update(stage, fraction, items);
   }};
+  std::shared_ptr<Job> job;  ///< Null until join_job().
 };
 
 Option add_threads_option(const Command& command, Session& session);

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/job.hpp"
 #include "cli/look_input.hpp"
 #include "cli/stopwatch.hpp"
 #include "render/look_on_device.hpp"
@@ -54,8 +55,11 @@ void render_loaded(const RenderArguments& arguments, Session& session) {
 }
 
 void render(RenderArguments& arguments, Session& session) {
+  const bool is_film = !arguments.path.file.empty();
+  const bool is_first = !is_film || join_job(session).is_first();
   apply_view_file(arguments, session);
-  for (const PicturePass& pass : all_passes(arguments)) check_writable(frame_name(pass.path, 0));
+  if (is_first)
+    for (const PicturePass& pass : all_passes(arguments)) check_writable(frame_name(pass.path, 0));
   if (arguments.stream_memory == 0) return render_loaded(arguments, session);
   if (!is_esvo_file(session.subject))
     throw Error(session.subject, "", "--memory is for ESVOs only, but this file is a DAG");

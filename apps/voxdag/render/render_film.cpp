@@ -5,8 +5,10 @@
 #include <numeric>
 #include <unordered_set>
 
+#include "cli/job.hpp"
 #include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
+#include "voxdag/cluster/rank_queue.hpp"
 #include "voxdag/film/frame_names.hpp"
 #include "voxdag/film/path_file.hpp"
 #include "voxdag/io/atomic_file.hpp"
@@ -15,6 +17,8 @@
 
 namespace voxdag {
 namespace {
+
+constexpr int kFrameCounter = 0;
 
 /// Throws Error if the path and an option of the command line both set a value.
 void check_own_view(const PathFile& path, const ViewRequest& asked) {
@@ -65,17 +69,19 @@ Vec3d sun_of_first_frame(const Film& film, const FilmScene& scene) {
   return static_cast<Vec3d>(RenderPlan(scene.voxels, scene.grid, options).setup().sky.sun);
 }
 
-void print_summary(const Film& film, const std::vector<FrameTiming>& timings, double seconds) {
+void print_summary(const Film& film, const std::vector<FrameTiming>& timings, double seconds,
+                   int ranks) {
   std::uint64_t rays = 0;
   double render_ms = 0;
   for (const FrameTiming& timing : timings) {
     rays += timing.rays;
     render_ms += timing.render_ms;
   }
-  fmt::print("{} frames of {} x {} pixels in {}, {:.1f} ms each, {} rays/s\n", timings.size(),
+  fmt::print("{} frames of {} x {} pixels in {}, {:.1f} ms each, {} rays/s{}\n", timings.size(),
              film.options.width, film.options.height, human_seconds(seconds),
              render_ms / static_cast<double>(timings.size()),
-             human_count(static_cast<double>(rays) / render_ms * 1000));
+             human_count(static_cast<double>(rays) / render_ms * 1000),
+             ranks == 1 ? "" : fmt::format(" in each of {} processes", ranks));
 }
 
 }  // namespace
@@ -92,18 +98,25 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
   } catch (const Error& error) {
     throw Error(file.name, "", error.reason());
   }
-  check_file_names(arguments, film.passes, frames, session);
-  if (!csv.empty()) check_writable(csv);
+  Job& job = *session.job;
+  if (job.is_first()) {
+    // No other rank begins a frame before this one does.
+    check_file_names(arguments, film.passes, frames, session);
+    if (!csv.empty()) check_writable(csv);
+  }
   if (!film.options.sun) film.options.sun = file.sun;
   if (!film.options.sun) film.options.sun = sun_of_first_frame(film, scene);
 
-  announce_cost(fmt::format("the film of {} frames", with_commas(frames)),
-                estimate_seconds(film, scene.render), session);
+  if (job.is_first())
+    announce_cost(fmt::format("the film of {} frames", with_commas(frames)),
+                  estimate_seconds(film, scene.render) / job.count(), session);
   const Stopwatch watch;
-  const std::vector<FrameTiming> timings = render_film(film, scene.render, session.progress);
+  RankQueue queue(job.ranks(), kFrameCounter);
+  const std::vector<FrameTiming> timings = render_film(film, scene.render, queue, session.progress);
+  if (!job.is_first()) return;
   if (!csv.empty()) write_whole_file(csv, timings_csv(timings));
   session.bar.clear();
-  if (!session.quiet) print_summary(film, timings, watch.since_start());
+  if (!session.quiet) print_summary(film, timings, watch.since_start(), job.count());
 }
 
 }  // namespace voxdag

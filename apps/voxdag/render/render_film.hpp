@@ -17,8 +17,9 @@ struct FilmScene {
 };
 
 /// Renders and writes the frames from the path's first key to its last one, and prints a summary.
-/// The sun does not move: if neither options nor path set its direction, all frames use the first
-/// frame's. Throws Error if the path is wrong, or if two frames would have the same name.
+/// The ranks of session.job share the frames. The sun does not move: if neither options nor path
+/// set its direction, all frames use the first frame's. Throws Error if the path is wrong, or if
+/// two frames would have the same name.
 void render_film(const RenderArguments& arguments, const FilmScene& scene,
                  const RenderOptions& options, Session& session);
 

@@ -225,7 +225,8 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
   const Option file = command.text(
       "--path", path.file, "KEYS.json",
       "Render a film along this camera path (see `voxdag scene NAME --path`); names of output "
-      "files then need a placeholder for the frame number, such as frame_%04d.png");
+      "files then need a placeholder for the frame number, such as frame_%04d.png. Under mpirun or "
+      "srun, the processes share the frames");
   view.eye.not_with(file);
   view.target.not_with(file);
   command

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "cli/job.hpp"
 #include "cli/stopwatch.hpp"
 #include "render/picture_summary.hpp"
 #include "render/render_film.hpp"
@@ -91,6 +92,7 @@ void render_streamed(const RenderArguments& arguments, Session& session) {
   const EsvoStreamCounts& counts = blocks.stream().counts();
   std::uint64_t all = 0;
   for (const EsvoBlockEntry& entry : blocks.stream().directory()) all += entry.slots * 8ull;
+  if (session.job && session.job->count() > 1) fmt::print("  in process 0:\n");
   fmt::print("  {} of {} blocks used, {} of {} in memory at the end\n",
              with_commas(counts.blocks_used), with_commas(blocks.stream().directory().size()),
              human_bytes(counts.bytes_loaded), human_bytes(all));

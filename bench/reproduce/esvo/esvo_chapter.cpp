@@ -18,15 +18,26 @@ FoundScene close_up_of(const FoundScene& scan, const std::vector<FoundScene>& sc
 
 }  // namespace
 
-EsvoResults measure_esvo(const PapersPlan& plan, const FoundScene& scan,
-                         const std::filesystem::path& made, CellStore& cells, Progress& progress) {
+EsvoResults measure_esvo(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                         const FoundScene& scan, CellStore& cells, Progress& progress) {
   EsvoResults results;
-  results.scenes = find_scenes(Paper::kEsvo, plan, made, cells, progress);
+  results.scenes = scenes;
   for (const FoundScene& scene : results.scenes)
     results.runs.push_back(measure_esvo_scene(plan, scene, cells, progress));
   results.pictures = render_esvo_pictures(plan, results.scenes, close_up_of(scan, results.scenes),
                                           cells, progress);
   return results;
+}
+
+std::vector<RunItem> esvo_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                const FoundScene& scan, CellStore& cells, Progress& progress) {
+  std::vector<RunItem> items;
+  for (const FoundScene& scene : scenes)
+    for (RunItem& item : esvo_run_items(plan, scene, cells, progress))
+      items.push_back(std::move(item));
+  for (RunItem& item : esvo_picture_items(plan, scenes, close_up_of(scan, scenes), cells, progress))
+    items.push_back(std::move(item));
+  return items;
 }
 
 std::vector<Chart> esvo_charts(const EsvoResults& results) {

@@ -14,11 +14,15 @@ struct EsvoResults {
   EsvoPictures pictures;
 };
 
-/// Measures the tables and figures of the ESVO paper. `scan`: a smooth model for close-ups; if it
-/// is absent, the first scene serves. `made`: a folder for procedural meshes, which must exist as
-/// long as `cells`. Throws Error and Cancelled.
-EsvoResults measure_esvo(const PapersPlan& plan, const FoundScene& scan,
-                         const std::filesystem::path& made, CellStore& cells, Progress& progress);
+/// Measures the tables and figures of the ESVO paper in its scenes. `scan`: a smooth model for
+/// close-ups; if it is absent, the first scene serves. Throws Error and Cancelled.
+EsvoResults measure_esvo(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                         const FoundScene& scan, CellStore& cells, Progress& progress);
+
+/// Returns the runs of measure_esvo() as items, about the longest first. The arguments must live as
+/// long as the items.
+std::vector<RunItem> esvo_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                const FoundScene& scan, CellStore& cells, Progress& progress);
 
 std::vector<Chart> esvo_charts(const EsvoResults& results);
 

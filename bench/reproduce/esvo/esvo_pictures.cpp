@@ -98,6 +98,28 @@ class EsvoPainter {
   ImageSize half_;
 };
 
+/// Paints figures of a scene.
+struct PaintFigures {
+  const FoundScene* scene;
+  void (EsvoPainter::*paint)(const FoundScene& scene);
+};
+
+std::vector<PaintFigures> all_figures(const std::vector<FoundScene>& scenes,
+                                      const FoundScene& close_up) {
+  std::vector<PaintFigures> figures;
+  for (const FoundScene& scene : scenes) {
+    if (scene.is_absent()) continue;
+    if (scene.identity.is_displaced) figures.push_back({&scene, &EsvoPainter::paint_cathedral});
+    figures.push_back({&scene, &EsvoPainter::paint_scene});
+    if (scene.scene->name == "Sibenik") figures.push_back({&scene, &EsvoPainter::paint_guides});
+  }
+  if (!close_up.is_absent()) {
+    figures.push_back({&close_up, &EsvoPainter::paint_contours});
+    figures.push_back({&close_up, &EsvoPainter::paint_hand});
+  }
+  return figures;
+}
+
 Section figure1_section(const EsvoPictures& pictures) {
   Section section{"Figure 1: a displaced cathedral", 2, {}};
   section.parts.emplace_back(Paragraph{
@@ -165,17 +187,22 @@ EsvoPictures render_esvo_pictures(const PapersPlan& plan, const std::vector<Foun
                                   const FoundScene& close_up, CellStore& cells,
                                   const Progress& progress) {
   EsvoPainter painter(plan, cells, progress);
-  for (const FoundScene& scene : scenes) {
-    if (scene.is_absent()) continue;
-    if (scene.identity.is_displaced) painter.paint_cathedral(scene);
-    painter.paint_scene(scene);
-    if (scene.scene->name == "Sibenik") painter.paint_guides(scene);
-  }
-  if (!close_up.is_absent()) {
-    painter.paint_contours(close_up);
-    painter.paint_hand(close_up);
-  }
+  for (const PaintFigures& figures : all_figures(scenes, close_up))
+    (painter.*figures.paint)(*figures.scene);
   return std::move(painter.pictures);
+}
+
+std::vector<RunItem> esvo_picture_items(const PapersPlan& plan,
+                                        const std::vector<FoundScene>& scenes,
+                                        const FoundScene& close_up, CellStore& cells,
+                                        const Progress& progress) {
+  std::vector<RunItem> items;
+  for (const PaintFigures& figures : all_figures(scenes, close_up))
+    items.push_back([&plan, &cells, &progress, figures, scene = *figures.scene] {
+      EsvoPainter painter(plan, cells, progress);
+      (painter.*figures.paint)(scene);
+    });
+  return items;
 }
 
 std::vector<Section> esvo_picture_sections(const EsvoPictures& pictures) {

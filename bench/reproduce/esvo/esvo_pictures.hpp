@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bench/reproduce/painter.hpp"
+#include "bench/reproduce/run_items.hpp"
 
 namespace voxdag {
 
@@ -26,6 +27,12 @@ struct EsvoPictures {
 EsvoPictures render_esvo_pictures(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                                   const FoundScene& close_up, CellStore& cells,
                                   const Progress& progress);
+
+/// Returns the pictures of render_esvo_pictures() as items.
+std::vector<RunItem> esvo_picture_items(const PapersPlan& plan,
+                                        const std::vector<FoundScene>& scenes,
+                                        const FoundScene& close_up, CellStore& cells,
+                                        const Progress& progress);
 
 /// Returns a section for each figure.
 std::vector<Section> esvo_picture_sections(const EsvoPictures& pictures);

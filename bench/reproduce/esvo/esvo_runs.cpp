@@ -42,6 +42,17 @@ void move_failure(SeriesRun& run) {
     if (build.contains("failure")) run.result.failure = build.at("failure");
 }
 
+std::vector<SeriesRun> build(const PapersPlan& plan, const FoundScene& scene, CellStore& cells,
+                             const Progress& progress) {
+  return build_series(plan, BuildKind::kEsvo, scene, plan.esvo.levels, cells, progress);
+}
+
+std::vector<SeriesRun> cast_rays(const PapersPlan& plan, const FoundScene& scene, CellStore& cells,
+                                 const Progress& progress) {
+  const auto make_cell = [&](int levels) { return rays_cell(plan, scene, levels); };
+  return run_series(plan, plan.esvo.levels, make_cell, cells, progress);
+}
+
 }  // namespace
 
 EsvoSceneRuns measure_esvo_scene(const PapersPlan& plan, const FoundScene& scene, CellStore& cells,
@@ -49,11 +60,17 @@ EsvoSceneRuns measure_esvo_scene(const PapersPlan& plan, const FoundScene& scene
   EsvoSceneRuns runs;
   runs.scene = scene;
   if (scene.is_absent()) return runs;
-  runs.builds = build_series(plan, BuildKind::kEsvo, scene, plan.esvo.levels, cells, progress);
-  const auto make_cell = [&](int levels) { return rays_cell(plan, scene, levels); };
-  runs.rays = run_series(plan, plan.esvo.levels, make_cell, cells, progress);
+  runs.builds = build(plan, scene, cells, progress);
+  runs.rays = cast_rays(plan, scene, cells, progress);
   for (SeriesRun& run : runs.rays) move_failure(run);
   return runs;
+}
+
+std::vector<RunItem> esvo_run_items(const PapersPlan& plan, const FoundScene& scene,
+                                    CellStore& cells, const Progress& progress) {
+  if (scene.is_absent()) return {};
+  return {[&] { cast_rays(plan, scene, cells, progress); },
+          [&] { build(plan, scene, cells, progress); }};
 }
 
 double esvo_megabytes(const CellResult& build) {

@@ -5,6 +5,7 @@
 
 #include "bench/esvo/bench_esvo.hpp"
 #include "bench/reproduce/build_series.hpp"
+#include "bench/reproduce/run_items.hpp"
 
 namespace voxdag {
 
@@ -18,6 +19,10 @@ struct EsvoSceneRuns {
 /// Measures what the tables need. Throws Error and Cancelled.
 EsvoSceneRuns measure_esvo_scene(const PapersPlan& plan, const FoundScene& scene, CellStore& cells,
                                  const Progress& progress);
+
+/// Returns the series of measure_esvo_scene() as items, the longest first.
+std::vector<RunItem> esvo_run_items(const PapersPlan& plan, const FoundScene& scene,
+                                    CellStore& cells, const Progress& progress);
 
 /// Returns the octree's size in units of 2^20 bytes.
 double esvo_megabytes(const CellResult& build);

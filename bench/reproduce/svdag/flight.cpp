@@ -40,30 +40,30 @@ class FlightRunner {
         path_(plan.folder / "flight.json", path, cells),
         cells_(cells) {}
 
-  Flight run() {
-    Flight flight;
-    flight.scene = scene_;
-    flight.plan = plan_.flight;
-    const FlightPlan& frames = plan_.flight;
-    const DagFile dag = built(frames.esvo_levels, "dag.vdag", {});
-    const fs::path esvo =
-        built(frames.esvo_levels, "shape.esvo", {"--as", "esvo", "--no-attributes"}).path;
-    flight.with_esvo = traced(dag, {"--esvo", esvo}, {esvo});
-    const DagFile fine = built(frames.triangles_levels, "fine.vdag", {});
-    flight.with_triangles = traced(fine, {});
-    flight.with_voxels = traced(fine, {"--lod", "0"});
-    flight.with_cones = traced(fine, {"--ao-cone", "0.07"});
-    flight.with_lamps =
-        traced(fine, {"--light-sizes", fmt::format("{}", fmt::join(frames.lamps, ","))});
+  FlightRunner(const FlightRunner&) = delete;
+  FlightRunner& operator=(const FlightRunner&) = delete;
+  ~FlightRunner() {
+    std::error_code ignored;
     for (const char* name : {"dag.vdag", "shape.esvo", "fine.vdag"})
-      fs::remove(plan_.folder / name);
-    return flight;
+      fs::remove(plan_.scratch / name, ignored);
+  }
+
+  FlightRun with_esvo() {
+    const int levels = plan_.flight.esvo_levels;
+    const DagFile dag = built(levels, "dag.vdag", {});
+    const fs::path esvo = built(levels, "shape.esvo", {"--as", "esvo", "--no-attributes"}).path;
+    return traced(dag, {"--esvo", esvo}, {esvo});
+  }
+
+  /// Returns a run at the resolution of the triangles, with more options.
+  FlightRun with_fine(const std::vector<std::string>& options) {
+    return traced(built(plan_.flight.triangles_levels, "fine.vdag", {}), options);
   }
 
  private:
   /// Builds the scene's mesh, if the file is not there; returns the file.
   DagFile built(int levels, const char* name, const std::vector<std::string>& options) {
-    const Cell cell = build_cell(plan_, scene_, levels, plan_.folder / name, options);
+    const Cell cell = build_cell(plan_, scene_, levels, plan_.scratch / name, options);
     const CellResult result = cells_.run(cell);
     failure_ = failure_.empty() ? result.failure : failure_;
     return {cell.output, levels};
@@ -86,6 +86,34 @@ class FlightRunner {
   CellStore& cells_;
   std::string failure_;  ///< Of the first build that failed.
 };
+
+/// A run at the resolution of the triangles.
+struct FineRun {
+  FlightRun Flight::*run;
+  std::vector<std::string> options;
+};
+
+std::vector<FineRun> fine_runs(const FlightPlan& plan) {
+  return {{&Flight::with_triangles, {}},
+          {&Flight::with_voxels, {"--lod", "0"}},
+          {&Flight::with_cones, {"--ao-cone", "0.07"}},
+          {&Flight::with_lamps, {"--light-sizes", fmt::format("{}", fmt::join(plan.lamps, ","))}}};
+}
+
+/// A scene of the fly-through and its camera path.
+struct FlightScene {
+  FoundScene scene;
+  std::string path;
+};
+
+std::optional<FlightScene> flight_scene(const std::vector<FoundScene>& scenes) {
+  for (const FoundScene& scene : flight_order(scenes)) {
+    if (scene.is_absent()) continue;
+    const std::string path = path_through(scene);
+    if (!path.empty()) return FlightScene{scene, path};
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -132,12 +160,31 @@ void measure(FlightRun& run, CellStore& cells) {
 
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                                      CellStore& cells) {
-  for (const FoundScene& scene : flight_order(scenes)) {
-    if (scene.is_absent()) continue;
-    const std::string path = path_through(scene);
-    if (!path.empty()) return FlightRunner(plan, scene, path, cells).run();
-  }
-  return std::nullopt;
+  const std::optional<FlightScene> found = flight_scene(scenes);
+  if (!found) return std::nullopt;
+  FlightRunner runner(plan, found->scene, found->path, cells);
+  Flight flight;
+  flight.scene = found->scene;
+  flight.plan = plan.flight;
+  flight.with_esvo = runner.with_esvo();
+  for (const FineRun& fine : fine_runs(plan.flight))
+    flight.*fine.run = runner.with_fine(fine.options);
+  return flight;
+}
+
+std::vector<RunItem> flight_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                  CellStore& cells) {
+  const std::optional<FlightScene> found = flight_scene(scenes);
+  if (!found) return {};
+  std::vector<RunItem> items;
+  for (const FineRun& fine : fine_runs(plan.flight))
+    items.push_back([&plan, &cells, found, fine] {
+      FlightRunner(plan, found->scene, found->path, cells).with_fine(fine.options);
+    });
+  std::reverse(items.begin(), items.end());
+  items.push_back(
+      [&plan, &cells, found] { FlightRunner(plan, found->scene, found->path, cells).with_esvo(); });
+  return items;
 }
 
 }  // namespace voxdag

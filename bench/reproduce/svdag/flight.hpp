@@ -10,6 +10,7 @@
 #include "bench/report/document.hpp"
 #include "bench/reproduce/found_scenes.hpp"
 #include "bench/reproduce/papers_plan.hpp"
+#include "bench/reproduce/run_items.hpp"
 
 namespace voxdag {
 
@@ -66,6 +67,10 @@ struct Flight {
 /// path. Returns nothing if no scene has one. Throws Error and Cancelled.
 std::optional<Flight> measure_flight(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                                      CellStore& cells);
+
+/// Returns the runs of measure_flight() as items, about the longest first.
+std::vector<RunItem> flight_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                  CellStore& cells);
 
 /// Returns how many times as fast as a rival voxdag casts a kind of rays in a run; NaN if it was
 /// not measured. The rival's name starts with `rival`: the fastest of those counts. Embree compares

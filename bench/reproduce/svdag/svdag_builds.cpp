@@ -31,6 +31,26 @@ SvdagSceneBuilds build_svdag_scene(const PapersPlan& plan, const FoundScene& sce
   return builds;
 }
 
+std::vector<RunItem> svdag_build_items(const PapersPlan& plan, const FoundScene& scene,
+                                       CellStore& cells, Progress& progress) {
+  if (scene.is_absent()) return {};
+  const auto series = [&plan, &scene, &cells, &progress](BuildKind kind,
+                                                         const std::vector<int>& levels) {
+    return [&plan, &scene, &cells, &progress, &levels, kind] {
+      build_series(plan, kind, scene, levels, cells, progress);
+    };
+  };
+  const RunItem table1 = series(BuildKind::kHash, plan.table1_levels),
+                table2 = series(BuildKind::kHash, plan.table2_levels);
+  return {series(BuildKind::kEsvo, plan.table2_levels),
+          series(BuildKind::kShape, plan.table2_levels),
+          series(BuildKind::kPaper, plan.table1_levels), [table1, table2] {
+            // The tables share some of these builds.
+            table1();
+            table2();
+          }};
+}
+
 std::vector<int> levels_of(const std::vector<SvdagSceneBuilds>& scenes, SeriesMember series) {
   std::vector<const std::vector<SeriesRun>*> all;
   for (const SvdagSceneBuilds& scene : scenes) all.push_back(&(scene.*series));

@@ -8,6 +8,7 @@
 #include "bench/report/document.hpp"
 #include "bench/reproduce/build_series.hpp"
 #include "bench/reproduce/found_scenes.hpp"
+#include "bench/reproduce/run_items.hpp"
 
 namespace voxdag {
 
@@ -27,6 +28,10 @@ using SeriesMember = std::vector<SeriesRun> SvdagSceneBuilds::*;
 /// Builds what the tables need.
 SvdagSceneBuilds build_svdag_scene(const PapersPlan& plan, const FoundScene& scene,
                                    CellStore& cells, Progress& progress);
+
+/// Returns the series of build_svdag_scene() as items, about the longest first.
+std::vector<RunItem> svdag_build_items(const PapersPlan& plan, const FoundScene& scene,
+                                       CellStore& cells, Progress& progress);
 
 /// Returns the levels of all builds of a series, ascending.
 std::vector<int> levels_of(const std::vector<SvdagSceneBuilds>& scenes, SeriesMember series);

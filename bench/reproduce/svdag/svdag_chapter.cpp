@@ -5,16 +5,28 @@
 
 namespace voxdag {
 
-SvdagResults measure_svdag(const PapersPlan& plan, const std::filesystem::path& made,
+SvdagResults measure_svdag(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                            CellStore& cells, Progress& progress) {
   SvdagResults results;
-  results.scenes = find_scenes(Paper::kSvdag, plan, made, cells, progress);
+  results.scenes = scenes;
   for (const FoundScene& scene : results.scenes)
     results.builds.push_back(build_svdag_scene(plan, scene, cells, progress));
   results.figure1 = measure_figure1(plan, results.scenes, cells, progress);
   results.pictures = render_pictures(plan, results.scenes, cells, progress);
   results.flight = measure_flight(plan, results.scenes, cells);
   return results;
+}
+
+std::vector<RunItem> svdag_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                 CellStore& cells, Progress& progress) {
+  std::vector<RunItem> items = flight_items(plan, scenes, cells);
+  items.push_back([&] { measure_figure1(plan, scenes, cells, progress); });
+  for (const FoundScene& scene : scenes)
+    for (RunItem& item : svdag_build_items(plan, scene, cells, progress))
+      items.push_back(std::move(item));
+  for (RunItem& item : picture_items(plan, scenes, cells, progress))
+    items.push_back(std::move(item));
+  return items;
 }
 
 std::vector<Chart> svdag_charts(const SvdagResults& results) {

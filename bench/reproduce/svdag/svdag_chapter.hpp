@@ -18,10 +18,14 @@ struct SvdagResults {
   std::optional<Flight> flight;
 };
 
-/// Measures the tables and figures of the SVDAG paper. `made`: a folder for procedural meshes,
-/// which must exist as long as `cells`. Throws Error and Cancelled.
-SvdagResults measure_svdag(const PapersPlan& plan, const std::filesystem::path& made,
+/// Measures the tables and figures of the SVDAG paper in its scenes. Throws Error and Cancelled.
+SvdagResults measure_svdag(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                            CellStore& cells, Progress& progress);
+
+/// Returns the runs of measure_svdag() as items, about the longest first. The arguments must live
+/// as long as the items.
+std::vector<RunItem> svdag_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                 CellStore& cells, Progress& progress);
 
 std::vector<Chart> svdag_charts(const SvdagResults& results);
 

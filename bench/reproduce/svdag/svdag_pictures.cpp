@@ -41,34 +41,53 @@ void compare(OcclusionPictures& pictures) {
   write_png(pictures.difference, difference);
 }
 
+/// Adds the picture of a scene and, if they are missing and wanted, those of the occlusion in it.
+void paint_scene(const PapersPlan& plan, const FoundScene& scene, bool with_occlusion,
+                 Painter& painter, SvdagPictures& pictures) {
+  painter.show(scene, {plan.pictures.levels, false, {}});
+  const std::vector<std::string> view = view_of(scene);
+  const auto paint = [&](const std::string& file, const std::string& pass,
+                         std::vector<std::string> options) {
+    options.insert(options.begin(), view.begin(), view.end());
+    return painter.paint(file, pass, plan.pictures.size, options);
+  };
+  pictures.scenes.push_back(paint(fmt::format("svdag-figure4-{}.png", scene.scene->name), "",
+                                  {"--mesh", scene.mesh, "--sun-angle", "2"}));
+  if (!with_occlusion || pictures.occlusion || !pictures.scenes.back().is_there()) return;
+  OcclusionPictures occlusion;
+  occlusion.exact = paint("svdag-figure8b-exact.png", "occlusion", {"--lod", "0"});
+  occlusion.cones =
+      paint("svdag-figure8b-cones.png", "occlusion", {"--lod", "0", "--ao-cone", "0.07"});
+  if (!occlusion.exact.is_there() || !occlusion.cones.is_there()) return;
+  occlusion.difference = plan.folder / "svdag-figure8b-difference.png";
+  compare(occlusion);
+  pictures.occlusion = std::move(occlusion);
+}
+
 }  // namespace
 
 SvdagPictures render_pictures(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                               CellStore& cells, Progress& progress) {
   SvdagPictures pictures;
   Painter painter(plan, cells, progress);
+  for (const FoundScene& scene : scenes)
+    if (!scene.is_absent()) paint_scene(plan, scene, true, painter, pictures);
+  return pictures;
+}
+
+std::vector<RunItem> picture_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                   CellStore& cells, Progress& progress) {
+  std::vector<RunItem> items;
   for (const FoundScene& scene : scenes) {
     if (scene.is_absent()) continue;
-    painter.show(scene, {plan.pictures.levels, false, {}});
-    const std::vector<std::string> view = view_of(scene);
-    const auto paint = [&](const std::string& file, const std::string& pass,
-                           std::vector<std::string> options) {
-      options.insert(options.begin(), view.begin(), view.end());
-      return painter.paint(file, pass, plan.pictures.size, options);
-    };
-    pictures.scenes.push_back(paint(fmt::format("svdag-figure4-{}.png", scene.scene->name), "",
-                                    {"--mesh", scene.mesh, "--sun-angle", "2"}));
-    if (pictures.occlusion || !pictures.scenes.back().is_there()) continue;
-    OcclusionPictures occlusion;
-    occlusion.exact = paint("svdag-figure8b-exact.png", "occlusion", {"--lod", "0"});
-    occlusion.cones =
-        paint("svdag-figure8b-cones.png", "occlusion", {"--lod", "0", "--ao-cone", "0.07"});
-    if (!occlusion.exact.is_there() || !occlusion.cones.is_there()) continue;
-    occlusion.difference = plan.folder / "svdag-figure8b-difference.png";
-    compare(occlusion);
-    pictures.occlusion = std::move(occlusion);
+    const bool is_first = items.empty();
+    items.push_back([&plan, &scene, &cells, &progress, is_first] {
+      Painter painter(plan, cells, progress);
+      SvdagPictures pictures;
+      paint_scene(plan, scene, is_first, painter, pictures);
+    });
   }
-  return pictures;
+  return items;
 }
 
 Section figure4_section(const SvdagPictures& pictures) {

@@ -6,6 +6,7 @@
 
 #include "bench/report/document.hpp"
 #include "bench/reproduce/painter.hpp"
+#include "bench/reproduce/run_items.hpp"
 
 namespace voxdag {
 
@@ -25,6 +26,10 @@ struct SvdagPictures {
 /// Renders the pictures into the plan's folder. Throws Error and Cancelled.
 SvdagPictures render_pictures(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
                               CellStore& cells, Progress& progress);
+
+/// Returns the pictures of each scene as an item.
+std::vector<RunItem> picture_items(const PapersPlan& plan, const std::vector<FoundScene>& scenes,
+                                   CellStore& cells, Progress& progress);
 
 Section figure4_section(const SvdagPictures& pictures);
 Section figure8b_section(const SvdagPictures& pictures);

@@ -23,6 +23,7 @@ class OneRank final : public Ranks {
   std::uint64_t next(int counter) override { return counters_[counter]++; }
   void reset(int counter) override { counters_[counter] = 0; }
   std::unique_ptr<RankFile> open_file(const std::filesystem::path& path) override;
+  bool fails_first() override { return true; }
   [[noreturn]] void abort(int status) override;
   std::uint64_t bytes_sent() const override { return 0; }
 

@@ -29,8 +29,8 @@ class RankFile {
 ///
 /// A function that waits for other ranks throws Cancelled if the Progress of join_ranks() is
 /// cancelled, and Error("MPI: ...") if MPI reports an error. After either of them this rank can
-/// only call abort(); its other functions throw. A rank that is to end because of any exception
-/// must call abort(): the others would wait for it.
+/// only call fails_first() and abort(); its other functions throw. A rank that is to end because of
+/// any exception must call abort(): the others would wait for it.
 class Ranks {
  public:
   /// Number of the counters that next() offers.
@@ -69,6 +69,9 @@ class Ranks {
   /// Opens an existing file for writing. Collective. Throws Error on the rank that fails.
   virtual std::unique_ptr<RankFile> open_file(const std::filesystem::path& path) = 0;
 
+  /// Returns whether this is the first rank that calls it, so that only one rank reports a failure
+  /// that many have. Not collective. Waits a second at most, and then returns true.
+  virtual bool fails_first() = 0;
   /// Ends all ranks with this exit status (1 to 255) at once, without waiting for them.
   [[noreturn]] virtual void abort(int status) = 0;
 

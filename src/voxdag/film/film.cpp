@@ -47,13 +47,12 @@ double estimate_seconds(const Film& film, const PictureRenderer& render) {
 }
 
 std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& render,
-                                     Progress& progress) {
+                                     WorkQueue& queue, Progress& progress) {
   const std::vector<double> times = frame_times(film.path, film.frames_per_second);
   const std::vector<float> exposures =
-      film_exposures(film.path, times, film.options, render, progress);
+      film_exposures(film.path, times, film.options, render, queue, progress);
   RenderOptions options = film.options;
-  std::vector<FrameTiming> timings;
-  for (std::size_t i = 0; i < times.size(); ++i) {
+  return results_of<FrameTiming>(queue, times.size(), [&](std::size_t i) {
     FrameTiming timing;
     timing.frame = static_cast<int>(i);
     timing.time = times[i];
@@ -68,11 +67,10 @@ std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& re
     for (const PicturePass& pass : film.passes)
       write_pass(*pass.kind, frame_name(pass.path, timing.frame), image);
     timing.write_ms = milliseconds_since(stage);
-    timings.push_back(timing);
     progress.report("frames", static_cast<double>(i + 1) / static_cast<double>(times.size()),
                     i + 1);
-  }
-  return timings;
+    return timing;
+  });
 }
 
 }  // namespace voxdag

@@ -5,6 +5,7 @@
 #include "voxdag/film/film_exposure.hpp"
 #include "voxdag/film/frame_timings.hpp"
 #include "voxdag/film/picture_pass.hpp"
+#include "voxdag/parallel/work_queue.hpp"
 
 namespace voxdag {
 
@@ -26,8 +27,9 @@ std::vector<double> frame_times(const CameraPath& path, double frames_per_second
 /// measures the time, and multiplies by frames and pixels.
 double estimate_seconds(const Film& film, const PictureRenderer& render);
 
-/// Renders and writes all frames. Throws Error if a file cannot be written, and Cancelled.
+/// Renders and writes all frames, which are the items of `queue`. All its processes return the
+/// timings of all frames. Throws Error if a file cannot be written, and Cancelled.
 std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& render,
-                                     Progress& progress);
+                                     WorkQueue& queue, Progress& progress);
 
 }  // namespace voxdag

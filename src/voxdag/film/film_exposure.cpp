@@ -17,19 +17,17 @@ RenderOptions thumbnail_options(const RenderOptions& options) {
 
 std::vector<float> film_exposures(const CameraPath& path, std::span<const double> times,
                                   const RenderOptions& options, const PictureRenderer& render,
-                                  Progress& progress) {
+                                  WorkQueue& queue, Progress& progress) {
   if (options.exposure > 0) return std::vector<float>(times.size(), options.exposure);
   RenderOptions small = thumbnail_options(options);
-  std::vector<double> logs;
-  logs.reserve(times.size());
-  for (const double time : times) {
-    small.view = as_request(path.at(time));
-    logs.push_back(std::log(static_cast<double>(render(small, nullptr).exposure)));
+  const auto logs = results_of<double>(queue, times.size(), [&](std::size_t i) {
+    small.view = as_request(path.at(times[i]));
+    const double log = std::log(static_cast<double>(render(small, nullptr).exposure));
     progress.throw_if_cancelled();
-    progress.report("exposure",
-                    static_cast<double>(logs.size()) / static_cast<double>(times.size()),
-                    logs.size());
-  }
+    progress.report("exposure", static_cast<double>(i + 1) / static_cast<double>(times.size()),
+                    i + 1);
+    return log;
+  });
   return smoothed_exposures(times, logs);
 }
 

@@ -6,6 +6,7 @@
 
 #include "voxdag/film/camera_path.hpp"
 #include "voxdag/parallel/progress.hpp"
+#include "voxdag/parallel/work_queue.hpp"
 #include "voxdag/render/render_options.hpp"
 
 namespace voxdag {
@@ -19,10 +20,11 @@ RenderOptions thumbnail_options(const RenderOptions& options);
 
 /// Returns the exposures of the frames at the ascending `times` (seconds). An exposure is the
 /// geometric mean of the automatic exposures of thumbnails over about a second around the frame. If
-/// options.exposure is not 0, every frame has that exposure.
+/// options.exposure is not 0, every frame has that exposure. The thumbnails are the items of
+/// `queue`, whose processes all return all exposures.
 std::vector<float> film_exposures(const CameraPath& path, std::span<const double> times,
                                   const RenderOptions& options, const PictureRenderer& render,
-                                  Progress& progress);
+                                  WorkQueue& queue, Progress& progress);
 
 /// Returns exp of the mean of `logs` with Gaussian weights around each of the ascending `times`.
 /// The standard deviation is half a second. Time is linear in the frames for a fixed frame rate.

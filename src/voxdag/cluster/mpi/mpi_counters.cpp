@@ -1,14 +1,14 @@
 #include "voxdag/cluster/mpi/mpi_counters.hpp"
 
-#include <array>
 #include <chrono>
-
-#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr int kQuestion = 1, kAnswer = 2;  // tags
+// Tags of questions; the tag of an answer is one more.
+constexpr int kQuestion = 1, kLastQuestion = 3;
+
+constexpr std::chrono::milliseconds kPause{1};
 
 }  // namespace
 
@@ -21,19 +21,35 @@ MpiCounters::MpiCounters(MpiSession& session, int counters)
     server_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
 }
 
+int MpiCounters::ask(Message& message, int tag) {
+  const int code =
+      MPI_Irecv(&message.answer, 1, MPI_UINT64_T, 0, tag + 1, comm_, &message.requests[0]);
+  if (code != MPI_SUCCESS) return code;
+  return MPI_Isend(&message.counter, 1, MPI_INT, 0, tag, comm_, &message.requests[1]);
+}
+
 std::uint64_t MpiCounters::next(int counter) {
   if (session_.rank() == 0) return draw(counter);
   const std::lock_guard one_question(mutex_);
-  question_ = counter;
-  std::array<MPI_Request, 2> requests = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
-  session_.run("MPI_Irecv", [&] {
-    return MPI_Irecv(&answer_, 1, MPI_UINT64_T, 0, kAnswer, comm_, &requests[0]);
-  });
-  session_.run("MPI_Isend", [&] {
-    return MPI_Isend(&question_, 1, MPI_INT, 0, kQuestion, comm_, &requests[1]);
-  });
-  session_.wait_all(requests, "MPI_Isend and MPI_Irecv");
-  return answer_;
+  message_.counter = counter;
+  session_.run("MPI_Isend", [&] { return ask(message_, kQuestion); });
+  session_.wait_all(message_.requests, "MPI_Isend and MPI_Irecv");
+  return message_.answer;
+}
+
+std::optional<std::uint64_t> MpiCounters::next_after_failure(int counter) {
+  if (session_.rank() == 0) return draw(counter);
+  constexpr int kMostTests = 1000;
+  last_message_.counter = counter;
+  int code = session_.call_always([&] { return ask(last_message_, kLastQuestion); });
+  for (int test = 0; code == MPI_SUCCESS && test < kMostTests; ++test) {
+    int is_done = 0;
+    code = session_.call_always(
+        [&] { return MPI_Testall(2, last_message_.requests, &is_done, MPI_STATUSES_IGNORE); });
+    if (code == MPI_SUCCESS && is_done != 0) return last_message_.answer;
+    std::this_thread::sleep_for(kPause);
+  }
+  return std::nullopt;
 }
 
 std::uint64_t MpiCounters::draw(int counter) {
@@ -47,30 +63,30 @@ void MpiCounters::set_zero(int counter) {
 }
 
 void MpiCounters::serve(const std::stop_token& stop) {
-  try {
-    while (!stop.stop_requested())
-      if (!answer()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  } catch (const Cancelled&) {
-  } catch (const Error&) {
-    // The session was stopped.
-  }
+  while (!stop.stop_requested())
+    if (!answer(stop)) std::this_thread::sleep_for(kPause);
 }
 
-bool MpiCounters::answer() {
+bool MpiCounters::answer(const std::stop_token& stop) {
   int found = 0, counter = 0;
   MPI_Status status;
-  session_.run("MPI_Iprobe",
-               [&] { return MPI_Iprobe(MPI_ANY_SOURCE, kQuestion, comm_, &found, &status); });
-  if (found == 0) return false;
-  session_.run("MPI_Recv", [&] {
-    return MPI_Recv(&counter, 1, MPI_INT, status.MPI_SOURCE, kQuestion, comm_, MPI_STATUS_IGNORE);
-  });
-  answer_ = draw(counter);
   MPI_Request request = MPI_REQUEST_NULL;
-  session_.run("MPI_Isend", [&] {
-    return MPI_Isend(&answer_, 1, MPI_UINT64_T, status.MPI_SOURCE, kAnswer, comm_, &request);
+  const int code = session_.call_always([&] {
+    int error = MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &found, &status);
+    if (error != MPI_SUCCESS || found == 0) return error;
+    error =
+        MPI_Recv(&counter, 1, MPI_INT, status.MPI_SOURCE, status.MPI_TAG, comm_, MPI_STATUS_IGNORE);
+    if (error != MPI_SUCCESS) return error;
+    reply_ = draw(counter);
+    return MPI_Isend(&reply_, 1, MPI_UINT64_T, status.MPI_SOURCE, status.MPI_TAG + 1, comm_,
+                     &request);
   });
-  session_.wait(request, "MPI_Isend");
+  // A rank whose messages fail ends by itself; this one goes on.
+  if (code != MPI_SUCCESS || found == 0) return false;
+  for (int is_done = 0; is_done == 0 && !stop.stop_requested();)
+    if (session_.call_always([&] { return MPI_Test(&request, &is_done, MPI_STATUS_IGNORE); }) !=
+        MPI_SUCCESS)
+      return false;
   return true;
 }
 

@@ -28,7 +28,7 @@ MpiRanks::MpiRanks(const Progress* progress, const RankOptions& options)
     : message_bytes_(options.message_bytes),
       exceptions_(std::uncaught_exceptions()),
       session_(progress),
-      counters_(session_, kCounters) {}
+      counters_(session_, kCounters + 1) {}
 
 MpiRanks::~MpiRanks() {
   if (std::uncaught_exceptions() > exceptions_) session_.stop();

@@ -24,6 +24,7 @@ class MpiRanks final : public Ranks {
   std::uint64_t next(int counter) override;
   void reset(int counter) override;
   std::unique_ptr<RankFile> open_file(const std::filesystem::path& path) override;
+  bool fails_first() override { return counters_.next_after_failure(kCounters).value_or(0) == 0; }
   [[noreturn]] void abort(int status) override { session_.abort(status); }
   std::uint64_t bytes_sent() const override { return bytes_sent_; }
 

@@ -36,6 +36,12 @@ class MpiSession {
     if (is_stopped_) throw_stopped();
     return function();
   }
+  /// Calls `function` also after the session was stopped.
+  template <class Function>
+  int call_always(const Function& function) {
+    const std::scoped_lock turn(lock_);
+    return function();
+  }
   /// Calls `function`. If it returns an error, stops and throws Error("MPI: WHAT: text").
   template <class Function>
   void run(const char* what, const Function& function) {

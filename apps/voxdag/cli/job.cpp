@@ -1,0 +1,54 @@
+#include "cli/job.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "voxdag/cluster/join_ranks.hpp"
+#include "voxdag/cluster/ranks_per_machine.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Returns the share of this rank in the processors of its machine, unless the launcher has bound
+/// it to fewer.
+int threads_of_rank(int ranks_here) {
+  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, std::min(tbb::this_task_arena::max_concurrency(), processors / ranks_here));
+}
+
+}  // namespace
+
+Job::Job(Session& session) : progress_(session.progress), ranks_(join_ranks(&session.progress)) {
+  if (count() == 1) return;
+  if (!is_first()) {
+    session.quiet = session.is_silent = true;
+    session.bar.enable(false);
+  }
+  if (session.threads == 0)
+    threads_.emplace(tbb::global_control::max_allowed_parallelism,
+                     threads_of_rank(ranks_per_machine(*ranks_).here));
+}
+
+bool Job::fails_first() {
+  if (count() == 1) return true;
+  if (ranks_->fails_first()) return true;
+  // A signal gives the first rank less time to print its line.
+  constexpr int kSteps = 1000, kStepsAfterSignal = 20;
+  for (int step = 0; step < (progress_.cancelled() ? kStepsAfterSignal : kSteps); ++step)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return false;
+}
+
+void Job::end(int status) {
+  if (count() > 1) ranks_->abort(status);
+}
+
+Job& join_job(Session& session) {
+  session.job = std::make_shared<Job>(session);
+  return *session.job;
+}
+
+}  // namespace voxdag
