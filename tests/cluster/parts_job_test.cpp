@@ -367,6 +367,28 @@ TEST_F(PartsJobFailures, AFullDiskEndsTheJobInAnyStepAndTheNextRunGoesOn) {
     EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
 }
 
+TEST_F(PartsJobFailures, AJobGoesOnWithOtherMemory) {
+  const Scene scene{"courtyard", make_scene("courtyard", {.size = 0.5}), levels(7)};
+  write_ply(*folder_ / "scene.ply", scene.mesh, nullptr);
+  build_plainly(*folder_ / "scene.ply", scene.grid, *folder_ / "plain.vdag");
+  const PartsJob job = job_of(*folder_, scene, 5);
+  // Segments of a smaller budget have fewer triangles. Cancels at each report in turn.
+  for (const int reports : {3, 4, 6, 9}) {
+    int left = reports;
+    Progress* to_cancel = nullptr;
+    Progress progress([&](std::string_view, double, std::uint64_t) {
+      if (left-- == 0) to_cancel->cancel();
+    });
+    to_cancel = &progress;
+    MemoryBudget little(std::uint64_t{12} << 20), more(std::uint64_t{64} << 20);
+    EXPECT_THROW(build_in_parts(job, kProgram, ranks(), little, &progress), Cancelled);
+    // A job without facts about the mesh, but with segments.
+    if (reports % 2 == 0) std::filesystem::remove(work() / "triangles" / "mesh");
+    build_in_parts(job, kProgram, ranks(), more, nullptr);
+    EXPECT_EQ(output(), read_text(*folder_ / "plain.vdag")) << reports;
+  }
+}
+
 TEST_F(PartsJobFailures, AFolderOfAnotherJobIsRefused) {
   ASSERT_FALSE(run(3));
   MemoryBudget unlimited;

@@ -113,8 +113,8 @@ TEST_F(MeshChunksTest, OtherFilesNeedReadMesh) {
 TEST_F(MeshChunksTest, ErrorsAreThoseOfReadMesh) {
   std::string ply = random_ply(40, false, 3);
   std::string material = ply;
-  ply[ply.size() - 9 - 5 - 1] = '\x7F';  // the last index of the last face
-  material[material.size() - 9 - 1] = 2;
+  ply[ply.size() - 4 - 5 - 1] = '\x7F';  // the last index of the last face
+  material[material.size() - 4 - 1] = 2;
   std::string stl = random_stl(40);
   for (std::size_t i = 0; i < 4; ++i) stl[84 + 50 * 30 + 12 + i] = '\xFF';
   const std::pair<const char*, std::string> files[] = {

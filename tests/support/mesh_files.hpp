@@ -56,17 +56,16 @@ inline std::string random_obj(int faces, const std::string& line_end) {
 inline std::string random_ply(int faces, bool big_endian, std::uint8_t corners) {
   std::mt19937_64 random(12);
   const int vertices = faces + 4;
-  std::string text = std::string("ply\nformat ") +
-                     (big_endian ? "binary_big_endian" : "binary_little_endian") +
-                     " 1.0\ncomment material 0 stone\ncomment material 1 wood\nelement vertex " +
-                     std::to_string(vertices) +
-                     "\nproperty short id\nproperty float x\nproperty double y\nproperty float z\n"
-                     "element face " +
-                     std::to_string(faces) +
-                     "\nproperty uchar flags\nproperty list uchar uint vertex_indices\n"
-                     "property float quality\nproperty uchar material_index\nelement edge "
-                     "1\nproperty list uchar int ends\n"
-                     "end_header\n";
+  std::string text =
+      std::string("ply\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
+      " 1.0\ncomment material 0 stone\ncomment material 1 wood\nelement vertex " +
+      std::to_string(vertices) +
+      "\nproperty short id\nproperty float x\nproperty double y\nproperty float z\n"
+      "element face " +
+      std::to_string(faces) +
+      "\nproperty uchar flags\nproperty list uchar uint vertex_indices\n"
+      "property float quality\nproperty uchar material_index\nelement edge 1\nproperty int end\n"
+      "end_header\n";
   for (int i = 0; i < vertices; ++i) {
     append_bytes<std::int16_t>(text, 1, big_endian);
     append_bytes(text, coarse_coordinate(random), big_endian);
@@ -84,9 +83,7 @@ inline std::string random_ply(int faces, bool big_endian, std::uint8_t corners) 
     append_bytes(text, 0.5f, big_endian);
     append_bytes<std::uint8_t>(text, static_cast<std::uint8_t>(i % 2));
   }
-  append_bytes<std::uint8_t>(text, 2);
   append_bytes<std::int32_t>(text, 0, big_endian);
-  append_bytes<std::int32_t>(text, 1, big_endian);
   return text;
 }
 

@@ -57,6 +57,10 @@ DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
   reduction = reduction_of(arguments, file.view().levels, path);
   const int levels = std::min(reduction.levels.value_or(kMaxLevels), file.view().levels);
   if (reduction.levels == levels) reduction.levels.reset();
+  if (levels == file.view().levels && file.view().node_words() > kMostPlainWords)
+    throw Error(path, "",
+                "has too many nodes for 32-bit pointers: give fewer levels (voxdag coarsen), or a "
+                "window (voxdag crop)");
   Svdag dag = coarsen(file.view(), levels, &memory, &session.progress);
   VdagMetadata metadata = file.metadata();
   if (levels < file.view().levels) metadata = coarser_metadata(metadata, dag.view());

@@ -27,9 +27,10 @@ Job::Job(Session& session) : progress_(session.progress), ranks_(join_ranks(&ses
     session.quiet = session.is_silent = true;
     session.bar.enable(false);
   }
+  // Also with --threads, because all ranks must take part, and their options may differ.
+  const int here = ranks_per_machine(*ranks_).here;
   if (session.threads == 0)
-    threads_.emplace(tbb::global_control::max_allowed_parallelism,
-                     threads_of_rank(ranks_per_machine(*ranks_).here));
+    threads_.emplace(tbb::global_control::max_allowed_parallelism, threads_of_rank(here));
 }
 
 bool Job::fails_first() {

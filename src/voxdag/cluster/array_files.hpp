@@ -18,14 +18,14 @@ class ArrayFiles {
   ArrayFiles(const WorkFolder& folder, const std::string& name, std::uint64_t count,
              const Progress* progress) {
     for (std::uint64_t i = 0; i < count; ++i) {
-      files_.push_back(folder.open_seen(name + "-" + std::to_string(i), progress));
+      files_.push_back(folder.open_seen(numbered_name(name, i), progress));
       firsts_.push_back(firsts_.back() + files_.back().values<T>().size());
     }
   }
 
   std::uint64_t size() const { return firsts_.back(); }
 
-  /// Reads elements; fast if they are near each other.
+  /// Reads elements with indices below size(); fast if they are near each other. For one thread.
   class Reader {
    public:
     explicit Reader(const ArrayFiles& array) : array_(array) {}

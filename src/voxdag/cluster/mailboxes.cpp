@@ -1,5 +1,8 @@
 #include "voxdag/cluster/mailboxes.hpp"
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -32,7 +35,7 @@ struct Envelope {
 }  // namespace
 
 std::string mailbox_name(const std::string& name, std::uint32_t mailbox) {
-  return name + "-" + std::to_string(mailbox);
+  return numbered_name(name, mailbox);
 }
 
 Mailboxes::Mailboxes(Ranks& ranks, const WorkFolder& folder, const std::string& name,
@@ -114,6 +117,23 @@ void Mailboxes::close() {
   for (const auto& own : own_) own->file.commit();
   own_.clear();
   ranks_.barrier();
+}
+
+std::uint32_t mailboxes_of(Ranks& ranks, std::uint64_t bytes, const MemoryBudget& budget) {
+  constexpr std::uint32_t kMostMailboxes = 4096;
+  std::uint64_t left = budget.left();
+  for (const std::uint64_t of_rank : ranks.all_gather({&left, 1})) left = std::min(left, of_rank);
+  // Threads handle mailboxes side by side; little data is not worth many files.
+  constexpr std::uint64_t kLittle = std::uint64_t{8} << 20;
+  const auto threads = static_cast<std::uint64_t>(std::min<std::size_t>(
+                 static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
+                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
+             count = static_cast<std::uint64_t>(ranks.count());
+  const std::uint64_t needed = bytes / std::max<std::uint64_t>(left / 4 / threads, 1) + 1;
+  const std::uint64_t wanted = std::max({count, needed, bytes < kLittle ? 1 : 2 * count * threads});
+  if (needed > kMostMailboxes && needed > count)
+    budget.throw_over_memory(budget.base() + budget.used() + bytes / kMostMailboxes * 4 * threads);
+  return static_cast<std::uint32_t>(wanted);
 }
 
 bool is_done_for_all(Ranks& ranks, const WorkFolder& folder, const std::string& step) {

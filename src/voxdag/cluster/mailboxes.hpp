@@ -90,6 +90,12 @@ void for_each_own(const Ranks& ranks, std::uint32_t mailboxes, const Progress* p
 /// Returns the name of a mailbox's file.
 std::string mailbox_name(const std::string& name, std::uint32_t mailbox);
 
+/// Returns a number of mailboxes, at least one for each rank, for data that need `bytes` of memory
+/// in all ranks together. The mailboxes that all threads of a rank handle at once need at most a
+/// quarter of what is left of the budget. Ranks with other numbers of threads get other results;
+/// use that of rank 0. Throws OverMemory if more than 4096 would be needed. Collective.
+std::uint32_t mailboxes_of(Ranks& ranks, std::uint64_t bytes, const MemoryBudget& budget);
+
 /// Returns whether a step is done, as rank 0 sees it. Collective.
 bool is_done_for_all(Ranks& ranks, const WorkFolder& folder, const std::string& step);
 /// Waits until all ranks have finished a step and notes that it is done. Collective.

@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-constexpr const char* kFacts = "triangles/mesh";
+constexpr const char *kSegmentFolder = "triangles", *kFacts = "triangles/mesh";
 
 /// Writes the segments that the folder lacks, shared among the ranks. Collective.
 void write_segments(const MeshJob& job, const SharedMesh& mesh, const MeshFacts& facts) {
@@ -29,11 +29,6 @@ void write_segments(const MeshJob& job, const SharedMesh& mesh, const MeshFacts&
     mesh.release();
   }
   job.ranks.barrier();
-}
-
-/// Removes the mesh from the folder; its segments are complete.
-void remove_mesh(const MeshJob& job) {
-  if (job.ranks.rank() == 0) job.folder.remove(kMeshFolder);
 }
 
 bool has_facts(const MeshJob& job) {
@@ -81,14 +76,15 @@ MeshFacts mesh_facts(const MeshJob& job) {
   facts.triangles_per_segment = job.ranks.all_gather({&per_segment, 1})[0];
   facts.segments =
       (facts.triangles + facts.triangles_per_segment - 1) / facts.triangles_per_segment;
-  write_segments(job, mesh, facts);
+  // Segments of a job without facts may hold other ranges of triangles.
   if (job.ranks.rank() == 0) {
+    job.folder.remove(kSegmentFolder);
     WorkFileWriter file = job.folder.create(kFacts);
     file.write_value(facts);
     file.commit();
   }
-  remove_mesh(job);
   job.ranks.barrier();
+  write_segments(job, mesh, facts);
   return stored_facts(job);
 }
 
@@ -96,8 +92,8 @@ std::vector<TriangleSegment> mesh_segments(const MeshJob& job, const MeshFacts& 
   if (lacks_segments(job, facts.segments)) {
     const SharedMesh mesh(job.ranks, job.folder, job.mesh, job.reading, job.chunk_bytes);
     write_segments(job, mesh, facts);
-    remove_mesh(job);
   }
+  if (job.ranks.rank() == 0) job.folder.remove(kMeshFolder);
   std::vector<TriangleSegment> segments;
   for (std::uint64_t s = 0; s < facts.segments; ++s)
     segments.emplace_back(job.folder.open_seen(segment_name(s), job.reading.progress));

@@ -34,8 +34,8 @@ struct MeshFacts {
 /// OverMemory and Cancelled.
 MeshFacts mesh_facts(const MeshJob& job);
 
-/// Returns all segments, mapped. If some are missing or damaged, the ranks read the mesh again and
-/// write them. Collective. Throws as mesh_facts() does.
+/// Returns all segments, mapped, and removes the mesh from the folder. If some are missing or
+/// damaged, the ranks read the mesh again and write them. Collective. Throws as mesh_facts() does.
 std::vector<TriangleSegment> mesh_segments(const MeshJob& job, const MeshFacts& facts);
 
 }  // namespace voxdag

@@ -1,8 +1,5 @@
 #include "voxdag/cluster/part_merge.hpp"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <map>
 
@@ -296,7 +293,6 @@ std::uint32_t mailboxes_for(Ranks& ranks, PartFiles& parts, const MemoryBudget& 
   // A leaf block takes its record, its slot in a table and its first reference; so does a word of
   // a node, on average.
   constexpr std::uint64_t kNodeBytes = 64, kWordBytes = 24;
-  constexpr std::uint32_t kMostMailboxes = 4096;
   std::vector<std::uint64_t> bytes(kMaxLevels);
   for (auto p = static_cast<std::uint64_t>(ranks.rank()); p < parts.count();
        p += static_cast<std::uint64_t>(ranks.count()))
@@ -304,25 +300,14 @@ std::uint32_t mailboxes_for(Ranks& ranks, PartFiles& parts, const MemoryBudget& 
       for (int level = 0; level <= piece.dag.levels - 2; ++level)
         bytes[static_cast<std::size_t>(level)] +=
             places_of(piece.dag, level) * (level == piece.dag.levels - 2 ? kNodeBytes : kWordBytes);
-  std::uint64_t most = 0, left = budget.left();
+  std::uint64_t most = 0;
   const std::vector<std::uint64_t> all = ranks.all_gather(bytes);
   for (std::size_t level = 0; level < bytes.size(); ++level) {
     std::uint64_t sum = 0;
     for (std::size_t i = level; i < all.size(); i += bytes.size()) sum += all[i];
     most = std::max(most, sum);
   }
-  for (const std::uint64_t of_rank : ranks.all_gather({&left, 1})) left = std::min(left, of_rank);
-  // Threads handle mailboxes side by side; little data is not worth many files.
-  constexpr std::uint64_t kLittle = std::uint64_t{8} << 20;
-  const auto threads = static_cast<std::uint64_t>(std::min<std::size_t>(
-                 static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
-                 tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
-             count = static_cast<std::uint64_t>(ranks.count());
-  const std::uint64_t needed = most / std::max<std::uint64_t>(left / 4 / threads, 1) + 1;
-  const std::uint64_t wanted = std::max({count, needed, most < kLittle ? 1 : 2 * count * threads});
-  if (needed > kMostMailboxes && needed > count)
-    budget.throw_over_memory(budget.base() + budget.used() + most / kMostMailboxes * 4 * threads);
-  return static_cast<std::uint32_t>(wanted);
+  return mailboxes_of(ranks, most, budget);
 }
 
 MergedNodes merge_parts(const MergeJob& job) {

@@ -17,12 +17,10 @@
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/layout/long_svdag.hpp"
 #include "voxdag/parallel/progress.hpp"
 
 namespace voxdag {
-
-/// Number of node words that 32-bit pointers address, less some for headers that hold counts.
-inline constexpr std::uint64_t kMostPlainWords = 0xFFFFFFFFull - 256;
 
 /// The inputs and the limits of a merge.
 struct MergeJob {
@@ -46,10 +44,7 @@ struct MergedNodes {
 /// Returns the name of the file with the nodes of a level that a mailbox owns.
 std::string merged_name(int level, std::uint32_t mailbox);
 
-/// Returns the number of mailboxes, at least one for each rank. The mailboxes that all threads of a
-/// rank handle at once need at most a quarter of what is left of the budget. Ranks with other
-/// numbers of threads get other results; use that of rank 0. Throws OverMemory if more than 4096
-/// would be needed. Collective.
+/// Returns mailboxes_of() for the level of the parts that needs the most memory. Collective.
 std::uint32_t mailboxes_for(Ranks& ranks, PartFiles& parts, const MemoryBudget& budget);
 
 /// Merges the parts. Goes on after the last level that is complete. Collective. Throws Error,

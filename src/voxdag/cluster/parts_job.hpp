@@ -5,9 +5,8 @@
 /// The steps lie in a work folder, which all ranks see, so that a job that ended early goes on
 /// where it was:
 ///
-///   triangles   the ranks read the mesh, each some ranges of its file, and write its triangles
-///   with
-///               an index of coarse cells
+///   triangles   the ranks read the mesh, each some ranges of its file, and write its triangles in
+///               segments, with an index of the coarse cells that each meets
 ///   parts       the grid is cut into parts; each rank takes one after the other and builds its DAG
 ///   merge       equal nodes of the parts become one, level by level
 ///   number      the nodes get their canonical order

@@ -18,7 +18,7 @@
 namespace voxdag {
 namespace {
 
-/// Tasks have at least so many chunks, and a mesh has at most so many tasks, about.
+/// The least number of chunks in a task; about the most tasks of a mesh.
 constexpr std::uint64_t kLeastChunks = 64, kMostTasks = 1024;
 
 /// The pages of the mesh are dropped from memory after so many triangles.
@@ -26,15 +26,6 @@ constexpr std::uint64_t kReleaseTriangles = std::uint64_t{1} << 20;
 
 constexpr const char *kCounts = "mesh/counts", *kVertices = "mesh/vertices",
                      *kTriangles = "mesh/triangles";
-
-std::string task_name(const std::string& name, std::uint64_t task) {
-  return name + "-" + std::to_string(task);
-}
-
-template <class T>
-std::span<const std::byte> bytes_of(std::span<const T> values) {
-  return std::as_bytes(values);
-}
 
 }  // namespace
 
@@ -71,8 +62,8 @@ void SharedMesh::for_each_missing(int counter, const std::string& name, const Bo
     poll(progress_);
     if (progress_ != nullptr)
       progress_->report("read", static_cast<double>(task) / static_cast<double>(tasks_));
-    if (folder_.open(task_name(name, task), progress_)) continue;
-    WorkFileWriter file = folder_.create(task_name(name, task));
+    if (folder_.open(numbered_name(name, task), progress_)) continue;
+    WorkFileWriter file = folder_.create(numbered_name(name, task));
     body(task, file);
     file.commit();
   }
@@ -95,7 +86,7 @@ void SharedMesh::count_chunks() {
   });
   starts_ = {{}};
   for (std::uint64_t task = 0; task < tasks_; ++task) {
-    const WorkFile file = folder_.open_seen(task_name(kCounts, task), progress_);
+    const WorkFile file = folder_.open_seen(numbered_name(kCounts, task), progress_);
     for (const ChunkCounts& counts : file.values<ChunkCounts>())
       starts_.push_back(
           {starts_.back().vertices + counts.vertices, starts_.back().triangles + counts.triangles});
@@ -145,14 +136,14 @@ void SharedMesh::write_values(std::uint64_t task, std::uint64_t ChunkCounts::*co
       read(chunk, std::span<T>(values).subspan(starts_[chunk].*count - begin,
                                                starts_[chunk + 1].*count - starts_[chunk].*count));
     });
-    file.write(bytes_of<T>(values));
+    file.write_values<T>(values);
   }
 }
 
 void SharedMesh::read_alone() {
-  if (ranks_.rank() == 0 && !(folder_.open(task_name(kVertices, 0), progress_) &&
-                              folder_.open(task_name(kTriangles, 0), progress_))) {
-    MappedArrays arrays(folder_.file(task_name(kVertices, 0)).parent_path());
+  if (ranks_.rank() == 0 && !(folder_.open(numbered_name(kVertices, 0), progress_) &&
+                              folder_.open(numbered_name(kTriangles, 0), progress_))) {
+    MappedArrays arrays(folder_.file(numbered_name(kVertices, 0)).parent_path());
     ReadOptions reading = reading_;
     reading.progress = progress_;
     reading.arrays = &arrays;
@@ -162,7 +153,7 @@ void SharedMesh::read_alone() {
     const MemoryReservation held(reading.memory, memory_bytes(mesh));
     const auto write = [&](const char* name, std::span<const std::byte> bytes) {
       constexpr std::size_t kStep = std::size_t{16} << 20;
-      WorkFileWriter file = folder_.create(task_name(name, 0));
+      WorkFileWriter file = folder_.create(numbered_name(name, 0));
       for (std::size_t at = 0; at < bytes.size(); at += kStep) {
         poll(progress_);
         file.write(bytes.subspan(at, std::min(kStep, bytes.size() - at)));
@@ -170,8 +161,8 @@ void SharedMesh::read_alone() {
       }
       file.commit();
     };
-    write(kVertices, bytes_of<Vec3f>(mesh.vertices));
-    write(kTriangles, bytes_of<Triangle>(mesh.triangles));
+    write(kVertices, std::as_bytes(std::span<const Vec3f>(mesh.vertices)));
+    write(kTriangles, std::as_bytes(std::span<const Triangle>(mesh.triangles)));
   }
   ranks_.barrier();
 }
@@ -248,11 +239,7 @@ std::uint64_t SharedMesh::count_vertices() {
   if (!chunks_ || !chunks_->repeats_vertices()) return vertices_->size();
   // Sends each vertex to the mailbox that its hash decides, which counts different ones.
   constexpr std::uint64_t kVertexBytes = 64;  // with its slot in the table
-  constexpr std::uint32_t kMostMailboxes = 4096;
-  const std::uint64_t room = std::max<std::uint64_t>(reading_.memory->left() / 8, 1);
-  std::uint64_t wanted = std::clamp<std::uint64_t>(vertices_->size() * kVertexBytes / room + 1,
-                                                   static_cast<std::uint64_t>(ranks_.count()),
-                                                   std::uint64_t{kMostMailboxes});
+  std::uint64_t wanted = mailboxes_of(ranks_, vertices_->size() * kVertexBytes, *reading_.memory);
   wanted = ranks_.all_gather({&wanted, 1})[0];
   const auto mailboxes = static_cast<std::uint32_t>(wanted);
   const std::string name = "mesh/different";

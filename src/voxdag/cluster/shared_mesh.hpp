@@ -45,16 +45,14 @@ class SharedMesh {
   void release() const;
 
  private:
-  /// Calls body(task) for the tasks that lack their file, shared among the ranks. Collective.
+  /// Calls body(task, file) for the tasks that lack their file, shared among the ranks. Collective.
   template <class Body>
   void for_each_missing(int counter, const std::string& name, const Body& body);
   void count_chunks();
   void read_chunks();
   void read_alone();
-  void write_vertices(std::uint64_t task, WorkFileWriter& file);
-  void write_triangles(std::uint64_t task, WorkFileWriter& file);
-  /// Calls read(chunk, start, values) for the chunks of a task and writes the values. `start`
-  /// counts the contents of all chunks before.
+  /// Calls read(chunk, values) for the chunks of a task and writes the values. `count` is the
+  /// number of them in ChunkCounts.
   template <class T, class Read>
   void write_values(std::uint64_t task, std::uint64_t ChunkCounts::*count, WorkFileWriter& file,
                     const Read& read);
@@ -66,7 +64,7 @@ class SharedMesh {
   std::filesystem::path path_;
   Progress* progress_;
   Progress quiet_;
-  ReadOptions reading_;                 ///< With quiet_.
+  ReadOptions reading_;                 ///< The caller's options, with quiet_ as the progress.
   std::unique_ptr<MeshChunks> chunks_;  ///< Null if rank 0 reads the mesh alone.
   std::uint64_t tasks_ = 1, chunks_per_task_ = 1;
   std::vector<ChunkCounts> starts_;  ///< Contents of all chunks before each; then of all.

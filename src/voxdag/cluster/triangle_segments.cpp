@@ -67,11 +67,6 @@ Batch map_batch(const SharedMesh& mesh, const Grid& grid, const CellFinder& find
   return batch;
 }
 
-template <class T>
-void write_array(WorkFileWriter& file, std::span<const T> values) {
-  file.write(std::as_bytes(values));
-}
-
 /// Writes the triangles in the order of their first entries, the entries and the cells.
 void write_sorted(WorkFileWriter& file, const PageVector<QuantizedTriangle>& triangles,
                   const PageVector<double>& voxels, PageVector<Entry>& entries,
@@ -101,11 +96,11 @@ void write_sorted(WorkFileWriter& file, const PageVector<QuantizedTriangle>& tri
     std::vector<std::uint32_t> places;
     for (std::size_t e = cells[i].begin; e < end; ++e) places.push_back(place[entries[e].triangle]);
     std::sort(places.begin(), places.end());
-    write_array<std::uint32_t>(file, places);
+    file.write_values<std::uint32_t>(places);
   }
   constexpr std::byte kZeros[8] = {};
   file.write({kZeros, (8 - file.size() % 8) % 8});
-  write_array<SegmentCell>(file, cells);
+  file.write_values<SegmentCell>(cells);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::size_t kStep = std::size_t{16} << 20;
+constexpr std::size_t kStep = std::size_t{1} << 20;
 
 /// Makes nodes of the plain layout from nodes with long pointers that fit into 32 bits.
 class PlainNodes {

@@ -36,6 +36,10 @@ class WorkFileWriter {
   void write_value(const T& value) {
     write(std::as_bytes(std::span<const T>(&value, 1)));
   }
+  template <class T>
+  void write_values(std::span<const T> values) {
+    write(std::as_bytes(values));
+  }
   /// Returns the bytes of the contents so far.
   std::uint64_t size() const { return written_ + buffer_.size(); }
   /// Throws Error.

@@ -16,6 +16,11 @@ namespace voxdag {
 /// settings cannot use its folder.
 using JobSettings = std::map<std::string, std::string>;
 
+/// Returns the name of one of many files: NAME-NUMBER.
+inline std::string numbered_name(std::string_view name, std::uint64_t number) {
+  return std::string(name) + "-" + std::to_string(number);
+}
+
 class WorkFolder {
  public:
   /// Opens the folder, or creates it. Throws Error with the folder's name if it cannot be written,

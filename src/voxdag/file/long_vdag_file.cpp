@@ -16,7 +16,7 @@ bool has_long_pointers(const std::filesystem::path& path) {
 }
 
 LongVdagFile::LongVdagFile(const std::filesystem::path& path)
-    : file_(path, MappedFile::Access::kRandom) {
+    : file_(path, MappedFile::Access::kSequential) {
   with_file_name(path.string(), [&] {
     const std::vector<VdagChunk> chunks = read_vdag_chunks(file_.bytes());
     check_vdag_checksums(chunks);

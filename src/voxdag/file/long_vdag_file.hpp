@@ -12,8 +12,8 @@ namespace voxdag {
 bool has_long_pointers(const std::filesystem::path& path);
 
 /// A mapped file: the DAG can be larger than memory. Checks every chunk, and that the DAG is safe
-/// to walk. The view stays valid when the object is moved. Another process must not truncate the
-/// file.
+/// to walk. The view stays valid when the object is moved. No other process may change the file
+/// while it is used, because the checks are done once.
 class LongVdagFile {
  public:
   /// Maps the file. Throws Error(path, place, reason).

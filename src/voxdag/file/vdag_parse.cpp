@@ -184,9 +184,18 @@ void check_dag(const Dag& view, void (*check)(const Dag&), std::uint32_t node_ch
 }  // namespace
 
 SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
+  if (has_chunk(chunks, kChunkLongNodes))
+    fail("",
+         "has long pointers (more than 2^32 node words), but a plain DAG is needed: voxdag crop "
+         "and voxdag coarsen make one");
   return read_dag<SvdagView>(chunks, levels, kChunkNodes);
 }
+
 LongSvdagView read_vdag_long_svdag(const std::vector<VdagChunk>& chunks, int levels) {
+  for (const std::uint32_t id :
+       {kChunkNodes, kChunkCellIndex, kChunkColors, kChunkNormals, kChunkMaterials,
+        kChunkWireColors, kChunkWireNormals, kChunkWireMaterials})
+    if (has_chunk(chunks, id)) fail(table_place(id), "does not go with the chunk NODX");
   return read_dag<LongSvdagView>(chunks, levels, kChunkLongNodes);
 }
 
@@ -203,10 +212,6 @@ VdagContents parse_vdag(std::span<const std::byte> file) {
   if (has_chunk(contents.chunks, kChunkEsvo)) fail("", "holds an ESVO, but a DAG is needed");
   if (has_chunk(contents.chunks, kChunkCompactStream))
     fail("", "holds a compact DAG, but one in the plain form is needed: voxdag convert --plain");
-  if (has_chunk(contents.chunks, kChunkLongNodes))
-    fail("",
-         "has long pointers (more than 2^32 node words), but a plain DAG is needed: voxdag crop "
-         "and voxdag coarsen make one");
   check_vdag_checksums(contents.chunks);
   expand_wire_chunks(contents.chunks, contents.expanded);
   contents.metadata = read_vdag_metadata(contents.chunks);

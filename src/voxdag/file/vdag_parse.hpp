@@ -81,8 +81,10 @@ std::span<const T> chunk_values(const std::vector<VdagChunk>& chunks, std::uint3
 }
 
 /// Returns the DAG of LEVL, NODE and LEAF for a grid of `levels`. Checks lengths, but not contents.
+/// Throws Error, also if the file has NODX.
 SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels);
-/// Returns the DAG of LEVL, NODX and LEAF in the same way.
+/// Returns the DAG of LEVL, NODX and LEAF in the same way. Throws Error also if the file has NODE
+/// or attributes.
 LongSvdagView read_vdag_long_svdag(const std::vector<VdagChunk>& chunks, int levels);
 
 /// Runs validate_svdag, check_canonical or check_minimal. Errors name the chunk.

@@ -100,6 +100,9 @@ VerifyReport verify_long(std::span<const std::byte> file) {
   run_check(report, "minimality", {kStructure}, [&] { check_vdag_svdag(dag, check_minimal); });
   run_check(report, "counts", {kStructure, kMetadata},
             [&] { compare_counts(metadata.counts, count_svdag(dag)); });
+  run_check(report, "attributes", {kStructure}, [&] {
+    if (!dag.is_empty()) compare_attributes(metadata.attributes, {});
+  });
   return report;
 }
 
@@ -121,7 +124,7 @@ bool VerifyReport::passed() const {
 
 VerifyReport verify_vdag(const std::filesystem::path& path) {
   if (has_long_pointers(path)) {
-    const MappedFile file(path, MappedFile::Access::kRandom);
+    const MappedFile file(path, MappedFile::Access::kSequential);
     return verify_long(file.bytes());
   }
   const FileCopy file(path);

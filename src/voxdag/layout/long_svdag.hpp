@@ -1,5 +1,5 @@
 #pragma once
-/// The SVDAG with long pointers, for DAGs whose nodes have more than 2^32 words.
+/// The SVDAG with long pointers, for DAGs with more than kMostPlainWords node words.
 ///
 /// The layout of svdag.hpp, but for pointers: they have 35 bits, and count from the first word of
 /// the next level.
@@ -17,6 +17,9 @@
 #include "voxdag/layout/svdag.hpp"
 
 namespace voxdag {
+
+/// The most node words of a file with 32-bit pointers: 2^32 - 257.
+inline constexpr std::uint64_t kMostPlainWords = 0xFFFFFFFFull - 256;
 
 /// A view like SvdagView; its members have the meanings that they have there.
 struct LongSvdagView {

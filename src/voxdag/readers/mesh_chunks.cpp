@@ -8,7 +8,7 @@
 namespace voxdag {
 
 MeshChunks::MeshChunks(const std::filesystem::path& path, const ReadOptions& options)
-    : file_(path, MappedFile::Access::kRandom),
+    : file_(path, MappedFile::Access::kSequential),
       source_{file_.text(), path.string(), path.parent_path(), &file_, options} {}
 
 std::unique_ptr<MeshChunks> open_mesh_chunks(const std::filesystem::path& path,

@@ -1,9 +1,10 @@
 #pragma once
 /// Reads a mesh file in chunks, so that processes can share the work.
 ///
-/// The result is the mesh of read_mesh(): the chunks' vertices one after the other, and their
-/// triangles. A reader first counts all chunks. Then each chunk's vertices can be read, and, when
-/// all vertices are known, its triangles.
+/// The result is the surface of read_mesh(): the chunks' vertices one after the other, and their
+/// triangles, in the order of read_mesh(). In binary STL, vertices repeat. A reader first counts
+/// all chunks. Then each chunk's vertices can be read, and, when all vertices are known, its
+/// triangles.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,6 +18,8 @@
 
 namespace voxdag {
 
+inline constexpr const char* kFileChanged = "the file changed while it was read";
+
 /// The contents of a chunk.
 struct ChunkCounts {
   std::uint64_t vertices = 0, triangles = 0;
@@ -26,7 +29,8 @@ struct ChunkCounts {
 struct AllVertices {
   std::uint64_t before = 0;  ///< Number of vertices in the chunks before.
   std::uint64_t count = 0;   ///< Number of vertices of the mesh.
-  /// Returns the position of a vertex. Called for polygons of more than three corners only.
+  /// Returns the position of a vertex below `count`. Called for polygons of more than three corners
+  /// only, while read_triangles() runs.
   std::function<Vec3f(std::uint32_t)> position;
 };
 

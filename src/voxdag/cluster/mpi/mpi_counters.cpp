@@ -81,13 +81,14 @@ bool MpiCounters::answer(const std::stop_token& stop) {
     return MPI_Isend(&reply_, 1, MPI_UINT64_T, status.MPI_SOURCE, status.MPI_TAG + 1, comm_,
                      &request);
   });
-  // A rank whose messages fail ends by itself; this one goes on.
-  if (code != MPI_SUCCESS || found == 0) return false;
-  for (int is_done = 0; is_done == 0 && !stop.stop_requested();)
-    if (session_.call_always([&] { return MPI_Test(&request, &is_done, MPI_STATUS_IGNORE); }) !=
-        MPI_SUCCESS)
-      return false;
-  return true;
+  int error = code;
+  for (int is_done = 0; error == MPI_SUCCESS && found != 0 && is_done == 0;) {
+    if (stop.stop_requested()) return false;
+    error = session_.call_always([&] { return MPI_Test(&request, &is_done, MPI_STATUS_IGNORE); });
+  }
+  // The asker would wait forever: lets this rank's next call fail, which ends the job.
+  if (error != MPI_SUCCESS) session_.stop();
+  return error == MPI_SUCCESS && found != 0;
 }
 
 void MpiCounters::close() {

@@ -1,8 +1,8 @@
 #pragma once
 /// Counters that rank 0 keeps and all ranks draw from.
 ///
-/// A rank asks rank 0 with a message, and waits for the answer. MPI's one-sided operations would do
-/// without rank 0, but Debian's Open MPI turns off all of them that work between hosts over TCP.
+/// A rank asks rank 0 with a message, and waits for the answer. One-sided MPI would need no server,
+/// but Debian's Open MPI disables it between hosts over TCP.
 #include <mpi.h>
 
 #include <cstdint>

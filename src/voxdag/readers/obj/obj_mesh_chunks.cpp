@@ -1,5 +1,7 @@
 #include "voxdag/readers/obj/obj_mesh_chunks.hpp"
 
+#include <algorithm>
+
 #include "voxdag/readers/bad_vertex.hpp"
 #include "voxdag/readers/face_cutter.hpp"
 #include "voxdag/readers/obj/obj_chunk.hpp"
@@ -33,8 +35,10 @@ class ObjMeshChunks final : public MeshChunks {
     std::size_t i = 0;
     for_each_statement(chunk, ObjStatement::kVertex,
                        [&](std::string_view line, const char* position) {
+                         if (i == vertices.size()) throw Fault{position, kFileChanged};
                          vertices[i++] = take_vertex(line, position);
                        });
+    if (i != vertices.size()) throw source().error(kFileChanged);
   }
 
   void read_triangles(std::uint64_t chunk, const AllVertices& vertices,
@@ -50,6 +54,7 @@ class ObjMeshChunks final : public MeshChunks {
                       if (statement == ObjStatement::kFace) faces.read(line, position, seen);
                     });
     });
+    if (!faces.is_done()) throw source().error(kFileChanged);
   }
 
   [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
@@ -58,6 +63,7 @@ class ObjMeshChunks final : public MeshChunks {
     for_each_statement(chunk, ObjStatement::kVertex, [&](std::string_view, const char* position) {
       if (i++ == index) found = position;
     });
+    if (found == nullptr) throw source().error(kFileChanged);
     throw_fault(source(), {found, kBadVertex}, line_end_);
   }
 
@@ -82,6 +88,7 @@ class ObjMeshChunks final : public MeshChunks {
         corners_.push_back(parse_vertex_index(corner, seen, vertices_.count, position));
       }
       if (corners_.size() < 3) return;
+      if (corners_.size() - 2 > triangles_.size() - done_) throw Fault{position, kFileChanged};
       const std::span<Triangle> fan = triangles_.subspan(done_, corners_.size() - 2);
       done_ += fan.size();
       // Indices into corners_, until the polygon is cut.
@@ -96,6 +103,9 @@ class ObjMeshChunks final : public MeshChunks {
         for (std::uint32_t& corner : triangle) corner = corners_[corner];
     }
 
+    /// Returns whether all triangles are set.
+    bool is_done() const { return done_ == triangles_.size(); }
+
    private:
     const AllVertices& vertices_;
     std::span<Triangle> triangles_;
@@ -106,14 +116,18 @@ class ObjMeshChunks final : public MeshChunks {
     CountedVector<Vec3f> positions_;
   };
 
-  /// Returns where a chunk begins: after the line that holds its first byte.
-  std::size_t begin(std::uint64_t chunk) const {
-    const std::uint64_t at = chunk * chunk_bytes_;
-    return chunk == 0 ? 0 : end_of_line(text_, at, line_end_);
-  }
+  /// Returns the lines of a chunk. Chunk i has the lines that begin in the bytes after i *
+  /// chunk_bytes_, up to and with (i + 1) * chunk_bytes_; chunk 0 also has the first line.
   std::string_view text(std::uint64_t chunk) const {
-    const std::size_t first = begin(chunk);
-    return text_.substr(first, begin(chunk + 1) - first);
+    const std::size_t at = chunk * chunk_bytes_, next = std::min(at + chunk_bytes_, text_.size());
+    std::size_t begin = 0;
+    if (chunk > 0) {
+      // Looks no further than this chunk: a line may be as long as the file.
+      const std::string_view known = text_.substr(0, std::min(next + 1, text_.size()));
+      begin = end_of_line(known, at, line_end_);
+      if (begin > next || begin == text_.size()) return {};
+    }
+    return text_.substr(begin, end_of_line(text_, next, line_end_) - begin);
   }
 
   template <class Body>

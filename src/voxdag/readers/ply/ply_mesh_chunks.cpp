@@ -71,8 +71,7 @@ class PlyMeshChunks final : public MeshChunks {
       const char* row = bytes.data();
       for (Triangle& triangle : triangles) {
         const char* item = row + list_offset();
-        if (load_int(count_type(), item, swap_) != 3)
-          throw Fault{item, "the file changed while it was read"};
+        if (load_int(count_type(), item, swap_) != 3) throw Fault{item, kFileChanged};
         item += size_of(count_type());
         for (std::uint32_t& corner : triangle) {
           corner = checked_index(load_int(type, item, swap_), vertices.count, item);
@@ -116,9 +115,7 @@ class PlyMeshChunks final : public MeshChunks {
   bool find_rows() {
     if (header_.format == PlyFormat::kAscii || fields_.face.count == 0) return false;
     // The layout of faces: fixed values, the list of indices, fixed values.
-    if (vertex_layout_.has_lists() || face_layout_.runs.size() != 2 ||
-        indices().type > PlyType::kUint32)
-      return false;
+    if (vertex_layout_.has_lists() || face_layout_.runs.size() != 2) return false;
     vertex_stride_ = vertex_layout_.fixed_row_bytes();
     face_stride_ = face_layout_.runs[0].fixed_bytes + size_of(count_type()) +
                    3 * size_of(indices().type) + face_layout_.runs[1].fixed_bytes;
@@ -130,11 +127,7 @@ class PlyMeshChunks final : public MeshChunks {
         continue;
       }
       const RowLayout layout(element);
-      if (layout.has_lists()) {
-        // Elements behind the faces do not matter.
-        if (faces_at != 0 && vertices_at_ != 0) break;
-        return false;
-      }
+      if (layout.has_lists()) return false;
       if (&element == &fields_.vertex) vertices_at_ = at;
       at += element.count * layout.fixed_row_bytes();
     }

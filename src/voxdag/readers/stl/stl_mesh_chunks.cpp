@@ -33,6 +33,7 @@ class StlMeshChunks final : public MeshChunks {
   void read_vertices(std::uint64_t chunk, std::span<Vec3f> vertices) const override {
     VertexTable table;
     for_each_corner(chunk, [&](Vec3f position) { table.find_or_add(position); });
+    if (table.vertices().size() != vertices.size()) throw source().error(kFileChanged);
     std::copy(table.vertices().begin(), table.vertices().end(), vertices.begin());
   }
 
@@ -59,6 +60,8 @@ class StlMeshChunks final : public MeshChunks {
     const std::uint64_t first = first_item(chunk, facets_), last = first_item(chunk + 1, facets_);
     const std::string_view facets = source().bytes.substr(kStlHeaderBytes + first * kStlFacetBytes,
                                                           (last - first) * kStlFacetBytes);
+    // The caller's table: each corner may need a vertex and a slot; both arrays may double.
+    const MemoryReservation table(source().options.memory, 3 * (last - first) * 44);
     read(facets, kBinary, [&] { parse_stl_binary(facets, body); });
   }
 
