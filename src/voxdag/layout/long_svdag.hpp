@@ -76,7 +76,7 @@ inline bool fits_pointers(const LongSvdagView& dag) {
   return dag.leaf_block_count <= kMostLongWords;
 }
 
-/// What is wrong with a mask word that has other bits than allowed_mask_bits().
+/// Returns the reason why a mask word with other bits than allowed_mask_bits() is malformed.
 inline const char* mask_fault(const SvdagView&) { return "child mask has more than eight bits"; }
 inline const char* mask_fault(const LongSvdagView&) {
   return "mask word has pointer bits of a child that is missing";
