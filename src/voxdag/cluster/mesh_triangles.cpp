@@ -4,9 +4,8 @@
 #include <cstring>
 #include <optional>
 
-#include "voxdag/cluster/job_counters.hpp"
+#include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/shared_mesh.hpp"
-#include "voxdag/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
@@ -16,19 +15,14 @@ constexpr const char *kSegmentFolder = "triangles", *kFacts = "triangles/mesh";
 /// Writes the segments that the folder lacks, shared among the ranks. Collective.
 void write_segments(const MeshJob& job, const SharedMesh& mesh, const MeshFacts& facts) {
   Progress* const progress = job.reading.progress;
-  job.ranks.reset(kSegmentCounter);
-  for (std::uint64_t s; (s = job.ranks.next(kSegmentCounter)) < facts.segments;) {
-    poll(progress);
-    if (progress != nullptr)
-      progress->report("triangles", static_cast<double>(s) / static_cast<double>(facts.segments));
-    if (job.folder.open(segment_name(s), progress)) continue;
-    const std::uint64_t first = s * facts.triangles_per_segment;
-    write_segment(job.folder, s, mesh, facts.grid, first,
-                  std::min(first + facts.triangles_per_segment, facts.triangles),
-                  *job.reading.memory, progress);
-    mesh.release();
-  }
-  job.ranks.barrier();
+  make_missing(job.ranks, job.folder, {kSegmentCounter, facts.segments, segment_name, "triangles"},
+               progress, [&](std::uint64_t s) {
+                 const std::uint64_t first = s * facts.triangles_per_segment;
+                 write_segment(job.folder, s, mesh, facts.grid, first,
+                               std::min(first + facts.triangles_per_segment, facts.triangles),
+                               *job.reading.memory, progress);
+                 mesh.release();
+               });
 }
 
 bool has_facts(const MeshJob& job) {

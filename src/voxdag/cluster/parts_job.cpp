@@ -8,9 +8,9 @@
 #include <ctime>
 
 #include "voxdag/cluster/build_part.hpp"
-#include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/mesh_triangles.hpp"
+#include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/node_order.hpp"
 #include "voxdag/cluster/part_merge.hpp"
 #include "voxdag/cluster/part_plan.hpp"
@@ -186,13 +186,10 @@ class PartsRun {
       folder_.remove("done");
     }
     const std::vector<TriangleSegment> segments = mesh_segments(mesh_job_, facts);
-    ranks_.reset(kPartCounter);
     Progress quiet(progress_);
-    for (std::uint64_t p; (p = ranks_.next(kPartCounter)) < parts.size();) {
-      poll(progress_);
-      if (progress_ != nullptr)
-        progress_->report("parts", static_cast<double>(p) / static_cast<double>(parts.size()), p);
-      if (folder_.open(part_name(p), progress_, WorkFile::Check::kHeader)) continue;
+    // missing_parts() has checked the contents.
+    const StepFiles files{kPartCounter, parts.size(), part_name, "parts", WorkFile::Check::kHeader};
+    make_missing(ranks_, folder_, files, progress_, [&](std::uint64_t p) {
       const auto timer = log_.start();
       WorkFileWriter file = folder_.create(part_name(p));
       const PartCounts counts = with_part_name(p, [&] {
@@ -201,8 +198,7 @@ class PartsRun {
       const std::uint64_t bytes = file.size();
       file.commit();
       log_.part(timer, p, counts.triangles, counts.pieces, bytes);
-    }
-    ranks_.barrier();
+    });
   }
 
   /// Returns the number of mailboxes: that of an unfinished merge, or a new one. Collective.

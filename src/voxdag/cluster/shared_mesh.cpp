@@ -6,8 +6,8 @@
 #include <bit>
 #include <mutex>
 
-#include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/mailboxes.hpp"
+#include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/unique_records.hpp"
 #include "voxdag/io/mapped_arrays.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
@@ -56,18 +56,14 @@ SharedMesh::SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesy
 }
 
 template <class Body>
-void SharedMesh::for_each_missing(int counter, const std::string& name, const Body& body) {
-  ranks_.reset(counter);
-  for (std::uint64_t task; (task = ranks_.next(counter)) < tasks_;) {
-    poll(progress_);
-    if (progress_ != nullptr)
-      progress_->report("read", static_cast<double>(task) / static_cast<double>(tasks_));
-    if (folder_.open(numbered_name(name, task), progress_)) continue;
-    WorkFileWriter file = folder_.create(numbered_name(name, task));
-    body(task, file);
-    file.commit();
-  }
-  ranks_.barrier();
+void SharedMesh::for_each_missing(JobCounter counter, const char* name, const Body& body) {
+  const auto name_of = [name](std::uint64_t task) { return numbered_name(name, task); };
+  make_missing(ranks_, folder_, {counter, tasks_, name_of, "read"}, progress_,
+               [&](std::uint64_t task) {
+                 WorkFileWriter file = folder_.create(name_of(task));
+                 body(task, file);
+                 file.commit();
+               });
 }
 
 std::uint64_t SharedMesh::first_chunk(std::uint64_t task) const {

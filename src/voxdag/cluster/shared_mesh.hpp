@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "voxdag/cluster/array_files.hpp"
+#include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/mesh/mesh.hpp"
@@ -47,7 +48,7 @@ class SharedMesh {
  private:
   /// Calls body(task, file) for the tasks that lack their file, shared among the ranks. Collective.
   template <class Body>
-  void for_each_missing(int counter, const std::string& name, const Body& body);
+  void for_each_missing(JobCounter counter, const char* name, const Body& body);
   void count_chunks();
   void read_chunks();
   void read_alone();

@@ -1,0 +1,40 @@
+#pragma once
+/// Makes the files that a job's folder lacks, shared among the ranks.
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "voxdag/cluster/job_counters.hpp"
+#include "voxdag/cluster/ranks.hpp"
+#include "voxdag/cluster/work_folder.hpp"
+#include "voxdag/parallel/polled_for.hpp"
+
+namespace voxdag {
+
+/// The numbered files of one step.
+struct StepFiles {
+  JobCounter counter;  ///< Gives the numbers to the ranks.
+  std::uint64_t count;
+  std::function<std::string(std::uint64_t number)> name;  ///< Within the folder.
+  const char* stage;                                      ///< For the progress.
+  WorkFile::Check check = WorkFile::Check::kAll;
+};
+
+/// Calls make(number) for the files from 0 to count - 1 that are missing or damaged; it must write
+/// the file. Each rank takes one number after the other. Waits until all files are there.
+/// Collective; `progress` may be null. Throws Cancelled and what make() throws.
+template <class Make>
+void make_missing(Ranks& ranks, const WorkFolder& folder, const StepFiles& files,
+                  Progress* progress, const Make& make) {
+  ranks.reset(files.counter);
+  for (std::uint64_t number; (number = ranks.next(files.counter)) < files.count;) {
+    poll(progress);
+    if (progress != nullptr)
+      progress->report(files.stage, static_cast<double>(number) / static_cast<double>(files.count),
+                       number);
+    if (!folder.open(files.name(number), progress, files.check)) make(number);
+  }
+  ranks.barrier();
+}
+
+}  // namespace voxdag
