@@ -135,7 +135,7 @@ LongSvdagView parse_long(std::span<const std::byte> bytes) {
   return view;
 }
 
-/// Walks a valid DAG with long pointers: all its voxels are those of the plain DAG that crop()
+/// Checks that a valid DAG with long pointers has as many voxels as the plain DAG that crop()
 /// makes.
 void walk_long(const LongSvdagView& view) {
   const std::int32_t side = std::int32_t{1} << view.levels;

@@ -31,12 +31,7 @@ void esvo_info(const std::string& path, bool json) {
 DagReport dag_report(const std::string& path, Progress& progress) {
   if (has_long_pointers(path)) {
     const LongVdagFile file(path);
-    DagReport report;
-    report.metadata = file.metadata();
-    report.node_bytes = file.view().node_words() * 4;
-    report.leaf_bytes = file.view().leaf_block_count * 8;
-    report.file_bytes = file.file_bytes();
-    return report;
+    return report_of(file.view(), file.metadata(), file.file_bytes());
   }
   const DagModel file(path, &progress);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());

@@ -12,8 +12,8 @@ namespace voxdag {
 /// O(DAG) time. Throws OverMemory and Cancelled; `memory` and `progress` may be null.
 Svdag coarsen(const SvdagView& dag, int levels, MemoryBudget* memory = nullptr,
               Progress* progress = nullptr);
-/// Does so for a DAG with long pointers. Throws Error if a level of the result has too many nodes
-/// for 32-bit pointers, OverMemory and Cancelled.
+/// Coarsens a DAG with long pointers. Throws Error if a level of the result has too many nodes for
+/// 32-bit pointers, OverMemory and Cancelled.
 Svdag coarsen(const LongSvdagView& dag, int levels, MemoryBudget* memory = nullptr,
               Progress* progress = nullptr);
 

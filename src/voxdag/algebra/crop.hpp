@@ -13,8 +13,8 @@ namespace voxdag {
 /// `memory` and `progress` may be null.
 Svdag crop(const SvdagView& dag, const Box3i& box, MemoryBudget* memory = nullptr,
            Progress* progress = nullptr);
-/// Does so for a DAG with long pointers. Throws Error if a level of the result has too many nodes
-/// for 32-bit pointers, OverMemory and Cancelled.
+/// Crops a DAG with long pointers. Throws Error if a level of the result has too many nodes for
+/// 32-bit pointers, OverMemory and Cancelled.
 Svdag crop(const LongSvdagView& dag, const Box3i& box, MemoryBudget* memory = nullptr,
            Progress* progress = nullptr);
 

@@ -70,8 +70,8 @@ std::uint64_t SharedMesh::first_chunk(std::uint64_t task) const {
   return std::min(task * chunks_per_task_, chunks_->count());
 }
 
-/// Counts all chunks. If a chunk cannot be read, or there is an error that read_mesh() tells
-/// better, chunks_ is null afterwards.
+/// Counts all chunks. Sets chunks_ to null if the file needs read_mesh(), or if read_mesh() reports
+/// its error better.
 void SharedMesh::count_chunks() {
   for_each_missing(kMeshCountsCounter, kCounts, [&](std::uint64_t task, WorkFileWriter& file) {
     const std::uint64_t first = first_chunk(task);

@@ -41,9 +41,9 @@ struct DagReport {
   std::uint64_t svdag_bytes() const { return node_bytes + leaf_bytes; }
 };
 
-/// Returns a report of the file with this DAG.
-inline DagReport report_of(const SvdagView& dag, const VdagMetadata& metadata,
-                           std::uint64_t file_bytes) {
+/// Returns a report of the file with this DAG, an SvdagView or a LongSvdagView.
+template <class Dag>
+DagReport report_of(const Dag& dag, const VdagMetadata& metadata, std::uint64_t file_bytes) {
   return {metadata, dag.node_words() * 4, dag.leaf_block_count * 8, file_bytes, std::nullopt, {}};
 }
 

@@ -86,7 +86,7 @@ bool MpiCounters::answer(const std::stop_token& stop) {
     if (stop.stop_requested()) return false;
     error = session_.call_always([&] { return MPI_Test(&request, &is_done, MPI_STATUS_IGNORE); });
   }
-  // The asker would wait forever: lets this rank's next call fail, which ends the job.
+  // Makes this rank's next call fail, which ends the job. Otherwise the asker would wait forever.
   if (error != MPI_SUCCESS) session_.stop();
   return error == MPI_SUCCESS && found != 0;
 }

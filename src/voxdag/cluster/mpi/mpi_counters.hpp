@@ -25,7 +25,7 @@ class MpiCounters {
 
   /// Returns the value of a counter and adds 1. Any thread may call it.
   std::uint64_t next(int counter);
-  /// Does what next() does, also after the session was stopped. Returns nothing if rank 0 does not
+  /// Draws as next() does, also after the session was stopped. Returns nothing if rank 0 does not
   /// answer within a second. Call it once.
   std::optional<std::uint64_t> next_after_failure(int counter);
   /// Sets a counter to 0. Other ranks must not draw from it meanwhile. Called on rank 0.

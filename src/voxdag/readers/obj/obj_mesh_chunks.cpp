@@ -116,8 +116,8 @@ class ObjMeshChunks final : public MeshChunks {
     CountedVector<Vec3f> positions_;
   };
 
-  /// Returns the lines of a chunk. Chunk i has the lines that begin in the bytes after i *
-  /// chunk_bytes_, up to and with (i + 1) * chunk_bytes_; chunk 0 also has the first line.
+  /// Returns the lines of a chunk: those that begin after byte chunk * chunk_bytes_, and not after
+  /// byte (chunk + 1) * chunk_bytes_. Chunk 0 also has the first line.
   std::string_view text(std::uint64_t chunk) const {
     const std::size_t at = chunk * chunk_bytes_, next = std::min(at + chunk_bytes_, text_.size());
     std::size_t begin = 0;
