@@ -7,16 +7,19 @@ import { BROWSER_PATHS, isInstalled } from './browser_paths.mjs';
 /** The browser to test; without VOXDAG_BROWSER all that are installed. */
 const browsers = process.env.VOXDAG_BROWSER ? [process.env.VOXDAG_BROWSER] : Object.keys(BROWSER_PATHS).filter(isInstalled);
 
+/** How long a browser may take to start, and a page for each step, on a machine that is busy. */
+const MOST_MS = 180_000;
+
 /** Starts a browser without a window. @param {string} name  chromium or firefox */
 export function launch(name) {
   if (name === 'firefox')
     return puppeteer.launch({
-      browser: 'firefox', executablePath: BROWSER_PATHS.firefox, headless: true, protocolTimeout: 300_000,
+      browser: 'firefox', executablePath: BROWSER_PATHS.firefox, headless: true, protocolTimeout: 300_000, timeout: MOST_MS,
       extraPrefsFirefox: { 'webgl.force-enabled': true, 'webgl.disable-fail-if-major-performance-caveat': true, 'network.proxy.type': 0,
                           'security.sandbox.content.level': 0, 'gfx.webrender.software': true },
     });
   return puppeteer.launch({
-    executablePath: BROWSER_PATHS.chromium, headless: true, protocolTimeout: 300_000,
+    executablePath: BROWSER_PATHS.chromium, headless: true, protocolTimeout: 300_000, timeout: MOST_MS,
     args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
            '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
@@ -28,7 +31,7 @@ export function launch(name) {
  */
 export function describeInBrowsers(title, body) {
   for (const name of browsers)
-    describe(`${title} in ${name}`, { timeout: 600_000 }, () => {
+    describe(`${title} in ${name}`, { timeout: 840_000 }, () => {
       /** @type {import('puppeteer-core').Browser} */
       let browser;
       before(async () => {
@@ -45,6 +48,7 @@ export function describeInBrowsers(title, body) {
  */
 export async function open(browser, url, { width = 320, height = 180, ready = 'window.voxdag?.viewer' } = {}) {
   const page = await browser.newPage();
+  page.setDefaultTimeout(MOST_MS);
   await page.setViewport({ width, height });
   /** @type {string[]} */
   const complaints = [];
@@ -53,7 +57,7 @@ export async function open(browser, url, { width = 320, height = 180, ready = 'w
     if (message.type() === 'error') complaints.push(message.text());
   });
   await page.goto(url);
-  if (ready !== '') await page.waitForFunction(ready, { timeout: 60_000 });
+  if (ready !== '') await page.waitForFunction(ready);
   return Object.assign(page, { complaints });
 }
 

@@ -38,7 +38,7 @@ async function rest(page) {
   await page.waitForFunction(() => {
     const { hands } = /** @type {any} */ (window).voxdag;
     return !hands.moved && !hands.navigator.flight && hands.frameRequest === 0;
-  }, { timeout: 30_000 });
+  });
 }
 
 /** Drags from one pixel to another. @param {Page} page @param {number[]} from @param {number[]} to @param {import('puppeteer-core').MouseOptions} [options] */
@@ -50,7 +50,7 @@ async function drag(page, from, to, options = {}) {
 }
 
 /** Waits until the drawing over the picture shows the settings. @param {Page} page */
-const drawn = (page) => page.waitForFunction(() => /** @type {any} */ (window).voxdag.ui.overlay.request === 0, { timeout: 30_000 });
+const drawn = (page) => page.waitForFunction(() => /** @type {any} */ (window).voxdag.ui.overlay.request === 0);
 
 /** The middle of an element, in pixels. @param {Page} page @param {string} selector */
 async function middle(page, selector) {
@@ -72,7 +72,7 @@ describeInBrowsers('hands', (_, browser) => {
   /** @param {string} [hash] @param {{width?: number, height?: number}} [size] @returns {Promise<Page>} */
   const load = async (hash = QUICK, size = SIZE) => {
     const page = await open(browser(), server.url + hash, { ...size, ready: 'window.voxdag?.viewer?.info && window.voxdag.hands.navigator' });
-    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.hands.isLoaded, { timeout: 60_000 });
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.hands.isLoaded);
     return /** @type {any} */ (page);
   };
 
@@ -168,7 +168,7 @@ describeInBrowsers('hands', (_, browser) => {
     assert.ok(apart((await camera(page)).eye, flown.eye) < 1e-3 * Math.hypot(...way), 'a drag only looks');
 
     await page.mouse.wheel({ deltaY: -200 });
-    await page.waitForFunction(() => /^Speed × 1\.\d/.test(document.querySelector('.toast:not(.tool-hint)')?.textContent ?? ''), { timeout: 20_000 });
+    await page.waitForFunction(() => /^Speed × 1\.\d/.test(document.querySelector('.toast:not(.tool-hint)')?.textContent ?? ''));
 
     await page.keyboard.press('g');
     await rest(page);
@@ -203,7 +203,7 @@ describeInBrowsers('hands', (_, browser) => {
         measures: [{ from: low, to: high }], annotations: [{ text: 'gate & wall', point: low, camera: viewer.get().camera }],
       });
     });
-    await page.waitForFunction(() => location.hash.includes('note='), { timeout: 20_000 });
+    await page.waitForFunction(() => location.hash.includes('note='));
     const hash = await page.evaluate(() => location.hash), wanted = await settings(page);
     const other = await load(hash, { width: 240, height: 160 });
     assert.deepEqual(await settings(other), wanted);
@@ -211,7 +211,7 @@ describeInBrowsers('hands', (_, browser) => {
     assert.deepEqual(await settings(other), wanted, 'nothing moves by itself');
     // A link pasted into the address of an open page.
     await other.evaluate(() => { location.hash = '#mode=fly&eye=1,2,3&target=0,0,0&up=0,1,0&fov=50'; });
-    await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly', { timeout: 20_000 });
+    await other.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().mode === 'fly');
     assert.deepEqual(await camera(other), { eye: [1, 2, 3], target: [0, 0, 0], up: [0, 1, 0], fov: 50 });
     assertNoComplaints(other);
     await other.close();
@@ -223,9 +223,9 @@ describeInBrowsers('hands', (_, browser) => {
     await page.keyboard.press('m');
     const [a, b] = [await pick(page, 300, 320), await pick(page, 450, 330)];
     await page.mouse.click(300, 320);
-    await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point', { timeout: 20_000 });
+    await page.waitForFunction(() => document.querySelector('.tool-hint')?.textContent === 'Click the second point');
     await page.mouse.click(450, 330);
-    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1, { timeout: 20_000 });
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().measures.length === 1);
     const [measure] = (await settings(page)).measures;
     const voxel = await page.evaluate(() => /** @type {any} */ (window).voxdag.viewer.info.voxelSize);
     assert.ok(apart(measure.from, a.position) < 0.01 * voxel && apart(measure.to, b.position) < 0.01 * voxel);
@@ -278,7 +278,7 @@ describeInBrowsers('hands', (_, browser) => {
     const page = await load();
     await page.keyboard.press('n');
     await page.mouse.click(400, 330);
-    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1, { timeout: 20_000 });
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().annotations.length === 1);
     await page.keyboard.type('The gate');
     assert.equal((await settings(page)).annotations[0].text, 'The gate');
     await page.keyboard.press('Escape');
@@ -295,7 +295,7 @@ describeInBrowsers('hands', (_, browser) => {
     await page.evaluate(() => /** @type {any} */ (window).voxdag.ui.open('film'));
     await page.$$eval('button', (all) => all.find((one) => one.textContent === 'Play')?.click());
     await pause(2600);
-    await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'), { timeout: 20_000 });
+    await page.waitForFunction(() => ![...document.querySelectorAll('button')].some((one) => one.textContent === 'Stop'));
     assert.ok(apart((await camera(page)).eye, keys[1].eye) < 1e-9, 'the film ends at its last key');
     await page.$eval('[aria-label="Seconds of key 2"]', (input) => /** @type {HTMLInputElement} */ (input).select());
     await page.keyboard.type('3.5\n');
@@ -324,10 +324,10 @@ describeInBrowsers('hands', (_, browser) => {
     fs.writeFileSync(bad, '{"version": 1, "sky": "blue"}');
     const input = /** @type {import('puppeteer-core').ElementHandle<HTMLInputElement>} */ (await page.$('input[type=file]'));
     await input.uploadFile(good);
-    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5, { timeout: 20_000 });
+    await page.waitForFunction(() => /** @type {any} */ (window).voxdag.viewer.get().sky === 0.5);
     assert.deepEqual((await camera(page)).eye, [3, 2, 1]);
     await input.uploadFile(bad);
-    await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''), { timeout: 20_000 });
+    await page.waitForFunction(() => /"sky" is not a number/.test(document.querySelector('.toast.error')?.textContent ?? ''));
     assert.equal((await settings(page)).sky, 0.5);
     await page.close();
   });
@@ -366,7 +366,7 @@ describeInBrowsers('hands', (_, browser) => {
     const page = await browser().newPage();
     await page.evaluateOnNewDocument(() => { HTMLCanvasElement.prototype.getContext = () => null; });
     await page.goto(server.url);
-    await page.waitForSelector('.failure', { timeout: 20_000 });
+    await page.waitForSelector('.failure');
     assert.match(await page.$eval('.failure', (card) => card.textContent ?? ''), /WebGL 2/);
     await page.close();
   });

@@ -222,8 +222,13 @@ void write_open_vdb(std::ostream& stream, const std::vector<openvdb::GridBase::P
 }
 
 void write_nano_vdb(std::ostream& stream, const std::vector<openvdb::GridBase::Ptr>& grids) {
+  // For grids of a named type NanoVDB compiles one conversion each, else a dozen.
   std::vector<nanovdb::GridHandle<nanovdb::HostBuffer>> handles;
-  for (const openvdb::GridBase::Ptr& grid : grids) handles.push_back(nanovdb::openToNanoVDB(grid));
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    if (const auto density = openvdb::GridBase::grid<openvdb::FloatGrid>(grid))
+      handles.push_back(nanovdb::openToNanoVDB(*density));
+    else
+      handles.push_back(nanovdb::openToNanoVDB(*openvdb::GridBase::grid<openvdb::Vec3SGrid>(grid)));
   nanovdb::io::writeGrids<nanovdb::HostBuffer, std::vector>(stream, handles,
                                                             nanovdb::io::Codec::NONE);
 }
