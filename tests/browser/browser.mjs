@@ -31,7 +31,7 @@ export function launch(name) {
  */
 export function describeInBrowsers(title, body) {
   for (const name of browsers)
-    describe(`${title} in ${name}`, { timeout: 840_000 }, () => {
+    describe(`${title} in ${name}`, { timeout: 840_000 }, () => {  // before ctest's limit, so that node names the test
       /** @type {import('puppeteer-core').Browser} */
       let browser;
       before(async () => {

@@ -222,7 +222,7 @@ void write_open_vdb(std::ostream& stream, const std::vector<openvdb::GridBase::P
 }
 
 void write_nano_vdb(std::ostream& stream, const std::vector<openvdb::GridBase::Ptr>& grids) {
-  // For grids of a named type NanoVDB compiles one conversion each, else a dozen.
+  // NanoVDB compiles one conversion for each type named here, and a dozen for GridBase.
   std::vector<nanovdb::GridHandle<nanovdb::HostBuffer>> handles;
   for (const openvdb::GridBase::Ptr& grid : grids)
     if (const auto density = openvdb::GridBase::grid<openvdb::FloatGrid>(grid))
