@@ -65,4 +65,8 @@ if [ -z "${VOXDAG_SCENES-}" ] && [ -f ../shared/scenes/unpack.sh ]; then
 fi
 
 echo "== tests"
-ctest --preset release -j "$jobs" --no-tests=error
+ctest --preset release -j "$jobs" --no-tests=error || {
+  echo "== the tests that failed, again, one by one: their output comes last"
+  ctest --preset release --rerun-failed || true
+  exit 1
+}
