@@ -47,7 +47,7 @@ within() { timeout --foreground $((deadline - SECONDS > 5 ? deadline - SECONDS :
 build() {
   local build=$1
   local configure=(cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVOXDAG_CUDA=ON
-    -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_BENCH=OFF "${@:2}")
+    -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_BENCH=ON "${@:2}")
   command -v nvcc >/dev/null || die "there is no nvcc; see --pack"
   echo "== build"
   mkdir -p build
@@ -57,7 +57,11 @@ build() {
     "${configure[@]}" >"$build-configure.log" 2>&1 ||
       { cat "$build-configure.log" >&2; exit 1; }
   fi
-  within cmake --build "$build" --target voxdag_app cuda_tests stream_cuda_tests -- -j "$(nproc)"
+  local targets=(voxdag_app cuda_tests stream_cuda_tests)
+  # Without OpenVDB and NanoVDB this target does not exist.
+  ! ninja -C "$build" -t query voxdag_rival_nanovdb_trace >/dev/null 2>&1 ||
+    targets+=(voxdag_rival_nanovdb_trace)
+  within cmake --build "$build" --target "${targets[@]}" -- -j "$(nproc)"
 }
 
 # Prints the path of sponza.obj, or nothing.
@@ -78,6 +82,10 @@ if [ -n "$pack" ]; then
   programs=($content/voxdag $content/cuda_tests $content/stream_cuda_tests)
   cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests \
     build/cuda-pack/tests/stream_cuda/stream_cuda_tests $content
+  if [ -x build/cuda-pack/bench/rival_nanovdb_trace ]; then
+    cp build/cuda-pack/bench/rival_nanovdb_trace $content
+    programs+=($content/rival_nanovdb_trace)
+  fi
   strip "${programs[@]}"
   ! ldd "${programs[@]}" | grep "not found" || die "libraries are missing"
   # Copies all libraries except the C library, which must match the loader of the other machine.
@@ -108,11 +116,13 @@ if [ -n "$packed" ]; then
   mkdir -p $work
   tar -C $work -xzf "$packed"
   program=$work/voxdag tests=$work/cuda_tests stream_tests=$work/stream_cuda_tests
+  nanovdb=$work/rival_nanovdb_trace
   libraries=$PWD/$work/lib
 else
   build $work -DCMAKE_CUDA_ARCHITECTURES="${capability/./}-real"
   program=$work/apps/voxdag/voxdag tests=$work/tests/cuda/cuda_tests
   stream_tests=$work/tests/stream_cuda/stream_cuda_tests libraries=
+  nanovdb=$work/bench/rival_nanovdb_trace
 fi
 [ -z "${LD_LIBRARY_PATH-}" ] || libraries=${libraries:+$libraries:}$LD_LIBRARY_PATH
 ours() { within env LD_LIBRARY_PATH="$libraries" "$@"; }
@@ -150,6 +160,13 @@ bench() {
     --views 2 --rays 8000000 -o "$folder/$1.json"
   [ ! -f "$folder/$1.json" ] || attempt hits_agree "$folder/$1.json"
 }
+# bench_nanovdb NAME FILE: measures rays that end at voxels, and NanoVDB with the same rays.
+bench_nanovdb() {
+  echo "== $1"
+  [ -x $nanovdb ] || { echo "NanoVDB is not measured: OpenVDB or NanoVDB was not found" >&2; return; }
+  attempt voxdag bench trace "$2" --nanovdb $nanovdb --lod 0 --device cuda --layout paper \
+    --size 1920x1080 --views 2 --rays 4000000 -o "$folder/$1.json"
+}
 # bench_esvo NAME MESH: measures rays per second at ESVOs of 1024³; fails if a hit differs from the
 # CPU's.
 bench_esvo() {
@@ -166,6 +183,7 @@ if [ $measure = yes ]; then
       attempt voxdag build "$sponza" -r $resolution -o $work/sponza-$resolution.vdag
       bench sponza-$resolution $work/sponza-$resolution.vdag "$sponza" paper
     done
+    bench_nanovdb sponza-4096-nanovdb $work/sponza-4096.vdag
     for where in cpu cuda; do
       attempt voxdag render $work/sponza-4096.vdag -o $work/sponza-$where.png --size 3840x2160 \
         --device $where

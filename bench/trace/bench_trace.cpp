@@ -10,7 +10,7 @@
 #include "bench/rays/cuda_runner.hpp"
 #include "bench/rays/trace_measure.hpp"
 #include "bench/rivals/embree_rival.hpp"
-#include "bench/rivals/openvdb_rival.hpp"
+#include "bench/rivals/trace_program_rival.hpp"
 #include "bench/trace/trace_casters.hpp"
 
 namespace voxdag {
@@ -87,9 +87,13 @@ std::vector<std::unique_ptr<Rival>> rivals_for(const TraceScene& scene, const Tr
   std::vector<std::unique_ptr<Rival>> rivals;
   if (scene.mesh != nullptr && EmbreeRival::is_available())
     rivals.push_back(std::make_unique<EmbreeRival>(*scene.mesh));
-  if (!plan.openvdb_program.empty() && !scene.file.empty())
-    rivals.push_back(
-        std::make_unique<OpenVdbRival>(plan.openvdb_program, scene.file, scene.voxels));
+  const auto add_program = [&](const char* name, const std::string& program, std::size_t rays) {
+    if (!program.empty() && !scene.file.empty())
+      rivals.push_back(
+          std::make_unique<TraceProgramRival>(name, program, rays, scene.file, scene.voxels));
+  };
+  add_program("openvdb", plan.openvdb_program, 100'000);
+  add_program("nanovdb_cuda", plan.nanovdb_program, 4'000'000);  // enough to fill a device
   return rivals;
 }
 

@@ -37,6 +37,13 @@ struct TracePlan {
   int repeat = 3;                   ///< Number of casts of a set; the fastest counts.
   std::vector<double> light_sizes;  ///< Of the lamps of SoftShadowRow; empty: do not measure them.
   std::string openvdb_program;      ///< rival_openvdb_trace, or empty.
+  std::string nanovdb_program;      ///< rival_nanovdb_trace, or empty.
+
+  /// Returns the option of a rival that is a program and needs the file of a DAG, or null.
+  const char* program_option() const {
+    if (!openvdb_program.empty()) return "--openvdb";
+    return nanovdb_program.empty() ? nullptr : "--nanovdb";
+  }
 };
 
 struct RivalRate {

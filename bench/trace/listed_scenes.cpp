@@ -45,7 +45,7 @@ void bench_listed(const ListedScene& listed, const Mesh& mesh, int levels, const
   const Svdag dag = build_svdag(mesh, metadata.grid, build, &progress).dag;
   TraceScene scene{listed.name, metadata.grid, dag.view(), &mesh, {}};
   const ScratchFolder folder;
-  if (!plan.openvdb_program.empty()) {
+  if (plan.program_option() != nullptr) {
     metadata.counts = count_svdag(dag.view());
     scene.file = folder.path() / "scene.vdag";
     write_vdag(scene.file, dag.view(), metadata);

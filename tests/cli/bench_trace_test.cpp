@@ -154,6 +154,7 @@ TEST_F(BenchTrace, RefusesWhatItCannotMeasure) {
   expect_failure(bench({path("sponge.ply")}), 1, "sponge.ply");
   expect_failure(bench({path("in.vdag"), "--layout", "thin"}), 2, "--layout");
   expect_failure(bench({path("in.vdag"), "--openvdb", path("absent")}), 1, "absent");
+  expect_failure(bench({path("in.vdag"), "--nanovdb", path("absent")}), 1, "absent");
 }
 
 TEST_F(BenchTrace, TakesEsvosInBothForms) {

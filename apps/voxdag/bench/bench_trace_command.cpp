@@ -63,8 +63,9 @@ void follow_path(const BenchTraceArguments& arguments, const TraceScene& scene, 
 
 TraceResults bench_file(const BenchTraceArguments& arguments, Session& session) {
   const SceneModel file(session.subject, &session.progress);
-  if (file.voxels().esvo() != nullptr && !arguments.plan.openvdb_program.empty())
-    throw Error("--openvdb", "", "needs a DAG, but the file is an ESVO");
+  const char* program_option = arguments.plan.program_option();
+  if (file.voxels().esvo() != nullptr && program_option != nullptr)
+    throw Error(program_option, "", "needs a DAG, but the file is an ESVO");
   Mesh mesh;
   if (!arguments.mesh_file.empty()) {
     mesh = read_mesh_file(arguments.mesh_file, arguments.access, session);
@@ -200,6 +201,9 @@ void add_bench_trace_command(const Command& bench, Session& session) {
   command.text(
       "--openvdb", plan.openvdb_program, "PROGRAM",
       "Also cast the rays with OpenVDB: the path of rival_openvdb_trace (bench/README.md)");
+  command.text("--nanovdb", plan.nanovdb_program, "PROGRAM",
+               "Also cast the rays with NanoVDB on the CUDA device: the path of "
+               "rival_nanovdb_trace (bench/README.md)");
   add_output_options(command, arguments->output, "Plot bars of rays per second");
   add_device_option(command, plan.device);
   add_run_options(command, session);

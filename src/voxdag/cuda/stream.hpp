@@ -48,4 +48,17 @@ class CudaEvent {
   cudaEvent_t event_ = nullptr;
 };
 
+/// Returns the device time, in seconds, of the work that `launch(stream)` starts. `doing` names it
+/// for errors.
+template <class Launch>
+double seconds_of(const char* doing, const Launch& launch) {
+  const CudaStream stream;
+  const CudaEvent begin, end;
+  begin.record(stream);
+  launch(stream.get());
+  end.record(stream);
+  stream.wait(doing);
+  return seconds_between(begin, end);
+}
+
 }  // namespace voxdag

@@ -9,22 +9,6 @@
 #include "voxdag/render/tile.hpp"
 
 namespace voxdag {
-namespace {
-
-/// Returns the device time, in seconds, of the work that `launch(stream)` starts.
-template <class Launch>
-double seconds_of(const char* doing, const Launch& launch) {
-  const CudaStream stream;
-  const CudaEvent begin, end;
-  begin.record(stream);
-  launch(stream.get());
-  end.record(stream);
-  stream.wait(doing);
-  return seconds_between(begin, end);
-}
-
-}  // namespace
-
 struct TimedCasts::State {
   DeviceScene dag;
   DeviceBuffer<CastRay> rays;

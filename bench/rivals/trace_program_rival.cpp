@@ -1,4 +1,4 @@
-#include "bench/rivals/openvdb_rival.hpp"
+#include "bench/rivals/trace_program_rival.hpp"
 
 #include <tbb/task_arena.h>
 
@@ -15,8 +15,6 @@
 
 namespace voxdag {
 namespace {
-
-constexpr std::size_t kSampleRays = 100'000;  // rays of a set that are cast
 
 void write_rays(const std::filesystem::path& file, const Grid& grid,
                 const std::vector<CastRay>& casts) {
@@ -50,13 +48,26 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+/// Returns the absolute path of a program that is given by its path, because it runs in another
+/// folder; a bare name is looked up in PATH.
+std::string absolute_program(const std::string& program) {
+  return program.find('/') == std::string::npos ? program
+                                                : std::filesystem::absolute(program).string();
+}
+
 }  // namespace
 
-OpenVdbRival::OpenVdbRival(std::string program, std::filesystem::path vdag, const VoxelSet& voxels)
-    : Rival("openvdb"), program_(std::move(program)), vdag_(std::move(vdag)), voxels_(voxels) {}
+TraceProgramRival::TraceProgramRival(std::string name, const std::string& program,
+                                     std::size_t sample_rays, std::filesystem::path vdag,
+                                     const VoxelSet& voxels)
+    : Rival(std::move(name)),
+      program_(absolute_program(program)),
+      sample_rays_(sample_rays),
+      vdag_(std::move(vdag)),
+      voxels_(voxels) {}
 
-std::vector<TraceRunner> OpenVdbRival::prepare(const Grid& grid, const RaySet& set) {
-  const std::vector<CastRay> casts = sample_of(set.casts, kSampleRays);
+std::vector<TraceRunner> TraceProgramRival::prepare(const Grid& grid, const RaySet& set) {
+  const std::vector<CastRay> casts = sample_of(set.casts, sample_rays_);
   Sample sample;
   sample.rays_class = set.rays_class;
   sample.set_size = static_cast<double>(set.casts.size());
@@ -67,7 +78,7 @@ std::vector<TraceRunner> OpenVdbRival::prepare(const Grid& grid, const RaySet& s
   return {};
 }
 
-std::vector<RivalTime> OpenVdbRival::cast_all(int repeat, Progress& progress) {
+std::vector<RivalTime> TraceProgramRival::cast_all(int repeat, Progress& progress) {
   std::vector<std::string> command{program_, std::filesystem::absolute(vdag_),
                                    std::to_string(tbb::this_task_arena::max_concurrency()),
                                    std::to_string(repeat)};

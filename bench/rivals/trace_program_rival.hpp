@@ -1,6 +1,6 @@
 #pragma once
-/// OpenVDB: casts voxdag's rays at voxdag's voxels. Runs a separate program
-/// (bench/rivals/rival_openvdb_trace.cpp), so that voxdag does not link OpenVDB.
+/// Casts voxdag's rays at voxdag's voxels with a separate program (trace_program.hpp), so that
+/// voxdag does not link its libraries.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,10 +13,12 @@ namespace voxdag {
 
 /// Takes a sample of each set. One run of the program casts all samples, because it is slow to
 /// start.
-class OpenVdbRival : public Rival {
+class TraceProgramRival : public Rival {
  public:
-  /// `program` is rival_openvdb_trace, `vdag` the file of `voxels`.
-  OpenVdbRival(std::string program, std::filesystem::path vdag, const VoxelSet& voxels);
+  /// `program` is rival_NAME_trace, `vdag` the file of `voxels`. A sample has about `sample_rays`
+  /// rays, or all if there are fewer.
+  TraceProgramRival(std::string name, const std::string& program, std::size_t sample_rays,
+                    std::filesystem::path vdag, const VoxelSet& voxels);
 
   std::vector<TraceRunner> prepare(const Grid& grid, const RaySet& set) override;
   std::vector<RivalTime> cast_all(int repeat, Progress& progress) override;
@@ -31,6 +33,7 @@ class OpenVdbRival : public Rival {
   };
 
   std::string program_;
+  std::size_t sample_rays_;
   std::filesystem::path vdag_;
   VoxelSet voxels_;
   ScratchFolder folder_;
