@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds voxdag for the CUDA device of this machine, runs the tests that need a device, and measures
-# rays per second, pictures, and both papers again on coarse grids, for at most 8 minutes. Needs no
+# rays per second, pictures, and both papers again on coarse grids, for at most 10 minutes. Needs no
 # network if the packages are installed.
 #
 #   scripts/gpu-check.sh [OPTION...]
@@ -39,7 +39,7 @@ cd "$(dirname "$0")/.."
 export PATH="$PATH:/usr/local/cuda/bin"
 
 # Runs a command, limited to the time that is left.
-deadline=$((SECONDS + 470))
+deadline=$((SECONDS + 570))
 [ -z "$pack" ] || deadline=$((SECONDS + 7200))
 within() { timeout --foreground $((deadline - SECONDS > 5 ? deadline - SECONDS : 5)) "$@"; }
 

@@ -38,8 +38,9 @@ struct RaySet {
 /// The time of a rival for a set that it cast by itself.
 struct RivalTime {
   RayClass rays_class;
-  double seconds = 0;   ///< Time for the whole set.
-  double agreeing = 0;  ///< Rays that hit for both rival and voxdag, or for neither.
+  double seconds = 0;       ///< Time for the whole set.
+  double agreeing = 0;      ///< Rays that hit for both rival and voxdag, or for neither.
+  std::uint64_t bytes = 0;  ///< Size of the structure that it cast at; 0 if it does not say.
 };
 
 /// A rival builds or casts rays, or both. It keeps the default of functions that it does not

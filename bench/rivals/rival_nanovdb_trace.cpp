@@ -52,17 +52,18 @@ double cast_all(const DeviceBytes& mask, const voxdag::Grid& grid,
   return seconds;
 }
 
-voxdag::CastRays make_cast_rays(const voxdag::VdagFile& file, int /*threads*/) {
+voxdag::TraceProgram make_program(const voxdag::VdagFile& file, int /*threads*/) {
   voxdag::choose_cuda_device();  // fails with its reason if there is none
   openvdb::initialize();
   const auto mask = std::make_shared<DeviceBytes>(make_device_mask(file.view()));
-  return [mask, grid = file.grid()](std::span<const voxdag::Ray> rays, std::span<char> hits) {
-    return cast_all(*mask, grid, rays, hits);
-  };
+  return {[mask, grid = file.grid()](std::span<const voxdag::Ray> rays, std::span<char> hits) {
+            return cast_all(*mask, grid, rays, hits);
+          },
+          mask->size()};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return voxdag::run_trace_program(argc, argv, "rival_nanovdb_trace", make_cast_rays);
+  return voxdag::run_trace_program(argc, argv, "rival_nanovdb_trace", make_program);
 }

@@ -28,17 +28,17 @@ void write_hits(const std::string& path, const std::vector<char>& hits) {
   if (!out.flush()) throw Error(path, "", "cannot be written");
 }
 
-void trace(int argc, char** argv, const MakeCastRays& make_cast_rays) {
+void trace(int argc, char** argv, const MakeTraceProgram& make) {
   const VdagFile file(argv[1]);
   const int threads = std::max(std::atoi(argv[2]), 1), repeat = std::max(std::atoi(argv[3]), 1);
-  const CastRays cast_rays = make_cast_rays(file, threads);
+  const TraceProgram program = make(file, threads);
   std::string seconds;
   for (int i = 4; i < argc; ++i) {
     const std::vector<Ray> rays = read_rays(argv[i]);
     std::vector<char> hits(rays.size());
     double best = HUGE_VAL;
     for (int turn = 0; turn <= repeat; ++turn) {  // the first turn warms up
-      const double took = cast_rays(rays, hits);
+      const double took = program.cast_rays(rays, hits);
       if (turn > 0) best = std::min(best, took);
     }
     write_hits(std::string(argv[i]) + ".hits", hits);
@@ -46,18 +46,18 @@ void trace(int argc, char** argv, const MakeCastRays& make_cast_rays) {
     std::snprintf(text, sizeof text, "%.9g", best);
     seconds += (seconds.empty() ? "" : ", ") + std::string(text);
   }
-  std::printf("{\"seconds\": [%s]}\n", seconds.c_str());
+  std::printf("{\"seconds\": [%s], \"bytes\": %llu}\n", seconds.c_str(),
+              static_cast<unsigned long long>(program.bytes));
 }
 
 }  // namespace
 
-int run_trace_program(int argc, char** argv, const char* name,
-                      const MakeCastRays& make_cast_rays) try {
+int run_trace_program(int argc, char** argv, const char* name, const MakeTraceProgram& make) try {
   if (argc < 5) {
     std::fprintf(stderr, "usage: %s FILE.vdag THREADS REPEAT RAYS.npy...\n", name);
     return 2;
   }
-  trace(argc, argv, make_cast_rays);
+  trace(argc, argv, make);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s: %s\n", name, error.what());

@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "bench/report/bench_child.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/parallel/parallel_for.hpp"
 #include "voxdag/trace/ray.hpp"
 #include "voxdag/trace/visit_nodes.hpp"
 
@@ -32,13 +34,15 @@ void write_rays(const std::filesystem::path& file, const Grid& grid,
 
 /// Returns 1 for each ray that hits a voxel, else 0.
 std::vector<std::uint8_t> hits_of(const VoxelSet& voxels, const std::vector<CastRay>& casts) {
-  std::vector<std::uint8_t> hits;
-  hits.reserve(casts.size());
+  constexpr std::size_t kBlock = 4096;
+  std::vector<std::uint8_t> hits(casts.size());
   visit_nodes(voxels, [&](const auto& nodes) {
-    for (const CastRay& ray : casts) {
-      CellHit cell;
-      hits.push_back(cast(nodes, ray.ray, StopAtVoxels{}, cell) ? 1 : 0);
-    }
+    parallel_for((casts.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+      for (std::size_t i = block * kBlock; i < std::min((block + 1) * kBlock, casts.size()); ++i) {
+        CellHit cell;
+        hits[i] = cast(nodes, casts[i].ray, StopAtVoxels{}, cell) ? 1 : 0;
+      }
+    });
   });
   return hits;
 }
@@ -94,8 +98,8 @@ std::vector<RivalTime> TraceProgramRival::cast_all(int repeat, Progress& progres
     const double scale = sample.set_size / static_cast<double>(sample.hits.size());
     const auto same =
         static_cast<double>(agreeing(sample.hits, read_bytes(sample.rays_file.string() + ".hits")));
-    times.push_back(
-        {sample.rays_class, json.at("seconds").at(i).get<double>() * scale, same * scale});
+    times.push_back({sample.rays_class, json.at("seconds").at(i).get<double>() * scale,
+                     same * scale, json.value("bytes", std::uint64_t{0})});
   }
   return times;
 }

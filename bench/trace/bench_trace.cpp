@@ -20,6 +20,7 @@ namespace {
 struct Sums {
   double seconds = 0, agreeing = 0;
   std::vector<double> view_rates;  ///< Million rays per second.
+  std::uint64_t bytes = 0;         ///< Of a rival's structure.
 
   void add(double more_seconds, double more_agreeing) {
     seconds += more_seconds;
@@ -78,7 +79,7 @@ TraceRow row_of(const TraceScene& scene, const std::string& layout_name, std::ui
   row.bytes_per_ray = sums.bytes / sums.rays;
   for (const auto& [name, s] : sums.rivals)
     row.rivals.push_back(
-        {name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays, s.view_rates});
+        {name, sums.rays / s.seconds * 1e-6, s.agreeing / sums.rays, s.view_rates, s.bytes});
   return row;
 }
 
@@ -231,9 +232,11 @@ void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progr
     results.soft_shadows.push_back({scene.name, scene.grid.levels, row});
   for (const auto& rival : rivals)
     for (const RivalTime& time : rival->cast_all(plan.repeat, progress))
-      for (auto& layout_sums : sums)
-        layout_sums[static_cast<std::size_t>(time.rays_class)].rivals[rival->name()].add(
-            time.seconds, time.agreeing);
+      for (auto& layout_sums : sums) {
+        Sums& s = layout_sums[static_cast<std::size_t>(time.rays_class)].rivals[rival->name()];
+        s.add(time.seconds, time.agreeing);
+        s.bytes = time.bytes;
+      }
   for (std::size_t i = 0; i < layouts.size(); ++i) {
     const std::uint64_t bytes = device_scenes[i] ? layouts[i]->device_bytes() : layouts[i]->bytes();
     for (const RayClass rays : kRayClasses) {
