@@ -174,10 +174,13 @@ TEST(AtomicFile, RemovesLeftoversOfDeadProcessesOnly) {
   ASSERT_EQ(flock(locked, LOCK_EX), 0);
   std::filesystem::create_symlink("out", dir / (dead + "-3"));
   std::filesystem::create_directory(dir / (dead + "-4"));
+  write_text(dir / (dead + "-5.locktest.2"), "of Open MPI");
+  write_text(dir / (dead + "-5.locktest.x"), "no such rank");
   const long before = dir.count();
   write_whole_file(dir / "out", "newer");
-  EXPECT_EQ(dir.count(), before - 1);
+  EXPECT_EQ(dir.count(), before - 2);
   EXPECT_FALSE(std::filesystem::exists(left));
+  EXPECT_FALSE(std::filesystem::exists(dir / (dead + "-5.locktest.2")));
   close(locked);
 }
 

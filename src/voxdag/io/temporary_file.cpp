@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 /// for a name.
 constexpr std::size_t kMaxStem = 200;
 constexpr std::string_view kMark = ".voxdag-";
+constexpr std::string_view kLockTest = ".locktest.";
 
 std::string prefix_of(const fs::path& target) {
   return target.filename().string().substr(0, kMaxStem) + std::string(kMark);
@@ -39,10 +40,21 @@ long parse_digits(std::string_view digits) {
   return error == std::errc() && end == digits.data() + digits.size() ? value : -1;
 }
 
-/// Returns the process id in a name that temporary_name() makes from `prefix`, or -1.
+/// Removes the suffix with which Open MPI names a second file, NAME.locktest.RANK, while it opens a
+/// file: with this file it finds out whether the file system has locks.
+std::string_view without_lock_test(std::string_view name) {
+  const std::size_t at = name.find(kLockTest);
+  return at != name.npos && parse_digits(name.substr(at + kLockTest.size())) >= 0
+             ? name.substr(0, at)
+             : name;
+}
+
+/// Returns the process id in a name that temporary_name() makes from `prefix`, or in the name of
+/// Open MPI's second file, or -1.
 long process_of(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return -1;
   name.remove_prefix(prefix.size());
+  name = without_lock_test(name);
   const std::size_t dash = name.find('-');
   if (dash == name.npos || parse_digits(name.substr(dash + 1)) < 0) return -1;
   return parse_digits(name.substr(0, dash));
