@@ -37,6 +37,8 @@ endif()
 
 if("OpenVDB" IN_LIST VOXDAG_LIBRARY_PACKAGES)
   find_package(OpenVDB QUIET)
+  find_path(NanoVDB_INCLUDE_DIR nanovdb/util/OpenToNanoVDB.h)
+  mark_as_advanced(NanoVDB_INCLUDE_DIR)
   if(NOT OpenVDB_FOUND)
     message(STATUS "voxdag: OpenVDB (libopenvdb-dev, libboost-dev) not found: voxdag reads no .vdb volumes")
   endif()

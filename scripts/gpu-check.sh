@@ -58,9 +58,10 @@ build() {
       { cat "$build-configure.log" >&2; exit 1; }
   fi
   local targets=(voxdag_app cuda_tests stream_cuda_tests)
-  # Without OpenVDB and NanoVDB this target does not exist.
-  ! ninja -C "$build" -t query voxdag_rival_nanovdb_trace >/dev/null 2>&1 ||
+  # This target exists only if OpenVDB and NanoVDB are installed.
+  if ninja -C "$build" -t query voxdag_rival_nanovdb_trace >/dev/null 2>&1; then
     targets+=(voxdag_rival_nanovdb_trace)
+  fi
   within cmake --build "$build" --target "${targets[@]}" -- -j "$(nproc)"
 }
 
@@ -153,19 +154,11 @@ done
 hits_agree() {
   awk -F '[:,]' '/"rival":/ { ours = $2 ~ "voxdag_cpu" } /"rival_agreement":/ && ours && $2 != 1 { exit 1 }' "$1"
 }
-# bench NAME FILE MESH LAYOUTS: measures rays per second.
+# bench NAME FILE OPTION...: measures rays per second; fails if a hit differs from the CPU's.
 bench() {
   echo "== $1"
-  attempt voxdag bench trace "$2" --mesh "$3" --device cuda --layout "$4" --size 1920x1080 \
-    --views 2 --rays 8000000 -o "$folder/$1.json"
+  attempt voxdag bench trace "$2" --device cuda --size 1920x1080 --views 2 "${@:3}" -o "$folder/$1.json"
   [ ! -f "$folder/$1.json" ] || attempt hits_agree "$folder/$1.json"
-}
-# bench_nanovdb NAME FILE: measures rays that end at voxels, and NanoVDB with the same rays.
-bench_nanovdb() {
-  echo "== $1"
-  [ -x $nanovdb ] || { echo "NanoVDB is not measured: OpenVDB or NanoVDB was not found" >&2; return; }
-  attempt voxdag bench trace "$2" --nanovdb $nanovdb --lod 0 --device cuda --layout paper \
-    --size 1920x1080 --views 2 --rays 4000000 -o "$folder/$1.json"
 }
 # bench_esvo NAME MESH: measures rays per second at ESVOs of 1024³; fails if a hit differs from the
 # CPU's.
@@ -181,19 +174,26 @@ if [ $measure = yes ]; then
   else
     for resolution in 32768 4096; do
       attempt voxdag build "$sponza" -r $resolution -o $work/sponza-$resolution.vdag
-      bench sponza-$resolution $work/sponza-$resolution.vdag "$sponza" paper
+      bench sponza-$resolution $work/sponza-$resolution.vdag --mesh "$sponza" --layout paper \
+        --rays 8000000
     done
-    bench_nanovdb sponza-4096-nanovdb $work/sponza-4096.vdag
+    # Rays that end at voxels, and NanoVDB with the same rays.
+    if [ -x $nanovdb ]; then
+      bench sponza-4096-nanovdb $work/sponza-4096.vdag --nanovdb $nanovdb --lod 0 --layout paper \
+        --rays 4000000
+    else
+      echo "NanoVDB is not measured: OpenVDB or NanoVDB was not found" >&2
+    fi
     for where in cpu cuda; do
       attempt voxdag render $work/sponza-4096.vdag -o $work/sponza-$where.png --size 3840x2160 \
         --device $where
     done
     cmp $work/sponza-cpu.png $work/sponza-cuda.png && echo "both pictures are equal"
     attempt voxdag build "$sponza" -r 1024 -o $work/sponza.esvo
-    bench sponza-1024-esvo $work/sponza.esvo "$sponza" contours,cubes
+    bench sponza-1024-esvo $work/sponza.esvo --mesh "$sponza" --layout contours,cubes --rays 8000000
     bench_esvo sponza-rates "$sponza"
   fi
-  bench courtyard-2048 $scene.vdag $scene.ply paper,wide
+  bench courtyard-2048 $scene.vdag --mesh $scene.ply --layout paper,wide --rays 8000000
   bench_esvo courtyard-rates $scene.ply
   echo "== papers"
   attempt voxdag bench papers --quick --device cuda -o $work/papers

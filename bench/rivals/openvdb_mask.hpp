@@ -1,9 +1,8 @@
 #pragma once
-/// The voxels of a DAG as a mask grid of OpenVDB, for the rivals that walk such grids.
+/// Converts a DAG into a mask grid of OpenVDB, for the rivals that walk such grids.
 #include <openvdb/openvdb.h>
 
 #include "voxdag/layout/for_each_voxel.hpp"
-#include "voxdag/trace/ray.hpp"
 
 namespace voxdag {
 
@@ -17,16 +16,6 @@ inline openvdb::MaskGrid::Ptr openvdb_mask_of(const SvdagView& dag) {
     accessor.setValueOn({v.x, v.y, v.z});
   });
   return grid;
-}
-
-/// A ray in units of voxels, with the world ray's t.
-struct VoxelRay {
-  Vec3d origin, direction;
-};
-
-inline VoxelRay to_voxels(const Grid& grid, const Ray& ray) {
-  return {grid.to_grid(static_cast<Vec3d>(ray.origin)),
-          static_cast<Vec3d>(ray.direction) * (1 / grid.voxel_size)};
 }
 
 }  // namespace voxdag

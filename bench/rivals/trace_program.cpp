@@ -64,4 +64,9 @@ int run_trace_program(int argc, char** argv, const char* name, const MakeTracePr
   return 1;
 }
 
+VoxelRay to_voxels(const Grid& grid, const Ray& ray) {
+  return {grid.to_grid(static_cast<Vec3d>(ray.origin)),
+          static_cast<Vec3d>(ray.direction) * (1 / grid.voxel_size)};
+}
+
 }  // namespace voxdag

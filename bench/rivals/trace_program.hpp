@@ -1,12 +1,11 @@
 #pragma once
-/// What the programs rival_*_trace have in common: arguments, files of rays and hits, repeated
-/// casts.
+/// Runs the programs rival_NAME_trace, which cast rays for `voxdag bench trace`:
 ///
 ///   rival_NAME_trace FILE.vdag THREADS REPEAT RAYS.npy...
 ///
 /// RAYS.npy is a float32 array of shape (N, 8), as for `voxdag trace`. The program casts each
 /// file's rays at the voxels of FILE.vdag, writes RAYS.npy.hits, one byte for each ray (1 for a
-/// hit), and prints {"seconds": [...], "bytes": N}: the fastest of REPEAT casts of each file, and
+/// hit), and prints {"seconds": [...], "bytes": B}: the fastest of REPEAT casts of each file, and
 /// the size of the structure that holds the voxels.
 #include <functional>
 #include <span>
@@ -25,10 +24,19 @@ struct TraceProgram {
   CastRays cast_rays;
   std::uint64_t bytes = 0;
 };
-/// Makes the structure. Casts on `threads` threads.
+/// Makes the structure of a file. Its casts run on `threads` threads.
 using MakeTraceProgram = std::function<TraceProgram(const VdagFile& file, int threads)>;
 
-/// Runs a program `name` and returns its exit status. Prints errors.
+/// Runs the program `name` with the arguments of main(), prints errors, and returns the exit
+/// status.
 int run_trace_program(int argc, char** argv, const char* name, const MakeTraceProgram& make);
+
+/// A ray in units of voxels, with the world ray's t. Voxel (i,j,k) is the cube with its lower
+/// corner at (i,j,k).
+struct VoxelRay {
+  Vec3d origin, direction;
+};
+
+VoxelRay to_voxels(const Grid& grid, const Ray& ray);
 
 }  // namespace voxdag

@@ -157,6 +157,41 @@ TEST_F(BenchTrace, RefusesWhatItCannotMeasure) {
   expect_failure(bench({path("in.vdag"), "--nanovdb", path("absent")}), 1, "absent");
 }
 
+/// Writes a program that obeys bench/rivals/trace_program.hpp and hits nothing.
+void write_rival_that_hits_nothing(const std::string& file) {
+  write_text(file, R"(#!/bin/sh
+[ -f "$1" ] && [ "$2" -ge 1 ] && [ "$3" -eq 1 ] || exit 1
+shift 3
+for rays; do
+  count=$(head -n 1 "$rays" | LC_ALL=C sed 's/.*(\([0-9]*\), 8).*/\1/')
+  head -c "$count" /dev/zero >"$rays.hits"
+  seconds="$seconds${seconds:+, }0.5"
+done
+echo "{\"seconds\": [$seconds], \"bytes\": 7}"
+)");
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+}
+
+TEST_F(BenchTrace, RivalsMayBeProgramsNamedByRelativePaths) {
+  write_rival_that_hits_nothing(path("rival"));
+  const std::string relative = std::filesystem::relative(path("rival")).string();
+  for (const auto& [option, name] :
+       {std::pair{"--openvdb", "openvdb"}, std::pair{"--nanovdb", "nanovdb_cuda"}}) {
+    const ProcessResult result = bench({path("in.vdag"), option, relative, "--lod", "0", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    std::size_t rows = 0;
+    for (const Json& row : Json::parse(result.out)) {
+      if (row.at("rival") != name) continue;
+      ++rows;
+      EXPECT_EQ(row.at("rival_bytes"), 7);
+      EXPECT_NEAR(row.at("rival_agreement").get<double>(), 1 - row.at("hit_part").get<double>(),
+                  1e-9);
+      EXPECT_GT(row.at("rival_mrays_per_s"), 0);
+    }
+    EXPECT_EQ(rows, 5u) << name;
+  }
+}
+
 TEST_F(BenchTrace, TakesEsvosInBothForms) {
   ASSERT_EQ(run_voxdag({"build", path("sponge.ply"), "-r", "32", "-o", path("in.esvo")}).status, 0);
   const ProcessResult result = bench({path("in.esvo"), "--layout", "contours,cubes", "--json"});

@@ -9,6 +9,7 @@
 #include "voxdag/render/tile.hpp"
 
 namespace voxdag {
+
 struct TimedCasts::State {
   DeviceScene dag;
   DeviceBuffer<CastRay> rays;

@@ -40,8 +40,8 @@ long parse_digits(std::string_view digits) {
   return error == std::errc() && end == digits.data() + digits.size() ? value : -1;
 }
 
-/// Removes the suffix with which Open MPI names a second file, NAME.locktest.RANK, while it opens a
-/// file: with this file it finds out whether the file system has locks.
+/// Returns the name without the suffix `.locktest.RANK`. While Open MPI opens a file, it makes a
+/// second file with this suffix, to find out whether the file system has locks.
 std::string_view without_lock_test(std::string_view name) {
   const std::size_t at = name.find(kLockTest);
   return at != name.npos && parse_digits(name.substr(at + kLockTest.size())) >= 0
@@ -49,8 +49,8 @@ std::string_view without_lock_test(std::string_view name) {
              : name;
 }
 
-/// Returns the process id in a name that temporary_name() makes from `prefix`, or in the name of
-/// Open MPI's second file, or -1.
+/// Returns the process id in a name that temporary_name() makes from `prefix`, also with the suffix
+/// `.locktest.RANK`, or -1.
 long process_of(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return -1;
   name.remove_prefix(prefix.size());

@@ -15,9 +15,9 @@ std::filesystem::path temporary_name(const std::filesystem::path& target);
 void lock_temporary(int descriptor) noexcept;
 
 /// Removes temporary files of `target` whose writer was killed: regular files of this user, with a
-/// name from temporary_name(), whose process does not run and which no process locks, and the files
-/// NAME.voxdag-PID-N.locktest.RANK that a killed Open MPI left beside them. Lists each folder once
-/// per process. Never throws.
+/// name from temporary_name(), whose process does not run and which no process locks. Also removes
+/// NAME.voxdag-PID-N.locktest.RANK, which Open MPI leaves behind if it is killed while it opens
+/// such a file. Lists each folder once per process. Never throws.
 void remove_leftovers(const std::filesystem::path& target) noexcept;
 
 }  // namespace voxdag
