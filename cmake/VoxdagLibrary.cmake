@@ -1,17 +1,21 @@
-# voxdag_library(NAME [SOURCES a.cpp ...] [LINK other_part ... external::target ...] [OPTIONS -flag ...])
-# adds the target voxdag_NAME of a folder of src/voxdag. A folder without sources is header-only.
+# voxdag_library(ROOM [LINK voxdag_OTHER ... external::target ...] [PRIVATE_LINK ...] [LEAVE_OUT a.cpp ...]
+#                [ALONE b.cpp ...])
+# adds the target voxdag_ROOM: all sources of a folder of src/voxdag but those to leave out, which
+# modules have. A room without sources is header-only. A unity build compiles the sources in ALONE by
+# themselves: those that Highway compiles once per instruction set.
 function(voxdag_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK;OPTIONS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINK;PRIVATE_LINK;LEAVE_OUT;ALONE" ${ARGN})
   set(target voxdag_${name})
-  if(ARG_SOURCES)
-    add_library(${target} STATIC ${ARG_SOURCES})
+  file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
+  if(ARG_LEAVE_OUT)
+    list(REMOVE_ITEM sources ${ARG_LEAVE_OUT})
+  endif()
+  if(sources)
+    add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:voxdag_settings> ${ARG_PRIVATE_LINK})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${target} PRIVATE ${ARG_OPTIONS})
-    if(NOT ARG_OPTIONS)
-      voxdag_precompile(${target} voxdag_library_headers)
-    endif()
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -23,4 +27,12 @@ function(voxdag_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_link_libraries(${target} ${scope} ${ARG_LINK})
   set_property(GLOBAL APPEND PROPERTY VOXDAG_TARGETS ${target})
+endfunction()
+
+# voxdag_module(TARGET SOURCES ... LINK ...) adds a module that programs load on demand.
+function(voxdag_module target)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_library(${target} MODULE ${ARG_UNPARSED_ARGUMENTS})
+  set_target_properties(${target} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${VOXDAG_MODULES})
+  target_link_libraries(${target} PRIVATE voxdag_settings ${ARG_LINK})
 endfunction()

@@ -13,11 +13,11 @@
 #include "support/brute_svdag.hpp"
 #include "support/compact_walk.hpp"
 #include "support/number_colors.hpp"
-#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/compact_file.hpp"
-#include "voxdag/layout/build_cell_index.hpp"
-#include "voxdag/layout/validate_svdag.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag {
 namespace {

@@ -12,9 +12,9 @@
 #include "support/esvo_bytes.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_parse.hpp"
-#include "voxdag/layout/esvo_bytes.hpp"
-#include "voxdag/layout/esvo_leaf_parts.hpp"
-#include "voxdag/layout/stored_values.hpp"
+#include "voxdag/stored/esvo/esvo_bytes.hpp"
+#include "voxdag/stored/esvo/esvo_leaf_parts.hpp"
+#include "voxdag/stored/esvo/stored_values.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 
 namespace voxdag {

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/imports/volumes/binvox.hpp"
-#include "voxdag/imports/volumes/nifti.hpp"
-#include "voxdag/imports/volumes/npy_volume.hpp"
-#include "voxdag/imports/volumes/nrrd.hpp"
-#include "voxdag/imports/volumes/vox.hpp"
+#include "voxdag/formats/imports/volumes/binvox.hpp"
+#include "voxdag/formats/imports/volumes/nifti.hpp"
+#include "voxdag/formats/imports/volumes/npy_volume.hpp"
+#include "voxdag/formats/imports/volumes/nrrd.hpp"
+#include "voxdag/formats/imports/volumes/vox.hpp"
 
 namespace voxdag {
 namespace {

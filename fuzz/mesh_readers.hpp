@@ -2,11 +2,11 @@
 /// The library's own mesh readers, chosen by a byte.
 #include <cstdint>
 
-#include "voxdag/readers/gltf/gltf_reader.hpp"
-#include "voxdag/readers/obj/obj_reader.hpp"
-#include "voxdag/readers/off/off_reader.hpp"
-#include "voxdag/readers/ply/ply_reader.hpp"
-#include "voxdag/readers/stl/stl_reader.hpp"
+#include "voxdag/formats/readers/gltf/gltf_reader.hpp"
+#include "voxdag/formats/readers/obj/obj_reader.hpp"
+#include "voxdag/formats/readers/off/off_reader.hpp"
+#include "voxdag/formats/readers/ply/ply_reader.hpp"
+#include "voxdag/formats/readers/stl/stl_reader.hpp"
 
 namespace voxdag {
 

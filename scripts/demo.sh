@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 
 install_packages "${voxdag_packages[@]}"
 cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DVOXDAG_BUILD_TESTS=OFF -DVOXDAG_BUILD_BENCH=OFF >/dev/null
+  -DVOXDAG_BUILD_TESTS=OFF >/dev/null
 cmake --build build/demo -- -j "$(nproc)"
 
 voxdag() { build/demo/apps/voxdag/voxdag "$@"; }

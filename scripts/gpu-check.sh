@@ -47,7 +47,7 @@ within() { timeout --foreground $((deadline - SECONDS > 5 ? deadline - SECONDS :
 build() {
   local build=$1
   local configure=(cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DVOXDAG_CUDA=ON
-    -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_BENCH=ON "${@:2}")
+    -DVOXDAG_BUILD_TESTS=ON -DVOXDAG_BUILD_LAB=ON "${@:2}")
   command -v nvcc >/dev/null || die "there is no nvcc; see --pack"
   echo "== build"
   mkdir -p build

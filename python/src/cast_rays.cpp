@@ -6,7 +6,7 @@
 #include "dag.hpp"
 #include "run_work.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
-#include "voxdag/layout/look_reader.hpp"
+#include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace py = pybind11;
 

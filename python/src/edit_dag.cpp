@@ -14,8 +14,8 @@
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/model/aligned_models.hpp"
-#include "voxdag/model/edited.hpp"
+#include "voxdag/file/model/aligned_models.hpp"
+#include "voxdag/file/model/edited.hpp"
 
 namespace py = pybind11;
 

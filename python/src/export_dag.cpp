@@ -4,8 +4,8 @@
 
 #include "dag.hpp"
 #include "run_work.hpp"
-#include "voxdag/exports/export_voxels.hpp"
-#include "voxdag/exports/grids/export_slices.hpp"
+#include "voxdag/formats/exports/export_voxels.hpp"
+#include "voxdag/formats/exports/grids/export_slices.hpp"
 
 namespace py = pybind11;
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <future>
 
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::python {
 

@@ -17,7 +17,7 @@
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 constexpr const char* kDtype =
@@ -384,4 +384,4 @@ TEST_F(AttributesCommand, TheWireFormIsSmallerAndGoesThroughEveryCommand) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

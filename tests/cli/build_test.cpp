@@ -7,7 +7,7 @@
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Json = nlohmann::json;
@@ -332,4 +332,4 @@ TEST_F(Build, AnOpenMeshIsFilledByItsWindingNumber) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// A fixture with files that are made anew for each test.
 class CityDag : public testing::Test {
@@ -20,4 +20,4 @@ class CityDag : public testing::Test {
   std::string mesh_ = dir_ / "mesh.ply", plain_ = dir_ / "plain.vdag", small_ = dir_ / "small.vdag";
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Returns a wavy mesh whose vertices all have different colours. With materials, its triangles
 /// have "left", "middle" and "right", from x = 0, 7 and 14 on.
@@ -28,4 +28,4 @@ inline std::string colored_waves(bool with_materials = false) {
   return text.str();
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

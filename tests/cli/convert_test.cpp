@@ -5,7 +5,7 @@
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Json = nlohmann::json;
@@ -143,4 +143,4 @@ TEST_F(Convert, AnEsvoIsRefused) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

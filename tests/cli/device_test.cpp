@@ -6,7 +6,7 @@
 #include "npy_rays.hpp"
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class DeviceOption : public Sponge {
@@ -73,4 +73,4 @@ TEST_F(DeviceOption, OtherDevicesAreBadUsage) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -10,7 +10,7 @@
 #include "process.hpp"
 #include "support/temp_dir.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ TEST(Docs, TheIndexNamesEveryPage) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

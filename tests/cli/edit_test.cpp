@@ -10,7 +10,7 @@
 
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Voxel = std::array<int, 3>;
@@ -271,4 +271,4 @@ TEST_F(Edit, AMemoryLimitIsKeptOrRefused) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

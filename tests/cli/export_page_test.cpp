@@ -1,7 +1,7 @@
 #include "city_dag.hpp"
 #include "colored_waves.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using ExportPage = CityDag;
@@ -55,4 +55,4 @@ TEST_F(ExportPage, WrongOutputsAreRefused) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using ExportCommand = Sponge;
@@ -68,4 +68,4 @@ TEST_F(ExportCommand, NeverOverwritesItsInputBesideTheOutput) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -9,7 +9,7 @@
 #include "npy_rays.hpp"
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -197,4 +197,4 @@ TEST_F(Files, AMappedFileThatIsCutShortIsAnError) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

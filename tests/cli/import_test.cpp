@@ -6,7 +6,7 @@
 #include "colored_waves.hpp"
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class ImportCommand : public Sponge {};
@@ -140,4 +140,4 @@ TEST_F(ImportCommand, VolumesHaveAThreshold) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -3,9 +3,9 @@
 #include <fstream>
 
 #include "support/temp_dir.hpp"
-#include "voxdag/io/process_memory.hpp"
+#include "voxdag/core/io/process_memory.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,4 +63,4 @@ TEST(MemoryOption, BudgetCountsWhatTheProgramHoldsAlready) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Returns the bytes of the file that NumPy writes for a float32 array of shape (N, 8).
 inline std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {
@@ -20,4 +20,4 @@ inline std::string rays_npy(const std::vector<std::array<float, 8>>& rays) {
   return text;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -270,4 +270,4 @@ TEST_F(Options, ThePrintedViewMakesTheSamePicture) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

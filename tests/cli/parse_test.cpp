@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Returns the reason with which `parse` refuses `text`, or "" if it accepts the text.
@@ -63,4 +63,4 @@ TEST(Parse, ImageSize) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

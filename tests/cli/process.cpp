@@ -16,7 +16,7 @@
 
 #include "support/temp_dir.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 int nameless_file() {
@@ -171,4 +171,4 @@ bool lacks_matplotlib(const ProcessResult& result) {
              std::string::npos;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

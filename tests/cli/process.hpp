@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct ProcessResult {
   int status = 0;  ///< Exit status, or 128 + the signal that ended it.
@@ -56,4 +56,4 @@ void expect_failure(const ProcessResult& result, int status, const std::string& 
 /// Returns whether a command with --plot failed because matplotlib is not installed.
 bool lacks_matplotlib(const ProcessResult& result);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

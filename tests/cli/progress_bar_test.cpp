@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 TEST(ProgressLine, HasRateAndTimeLeft) {
@@ -16,4 +16,4 @@ TEST(ProgressLine, DoesNotGuessFromNothing) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -12,7 +12,7 @@
 #include "voxdag/file/npy.hpp"
 #include "voxdag/file/vdag_file.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Json = nlohmann::json;
@@ -208,4 +208,4 @@ TEST_F(Query, WrongQuestionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

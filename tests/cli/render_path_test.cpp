@@ -2,7 +2,7 @@
 
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class RenderPath : public Sponge {
@@ -143,4 +143,4 @@ TEST_F(RenderPath, NamesThePlaceOfTheFault) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include "sponge.hpp"
 #include "support/read_pictures.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class RenderCommand : public Sponge {};
@@ -222,4 +222,4 @@ TEST_F(RenderCommand, BakedOcclusionIsThatOfTheOctreesOwnVoxelsUnlessAskedFor) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -2,7 +2,7 @@
 #include "colored_waves.hpp"
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class RenderView : public Sponge {
@@ -145,4 +145,4 @@ TEST_F(RenderView, SettingsThatAPictureCannotShowAreNamed) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -7,7 +7,7 @@
 #include "npy_rays.hpp"
 #include "sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 TEST_F(Sponge, ListNamesTheScenesWithTheirSizes) {
@@ -131,4 +131,4 @@ TEST_F(Sponge, InfoRefusesAFileThatIsNoDag) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

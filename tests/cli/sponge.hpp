@@ -5,7 +5,7 @@
 #include "cli/process.hpp"
 #include "support/temp_dir.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// A fixture with files that are made once for all tests of a program.
 class Sponge : public testing::Test {
@@ -31,4 +31,4 @@ class Sponge : public testing::Test {
   static inline TempDir* dir_ = nullptr;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -13,10 +13,10 @@
 #include "voxdag/core/morton.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/layout/color_block.hpp"
-#include "voxdag/layout/normal_block.hpp"
+#include "voxdag/stored/esvo/color_block.hpp"
+#include "voxdag/stored/esvo/normal_block.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 const std::string kPlace = "[('t', '<f4'), ('voxel', '<i4', (3,)), ('face', '|i1'), ('hit', '|b1')";
@@ -239,4 +239,4 @@ TEST_F(TraceCommand, NoRaysMakeAnArrayWithTheSameFields) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

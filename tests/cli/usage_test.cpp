@@ -2,7 +2,7 @@
 
 #include "process.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 const std::vector<std::string> kCommands = {
@@ -76,4 +76,4 @@ TEST(Usage, BashCompletionNamesEveryCommandAndParses) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

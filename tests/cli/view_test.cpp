@@ -8,7 +8,7 @@
 #include "city_dag.hpp"
 #include "viewer/http_client.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class View : public CityDag {
@@ -102,4 +102,4 @@ TEST_F(View, AnAddressItCannotUseIsAnError) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

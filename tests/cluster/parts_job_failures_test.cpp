@@ -9,8 +9,8 @@
 #include "support/error_of.hpp"
 #include "support/file_size_limit.hpp"
 #include "voxdag/cluster/work_folder.hpp"
-#include "voxdag/scenes/ply_writer.hpp"
-#include "voxdag/scenes/scenes.hpp"
+#include "voxdag/formats/scenes/ply_writer.hpp"
+#include "voxdag/formats/scenes/scenes.hpp"
 
 namespace voxdag {
 namespace {

@@ -12,8 +12,8 @@
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/scenes/ply_writer.hpp"
-#include "voxdag/scenes/scenes.hpp"
+#include "voxdag/formats/scenes/ply_writer.hpp"
+#include "voxdag/formats/scenes/scenes.hpp"
 
 namespace voxdag {
 namespace {

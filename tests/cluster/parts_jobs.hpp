@@ -7,10 +7,10 @@
 #include "shared_folder.hpp"
 #include "support/random_triangles.hpp"
 #include "voxdag/cluster/parts_job.hpp"
-#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 
 namespace voxdag {
 

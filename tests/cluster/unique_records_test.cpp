@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "voxdag/io/checksum.hpp"
+#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 namespace {

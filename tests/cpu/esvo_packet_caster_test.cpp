@@ -10,7 +10,7 @@
 #include "support/test_esvo.hpp"
 #include "support/voxel_sets.hpp"
 #include "voxdag/cpu/packets/packet_caster.hpp"
-#include "voxdag/stream/streamed_nodes.hpp"
+#include "voxdag/cpu/stream/streamed_nodes.hpp"
 
 namespace voxdag {
 namespace {

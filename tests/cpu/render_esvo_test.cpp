@@ -12,8 +12,8 @@
 #include "support/voxel_sets.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/cpu/render_image.hpp"
-#include "voxdag/esvo/build/build_esvo.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/esvo/build/build_esvo.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

@@ -8,8 +8,8 @@
 #include "support/grid_mesh.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/srgb.hpp"
-#include "voxdag/esvo/build/build_esvo.hpp"
-#include "voxdag/layout/color_block.hpp"
+#include "voxdag/builders/esvo/build/build_esvo.hpp"
+#include "voxdag/stored/esvo/color_block.hpp"
 
 namespace voxdag {
 namespace {

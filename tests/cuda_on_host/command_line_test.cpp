@@ -7,7 +7,7 @@
 #include "cli/npy_rays.hpp"
 #include "cli/sponge.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 class DeviceCommands : public Sponge {
@@ -217,4 +217,4 @@ TEST_F(DeviceCommands, AMissingDeviceIsRefused) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::cli

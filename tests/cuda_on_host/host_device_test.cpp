@@ -17,7 +17,7 @@
 #include "voxdag/cuda/timed_casts.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/render/render_plan.hpp"
-#include "voxdag/stream_cuda/device_stream.hpp"
+#include "voxdag/cuda/device_stream.hpp"
 
 namespace voxdag {
 namespace {

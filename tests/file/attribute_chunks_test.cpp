@@ -8,7 +8,7 @@
 #include "support/number_colors.hpp"
 #include "support/vdag_bytes.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/layout/look.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag {
 namespace {

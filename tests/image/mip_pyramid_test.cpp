@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "voxdag/scenes/stone_heights.hpp"
+#include "voxdag/formats/scenes/stone_heights.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,11 +10,11 @@
 #include <random>
 #include <string>
 
-#include "readers/mesh_text.hpp"
+#include "formats/readers/mesh_text.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/readers/obj/obj_reader.hpp"
-#include "voxdag/readers/off/off_reader.hpp"
-#include "voxdag/readers/ply/ply_reader.hpp"
+#include "voxdag/formats/readers/obj/obj_reader.hpp"
+#include "voxdag/formats/readers/off/off_reader.hpp"
+#include "voxdag/formats/readers/ply/ply_reader.hpp"
 
 namespace voxdag {
 namespace {

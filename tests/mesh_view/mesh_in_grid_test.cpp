@@ -4,8 +4,8 @@
 
 #include "meshes.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "meshes.hpp"
 #include "voxdag/cpu/render_image.hpp"
-#include "voxdag/dag/build_svdag.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/mesh_view/mesh_view_source.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "meshes.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {

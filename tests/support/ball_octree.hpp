@@ -6,7 +6,7 @@
 
 #include "support/test_esvo.hpp"
 #include "voxdag/core/morton.hpp"
-#include "voxdag/esvo/encode/pack_blocks.hpp"
+#include "voxdag/builders/esvo/encode/pack_blocks.hpp"
 
 namespace voxdag {
 

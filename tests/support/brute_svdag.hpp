@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/film/camera_path.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/render/film/camera_path.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Walks any compact DAG, broken ones too.
-#include "voxdag/layout/compact/compact_nodes.hpp"
+#include "voxdag/stored/compact/compact_nodes.hpp"
 
 namespace voxdag {
 

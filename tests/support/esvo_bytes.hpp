@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "support/esvo_trees.hpp"
-#include "voxdag/esvo/encode/pack_blocks.hpp"
+#include "voxdag/builders/esvo/encode/pack_blocks.hpp"
 #include "voxdag/file/esvo_writer.hpp"
 
 namespace voxdag::test {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <random>
 
-#include "voxdag/esvo/encode/esvo_tree.hpp"
-#include "voxdag/layout/esvo.hpp"
+#include "voxdag/builders/esvo/encode/esvo_tree.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
 
 namespace voxdag::test {
 

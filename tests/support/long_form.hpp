@@ -4,7 +4,7 @@
 #include <string>
 
 #include "support/vdag_bytes.hpp"
-#include "voxdag/layout/long_svdag.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
 
 namespace voxdag {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Colours and normals that tell the numbers of a DAG's cells.
-#include "voxdag/layout/build_cell_index.hpp"
-#include "voxdag/layout/encode_material_ids.hpp"
-#include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/encode_material_ids.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
 
 namespace voxdag {
 

@@ -2,7 +2,7 @@
 /// Makes triangles that are hard for a voxelizer.
 #include <random>
 
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "voxdag/layout/esvo.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
 
 namespace voxdag {
 

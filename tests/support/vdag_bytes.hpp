@@ -12,8 +12,8 @@
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 

@@ -11,7 +11,7 @@ const KEYS = [
   { time: 2, eye: [4, 2, 3], target: [0.5, 0.5, -1], up: [0.1, 1, 0], fov: 30 },
   { time: 5, eye: [-3, 0.5, -6], target: [0, 0, 1], up: [0, 1, 0] },
 ];
-/** Time, eye, target, up and fov of these keys by CameraPath::at() of film/camera_path.cpp. */
+/** Time, eye, target, up and fov of these keys by CameraPath::at() of render/film/camera_path.cpp. */
 const OF_CPP = [
   [0.20, [0.670295348236, 1.16757383706, 4.66485232588], [0.0633486142109, 0.0306660366244, 0.00403308192412], [0, 1, 0], 41.4874074074],
   [0.75, [3.08593749843, 1.77148437461, 3.45703125078], [0.221339475443, 0.103130803485, 0.0301557369477], [0, 1, 0], 46.25],

@@ -8,7 +8,7 @@
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/layout/value_pages.hpp"
+#include "voxdag/stored/attributes/value_pages.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/stored_look.hpp"

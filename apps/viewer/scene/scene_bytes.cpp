@@ -15,9 +15,9 @@
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/io/mapped_file.hpp"
-#include "voxdag/io/open_input.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/io/open_input.hpp"
 
 namespace voxdag {
 namespace {

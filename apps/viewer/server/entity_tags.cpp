@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "voxdag/io/checksum.hpp"
+#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 

@@ -20,7 +20,7 @@
 #include "viewer/server/request_head.hpp"
 #include "viewer/server/server_address.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/descriptor.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 
 namespace voxdag {
 

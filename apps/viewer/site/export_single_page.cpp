@@ -5,7 +5,7 @@
 #include "viewer/site/export_site.hpp"
 #include "viewer/site/scene_pieces.hpp"
 #include "viewer/site/single_page.hpp"
-#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 

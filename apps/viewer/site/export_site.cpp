@@ -6,8 +6,8 @@
 #include "viewer/embedded/page_files.hpp"
 #include "viewer/site/scene_pieces.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/temporary_folder.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/temporary_folder.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "viewer/scene/scene_bytes.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -6,7 +6,7 @@
 
 #include "viewer/scene/scene_bytes.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

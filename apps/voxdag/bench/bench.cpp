@@ -1,21 +1,44 @@
-/// `voxdag bench`: the parent of the benchmark commands.
-#include "cli/commands.hpp"
+/// `voxdag bench`: runs voxdag-lab, which is a program of its own, with the same arguments.
+#include <unistd.h>
 
-namespace voxdag {
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include "cli/commands.hpp"
+#include "voxdag/core/error.hpp"
+
+namespace voxdag::cli {
+namespace {
+
+/// Replaces this process by voxdag-lab, which lies beside this program or in PATH. Throws Error if
+/// it is not there.
+[[noreturn]] void run_lab(std::vector<std::string> arguments) {
+  std::error_code unknown;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const std::string beside = unknown ? "voxdag-lab" : self.parent_path() / "voxdag-lab";
+  std::vector<char*> argv;
+  std::string name = "voxdag-lab";
+  argv.push_back(name.data());
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  ::execv(beside.c_str(), argv.data());
+  ::execvp("voxdag-lab", argv.data());
+  if (errno != ENOENT) throw Error("voxdag-lab", "", std::strerror(errno));
+  throw Error("voxdag-lab", "",
+              "the program that measures was not found; in a build folder, build it with "
+              "cmake --build . --target voxdag_lab");
+}
+
+}  // namespace
 
 void add_bench_command(const Command& program, Session& session) {
   const Command bench =
-      program.add("bench", "Benchmark builds and rays, also against other programs",
+      program.add("bench", "Benchmark builds and rays, also against other programs (voxdag-lab)",
                   "voxdag bench build sponza.obj -r 2048,4096,8192");
-  bench.require_subcommand();
-  add_bench_build_command(bench, session);
-  add_bench_trace_command(bench, session);
-  add_bench_esvo_command(bench, session);
-  add_bench_compact_command(bench, session);
-  add_bench_compact_rays_command(bench, session);
-  add_bench_attributes_command(bench, session);
-  add_bench_papers_command(bench, session);
-  add_bench_untrusted_command(bench, session);
+  bench.pass_on([&session](std::vector<std::string> arguments) {
+    session.work = [arguments = std::move(arguments)] { run_lab(arguments); };
+  });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -8,7 +8,7 @@
 #include "cli/usage_error.hpp"
 #include "voxdag/core/error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 void add_attribute_options(const Command& command, AttributeArguments& arguments,
                            const std::string& group) {
@@ -86,4 +86,4 @@ DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
   return attributes;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "voxdag/attributes/build_attributes.hpp"
+#include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct AttributeArguments {
   AttributeOptions options;
@@ -39,4 +39,4 @@ DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const SurfaceShading* shading, MemoryBudget& memory,
                                       VdagMetadata& metadata, Progress& progress);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include "cli/parse.hpp"
 #include "cli/usage_error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Returns a grid of the cube of `grid` with 2^levels voxels a side, at most as many as `grid` has.
@@ -79,4 +79,4 @@ SurfaceLight Occluders::light() const {
   };
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

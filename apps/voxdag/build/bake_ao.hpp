@@ -8,9 +8,9 @@
 
 #include "cli/command.hpp"
 #include "voxdag/cpu/surface_openness.hpp"
-#include "voxdag/esvo/build/build_esvo.hpp"
+#include "voxdag/builders/esvo/build/build_esvo.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct BakeArguments {
   int rays = 0;               ///< Rays per point; 0: nothing is baked.
@@ -61,4 +61,4 @@ class Occluders {
   std::optional<SurfaceOpenness> openness_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

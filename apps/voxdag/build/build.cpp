@@ -8,7 +8,7 @@
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Headings of options that only one kind of output has.
@@ -186,4 +186,4 @@ void add_build_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -1,6 +1,6 @@
 #include "build/build_arguments.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 std::map<std::string, std::string> build_settings(const BuildArguments& arguments) {
   std::map<std::string, std::string> settings = settings_of(arguments.grid);
@@ -9,4 +9,4 @@ std::map<std::string, std::string> build_settings(const BuildArguments& argument
   return settings;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -8,12 +8,12 @@
 #include "build/bake_ao.hpp"
 #include "build/displace_option.hpp"
 #include "cli/mesh_input.hpp"
-#include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/esvo/build/build_esvo.hpp"
-#include "voxdag/solid/solid_settings.hpp"
-#include "voxdag/voxelize/grid_request.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/esvo/build/build_esvo.hpp"
+#include "voxdag/builders/solid/solid_settings.hpp"
+#include "voxdag/builders/voxelize/grid_request.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct EsvoArguments {
   EsvoSettings settings;
@@ -52,4 +52,4 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session);
 /// summary.
 void build_esvo_file(const BuildArguments& arguments, Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

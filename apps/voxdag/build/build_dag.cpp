@@ -7,17 +7,17 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
-#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/layout/compact/compact_bytes.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/stored/compact/compact_bytes.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
-#include "voxdag/model/written_by.hpp"
-#include "voxdag/report/dag_report.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/model/written_by.hpp"
+#include "voxdag/file/report/dag_report.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Wall-clock seconds of the steps of a build.
@@ -177,4 +177,4 @@ void build_dag_file(const BuildArguments& arguments, Session& session) {
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -9,13 +9,13 @@
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/esvo_writer.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/io/resolved_output.hpp"
-#include "voxdag/model/written_by.hpp"
-#include "voxdag/report/esvo_report.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/file/model/written_by.hpp"
+#include "voxdag/file/report/esvo_report.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Writes each block to the file when it is finished, and counts the bytes.
@@ -148,4 +148,4 @@ void build_esvo_file(const BuildArguments& arguments, Session& session) {
   print_summary(report, seconds, arguments, session);
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

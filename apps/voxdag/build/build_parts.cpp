@@ -8,13 +8,13 @@
 #include "build/build_arguments.hpp"
 #include "cli/job.hpp"
 #include "voxdag/cluster/parts_job.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/io/temporary_folder.hpp"
-#include "voxdag/model/written_by.hpp"
-#include "voxdag/report/dag_report.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/io/temporary_folder.hpp"
+#include "voxdag/file/model/written_by.hpp"
+#include "voxdag/file/report/dag_report.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 DagReport report_of_file(const PartsReport& parts, const std::string& output) {
@@ -106,4 +106,4 @@ void build_dag_in_parts(const BuildArguments& arguments, Session& session) {
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -13,14 +13,14 @@
 #include "cli/reduced_dag.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/algebra/coarsen.hpp"
-#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct ConvertArguments {
@@ -146,4 +146,4 @@ void add_coarsen_command(const Command& program, Session& session) {
   add_work_options(command, arguments, session);
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

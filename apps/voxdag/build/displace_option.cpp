@@ -8,10 +8,10 @@
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/image/decode.hpp"
-#include "voxdag/scenes/stone_heights.hpp"
-#include "voxdag/surface/material_textures.hpp"
+#include "voxdag/formats/scenes/stone_heights.hpp"
+#include "voxdag/mesh/surface/material_textures.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 void parse_displace(const std::string& text, DisplaceArguments& arguments) {
   std::vector<std::string> parts;
@@ -101,4 +101,4 @@ std::string displace_text(const DisplaceArguments& arguments) {
   return arguments.scale > 0 ? fmt::format("{}:{}", text, arguments.scale) : text;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "voxdag/displace/displaced_triangles.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/mesh/displace/displaced_triangles.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct DisplaceArguments {
   std::string texture;  ///< A file, or "stone" (built in); empty: height maps of materials.
@@ -39,4 +39,4 @@ Box3d displaced_bounds(const DisplacedTriangles& displaced, const Mesh& mesh);
 /// there is no displacement.
 std::string displace_text(const DisplaceArguments& arguments);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

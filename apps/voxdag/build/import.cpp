@@ -11,12 +11,12 @@
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/imports/import_model.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/report/dag_report.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/formats/imports/import_model.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/report/dag_report.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct ImportArguments {
@@ -135,4 +135,4 @@ void add_import_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,12 +6,12 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
-#include "voxdag/film/path_file.hpp"
-#include "voxdag/report/human.hpp"
-#include "voxdag/scenes/ply_writer.hpp"
-#include "voxdag/scenes/scenes.hpp"
+#include "voxdag/render/film/path_file.hpp"
+#include "voxdag/file/report/human.hpp"
+#include "voxdag/formats/scenes/ply_writer.hpp"
+#include "voxdag/formats/scenes/scenes.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct SceneArguments {
@@ -133,4 +133,4 @@ void add_scene_command(const Command& program, Session& session) {
   command.when_parsed([arguments, &session] { choose_work(arguments, session); });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <stdexcept>
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Calls store(text). Turns exceptions of parse functions into a UsageError that names the option.
@@ -57,7 +57,11 @@ Command Command::add(const std::string& name, const std::string& purpose,
   return Command(command);
 }
 
-void Command::require_subcommand() const { app_->require_subcommand(1); }
+void Command::pass_on(std::function<void(std::vector<std::string>)> run) const {
+  app_->prefix_command();
+  app_->set_help_flag();
+  app_->parse_complete_callback([app = app_, run = std::move(run)] { run(app->remaining()); });
+}
 
 Option Command::text(const std::string& names, std::string& value, const std::string& shape,
                      const std::string& help) const {
@@ -181,4 +185,4 @@ std::string Command::note(const NumberRange& range, const std::string& default_v
 
 std::string Command::number_text(double value) { return fmt::format("{:.6g}", value); }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

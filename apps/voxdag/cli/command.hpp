@@ -15,7 +15,7 @@ namespace CLI {
 class App;
 }
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// A handle of a subcommand, or of the program itself; cheap to copy. The variables that receive
 /// option values must live until the command line is parsed.
@@ -26,7 +26,8 @@ class Command {
   /// Adds a subcommand. `purpose` is one line. `footer` is the end of the help: an example, and
   /// notes.
   Command add(const std::string& name, const std::string& purpose, const std::string& footer) const;
-  void require_subcommand() const;
+  /// Passes all arguments that follow, --help among them, to `run` when the command line was parsed.
+  void pass_on(std::function<void(std::vector<std::string>)> run) const;
 
   /// Adds a text option ("-o,--output") or a text positional ("file").
   Option text(const std::string& names, std::string& value, const std::string& shape,
@@ -129,4 +130,4 @@ class Command {
   std::shared_ptr<EffectRules> rules_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string_view>
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 constexpr std::size_t kNameColumns = 30, kLineColumns = 96;
@@ -114,4 +114,4 @@ bool CommandLine::parse(int argc, char** argv) {
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

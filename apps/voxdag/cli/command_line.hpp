@@ -5,7 +5,7 @@
 
 #include "cli/command.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 class CommandLine {
  public:
@@ -27,4 +27,4 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

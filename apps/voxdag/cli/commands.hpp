@@ -2,7 +2,7 @@
 /// The subcommands, one file each. Each function declares its command on the parser.
 #include "cli/session.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 void add_build_command(const Command& program, Session& session);
 void add_import_command(const Command& program, Session& session);
@@ -21,15 +21,8 @@ void add_query_command(const Command& program, Session& session);
 void add_trace_command(const Command& program, Session& session);
 void add_export_command(const Command& program, Session& session);
 void add_scene_command(const Command& program, Session& session);
+/// Adds bench, which runs voxdag-lab.
 void add_bench_command(const Command& program, Session& session);
-void add_bench_build_command(const Command& bench, Session& session);
-void add_bench_trace_command(const Command& bench, Session& session);
-void add_bench_esvo_command(const Command& bench, Session& session);
-void add_bench_attributes_command(const Command& bench, Session& session);
-void add_bench_compact_command(const Command& bench, Session& session);
-void add_bench_compact_rays_command(const Command& bench, Session& session);
-void add_bench_papers_command(const Command& bench, Session& session);
-void add_bench_untrusted_command(const Command& bench, Session& session);
 void add_completion_command(const Command& program, Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 
 #include "cli/commands.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Returns a bash script that completes subcommands, their options and file names.
@@ -54,4 +54,4 @@ void add_completion_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

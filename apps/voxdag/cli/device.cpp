@@ -7,7 +7,7 @@
 
 #include "voxdag/core/error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 DeviceChoice parse_device(const std::string& text) {
   using Kind = DeviceChoice::Kind;
@@ -39,4 +39,4 @@ std::optional<DeviceScene> load_on_chosen_device(const DeviceChoice& choice,
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,7 +6,7 @@
 #include "cli/session.hpp"
 #include "voxdag/cuda/device_choice.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Parses "cpu", "cuda", "cuda:1" or "auto"; throws std::invalid_argument.
 DeviceChoice parse_device(const std::string& text);
@@ -22,4 +22,4 @@ std::string device_name(const std::optional<OnDevice>& on_device) {
   return on_device ? on_device->device().name : "the CPU";
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -7,9 +7,9 @@
 #include <cerrno>
 #include <csignal>
 
-#include "voxdag/io/unfinished_files.hpp"
+#include "voxdag/core/io/unfinished_files.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 Progress* progress_to_cancel = nullptr;
@@ -67,4 +67,4 @@ void cancel_on_signals(Progress& progress) {
 
 int cancelling_signal() { return caught_signal; }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -1,8 +1,8 @@
 #pragma once
 /// Turns signals into cancellation and errors.
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// From now on a write to a closed pipe or past the limit of a file's size is an error instead of a
 /// signal, and so is one to a standard stream that the caller closed: without this the next file
@@ -16,4 +16,4 @@ void cancel_on_signals(Progress& progress);
 /// Returns the signal that cancelled the work, or 0.
 int cancelling_signal();
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -9,7 +9,7 @@
 #include "voxdag/cluster/join_ranks.hpp"
 #include "voxdag/cluster/ranks_per_machine.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Returns the share of this rank in the processors of its machine, unless the launcher has bound
@@ -52,4 +52,4 @@ Job& join_job(Session& session) {
   return *session.job;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

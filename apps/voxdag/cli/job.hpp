@@ -8,7 +8,7 @@
 #include "cli/session.hpp"
 #include "voxdag/cluster/ranks.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Joins the job when it is made; one process alone is a job of its own. Only rank 0 shows
 /// progress, warnings and the summary. Without --threads, the ranks of a machine share its
@@ -38,4 +38,4 @@ class Job {
 /// Joins the job of this process, which lives as long as the session. Call it once.
 Job& join_job(Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,7 +6,7 @@
 #include "cli/command.hpp"
 #include "voxdag/core/error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Returns whether the grids have the same cube, up to the difference of fit_grid()'s cubes at
@@ -47,4 +47,4 @@ LookView look_of(const SceneModel& file) {
   return file.colored_dag();
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

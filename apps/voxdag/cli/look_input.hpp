@@ -4,10 +4,10 @@
 #include <string>
 
 #include "cli/session.hpp"
-#include "voxdag/layout/look.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/stored/attributes/look.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 Option add_look_option(const Command& command, std::string& file);
 
@@ -20,4 +20,4 @@ std::optional<SceneModel> open_look(const std::string& file, const SceneModel& s
 /// Returns the colours and normals that a file stores; empty if it stores none.
 LookView look_of(const SceneModel& file);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,9 +5,9 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/mesh_view/mesh_in_grid.hpp"
-#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Returns whether `text` asks for all importers.
@@ -69,4 +69,4 @@ void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet&
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,11 +6,11 @@
 #include "cli/output_files.hpp"
 #include "cli/session.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/voxel_set.hpp"
-#include "voxdag/readers/read_mesh.hpp"
-#include "voxdag/readers/read_options.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/formats/readers/read_options.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// The rights of readers of the command line's mesh files.
 struct MeshAccess {
@@ -41,4 +41,4 @@ MeshWithAppearance read_mesh_file_with_appearance(const std::string& file, const
 void check_is_mesh_of(const std::string& file, const Mesh& mesh, const VoxelSet& scene,
                       const Grid& grid);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -7,7 +7,7 @@
 
 #include "cli/parse.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 NumberRange NumberRange::whole(std::int64_t least, std::int64_t most) {
   NumberRange range;
@@ -68,4 +68,4 @@ void NumberRange::refuse(const std::string& text, const char* kind) const {
   throw std::invalid_argument(fmt::format("\"{}\" is not {} {}", text, kind, condition_));
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include <string>
 #include <type_traits>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 class NumberRange {
  public:
@@ -39,4 +39,4 @@ class NumberRange {
   std::string text_, condition_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

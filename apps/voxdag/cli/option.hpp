@@ -9,7 +9,7 @@ namespace CLI {
 class Option;
 }
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// A condition for an option to change the result. An option without effect is an error.
 struct EffectRule {
@@ -45,4 +45,4 @@ class Option {
   std::weak_ptr<EffectRules> rules_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,9 +5,9 @@
 #include <map>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/resolved_output.hpp"
+#include "voxdag/core/io/resolved_output.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,4 +61,4 @@ void check_not_overwritten(const std::vector<OutputFile>& outputs, std::span<con
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

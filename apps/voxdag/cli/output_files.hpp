@@ -7,7 +7,7 @@
 
 #include "cli/session.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct OutputFile {
   std::string option;  ///< The option that names the file, for errors.
@@ -28,4 +28,4 @@ std::filesystem::path canonical_output(const std::string& path);
 /// Returns whether both paths name the same existing file.
 bool are_same_file(const std::string& a, const std::string& b);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -12,7 +12,7 @@
 
 #include "voxdag/core/grid.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 constexpr int kMaxImageSide = 1 << 15;
@@ -175,4 +175,4 @@ ImageSize parse_image_size(const std::string& text) {
   return size;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -11,7 +11,7 @@
 #include "voxdag/core/vec.hpp"
 #include "voxdag/image/image_size.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Returns the value of a text that is a finite number, else nothing.
 std::optional<double> read_number(std::string_view text);
@@ -43,4 +43,4 @@ std::uint64_t parse_memory(const std::string& text);
 /// Parses a size in pixels: "1920x1080".
 ImageSize parse_image_size(const std::string& text);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kRedrawInterval{100};
@@ -55,4 +55,4 @@ void ProgressBar::clear() {
   drawn_ = false;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Draws on stderr, only if stderr is a terminal. Not thread-safe.
 class ProgressBar {
@@ -31,4 +31,4 @@ class ProgressBar {
 std::string progress_line(std::string_view stage, double fraction, std::uint64_t items,
                           double seconds);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

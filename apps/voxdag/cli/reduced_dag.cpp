@@ -8,7 +8,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Throws Error unless the metadata of the file describes its attributes.
@@ -91,4 +91,4 @@ ReducedDag::ReducedDag(const DagModel& file, const std::string& path, const DagR
   memory_ = MemoryReservation(memory, coarse_attributes_.bytes());
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "voxdag/attributes/coarsen_attributes.hpp"
+#include "voxdag/stored/attributes/coarsen_attributes.hpp"
 #include "voxdag/file/attribute_form.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct DagReduction {
   std::optional<int> levels;  ///< None: those of the file.
@@ -48,4 +48,4 @@ class ReducedDag {
   MemoryReservation memory_;  ///< Counts `coarse_attributes_`.
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -11,11 +11,11 @@
 #include <system_error>
 
 #include "cli/parse.hpp"
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/resolved_output.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 Option add_threads_option(const Command& command, Session& session) {
   return command.optional_number<int>("--threads", session.threads, NumberRange::whole(1, 4096),
@@ -76,4 +76,4 @@ void check_writable(const std::string& path) {
   AtomicFile{path};
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

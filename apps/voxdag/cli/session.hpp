@@ -9,9 +9,9 @@
 
 #include "cli/command.hpp"
 #include "cli/progress_bar.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 class Job;
 
@@ -60,4 +60,4 @@ std::string json_text(const nlohmann::ordered_json& json);
 /// Throws Error unless a file can be created at `path`. Call it before long work.
 void check_writable(const std::string& path);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

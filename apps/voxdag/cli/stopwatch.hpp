@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 class Stopwatch {
  public:
@@ -22,4 +22,4 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

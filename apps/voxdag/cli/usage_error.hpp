@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// The program exits with status 2 and prints "OPTION: REASON (usage: voxdag COMMAND --help)".
 class UsageError : public std::runtime_error {
@@ -13,4 +13,4 @@ class UsageError : public std::runtime_error {
       : std::runtime_error(option + ": " + reason) {}
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -12,11 +12,11 @@
 #include "cli/output_files.hpp"
 #include "edit/edited_file.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/model/aligned_models.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/model/aligned_models.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Two files in one grid.
@@ -157,4 +157,4 @@ void add_diff_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

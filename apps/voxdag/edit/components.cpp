@@ -10,10 +10,10 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "edit/edited_file.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct ComponentsArguments {
@@ -111,4 +111,4 @@ void add_components_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

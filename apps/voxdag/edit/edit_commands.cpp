@@ -17,10 +17,10 @@
 #include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/model/edited.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/model/edited.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// What an edit may use.
@@ -229,4 +229,4 @@ void add_edit_commands(const Command& program, Session& session) {
   add_fill_command(program, session);
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -8,10 +8,10 @@
 
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/model/edited.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/model/edited.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 void add_edit_options(const Command& command, EditArguments& arguments, Session& session) {
   command.text("-o,--output", arguments.output, "OUT", "The .vdag file to write").required();
@@ -81,4 +81,4 @@ void write_edited(const EditArguments& arguments, const DagModel& model, bool co
              compact ? "compact" : "plain");
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

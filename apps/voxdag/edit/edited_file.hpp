@@ -6,9 +6,9 @@
 #include "cli/session.hpp"
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct EditArguments {
   std::string output;
@@ -43,4 +43,4 @@ void write_edited(const EditArguments& arguments, Svdag dag, const Grid& grid,
 void write_edited(const EditArguments& arguments, const DagModel& model, bool compact,
                   MemoryBudget& memory, Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

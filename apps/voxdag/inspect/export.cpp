@@ -12,12 +12,12 @@
 #include "cli/parse.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/exports/export_voxels.hpp"
-#include "voxdag/exports/grids/export_slices.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/formats/exports/export_voxels.hpp"
+#include "voxdag/formats/exports/grids/export_slices.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct ExportArguments {
@@ -145,4 +145,4 @@ void add_export_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -9,12 +9,12 @@
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/model/scene_model.hpp"
-#include "voxdag/report/dag_report.hpp"
-#include "voxdag/report/esvo_report.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/file/report/dag_report.hpp"
+#include "voxdag/file/report/esvo_report.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 void esvo_info(const std::string& path, bool json) {
@@ -72,4 +72,4 @@ void add_info_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -13,21 +13,21 @@
 #include "cli/stopwatch.hpp"
 #include "inspect/verify_compact.hpp"
 #include "voxdag/algebra/combine.hpp"
-#include "voxdag/attributes/check_attributes.hpp"
+#include "voxdag/builders/attributes/check_attributes.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/printable.hpp"
-#include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/dag/check_cover.hpp"
-#include "voxdag/esvo/build/check_esvo.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/dag/check_cover.hpp"
+#include "voxdag/builders/esvo/build/check_esvo.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/model/scene_model.hpp"
-#include "voxdag/report/human.hpp"
-#include "voxdag/solid/solid_settings.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/file/report/human.hpp"
+#include "voxdag/builders/solid/solid_settings.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 using Result = VerifyCheck::Result;
@@ -323,4 +323,4 @@ void add_verify_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "voxdag/compact/encode_svdag.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/io/file_copy.hpp"
-#include "voxdag/layout/build_cell_index.hpp"
-#include "voxdag/layout/compact/compact_bytes.hpp"
-#include "voxdag/layout/validate_svdag.hpp"
+#include "voxdag/core/io/file_copy.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/compact/compact_bytes.hpp"
+#include "voxdag/stored/svdag/validate_svdag.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Throws Error unless the compact form of `dag` is the one of the file.
@@ -64,4 +64,4 @@ VerifyReport verify_compact(const std::filesystem::path& path, Progress& progres
   return report;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Runs all checks, but skips those that make no sense after a failed one:
 ///   container   magic, version, sizes, chunk table, padding
@@ -18,4 +18,4 @@ namespace voxdag {
 /// Throws Error only if the file cannot be read, and Cancelled.
 VerifyReport verify_compact(const std::filesystem::path& path, Progress& progress);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -18,18 +18,18 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/model/scene_model.hpp"
-#include "voxdag/parallel/polled_for.hpp"
-#include "voxdag/query/containing_voxel.hpp"
-#include "voxdag/query/distance_field.hpp"
-#include "voxdag/query/height_map.hpp"
-#include "voxdag/query/nearest_voxel.hpp"
-#include "voxdag/query/surface_area.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/algebra/query/containing_voxel.hpp"
+#include "voxdag/algebra/query/distance_field.hpp"
+#include "voxdag/algebra/query/height_map.hpp"
+#include "voxdag/algebra/query/nearest_voxel.hpp"
+#include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct QueryArguments {
@@ -275,4 +275,4 @@ void add_query_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

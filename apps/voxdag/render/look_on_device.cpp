@@ -2,7 +2,7 @@
 
 #include "cli/look_input.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 LookOnDevice::LookOnDevice(const DeviceChoice& device, const SceneModel& file, bool is_own,
                            std::optional<DeviceScene>& scene) {
@@ -30,4 +30,4 @@ LookOnDevice::LookOnDevice(const DeviceChoice& device, const SceneModel& file, b
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -4,10 +4,10 @@
 
 #include "cli/device.hpp"
 #include "voxdag/cuda/device_attributes.hpp"
-#include "voxdag/layout/look.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/stored/attributes/look.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Owns the copy on the device. Refers to the file if there is no device.
 class LookOnDevice {
@@ -28,4 +28,4 @@ class LookOnDevice {
   LookView view_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

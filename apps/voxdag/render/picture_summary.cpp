@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 void print_picture_summary(const std::string& file, const RenderedImage& image, double seconds,
                            const std::string& device) {
@@ -27,4 +27,4 @@ void print_picture_summary(const std::string& file, const RenderedImage& image, 
              static_cast<double>(*std::max_element(image.steps.begin(), image.steps.end())));
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -4,10 +4,10 @@
 
 #include "voxdag/render/render_options.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Prints size, time and ray rate of the picture in `file`, and the options that reproduce it.
 void print_picture_summary(const std::string& file, const RenderedImage& image, double seconds,
                            const std::string& device);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -13,10 +13,10 @@
 #include "render/render_streamed.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
-#include "voxdag/film/frame_names.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/render/film/frame_names.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 void render_loaded(const RenderArguments& arguments, Session& session) {
@@ -80,4 +80,4 @@ void add_render_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

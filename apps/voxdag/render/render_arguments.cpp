@@ -6,10 +6,10 @@
 #include <filesystem>
 
 #include "cli/output_files.hpp"
-#include "voxdag/film/frame_names.hpp"
-#include "voxdag/film/view_settings.hpp"
+#include "voxdag/render/film/frame_names.hpp"
+#include "voxdag/render/film/view_settings.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Throws UsageError if a film's file name has no placeholder, or if the name of a single picture
@@ -141,4 +141,4 @@ RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo) {
   return options;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

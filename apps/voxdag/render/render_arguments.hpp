@@ -7,11 +7,11 @@
 
 #include "cli/device.hpp"
 #include "cli/mesh_input.hpp"
-#include "voxdag/film/picture_pass.hpp"
+#include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/image/image_size.hpp"
 #include "voxdag/render/render_options.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// The options of --mesh: view samples come from triangles.
 struct MeshArguments {
@@ -75,4 +75,4 @@ std::vector<PicturePass> all_passes(const RenderArguments& arguments);
 /// or a DAG.
 RenderOptions picture_options(const RenderArguments& arguments, bool is_esvo);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

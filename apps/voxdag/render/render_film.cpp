@@ -9,13 +9,13 @@
 #include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/cluster/rank_queue.hpp"
-#include "voxdag/film/frame_names.hpp"
-#include "voxdag/film/path_file.hpp"
-#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/render/film/frame_names.hpp"
+#include "voxdag/render/film/path_file.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/render/render_plan.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 constexpr int kFrameCounter = 0;
@@ -119,4 +119,4 @@ void render_film(const RenderArguments& arguments, const FilmScene& scene,
   if (!session.quiet) print_summary(film, timings, watch.since_start(), job.count());
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

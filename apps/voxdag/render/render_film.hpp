@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "render/render_arguments.hpp"
-#include "voxdag/film/film.hpp"
+#include "voxdag/render/film/film.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// The scene of a film, and the function that renders its frames.
 struct FilmScene {
@@ -23,4 +23,4 @@ struct FilmScene {
 void render_film(const RenderArguments& arguments, const FilmScene& scene,
                  const RenderOptions& options, Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -9,7 +9,7 @@
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct LightForm {
@@ -65,4 +65,4 @@ LightSpec parse_light(const std::string& text) {
   throw std::invalid_argument("must begin with point:, sphere:, disc: or rect:");
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -3,7 +3,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/mesh_view/mesh_view_source.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec3f albedo,
                                              const VoxelSet& scene, const Grid& grid,
@@ -30,4 +30,4 @@ std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec
   }
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

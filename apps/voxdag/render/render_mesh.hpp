@@ -5,7 +5,7 @@
 #include "render/render_arguments.hpp"
 #include "voxdag/render/view_source.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Returns the mesh as a source of view samples, or null if the picture shows voxels. Throws Error
 /// if the voxels were not built from the mesh.
@@ -13,4 +13,4 @@ std::unique_ptr<ViewSource> open_view_source(const MeshArguments& arguments, Vec
                                              const VoxelSet& scene, const Grid& grid,
                                              Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

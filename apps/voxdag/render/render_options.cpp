@@ -9,9 +9,9 @@
 #include "cli/parse.hpp"
 #include "render/render_arguments.hpp"
 #include "render/render_light.hpp"
-#include "voxdag/film/film.hpp"
+#include "voxdag/render/film/film.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// Parses "depth=z.exr"; throws std::invalid_argument.
@@ -285,4 +285,4 @@ void add_render_options(const Command& command, Session& session, RenderArgument
   add_quiet_option(command, session);
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

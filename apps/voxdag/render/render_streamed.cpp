@@ -11,12 +11,12 @@
 #include "render/render_film.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/render/coarse_cells.hpp"
-#include "voxdag/report/human.hpp"
-#include "voxdag/stream/paged_cells.hpp"
-#include "voxdag/stream/stream_blocks.hpp"
-#include "voxdag/stream_cuda/device_stream.hpp"
+#include "voxdag/file/report/human.hpp"
+#include "voxdag/cpu/stream/paged_cells.hpp"
+#include "voxdag/cpu/stream/stream_blocks.hpp"
+#include "voxdag/cuda/device_stream.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// The blocks of the file, on the chosen device.
@@ -100,4 +100,4 @@ void render_streamed(const RenderArguments& arguments, Session& session) {
              with_commas(counts.blocks_read - counts.blocks_used));
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <limits>
 
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 template <class T>
@@ -64,4 +64,4 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
                                                 : kMostMaterials));
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

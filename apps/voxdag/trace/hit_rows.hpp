@@ -4,10 +4,10 @@
 #include <span>
 #include <string>
 
-#include "voxdag/layout/look.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/trace/hit.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Rows of a structured array without padding: t, voxel, face, hit, and the normal, the colour and
 /// the material of the voxel if `look` stores them. They are looked up by voxel, so they do not
@@ -34,4 +34,4 @@ class HitRows {
   std::size_t row_bytes_ = 0;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

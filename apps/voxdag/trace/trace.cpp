@@ -17,10 +17,10 @@
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/npy.hpp"
-#include "voxdag/model/scene_model.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 /// The number of rays in memory at a time: enough for all threads of a CPU or GPU.
@@ -156,4 +156,4 @@ void add_trace_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

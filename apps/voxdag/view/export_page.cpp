@@ -6,9 +6,9 @@
 
 #include "cli/output_files.hpp"
 #include "viewer/site/export_site.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,4 +53,4 @@ void export_page(const std::string& output, const ShownSceneArguments& arguments
         session);
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -5,7 +5,7 @@
 #include "cli/session.hpp"
 #include "view/shown_scene.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 /// Returns whether `output` names a page: it ends in ".html" or "/", or is a folder.
 bool is_page_output(const std::string& output);
@@ -17,4 +17,4 @@ void check_page_output(const std::string& output, const Session& session);
 /// large file.
 void export_page(const std::string& output, const ShownSceneArguments& arguments, Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -2,7 +2,7 @@
 #include "view/serve_scene.hpp"
 #include "voxdag/core/error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 void require_page_server() {
   throw Error(
@@ -12,4 +12,4 @@ void require_page_server() {
 
 void serve_scene(const SceneBytes&, const ServeArguments&, Session&) { require_page_server(); }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

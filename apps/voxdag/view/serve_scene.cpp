@@ -15,7 +15,7 @@
 #include "viewer/server/page_server.hpp"
 #include "voxdag/core/error.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 bool is_set(const char* variable) {
@@ -66,4 +66,4 @@ void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Sessi
   session.progress.throw_if_cancelled();
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

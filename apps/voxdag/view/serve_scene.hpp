@@ -5,7 +5,7 @@
 #include "cli/session.hpp"
 #include "viewer/scene/scene_bytes.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct ServeArguments {
   std::string address = "127.0.0.1";
@@ -20,4 +20,4 @@ void require_page_server();
 /// program. Throws Error if it cannot listen, and Cancelled at a signal.
 void serve_scene(const SceneBytes& scene, const ServeArguments& arguments, Session& session);
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

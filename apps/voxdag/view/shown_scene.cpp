@@ -4,10 +4,10 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/compact_file.hpp"
-#include "voxdag/io/process_memory.hpp"
-#include "voxdag/report/human.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/report/human.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 void refuse_esvo(const std::string& path) {
@@ -50,4 +50,4 @@ ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& 
   return scene;
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

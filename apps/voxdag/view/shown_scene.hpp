@@ -7,9 +7,9 @@
 #include "cli/reduced_dag.hpp"
 #include "cli/session.hpp"
 #include "viewer/scene/scene_bytes.hpp"
-#include "voxdag/model/scene_model.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 
 struct ShownSceneArguments {
   DagReduction reduction;
@@ -38,4 +38,4 @@ class ShownScene {
   std::unique_ptr<SceneBytes> bytes_;
 };
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

@@ -6,7 +6,7 @@
 #include "view/serve_scene.hpp"
 #include "view/shown_scene.hpp"
 
-namespace voxdag {
+namespace voxdag::cli {
 namespace {
 
 struct ViewArguments {
@@ -43,4 +43,4 @@ void add_view_command(const Command& program, Session& session) {
   });
 }
 
-}  // namespace voxdag
+}  // namespace voxdag::cli

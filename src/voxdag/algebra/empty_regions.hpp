@@ -6,8 +6,8 @@
 
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/vec.hpp"
-#include "voxdag/layout/svdag.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

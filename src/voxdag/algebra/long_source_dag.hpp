@@ -1,7 +1,7 @@
 #pragma once
 /// A DAG with long pointers as a source of rules.
 #include "voxdag/algebra/rewrite.hpp"
-#include "voxdag/layout/long_svdag.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
 
 namespace voxdag {
 

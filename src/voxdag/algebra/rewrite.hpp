@@ -8,7 +8,7 @@
 ///
 /// The result needs no sorting. Keys are numbered in the order in which a walk in Morton order
 /// first meets them. A node is added at the first of its keys, so nodes are in canonical order
-/// (layout/svdag.hpp).
+/// (stored/svdag/svdag.hpp).
 ///
 /// A rule is a type with
 ///   kWords                        the number of words of a key
@@ -19,8 +19,8 @@
 #include <array>
 
 #include "voxdag/algebra/unique_items.hpp"
-#include "voxdag/layout/svdag.hpp"
-#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/cluster/part_file.hpp"
-#include "voxdag/dag/build_range.hpp"
+#include "voxdag/builders/dag/build_range.hpp"
 
 namespace voxdag {
 namespace {

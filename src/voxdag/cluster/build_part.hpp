@@ -5,7 +5,7 @@
 #include "voxdag/cluster/triangle_segments.hpp"
 #include "voxdag/cluster/work_file.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -7,7 +7,7 @@
 #include "voxdag/cluster/mpi/mpi_module.hpp"
 #include "voxdag/cluster/one_rank.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/load_module.hpp"
+#include "voxdag/core/io/load_module.hpp"
 
 namespace voxdag {
 namespace {

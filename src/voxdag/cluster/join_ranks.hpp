@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "voxdag/cluster/ranks.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -13,7 +13,7 @@
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 

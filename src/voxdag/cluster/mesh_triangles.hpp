@@ -7,8 +7,8 @@
 #include "voxdag/cluster/triangle_segments.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/readers/read_options.hpp"
-#include "voxdag/voxelize/grid_request.hpp"
+#include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/builders/voxelize/grid_request.hpp"
 
 namespace voxdag {
 

@@ -7,7 +7,7 @@
 #include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
-#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/resolved_output.hpp"
-#include "voxdag/io/temporary_file.hpp"
-#include "voxdag/io/unfinished_files.hpp"
+#include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/core/io/temporary_file.hpp"
+#include "voxdag/core/io/unfinished_files.hpp"
 
 namespace voxdag {
 

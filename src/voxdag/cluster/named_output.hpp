@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "voxdag/io/descriptor.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 
 namespace voxdag {
 

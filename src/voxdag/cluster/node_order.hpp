@@ -1,5 +1,5 @@
 #pragma once
-/// Brings merged nodes into canonical order (layout/svdag.hpp), level by level from the root down.
+/// Brings merged nodes into canonical order (stored/svdag/svdag.hpp), level by level from the root down.
 ///
 /// The nodes of a level are in the order in which the level above first refers to them. Each level
 /// takes four steps. The owner of a run of ordered nodes sends their references, with their
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "voxdag/cluster/part_merge.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/descriptor.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 
 namespace voxdag {
 namespace {

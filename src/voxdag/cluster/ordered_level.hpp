@@ -10,7 +10,7 @@
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/node_record.hpp"
 #include "voxdag/cluster/part_merge.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 

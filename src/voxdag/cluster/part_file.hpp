@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "voxdag/cluster/work_folder.hpp"
-#include "voxdag/layout/svdag.hpp"
-#include "voxdag/voxelize/cell_range.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/builders/voxelize/cell_range.hpp"
 
 namespace voxdag {
 

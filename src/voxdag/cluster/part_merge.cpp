@@ -7,8 +7,8 @@
 #include "voxdag/cluster/node_record.hpp"
 #include "voxdag/cluster/unique_records.hpp"
 #include "voxdag/core/int128.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/parallel/polled_for.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

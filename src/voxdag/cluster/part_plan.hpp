@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "voxdag/cluster/triangle_segments.hpp"
-#include "voxdag/voxelize/cell_range.hpp"
+#include "voxdag/builders/voxelize/cell_range.hpp"
 
 namespace voxdag {
 

@@ -19,10 +19,10 @@
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
-#include "voxdag/parallel/progress.hpp"
-#include "voxdag/readers/chunks.hpp"
-#include "voxdag/readers/read_options.hpp"
-#include "voxdag/voxelize/grid_request.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/builders/voxelize/grid_request.hpp"
 
 namespace voxdag {
 
@@ -35,7 +35,7 @@ struct PartsJob {
   ReadOptions reading;  ///< `progress` and `memory` are set by the job.
   /// Bytes of the mesh file that a thread reads at once. All runs of a job need the same number.
   std::size_t chunk_bytes = kChunkBytes;
-  /// A DAG with more node words gets long pointers (layout/long_svdag.hpp). For tests.
+  /// A DAG with more node words gets long pointers (stored/svdag/long_svdag.hpp). For tests.
   std::uint64_t most_plain_words = kMostPlainWords;
 };
 

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "voxdag/io/process_memory.hpp"
+#include "voxdag/core/io/process_memory.hpp"
 
 namespace voxdag {
 

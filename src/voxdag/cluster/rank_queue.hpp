@@ -1,7 +1,7 @@
 #pragma once
 /// Shares the items of a queue among ranks.
 #include "voxdag/cluster/ranks.hpp"
-#include "voxdag/parallel/work_queue.hpp"
+#include "voxdag/core/parallel/work_queue.hpp"
 
 namespace voxdag {
 

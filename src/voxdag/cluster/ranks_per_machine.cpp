@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "voxdag/io/checksum.hpp"
+#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 

@@ -9,11 +9,11 @@
 #include "voxdag/cluster/mailboxes.hpp"
 #include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/unique_records.hpp"
-#include "voxdag/io/mapped_arrays.hpp"
+#include "voxdag/core/io/mapped_arrays.hpp"
 #include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/mesh/vertex_table.hpp"
-#include "voxdag/parallel/polled_for.hpp"
-#include "voxdag/readers/read_mesh.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "voxdag/core/page_vector.hpp"
-#include "voxdag/parallel/polled_for.hpp"
-#include "voxdag/parallel/polled_sort.hpp"
-#include "voxdag/voxelize/cell_finder.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/core/parallel/polled_sort.hpp"
+#include "voxdag/builders/voxelize/cell_finder.hpp"
 
 namespace voxdag {
 namespace {

@@ -16,9 +16,9 @@
 #include "voxdag/cluster/shared_mesh.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/parallel/progress.hpp"
-#include "voxdag/voxelize/cell_range.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/builders/voxelize/cell_range.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "voxdag/io/checksum.hpp"
+#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 namespace {

@@ -9,8 +9,8 @@
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/checksum.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 namespace {

@@ -14,10 +14,10 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/io/mapped_file.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

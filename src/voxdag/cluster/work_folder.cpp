@@ -8,9 +8,9 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/io/open_input.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/core/io/open_input.hpp"
 
 namespace voxdag {
 namespace {

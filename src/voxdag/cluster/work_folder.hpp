@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "voxdag/cluster/work_file.hpp"
-#include "voxdag/io/descriptor.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 
 namespace voxdag {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "voxdag/cpu/packets/beam_packet.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/render/primary_beams.hpp"
 
 namespace voxdag {

@@ -1,6 +1,6 @@
 #include "voxdag/cpu/post_filter.hpp"
 
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 

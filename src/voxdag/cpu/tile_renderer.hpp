@@ -8,8 +8,8 @@
 
 #include "voxdag/core/morton.hpp"
 #include "voxdag/cpu/beam_starts.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/render_tile.hpp"

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cassert>
 
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "voxdag/cuda/device_scene.hpp"
-#include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
 
 namespace voxdag {
 

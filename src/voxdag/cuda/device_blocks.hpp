@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "voxdag/cuda/device.hpp"
-#include "voxdag/layout/partial_esvo.hpp"
+#include "voxdag/stored/esvo/partial_esvo.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 
 #include "voxdag/cuda/device.hpp"
 #include "voxdag/cuda/device_voxels.hpp"
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag {
 

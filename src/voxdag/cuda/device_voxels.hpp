@@ -1,8 +1,8 @@
 #pragma once
 /// Voxels as arguments of kernel launches.
-#include "voxdag/layout/esvo.hpp"
-#include "voxdag/layout/svdag.hpp"
-#include "voxdag/layout/wide_svdag.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/stored/svdag/wide_svdag.hpp"
 
 namespace voxdag {
 

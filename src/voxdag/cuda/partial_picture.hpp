@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "voxdag/cuda/device_blocks.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/tile.hpp"
 

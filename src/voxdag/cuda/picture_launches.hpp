@@ -5,7 +5,7 @@
 #include "voxdag/cuda/launch_plan.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
 #include "voxdag/cuda/stream.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -5,7 +5,7 @@
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/cuda/device_scene.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
 

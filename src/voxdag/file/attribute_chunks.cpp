@@ -6,9 +6,9 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/layout/build_cell_index.hpp"
-#include "voxdag/layout/validate_material_ids.hpp"
-#include "voxdag/layout/validate_value_pages.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/validate_material_ids.hpp"
+#include "voxdag/stored/attributes/validate_value_pages.hpp"
 
 namespace voxdag {
 namespace {

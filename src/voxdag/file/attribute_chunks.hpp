@@ -19,8 +19,8 @@
 #include "voxdag/file/attribute_form.hpp"
 #include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/layout/stored_attributes.hpp"
-#include "voxdag/layout/wire/value_model.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/wire/value_model.hpp"
 
 namespace voxdag {
 

@@ -5,8 +5,8 @@
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/io/mapped_file.hpp"
-#include "voxdag/layout/compact/compact_bytes.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/stored/compact/compact_bytes.hpp"
 
 namespace voxdag {
 

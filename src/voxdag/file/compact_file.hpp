@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/io/file_copy.hpp"
-#include "voxdag/layout/compact/compact_svdag.hpp"
-#include "voxdag/layout/stored_attributes.hpp"
+#include "voxdag/core/io/file_copy.hpp"
+#include "voxdag/stored/compact/compact_svdag.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
 
 namespace voxdag {
 

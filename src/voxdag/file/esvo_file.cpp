@@ -2,7 +2,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "voxdag/file/scene_metadata.hpp"
-#include "voxdag/layout/esvo_counts.hpp"
+#include "voxdag/stored/esvo/esvo_counts.hpp"
 
 namespace voxdag {
 

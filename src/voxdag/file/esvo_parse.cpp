@@ -4,7 +4,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/layout/validate_esvo.hpp"
+#include "voxdag/stored/esvo/validate_esvo.hpp"
 
 namespace voxdag {
 

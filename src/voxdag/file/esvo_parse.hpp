@@ -6,8 +6,8 @@
 
 #include "voxdag/file/esvo_metadata.hpp"
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/layout/esvo.hpp"
-#include "voxdag/layout/esvo_directory.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
+#include "voxdag/stored/esvo/esvo_directory.hpp"
 
 namespace voxdag {
 

@@ -5,7 +5,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/layout/esvo.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "voxdag/file/esvo_metadata.hpp"
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/layout/esvo_directory.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/stored/esvo/esvo_directory.hpp"
 
 namespace voxdag {
 

@@ -2,7 +2,7 @@
 
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/layout/validate_svdag.hpp"
+#include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 

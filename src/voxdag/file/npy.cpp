@@ -12,7 +12,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/io/open_input.hpp"
+#include "voxdag/core/io/open_input.hpp"
 
 namespace voxdag {
 namespace {

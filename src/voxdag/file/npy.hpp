@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/io/descriptor.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/descriptor.hpp"
 
 namespace voxdag {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/io/checksum.hpp"
+#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 

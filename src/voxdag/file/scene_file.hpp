@@ -6,7 +6,7 @@
 
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/io/file_copy.hpp"
+#include "voxdag/core/io/file_copy.hpp"
 
 namespace voxdag {
 

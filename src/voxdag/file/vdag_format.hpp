@@ -62,7 +62,7 @@ inline constexpr std::uint32_t kChunkLongNodes =
     vdag_chunk_id("NODX");  ///< u32 LongSvdagView::nodes; instead of NODE.
 inline constexpr std::uint32_t kChunkLeafBlocks = vdag_chunk_id("LEAF");  ///< u64 leaf_blocks.
 inline constexpr std::uint32_t kChunkCompactHead =
-    vdag_chunk_id("CHED");  ///< See layout/compact/compact_bytes.hpp.
+    vdag_chunk_id("CHED");  ///< See stored/compact/compact_bytes.hpp.
 inline constexpr std::uint32_t kChunkCompactStream =
     vdag_chunk_id("CSTR");                                          ///< u32 CompactSvdag::stream.
 inline constexpr std::uint32_t kChunkEsvo = vdag_chunk_id("ESVO");  ///< u64 slots of all blocks.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "voxdag/file/scene_metadata.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 

@@ -9,8 +9,8 @@
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/io/checksum.hpp"
-#include "voxdag/layout/validate_svdag.hpp"
+#include "voxdag/core/io/checksum.hpp"
+#include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
-#include "voxdag/layout/long_svdag.hpp"
-#include "voxdag/layout/stored_attributes.hpp"
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

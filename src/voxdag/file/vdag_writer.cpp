@@ -13,8 +13,8 @@
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/io/atomic_file.hpp"
-#include "voxdag/layout/compact/compact_bytes.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/stored/compact/compact_bytes.hpp"
 
 namespace voxdag {
 namespace {

@@ -8,9 +8,9 @@
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/io/file_copy.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/layout/validate_svdag.hpp"
+#include "voxdag/core/io/file_copy.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
-#include "voxdag/layout/stored_attributes.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 

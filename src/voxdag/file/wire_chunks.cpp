@@ -9,7 +9,7 @@
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_parse.hpp"
-#include "voxdag/layout/wire/wire_values.hpp"
+#include "voxdag/stored/wire/wire_values.hpp"
 
 namespace voxdag {
 

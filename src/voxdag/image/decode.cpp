@@ -4,7 +4,7 @@
 #include "voxdag/image/image_limits.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
-#include "voxdag/io/mapped_file.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 

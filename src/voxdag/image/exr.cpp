@@ -9,7 +9,7 @@
 #include <set>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

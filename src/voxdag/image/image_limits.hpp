@@ -4,7 +4,7 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/open_input.hpp"
+#include "voxdag/core/io/open_input.hpp"
 
 namespace voxdag {
 

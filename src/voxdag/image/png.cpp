@@ -10,7 +10,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/image/image_limits.hpp"
-#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

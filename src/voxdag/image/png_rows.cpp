@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/io/atomic_file.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 

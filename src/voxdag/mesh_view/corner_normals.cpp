@@ -8,7 +8,7 @@
 #include <span>
 
 #include "voxdag/mesh/vertex_table.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/render/camera.hpp"
 
 namespace voxdag {

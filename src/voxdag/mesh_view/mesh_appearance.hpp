@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "voxdag/mesh_view/packed_normal.hpp"
-#include "voxdag/surface/surface_shading.hpp"
+#include "voxdag/mesh/surface/surface_shading.hpp"
 
 namespace voxdag {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Checks whether a mesh and voxels belong together.
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/tone_map.hpp"
 

@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/look.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/sample_tables.hpp"

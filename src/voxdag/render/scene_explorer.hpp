@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 #include "voxdag/trace/stop_below_size.hpp"
 #include "voxdag/trace/visit_nodes.hpp"
 

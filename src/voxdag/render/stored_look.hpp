@@ -1,6 +1,6 @@
 #pragma once
 /// The stored colours and normals of cubes.
-#include "voxdag/layout/look.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/render/view_sample.hpp"
 
 namespace voxdag {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The node layout for rays at a compact DAG (layout/compact/compact_svdag.hpp).
+/// The node layout for rays at a compact DAG (stored/compact/compact_svdag.hpp).
 ///
 /// Rays decode the nodes that they reach, so a cache of decoded nodes saves most of the time: a
 /// unit is decoded as a whole, and rays near each other reach the same units. A cache is a type
@@ -9,8 +9,8 @@
 ///   shared_brick(dag, number, mask) returns the eight leaf blocks of the brick
 /// Each returns a reference that is valid until the next call. Nodes that cannot be decoded have no
 /// voxels.
-#include "voxdag/layout/compact/compact_nodes.hpp"
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/stored/compact/compact_nodes.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

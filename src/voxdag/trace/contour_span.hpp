@@ -23,7 +23,7 @@
 /// with T at the ray's exit from the cube: more than the sum of all these errors. So if a ray is in
 /// a voxel and its line meets the voxel's exact shape, the ray meets the voxel, and before the end
 /// of the voxel's range. At a thousand pixels per radian the planes move by less than 1/500 pixel.
-#include "voxdag/layout/contour.hpp"
+#include "voxdag/stored/esvo/contour.hpp"
 #include "voxdag/trace/grid_ray.hpp"
 
 namespace voxdag {

@@ -1,12 +1,12 @@
 #pragma once
-/// The node layouts for rays at an ESVO (layout/esvo.hpp), whose leaves may be of any level.
+/// The node layouts for rays at an ESVO (stored/esvo/esvo.hpp), whose leaves may be of any level.
 ///
 /// They are node layouts as svdag_nodes.hpp describes them. A walk that does not handle coarse
 /// leaves sees a full subtree: all cells below the leaf are present, down to the voxels. A walk
 /// that handles them calls is_leaf().
 #include <concepts>
 
-#include "voxdag/layout/esvo.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
 
 namespace voxdag {
 

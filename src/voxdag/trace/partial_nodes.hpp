@@ -1,6 +1,6 @@
 #pragma once
 /// Rays at an ESVO with missing blocks, and a node layout that reports the blocks that they miss.
-#include "voxdag/layout/partial_esvo.hpp"
+#include "voxdag/stored/esvo/partial_esvo.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 
 namespace voxdag {

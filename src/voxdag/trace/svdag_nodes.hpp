@@ -1,5 +1,5 @@
 #pragma once
-/// The node layout for rays at the paper's SVDAG (layout/svdag.hpp).
+/// The node layout for rays at the paper's SVDAG (stored/svdag/svdag.hpp).
 ///
 /// A node layout for cast() is a type with
 ///   using Node          what the stack stores for a node; small and trivially copyable
@@ -11,7 +11,7 @@
 /// Children of nodes of level L-1 are voxels: a bit in the mask and nothing else. A layout may also
 /// have on_step(), called at each step of a walk: see counting_nodes.hpp; and Path: see
 /// node_path.hpp.
-#include "voxdag/layout/svdag.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

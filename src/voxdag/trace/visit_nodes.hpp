@@ -1,6 +1,6 @@
 #pragma once
 /// Chooses the node layout for rays at voxels of either kind, DAG or ESVO.
-#include "voxdag/layout/voxel_set.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 #include "voxdag/trace/esvo_cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
 

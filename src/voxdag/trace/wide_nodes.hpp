@@ -1,5 +1,5 @@
 #pragma once
-/// The node layout for rays at the wide DAG (layout/wide_svdag.hpp).
+/// The node layout for rays at the wide DAG (stored/svdag/wide_svdag.hpp).
 ///
 /// A wide layout for cast() is a type with
 ///   kIsWide             true
@@ -8,7 +8,7 @@
 ///   root()              the word index of the root; not called on an empty DAG
 ///   mask(n)             the 64-bit mask of wide node or leaf block n
 ///   child(n, m, c)      the child at bit c, which is set in n's mask m
-#include "voxdag/layout/wide_svdag.hpp"
+#include "voxdag/stored/svdag/wide_svdag.hpp"
 
 namespace voxdag {
 

@@ -1,9 +1,9 @@
 // Builds the DAG of a cube in a grid of 16³ voxels and prints the number of voxels of its surface.
 #include <cstdio>
 
-#include "voxdag/dag/build_svdag.hpp"
-#include "voxdag/layout/svdag_counts.hpp"
-#include "voxdag/voxelize/grid_mapping.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 int main() {
   voxdag::Mesh cube;

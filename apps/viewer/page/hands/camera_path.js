@@ -1,6 +1,6 @@
 /**
  * A moving camera through keys, and the file of `voxdag render --path`. The curves are those of
- * film/camera_path.cpp, so that a film shows what was played: centripetal Catmull-Rom curves for eye
+ * render/film/camera_path.cpp, so that a film shows what was played: centripetal Catmull-Rom curves for eye
  * and target (Yuksel, Schaefer and Keyser 2011), monotone cubics of time (Fritsch and Carlson 1980).
  */
 import { add, addScaled, scale, sub } from '../math.js';

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "voxdag/cluster/mpi/turn_lock.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "voxdag/core/large_array.hpp"
-#include "voxdag/parallel/parallel_for.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "voxdag/cpu/packets/unit_cache.hpp"
-#include "voxdag/layout/compact/compact_svdag.hpp"
-#include "voxdag/parallel/progress.hpp"
+#include "voxdag/stored/compact/compact_svdag.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

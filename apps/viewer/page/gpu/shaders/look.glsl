@@ -1,4 +1,4 @@
-// Colours and normals of cells: the port of layout/cell_index_lookup.hpp and layout/value_pages.hpp.
+// Colours and normals of cells: the port of stored/attributes/cell_index_lookup.hpp and stored/attributes/value_pages.hpp.
 // Numbers of cells and byte addresses fit into 32 bits (the loader takes care of it).
 
 uniform usampler2D u_slots;    // r: the words of CIDX, 32 bits each

@@ -1,0 +1,104 @@
+#include "cli/run_program.hpp"
+
+#include <fmt/core.h>
+#include <tbb/global_control.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <optional>
+#include <system_error>
+
+#include "cli/command_line.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/job.hpp"
+
+namespace voxdag::cli {
+namespace {
+
+constexpr int kFailure = 1, kBadUsage = 2, kSignalBase = 128;
+constexpr int kCancelled = -1;  // becomes kSignalBase plus the signal
+
+int report(const std::string& text, int status) {
+  print_line(text);
+  return status;
+}
+
+/// Throws Error if the output could not be written.
+void check_output() {
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
+    throw Error("standard output", "", std::system_category().message(errno));
+}
+
+/// Returns the reason if a long text could not be printed, which fmt::print() reports without a
+/// name; else an empty text.
+std::string output_failure(const std::exception& error) {
+  const auto* const failure = dynamic_cast<const std::system_error*>(&error);
+  if (failure == nullptr || std::ferror(stdout) == 0) return "";
+  return "standard output: " + failure->code().message();
+}
+
+void work(Session& session) {
+  std::optional<tbb::global_control> threads;
+  if (session.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, session.threads);
+  session.bar.enable(!session.quiet);
+  session.work();
+  session.bar.clear();
+  check_output();
+}
+
+int run(int argc, char** argv, const Program& program) {
+  CommandLine line(program.name, program.purpose, program.version);
+  Session session;
+  for (const AddCommand add : program.commands) add(line.root(), session);
+  try {
+    if (!line.parse(argc, argv)) {
+      check_output();
+      return 0;
+    }
+  } catch (const UsageError& error) {
+    return report(error.what(), kBadUsage);
+  }
+  cancel_on_signals(session.progress);
+  const std::string subject = session.subject.empty() ? "" : session.subject + ": ";
+  const auto fail = [&](const std::string& text, int status) {
+    session.bar.clear();
+    // After a signal, system calls may fail.
+    const int signal = cancelling_signal();
+    if (!session.job || session.job->fails_first())
+      report(signal != 0 && status != kCancelled ? "cancelled: " + text : text, status);
+    if (signal != 0 || status == kCancelled) status = kSignalBase + signal;
+    if (session.job) session.job->end(status);
+    return status;
+  };
+  try {
+    work(session);
+    return 0;
+  } catch (const Cancelled& cancelled) {
+    return fail(subject + cancelled.what(), kCancelled);
+  } catch (const Error& error) {
+    return fail(error.file().empty() ? subject + error.what() : error.what(), kFailure);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(fmt::format("{}: {}", error.path1().string(), error.code().message()), kFailure);
+  } catch (const std::bad_alloc&) {
+    return fail(subject + "out of memory", kFailure);
+  } catch (const std::exception& error) {
+    const std::string output = output_failure(error);
+    return fail(output.empty() ? subject + error.what() : output, kFailure);
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const Program& program) try {
+  make_writes_return_errors();
+  return run(argc, argv, program);
+} catch (const std::exception& error) {
+  const std::string output = output_failure(error);
+  return report(output.empty() ? error.what() : output, kFailure);
+}
+
+}  // namespace voxdag::cli

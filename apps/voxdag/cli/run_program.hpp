@@ -1,0 +1,23 @@
+#pragma once
+/// Runs a program of subcommands. Exit status 0: success, 1: failure, 2: wrong usage, 128 + N: signal
+/// N cancelled the work. Every error is one line on stderr.
+#include <string>
+#include <vector>
+
+#include "cli/session.hpp"
+
+namespace voxdag::cli {
+
+/// Declares a subcommand on the parser.
+using AddCommand = void (*)(const Command& program, Session& session);
+
+struct Program {
+  std::string name, purpose;  ///< "voxdag", and the first line of its help.
+  std::string version;        ///< What --version prints.
+  std::vector<AddCommand> commands;
+};
+
+/// Parses the arguments, runs the chosen command, and returns the exit status.
+int run_program(int argc, char** argv, const Program& program);
+
+}  // namespace voxdag::cli

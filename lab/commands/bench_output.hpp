@@ -1,0 +1,64 @@
+#pragma once
+/// The output files of `voxdag bench`.
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "lab/report/bench_machine.hpp"
+#include "lab/report/charts.hpp"
+#include "cli/command.hpp"
+#include "cli/output_files.hpp"
+#include "cli/session.hpp"
+
+namespace voxdag::lab {
+using namespace cli;
+
+struct BenchOutput {
+  std::string json_file;  ///< Empty: none.
+  std::array<std::string, 2> plot_files;
+
+  std::vector<OutputFile> files() const;
+  /// Throws UsageError if two files are the same, or one is an input.
+  void check_distinct(const Session& session) const;
+  /// Throws Error unless all files can be created and plots can be drawn. Call it before the work.
+  void check_writable(const Progress& progress) const;
+  /// Writes the files, and prints JSON or `text`. `charts` return the plots.
+  void write(const nlohmann::ordered_json& json,
+             const std::vector<std::function<Chart(const std::string& file)>>& charts,
+             const std::string& text, Session& session) const;
+};
+
+/// Adds --output and --plot, whose help is `plot`.
+void add_output_options(const Command& command, BenchOutput& output, const std::string& plot);
+
+/// Adds --threads, --quiet and --json.
+void add_run_options(const Command& command, Session& session);
+
+/// Returns the line above a table: the processor, its cores and the load before the benchmark.
+std::string machine_text(const nlohmann::ordered_json& machine);
+
+/// Checks the outputs, measures, and writes the results, which it returns. measure() returns them;
+/// json(results, machine), chart(results, file) and table(results) describe them.
+template <class Measure, class Json, class MakeChart, class Table>
+auto measure_and_write(const BenchOutput& output, Session& session, const Measure& measure,
+                       const Json& json, const MakeChart& chart, const Table& table) {
+  output.check_writable(session.progress);
+  const nlohmann::ordered_json machine = machine_json();
+  auto results = measure();
+  output.write(json(results, machine),
+               {[&](const std::string& file) { return chart(results, file); }},
+               machine_text(machine) + table(results), session);
+  return results;
+}
+
+/// Sorts values and removes repeated ones.
+template <class T>
+void sort_unique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace voxdag::lab

@@ -1,0 +1,12 @@
+#pragma once
+/// The bytes of voxdag's own compact form.
+#include "lab/report/size_in_parts.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+
+namespace voxdag::lab {
+
+/// Encodes the DAG, as `voxdag convert --compact` does. Throws Cancelled.
+SizeInParts voxdag_size(const SvdagView& dag, Progress& progress);
+
+}  // namespace voxdag::lab

@@ -1,0 +1,18 @@
+#pragma once
+/// Describes the machine of the measurements.
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace voxdag::lab {
+
+/// Returns program, version and, if it is known, commit: "voxdag 0.1.0 (fb94950)".
+std::string program_name();
+
+/// Returns processor, cores, memory, system, time and load as JSON.
+nlohmann::ordered_json machine_json();
+
+/// Returns the load average of the last minute. If it is above 0 before a measurement, other
+/// processes use the machine.
+double load_average();
+
+}  // namespace voxdag::lab

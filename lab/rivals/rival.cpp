@@ -1,0 +1,11 @@
+#include "lab/rivals/rival.hpp"
+
+namespace voxdag::lab {
+
+std::optional<RivalBuild> Rival::build(const RivalTask&, Progress&) { return std::nullopt; }
+
+std::vector<TraceRunner> Rival::prepare(const Grid&, const RaySet&) { return {}; }
+
+std::vector<RivalTime> Rival::cast_all(int, Progress&) { return {}; }
+
+}  // namespace voxdag::lab

@@ -1,0 +1,17 @@
+#pragma once
+/// Distances from the places of a window to the nearest voxel.
+#include <vector>
+
+#include "voxdag/core/box.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// Sets distances[x - box.lo.x + nx (y - box.lo.y + ny (z - box.lo.z))] to the distance, in voxels,
+/// from the centre of place (x, y, z) to the nearest voxel of the DAG, also outside of the box: to
+/// its closed cube, 0 in a voxel, +infinity if the DAG is empty. `box` is not empty and may reach
+/// out of the grid. Throws Cancelled; `progress` may be null.
+std::vector<float> distance_field(const SvdagView& dag, const Box3i& box, Progress* progress);
+
+}  // namespace voxdag

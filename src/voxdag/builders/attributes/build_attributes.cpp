@@ -1,0 +1,103 @@
+#include "voxdag/builders/attributes/build_attributes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "voxdag/builders/attributes/filter_materials.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Compresses the values of cells as soon as they come.
+class AttributeEncoder : public CellValueSink {
+ public:
+  AttributeEncoder(std::uint64_t cells, const AttributeOptions& options) {
+    if (options.colors)
+      colors = std::make_unique<ValueEncoder>(
+          cells, make_value_metric(kColorWeights, 255 * options.color_bound), options.memory);
+    if (options.normals)
+      normals = std::make_unique<ValueEncoder>(
+          cells, make_normal_metric(options.normal_bound_degrees), options.memory);
+  }
+
+  bool needs_normals() const override { return normals != nullptr; }
+
+  void add(std::uint64_t first, std::span<const VoxelValue> values) override {
+    while (!values.empty()) {
+      const std::uint64_t left_in_page = kPageValues - first % kPageValues;
+      const auto part = values.first(std::min<std::size_t>(values.size(), left_in_page));
+      if (colors)
+        add_packed(*colors, first, part, [](const VoxelValue& v) {
+          return Value8{v.color[0], v.color[1], v.color[2]};
+        });
+      if (normals)
+        add_packed(*normals, first, part,
+                   [](const VoxelValue& v) { return pack_normal(v.normal); });
+      first += part.size();
+      values = values.subspan(part.size());
+    }
+  }
+
+  std::unique_ptr<ValueEncoder> colors, normals;
+
+ private:
+  /// Packs and adds values of one page.
+  template <class Pack>
+  static void add_packed(ValueEncoder& encoder, std::uint64_t first,
+                         std::span<const VoxelValue> values, const Pack& pack) {
+    std::array<Value8, kPageValues> packed;
+    std::transform(values.begin(), values.end(), packed.begin(), pack);
+    encoder.add(first, std::span(packed).first(values.size()));
+  }
+};
+
+}  // namespace
+
+DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
+                               const SurfaceShading* shading, const AttributeOptions& options,
+                               Progress* progress) {
+  DagAttributes result;
+  result.index = build_cell_index(dag, options.finest_level, options.memory);
+  const MemoryReservation index_bytes(options.memory, result.index.view().bytes());
+  if (options.materials)
+    result.materials =
+        filter_materials(mesh, grid, dag, result.index.view(), options.memory, progress);
+  const MemoryReservation material_bytes(options.memory, result.materials.view().bytes());
+  if (!options.colors && !options.normals) return result;
+  AttributeEncoder encoder(result.index.cells, options);
+  filter_cells(mesh, grid, dag, result.index.view(), shading, encoder, options.memory, progress);
+  const auto finish = [](std::unique_ptr<ValueEncoder>& values, ValuePages& pages,
+                         ValueErrors& errors) {
+    if (!values) return;
+    pages = values->finish();
+    errors = values->errors();
+    values.reset();
+  };
+  finish(encoder.colors, result.colors, result.color_errors);
+  const MemoryReservation color_bytes(options.memory, result.colors.view().bytes());
+  finish(encoder.normals, result.normals, result.normal_errors);
+  return result;
+}
+
+std::uint64_t count_cells(const SvdagCounts& counts, int level) {
+  std::uint64_t cells = 0;
+  const int levels = static_cast<int>(counts.svo_nodes_per_level.size());
+  for (int l = 0; l <= level && l < levels; ++l)
+    cells += counts.svo_nodes_per_level[static_cast<std::size_t>(l)];
+  return level == levels ? cells + counts.voxels : cells;
+}
+
+int finest_level_within(const SvdagCounts& counts, const AttributeOptions& options,
+                        std::uint64_t bytes) {
+  const std::uint64_t bits_per_cell =
+      (options.colors ? 8u : 0u) + (options.normals ? 8u : 0u) + (options.materials ? 1u : 0u);
+  int level = static_cast<int>(counts.svo_nodes_per_level.size());
+  while (level > 0 && (count_cells(counts, level) + 7) / 8 * bits_per_cell > bytes) --level;
+  return level;
+}
+
+}  // namespace voxdag

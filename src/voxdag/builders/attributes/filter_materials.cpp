@@ -1,0 +1,85 @@
+#include "voxdag/builders/attributes/filter_materials.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "voxdag/builders/attributes/filter_tasks.hpp"
+#include "voxdag/builders/attributes/material_cells.hpp"
+#include "voxdag/stored/attributes/encode_material_ids.hpp"
+
+namespace voxdag {
+namespace {
+
+struct TaskResult {
+  MaterialAreas areas;
+  std::vector<CellRun> runs;
+};
+
+/// The materials of a top cell.
+struct TopMaterials {
+  MaterialAreas areas;   ///< Empty once the areas of its parent include them.
+  std::uint32_t id = 0;  ///< The cell's own material.
+  /// For a task: the runs of all cells in its subtree. Both 0 for other cells.
+  std::size_t first_run = 0, end_run = 0;
+};
+
+/// Adds the areas of the children to those of the top cells, and finds the top cells' materials.
+void join_top_cells(const NumberedTopCells& cells, std::vector<TopMaterials>& of) {
+  // Children follow their parents in `cells`.
+  for (std::size_t i = cells.size(); i-- > 0;) {
+    for (std::size_t k = 0; k < cells[i].child_count; ++k) {
+      add_areas(of[i].areas, of[cells[i].first_child + k].areas);
+      of[cells[i].first_child + k].areas = {};
+    }
+    if (!of[i].areas.empty()) of[i].id = largest_material(of[i].areas);
+  }
+}
+
+}  // namespace
+
+MaterialIds filter_materials(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
+                             const CellIndexView& index, MemoryBudget* memory, Progress* progress) {
+  if (dag.is_empty()) return {};
+  const QuantizedMesh quantized(mesh, grid, memory, progress);
+  const MemoryReservation tables(memory, quantized.triangle_count());
+  const IndexSet no_duplicates;
+  const std::vector<std::uint8_t> no_open_edges(quantized.triangle_count());
+  const TriangleSource source{grid, quantized, no_open_edges, nullptr, no_duplicates};
+  NumberedTopCells cells = list_top_cells(dag, index, source, memory, progress);
+  std::vector<TopMaterials> of(cells.size());
+  CountedVector<CellRun> runs(memory);
+  tbb::enumerable_thread_specific<MaterialFilter> filters(
+      [&] { return MaterialFilter(dag, index, source, mesh.triangle_materials, memory); });
+  filter_tasks(
+      dag, index, cells, MaterialFilter::kBytesPerCell, memory, "materials", progress,
+      [&](const CellTask& task) {
+        TaskResult result;
+        result.areas = filters.local().filter(task, result.runs);
+        result.runs.shrink_to_fit();
+        return result;
+      },
+      [&](std::size_t i, TaskResult& result) {
+        of[i].areas = std::move(result.areas);
+        of[i].first_run = runs.size();
+        runs.insert(runs.end(), result.runs.begin(), result.runs.end());
+        of[i].end_run = runs.size();
+      });
+  join_top_cells(cells, of);
+
+  std::vector<std::size_t> order(cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return cells[a].cell.number < cells[b].cell.number;
+  });
+  MaterialEncoder encoder(static_cast<std::uint32_t>(mesh.materials.size()), memory);
+  for (const std::size_t i : order) {
+    if (!cells[i].is_task) encoder.add(of[i].id, 1);
+    for (std::size_t run = of[i].first_run; run < of[i].end_run; ++run)
+      encoder.add(runs[run].id, runs[run].length);
+  }
+  return encoder.finish();
+}
+
+}  // namespace voxdag

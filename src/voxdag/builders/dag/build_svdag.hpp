@@ -1,0 +1,61 @@
+#pragma once
+/// Builds the minimal sparse voxel DAG of a triangle mesh's exact cover.
+#include <cstdint>
+
+#include "voxdag/core/grid.hpp"
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+
+namespace voxdag {
+
+enum class BuildMethod {
+  /// Depth-first with hash-consing and the plane memo. Memory grows with the DAG, not with the
+  /// octree; in planar regions time does too.
+  kHashConsed,
+  /// The paper's method with sub-volumes in parallel: builds octrees of sub-volumes of at most
+  /// 1024³, reduces each level by level by sorting, then merges all by one more reduction. The DAG
+  /// is identical.
+  kSort,
+  /// The paper's method as the paper runs and measures it: one sub-volume at a time, each sorted on
+  /// all threads. The DAG is identical.
+  kPaper,
+};
+
+struct BuildOptions {
+  BuildMethod method = BuildMethod::kHashConsed;
+  /// Counts the memory of the build and limits it. The build does not count the mesh; its owner
+  /// does. Null means no limit.
+  MemoryBudget* memory = nullptr;
+};
+
+/// The stages of a build. Seconds are wall-clock.
+struct BuildReport {
+  double quantize_seconds = 0;   ///< Vertices to integers, triangles into sub-volumes.
+  double voxelize_seconds = 0;   ///< Sub-volumes to nodes; both methods reduce them as they go.
+  double merge_seconds = 0;      ///< The final reduction of all sub-volumes, by sorting.
+  double canonical_seconds = 0;  ///< Numbering in canonical order.
+  /// The time of all reductions and of joining their results, and the part of it spent in sorting.
+  /// kPaper: wall-clock, as in the paper's Table 1. kSort: summed over threads, without joining.
+  double reduce_seconds = 0;
+  double sort_seconds = 0;
+  std::uint64_t subvolumes = 0;
+  std::uint64_t peak_bytes = 0;  ///< Most bytes that BuildOptions::memory counted; 0 without one.
+};
+
+struct BuildResult {
+  Svdag dag;
+  BuildReport report;
+  MemoryReservation memory;  ///< Counts `dag` in BuildOptions::memory, which must outlive it.
+};
+
+/// Builds the DAG of all voxels of `grid` that the mesh's triangles meet (design: exact cover).
+/// Runs on the current TBB arena. The result depends on mesh and grid alone: not on threads, method
+/// or machine. Throws OverMemory, with an estimate of the memory that the build needs, if the limit
+/// is too small; it does so before the work if the limit is clearly too small. Throws Error if the
+/// DAG outgrows 32-bit pointers, and Cancelled if `progress` was cancelled.
+BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options = {},
+                        Progress* progress = nullptr);
+
+}  // namespace voxdag

@@ -1,0 +1,44 @@
+#pragma once
+/// Fills the inside of meshes.
+#include <cstdint>
+
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+
+enum class SolidRule {
+  /// A voxel is inside if a ray from it crosses an odd number of triangles. Exact for closed
+  /// meshes, which may intersect themselves and be nested. Where two bodies overlap, they cancel
+  /// each other out.
+  kParity,
+  /// A voxel is inside if the absolute generalised winding number of the mesh at its centre is at
+  /// least a threshold. For meshes with holes, overlapping bodies and triangles of both windings.
+  /// Exact, except where the winding number is within 1e-8 of the threshold.
+  kWinding,
+  /// An empty voxel is inside if no way over faces through empty voxels connects it with the sides
+  /// of the grid. For meshes whose voxels leave no gap. It fills cavities, too.
+  kFlood,
+};
+
+struct SolidOptions {
+  SolidRule rule = SolidRule::kParity;
+  double winding_threshold = 0.5;  ///< Positive; for kWinding.
+};
+
+/// Returns the minimal DAG, in canonical order, of the voxels of `cover`, which must be the DAG of
+/// the mesh on this grid, and of those inside. No triangle meets the empty voxels, so all voxels of
+/// a connected set of them are inside or none is, but for kWinding in holes. Time and memory grow
+/// with `cover`, the mesh and the area of its holes, not with the voxels.
+///
+/// kParity throws Error if the mesh is not closed. kParity and kWinding throw Error if the mesh
+/// reaches out of the range of QuantizedMesh. Throws OverMemory and Cancelled; `memory` and
+/// `progress` may be null.
+Svdag fill_solid(const SvdagView& cover, const Mesh& mesh, const Grid& grid,
+                 const SolidOptions& options, MemoryBudget* memory = nullptr,
+                 Progress* progress = nullptr);
+
+}  // namespace voxdag

@@ -1,0 +1,21 @@
+#pragma once
+/// Whether places are inside a closed mesh, in exact integers.
+#include <vector>
+
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+
+/// Returns for each voxel whether the ray from its centre along +x crosses an odd number of
+/// triangles. No triangle may meet these voxels. All triangles count, also exact duplicates.
+///
+/// Exact: the ray lies beside the centre by infinitely small steps in y and, much smaller, in z. So
+/// it meets no edge, and each edge that lies in its way counts to exactly one side.
+/// (Edelsbrunner and Mücke, "Simulation of Simplicity", ACM TOG 1990.) Time grows with the
+/// triangles, and with the voxels that lie behind each of them along x. Throws Cancelled;
+/// `progress` may be null.
+std::vector<bool> are_inside(const QuantizedMesh& mesh, const std::vector<Vec3i>& voxels,
+                             Progress* progress);
+
+}  // namespace voxdag

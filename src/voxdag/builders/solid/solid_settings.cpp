@@ -1,0 +1,59 @@
+#include "voxdag/builders/solid/solid_settings.hpp"
+
+#include <charconv>
+#include <stdexcept>
+
+namespace voxdag {
+namespace {
+
+constexpr const char* kThreshold = "winding_threshold";
+
+/// Returns the shortest text that reads as this number.
+std::string text_of(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+double positive_number(const std::string& text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !(number > 0))
+    throw std::invalid_argument("\"" + text + "\" is no positive number");
+  return number;
+}
+
+}  // namespace
+
+std::string name_of(SolidRule rule) {
+  switch (rule) {
+    case SolidRule::kParity:
+      return "parity";
+    case SolidRule::kWinding:
+      return "winding";
+    case SolidRule::kFlood:
+      break;
+  }
+  return "flood";
+}
+
+SolidRule solid_rule(const std::string& name) {
+  for (const SolidRule rule : {SolidRule::kParity, SolidRule::kWinding, SolidRule::kFlood})
+    if (name == name_of(rule)) return rule;
+  throw std::invalid_argument("\"" + name + "\" is none of parity, winding and flood");
+}
+
+void add_solid_settings(const SolidOptions& options, std::map<std::string, std::string>& settings) {
+  settings["solid"] = name_of(options.rule);
+  if (options.rule == SolidRule::kWinding)
+    settings[kThreshold] = text_of(options.winding_threshold);
+}
+
+SolidOptions solid_options(const std::map<std::string, std::string>& settings) {
+  SolidOptions options;
+  options.rule = solid_rule(settings.at("solid"));
+  if (const auto threshold = settings.find(kThreshold); threshold != settings.end())
+    options.winding_threshold = positive_number(threshold->second);
+  return options;
+}
+
+}  // namespace voxdag

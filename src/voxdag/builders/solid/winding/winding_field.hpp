@@ -1,0 +1,50 @@
+#pragma once
+/// The generalised winding number of a mesh at voxels.
+///
+/// Source: Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside Segmentation using
+/// Generalized Winding Numbers", SIGGRAPH 2013. It tells how often the surface winds around a
+/// point: a whole number if the mesh is closed, and near one far away from the holes of others.
+///
+/// Mesh and caps over its holes together are closed. So their winding number is a whole number,
+/// which the crossings of one ray tell exactly, and the caps, which are few, tell the difference.
+#include <span>
+#include <vector>
+
+#include "voxdag/builders/solid/winding/edge_tree.hpp"
+#include "voxdag/builders/solid/winding/winding_tree.hpp"
+
+namespace voxdag {
+
+class WindingField {
+ public:
+  /// A voxel is inside if the absolute winding number at its centre is at least `threshold`, which
+  /// is positive. All triangles of the mesh, which must outlive this object, must be in range.
+  /// Throws OverMemory and Cancelled; `memory` and `progress` may be null.
+  WindingField(const QuantizedMesh& mesh, double threshold, MemoryBudget* memory,
+               Progress* progress)
+      : WindingField(mesh, find_boundary_edges(mesh, memory, progress), threshold, memory,
+                     progress) {}
+
+  /// Returns whether each voxel is inside; no triangle may meet these voxels. Voxels whose winding
+  /// number is within 1e-8 of the threshold may be on either side. Time grows with the triangles,
+  /// and with the voxels that lie behind each of them along x. Throws OverMemory and Cancelled.
+  std::vector<bool> are_inside(std::span<const Vec3i> voxels, MemoryBudget* memory,
+                               Progress* progress) const;
+
+  /// Returns whether two voxels in a cell of 2^log2_side voxels a side that are connected through
+  /// voxels that no triangle meets can be on different sides. `cell` is its place, in cells.
+  bool may_differ(Vec3i cell, int log2_side) const;
+
+ private:
+  WindingField(const QuantizedMesh& mesh, CountedVector<BoundaryEdge> boundary, double threshold,
+               MemoryBudget* memory, Progress* progress);
+
+  bool is_inside(Vec3d point, std::int32_t of_closed) const;
+
+  const QuantizedMesh& mesh_;
+  EdgeTree edges_;
+  WindingTree caps_;
+  double threshold_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,14 @@
+#pragma once
+/// Finds triangles that cover what another triangle covers.
+#include "voxdag/core/parallel/find_duplicates.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+
+namespace voxdag {
+
+/// Returns all triangles that are exact duplicates of one with a lower index: they have the same
+/// three corners on the grid, in any order. Triangles that are not in range are in no set; their
+/// pieces are. Cost, errors and progress are those of find_duplicates.
+IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, MemoryBudget* budget = nullptr,
+                                  Progress* progress = nullptr);
+
+}  // namespace voxdag

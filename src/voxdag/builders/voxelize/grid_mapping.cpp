@@ -1,0 +1,202 @@
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::int32_t kOutOfRange = std::numeric_limits<std::int32_t>::max();
+
+void require_levels(int levels) {
+  if (levels < kMinLevels || levels > kMaxLevels)
+    throw Error("a grid must have 2^" + std::to_string(kMinLevels) + " to 2^" +
+                std::to_string(kMaxLevels) + " voxels a side, not 2^" + std::to_string(levels));
+}
+
+void require_voxel_size(double voxel_size) {
+  if (!(voxel_size > 0) || !std::isfinite(kSubvoxels / voxel_size))
+    throw Error("the voxel size must be a positive number");
+}
+
+/// Refuses the bounds of a mesh without triangles.
+void require_triangles(const Box3d& bounds) {
+  if (bounds.is_empty()) throw Error("the mesh has no triangles");
+}
+
+double longest_side(const Box3d& box) {
+  const Vec3d side = box.hi - box.lo;
+  return std::max({side.x, side.y, side.z});
+}
+
+/// Returns the least number of levels whose grid has at least `voxels` voxels a side.
+int levels_for(double voxels) {
+  int levels = kMinLevels;
+  while (levels <= kMaxLevels && static_cast<double>(std::int64_t{1} << levels) < voxels) ++levels;
+  if (levels > kMaxLevels)
+    throw Error("the voxel size is too small: the grid would have more than 2^" +
+                std::to_string(kMaxLevels) + " voxels a side");
+  return levels;
+}
+
+const Mesh kNoMesh;
+
+// Clips by Sutherland-Hodgman against the six planes of the box ±kMaxUnits.
+void clip(const Vec3<Vec3d>& corners, const Grid& grid, std::vector<QuantizedTriangle>& pieces) {
+  std::vector<Vec3d> polygon, kept;
+  for (int corner = 0; corner < 3; ++corner)
+    polygon.push_back((corners[corner] - grid.origin) * grid.quantization_scale);
+  constexpr double kLimit = kMaxUnits;
+  for (int plane = 0; plane < 6 && !polygon.empty(); ++plane) {
+    const int axis = plane / 2;
+    const double sign = plane % 2 == 0 ? 1 : -1;
+    kept.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+      const double inside_a = kLimit - sign * a[axis], inside_b = kLimit - sign * b[axis];
+      if (inside_a >= 0) kept.push_back(a);
+      if ((inside_a >= 0) == (inside_b >= 0)) continue;
+      Vec3d cut = a + (b - a) * (inside_a / (inside_a - inside_b));
+      cut[axis] = sign * kLimit;
+      kept.push_back(cut);
+    }
+    polygon.swap(kept);
+  }
+  std::vector<Vec3i> rounded;
+  for (const Vec3d& p : polygon) {
+    Vec3i q;
+    for (int axis = 0; axis < 3; ++axis)
+      q[axis] = static_cast<std::int32_t>(std::llround(std::clamp(p[axis], -kLimit, kLimit)));
+    rounded.push_back(q);
+  }
+  for (std::size_t i = 2; i < rounded.size(); ++i)
+    pieces.push_back({rounded[0], rounded[i - 1], rounded[i]});
+}
+
+}  // namespace
+
+Grid fit_grid(const Mesh& mesh, int levels) {
+  require_levels(levels);
+  return fit_grid(referenced_bounds(mesh), levels);
+}
+
+Grid fit_grid(const Box3d& bounds, int levels) {
+  require_levels(levels);
+  require_triangles(bounds);
+  const double ext = longest_side(bounds);
+  const double units = static_cast<double>((std::int64_t{1} << levels) * kSubvoxels - 1);
+  Grid grid;
+  grid.levels = levels;
+  grid.origin = bounds.lo;
+  grid.quantization_scale = ext > 0 ? units / ext : kSubvoxels;
+  if (!std::isfinite(grid.quantization_scale))
+    throw Error("the mesh is too small: its voxel size cannot be represented");
+  grid.voxel_size = kSubvoxels / grid.quantization_scale;
+  return grid;
+}
+
+Grid grid_from_voxel_size(const Mesh& mesh, double voxel_size) {
+  return grid_from_voxel_size(referenced_bounds(mesh), voxel_size);
+}
+
+Grid grid_from_voxel_size(const Box3d& bounds, double voxel_size) {
+  require_triangles(bounds);
+  require_voxel_size(voxel_size);
+  // The farthest vertex must round to a unit inside the grid.
+  const double scale = kSubvoxels / voxel_size;
+  const double last_voxel = std::floor(std::round(longest_side(bounds) * scale) / kSubvoxels);
+  return {levels_for(last_voxel + 1), bounds.lo, voxel_size, scale};
+}
+
+Grid grid_from_bounds(const Box3d& bounds, int levels) {
+  require_levels(levels);
+  const double side = bounds.is_empty() ? 0 : longest_side(bounds);
+  if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
+  const double n = static_cast<double>(std::int64_t{1} << levels);
+  return {levels, bounds.lo, side / n, n * kSubvoxels / side};
+}
+
+Grid grid_from_bounds(const Box3d& bounds, double voxel_size) {
+  require_voxel_size(voxel_size);
+  const double side = bounds.is_empty() ? 0 : longest_side(bounds);
+  if (!(side > 0) || !std::isfinite(side)) throw Error("the bounds must have a positive size");
+  return {levels_for(std::ceil(side / voxel_size)), bounds.lo, voxel_size, kSubvoxels / voxel_size};
+}
+
+std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
+  Vec3i q;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double units = (world[axis] - grid.origin[axis]) * grid.quantization_scale;
+    if (!(std::fabs(units) <= kMaxUnits)) return std::nullopt;
+    // Computes std::llround(units), which would be a call.
+    const auto whole = static_cast<std::int32_t>(units);
+    const double rest = units - whole;
+    q[axis] = whole + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0);
+  }
+  return q;
+}
+
+QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget,
+                             Progress* progress)
+    : mesh_(&mesh),
+      vertices_(mesh.vertices.size(), CountedAllocator<Vec3i>(budget)),
+      clipped_(CountedAllocator<QuantizedTriangle>(budget)),
+      clipped_source_(CountedAllocator<std::uint32_t>(budget)) {
+  std::atomic<bool> any_out_of_range{false};
+  polled_for(vertices_.size(), 4096, progress, "quantize", [&](std::size_t i) {
+    vertices_[i] = quantize(grid, static_cast<Vec3d>(mesh.vertices[i]))
+                       .value_or(Vec3i{kOutOfRange, kOutOfRange, kOutOfRange});
+    if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
+  });
+  if (!any_out_of_range.load()) return;
+  const std::size_t count = mesh.triangles.size();
+  std::vector<QuantizedTriangle> pieces;
+  for (std::size_t i = 0; i < count; ++i) {
+    poll_seldom(progress, i);
+    if (in_range(i)) continue;
+    const Triangle& t = mesh.triangles[i];
+    pieces.clear();
+    clip({static_cast<Vec3d>(mesh.vertices[t[0]]), static_cast<Vec3d>(mesh.vertices[t[1]]),
+          static_cast<Vec3d>(mesh.vertices[t[2]])},
+         grid, pieces);
+    clipped_.insert(clipped_.end(), pieces.begin(), pieces.end());
+    clipped_source_.insert(clipped_source_.end(), pieces.size(), static_cast<std::uint32_t>(i));
+  }
+}
+
+QuantizedMesh::QuantizedMesh(CountedVector<QuantizedTriangle> triangles)
+    : mesh_(&kNoMesh), clipped_(std::move(triangles)) {}
+
+bool QuantizedMesh::in_range(std::size_t index) const {
+  if (index >= mesh_->triangles.size()) return true;
+  const Triangle& t = mesh_->triangles[index];
+  return vertices_[t[0]].x != kOutOfRange && vertices_[t[1]].x != kOutOfRange &&
+         vertices_[t[2]].x != kOutOfRange;
+}
+
+QuantizedTriangle QuantizedMesh::triangle(std::size_t index) const {
+  const std::size_t count = mesh_->triangles.size();
+  if (index >= count) return clipped_[index - count];
+  const Triangle& t = mesh_->triangles[index];
+  return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+}
+
+void quantize_triangle(const Grid& grid, const Vec3<Vec3d>& corners,
+                       std::vector<QuantizedTriangle>& triangles) {
+  QuantizedTriangle quantized;
+  for (int corner = 0; corner < 3; ++corner) {
+    const auto q = quantize(grid, corners[corner]);
+    if (!q) return clip(corners, grid, triangles);
+    quantized[corner] = *q;
+  }
+  triangles.push_back(quantized);
+}
+
+}  // namespace voxdag

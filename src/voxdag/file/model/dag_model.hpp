@@ -1,0 +1,74 @@
+#pragma once
+/// A DAG with its attributes and metadata.
+#include <filesystem>
+#include <optional>
+#include <variant>
+
+#include "voxdag/stored/attributes/dag_attributes.hpp"
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/file/compact_file.hpp"
+#include "voxdag/file/vdag_file.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+
+namespace voxdag {
+
+/// The content of a .vdag file in memory: the DAG in the plain form, the attributes of its cells,
+/// and the metadata. Move-only; views stay valid when it is moved.
+class DagModel {
+ public:
+  /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts
+  /// what it holds. Throws Error(path, place, reason), OverMemory and Cancelled.
+  DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
+
+  /// Holds a DAG and the attributes of its cells, which may be empty. metadata.grid.levels must
+  /// equal dag.levels. Sets metadata.counts and metadata.program. `memory`, which may be null,
+  /// counts them. Throws OverMemory.
+  DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata,
+           MemoryBudget* memory = nullptr);
+
+  /// Writes the file; `compact` chooses the compact form. Throws Error, OverMemory and Cancelled.
+  void save(const std::filesystem::path& path, bool compact, Progress* progress = nullptr,
+            MemoryBudget* memory = nullptr) const;
+
+  SvdagView view() const;
+  /// Returns the attributes of the DAG's cells; empty if the file has none.
+  DagAttributesView attributes() const;
+  const VdagMetadata& metadata() const { return metadata_; }
+  const Grid& grid() const { return metadata_.grid; }
+  std::uint64_t file_bytes() const { return file_bytes_; }
+  /// Replaces the colours by one for each material. Throws Error if the file has no material ids.
+  void show_materials(const std::filesystem::path& path, Progress* progress);
+  /// Returns whether the file has the compact form.
+  bool is_compact() const { return std::holds_alternative<Decoded>(dag_); }
+
+ private:
+  /// A compact file, decoded to the plain form.
+  struct Decoded {
+    std::optional<CompactFile> file;  ///< Empty if the file has no attributes.
+    Svdag dag;
+    CellIndex index;           ///< The numbers of the cells with attributes.
+    ExpandedChunks expanded;   ///< Attributes that the file has in the wire form.
+    DagAttributesView stored;  ///< Points into the members above, also after they are moved.
+
+    SvdagView view() const { return dag.view(); }
+    const DagAttributesView& attributes() const { return stored; }
+  };
+  /// A DAG that was made in memory.
+  struct Made {
+    Svdag dag;
+    DagAttributes stored;
+
+    SvdagView view() const { return dag.view(); }
+    DagAttributesView attributes() const { return stored.view(); }
+  };
+  static Decoded decode(const std::filesystem::path& path, Progress* progress,
+                        MemoryBudget* memory);
+
+  std::variant<VdagFile, Decoded, Made> dag_;
+  std::optional<ValuePages> material_colors_;  ///< After show_materials().
+  VdagMetadata metadata_;
+  std::uint64_t file_bytes_ = 0;
+  MemoryReservation memory_;
+};
+
+}  // namespace voxdag

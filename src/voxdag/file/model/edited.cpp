@@ -1,0 +1,17 @@
+#include "voxdag/file/model/edited.hpp"
+
+#include <utility>
+
+namespace voxdag {
+
+DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const std::string& edit,
+                MemoryBudget* memory) {
+  VdagMetadata metadata = source;
+  metadata.grid = grid;
+  metadata.attributes = {};
+  std::string& edits = metadata.build["edits"];
+  edits += (edits.empty() ? "" : "; ") + edit;
+  return {std::move(dag), {}, std::move(metadata), memory};
+}
+
+}  // namespace voxdag

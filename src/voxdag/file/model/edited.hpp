@@ -1,0 +1,19 @@
+#pragma once
+/// Models that were made from other models.
+#include <string>
+#include <utility>
+
+#include "voxdag/file/model/dag_model.hpp"
+
+namespace voxdag {
+
+/// Returns a model of `dag` in `grid`, without attributes. The metadata are `source`;
+/// their entry "edits" gets `edit`, which says how the voxels were made. Throws OverMemory.
+DagModel edited(const VdagMetadata& source, Svdag dag, const Grid& grid, const std::string& edit,
+                MemoryBudget* memory = nullptr);
+inline DagModel edited(const DagModel& source, Svdag dag, const Grid& grid, const std::string& edit,
+                       MemoryBudget* memory = nullptr) {
+  return edited(source.metadata(), std::move(dag), grid, edit, memory);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,38 @@
+#include "voxdag/file/model/scene_model.hpp"
+
+#include "voxdag/file/model/no_materials.hpp"
+
+namespace voxdag {
+namespace {
+
+std::variant<DagModel, EsvoFile> open(const std::filesystem::path& path, Progress* progress) {
+  if (is_esvo_file(path)) return EsvoFile(path);
+  return DagModel(path, progress);
+}
+
+}  // namespace
+
+SceneModel::SceneModel(const std::filesystem::path& path, Progress* progress)
+    : scene_(open(path, progress)) {}
+
+VoxelSet SceneModel::voxels() const {
+  return std::visit([](const auto& file) { return VoxelSet(file.view()); }, scene_);
+}
+
+ColoredDagView SceneModel::colored_dag() const {
+  const DagModel* const dag = std::get_if<DagModel>(&scene_);
+  return dag == nullptr ? ColoredDagView{} : ColoredDagView{dag->view(), dag->attributes()};
+}
+
+void SceneModel::show_materials(const std::filesystem::path& path, Progress* progress) {
+  DagModel* const dag = std::get_if<DagModel>(&scene_);
+  if (dag == nullptr) fail_without_materials(path);
+  dag->show_materials(path, progress);
+}
+
+const SceneMetadata& SceneModel::metadata() const {
+  return std::visit([](const auto& file) -> const SceneMetadata& { return file.metadata(); },
+                    scene_);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,31 @@
+#pragma once
+/// A scene of any kind: a DAG in either form, or an ESVO.
+#include <filesystem>
+#include <variant>
+
+#include "voxdag/file/esvo_file.hpp"
+#include "voxdag/stored/attributes/look.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
+#include "voxdag/file/model/dag_model.hpp"
+
+namespace voxdag {
+
+/// A scene of any kind in memory. Move-only; views stay valid when it is moved.
+class SceneModel {
+ public:
+  /// Reads a DAG like DagModel, or an ESVO.
+  SceneModel(const std::filesystem::path& path, Progress* progress);
+
+  VoxelSet voxels() const;
+  /// Returns the DAG with its attributes; empty for an ESVO and a file without attributes.
+  ColoredDagView colored_dag() const;
+  const SceneMetadata& metadata() const;
+  const Grid& grid() const { return metadata().grid; }
+  /// Calls DagModel::show_materials(). Throws Error for an ESVO, which has no material ids.
+  void show_materials(const std::filesystem::path& path, Progress* progress);
+
+ private:
+  std::variant<DagModel, EsvoFile> scene_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,249 @@
+#include "voxdag/formats/exports/export_ply.hpp"
+
+#include <array>
+#include <bitset>
+#include <limits>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/exports/coordinates.hpp"
+#include "voxdag/formats/exports/export_common.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/stored/attributes/look_reader.hpp"
+
+namespace voxdag {
+namespace {
+
+/// A PLY file whose counts are known only at the end. The header is then written again, padded with
+/// a comment to its first length.
+class PlyFile {
+ public:
+  struct Content {
+    bool faces = false, normals = false, colors = false, materials = false;
+  };
+
+  PlyFile(const std::filesystem::path& path, const Grid& grid, const Content& content)
+      : file_(path), grid_(grid), content_(content), use_float_(float_suffices(grid)) {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+    header_bytes_ = header(most, most, "").size();
+    file_.write_zeros(header_bytes_);
+  }
+
+  /// Writes a vertex, with the parts of `look` that the content has.
+  void write_vertex(Vec3d grid_position, const VoxelLook& look) {
+    const Vec3d world = grid_.to_world(grid_position);
+    if (use_float_) {
+      const Vec3f rounded(world);
+      file_.write(&rounded, sizeof rounded);
+    } else {
+      file_.write(&world, sizeof world);
+    }
+    if (content_.normals) file_.write(&look.normal, sizeof look.normal);
+    if (content_.colors) file_.write(&look.color, sizeof look.color);
+    if (content_.materials) file_.write(&look.material, sizeof look.material);
+    ++vertices_;
+  }
+
+  void write_quad(const std::array<std::uint32_t, 4>& corners) {
+    const unsigned char count = 4;
+    file_.write(&count, 1);
+    file_.write(corners.data(), sizeof corners);
+    ++faces_;
+  }
+
+  std::uint64_t vertices() const { return vertices_; }
+
+  void commit() {
+    const std::string unpadded = header(vertices_, faces_, "");
+    const std::string text =
+        header(vertices_, faces_, std::string(header_bytes_ - unpadded.size(), '.'));
+    file_.overwrite(0, text.data(), text.size());
+    file_.commit();
+  }
+
+ private:
+  std::string header(std::uint64_t vertices, std::uint64_t faces,
+                     const std::string& padding) const {
+    const std::string type = use_float_ ? "float" : "double";
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment made by voxdag\n";
+    text += "comment grid_origin " + shortest(grid_.origin.x) + " " + shortest(grid_.origin.y) +
+            " " + shortest(grid_.origin.z) + "\n";
+    text += "comment voxel_size " + shortest(grid_.voxel_size) + "\n";
+    text += "comment resolution " + std::to_string(grid_.resolution()) + "\n";
+    text += "comment " + padding + "\nelement vertex " + std::to_string(vertices) + "\n";
+    for (const char axis : {'x', 'y', 'z'}) text += "property " + type + " " + axis + "\n";
+    if (content_.normals)
+      for (const char axis : {'x', 'y', 'z'}) text += std::string("property float n") + axis + "\n";
+    if (content_.colors)
+      for (const char* channel : {"red", "green", "blue"})
+        text += std::string("property uchar ") + channel + "\n";
+    if (content_.materials) text += "property ushort material\n";
+    if (content_.faces)
+      text +=
+          "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
+    return text + "end_header\n";
+  }
+
+  AtomicFile file_;
+  Grid grid_;
+  Content content_;
+  bool use_float_;
+  std::size_t header_bytes_ = 0;
+  std::uint64_t vertices_ = 0, faces_ = 0;
+};
+
+PlyFile::Content content_of(const LookReader& look, bool faces) {
+  return {faces, look.has_normals(), look.has_colors(), look.has_materials()};
+}
+
+constexpr int kCorners = 5 * 5 * 5;  ///< Corners of the voxels of a leaf block.
+
+int corner_index(Vec3i corner) { return corner.x + 5 * (corner.y + 5 * corner.z); }
+
+/// The faces of a leaf block's voxels whose neighbours are not set.
+struct BlockSurface {
+  /// faces[2 * axis + side] is the mask of the voxels with an outer face on the low (0) or high (1)
+  /// side.
+  std::array<std::uint64_t, 6> faces{};
+  std::bitset<kCorners> corners;  ///< Corners that the faces use.
+};
+
+/// Returns the corners of a face, counter-clockwise from outside.
+std::array<Vec3i, 4> face_corners(Vec3i voxel, int axis, int side) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  std::array<Vec3i, 4> corners;
+  corners.fill(voxel);
+  for (Vec3i& corner : corners) corner[axis] += side;
+  ++corners[side == 1 ? 1 : 3][u];
+  ++corners[2][u];
+  ++corners[2][v];
+  ++corners[side == 1 ? 3 : 1][v];
+  return corners;
+}
+
+/// Moves every voxel's bit to the neighbour with a higher coordinate on an axis; bits of `below`,
+/// the neighbouring block, move in. shift_down() moves bits in the opposite direction. In Morton
+/// order, a step inside an octant of 2³ moves a bit by the axis's stride (1, 2 or 4), a step to the
+/// next octant by seven strides.
+std::uint64_t shift_up(std::uint64_t block, std::uint64_t below, int axis) {
+  const auto& slab = kLeafSlabs[axis];
+  return (block << (1 << axis) & (slab[1] | slab[3])) | (block << (7 << axis) & slab[2]) |
+         (below >> (9 << axis) & slab[0]);
+}
+std::uint64_t shift_down(std::uint64_t block, std::uint64_t above, int axis) {
+  const auto& slab = kLeafSlabs[axis];
+  return (block >> (1 << axis) & (slab[0] | slab[2])) | (block >> (7 << axis) & slab[1]) |
+         (above << (9 << axis) & slab[3]);
+}
+
+template <class Fn>
+void for_each_face(const BlockSurface& surface, const Fn& fn) {
+  for (int face = 0; face < 6; ++face)
+    for (std::uint64_t left = surface.faces[face]; left != 0; left &= left - 1)
+      fn(face_corners(morton_decode(static_cast<std::uint64_t>(std::countr_zero(left))), face / 2,
+                      face % 2));
+}
+
+/// Sets the corners that the faces use.
+void find_corners(BlockSurface& surface) {
+  for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
+    for (const Vec3i corner : corners) surface.corners.set(corner_index(corner));
+  });
+}
+
+BlockSurface block_surface(const VoxelSet& voxels, const Box3i& window, Vec3i origin,
+                           std::uint64_t block) {
+  const auto neighbour = [&](int axis, int step) {
+    Vec3i at = origin;
+    at[axis] += step;
+    return voxels.leaf_block_at(at) & leaf_window_mask(at, window);
+  };
+  BlockSurface surface;
+  for (int axis = 0; axis < 3; ++axis) {
+    surface.faces[2 * axis] = block & ~shift_up(block, neighbour(axis, -4), axis);
+    surface.faces[2 * axis + 1] = block & ~shift_down(block, neighbour(axis, 4), axis);
+  }
+  find_corners(surface);
+  return surface;
+}
+
+/// Calls fn(surface, voxel) for the parts of a block's surface whose faces share corners: for each
+/// voxel that has faces if `by_voxel`, otherwise for the whole block with its origin as `voxel`.
+template <class Fn>
+void for_each_part(const BlockSurface& whole, Vec3i origin, bool by_voxel, const Fn& fn) {
+  if (!by_voxel) return fn(whole, origin);
+  std::uint64_t left = 0;
+  for (const std::uint64_t faces : whole.faces) left |= faces;
+  for (; left != 0; left &= left - 1) {
+    BlockSurface part;
+    for (std::size_t face = 0; face < 6; ++face)
+      part.faces[face] = whole.faces[face] & (left & -left);
+    find_corners(part);
+    fn(part, origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(left))));
+  }
+}
+
+}  // namespace
+
+void export_ply_points(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
+                       const ExportOptions& options) {
+  refuse_pipe(path);
+  const Box3i window = export_window(path, voxels, options);
+  LookReader look(options.look);
+  const std::uint64_t vertex_bytes = sizeof(Vec3f) + (look.has_normals() ? sizeof(Vec3f) : 0) +
+                                     (look.has_colors() ? sizeof(Value8) : 0) +
+                                     (look.has_materials() ? sizeof(std::uint16_t) : 0);
+  const std::uint64_t count = count_for_export(path, voxels, window, vertex_bytes, options);
+  PlyFile file(path, grid, content_of(look, false));
+  export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t mask) {
+    for (; mask != 0; mask &= mask - 1) {
+      const Vec3i voxel =
+          origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
+      file.write_vertex(Vec3d(voxel) + Vec3d{0.5, 0.5, 0.5},
+                        look.is_empty() ? VoxelLook{} : look.read(voxel, voxels.levels()));
+    }
+  });
+  file.commit();
+}
+
+void export_ply_faces(const std::filesystem::path& path, const VoxelSet& voxels, const Grid& grid,
+                      const ExportOptions& options) {
+  refuse_pipe(path);
+  const Box3i window = export_window(path, voxels, options);
+  const std::uint64_t count = count_for_export(path, voxels, window, 0, options);
+  LookReader look(options.look);
+  const bool by_voxel = !look.is_empty();
+  PlyFile file(path, grid, content_of(look, true));
+  // In PLY all vertices come before all faces. So two walks compute the same surfaces.
+  const auto for_each_surface = [&](const auto& fn) {
+    export_leaf_blocks(voxels, window, count, options, [&](Vec3i origin, std::uint64_t block) {
+      for_each_part(block_surface(voxels, window, origin, block), origin, by_voxel,
+                    [&](const BlockSurface& surface, Vec3i voxel) { fn(surface, origin, voxel); });
+    });
+  };
+  for_each_surface([&](const BlockSurface& surface, Vec3i origin, Vec3i voxel) {
+    const VoxelLook of_voxel = by_voxel ? look.read(voxel, voxels.levels()) : VoxelLook{};
+    for (int i = 0; i < kCorners; ++i)
+      if (surface.corners[i])
+        file.write_vertex(Vec3d(origin + Vec3i{i % 5, i / 5 % 5, i / 25}), of_voxel);
+    if (file.vertices() > std::numeric_limits<std::int32_t>::max())
+      throw Error(path.string(), "", "more than 2^31 - 1 corners: choose a smaller window");
+  });
+  std::uint32_t first_vertex = 0;
+  for_each_surface([&](const BlockSurface& surface, Vec3i, Vec3i) {
+    std::array<std::uint32_t, kCorners> vertex_of_corner;
+    std::uint32_t next = first_vertex;
+    for (int i = 0; i < kCorners; ++i) {
+      vertex_of_corner[i] = next;
+      next += surface.corners[i] ? 1 : 0;
+    }
+    for_each_face(surface, [&](const std::array<Vec3i, 4>& corners) {
+      std::array<std::uint32_t, 4> vertices;
+      for (int i = 0; i < 4; ++i) vertices[i] = vertex_of_corner[corner_index(corners[i])];
+      file.write_quad(vertices);
+    });
+    first_vertex = next;
+  });
+  file.commit();
+}
+
+}  // namespace voxdag

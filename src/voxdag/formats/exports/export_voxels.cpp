@@ -1,0 +1,126 @@
+#include "voxdag/formats/exports/export_voxels.hpp"
+
+#include <string>
+#include <string_view>
+
+#include "voxdag/algebra/crop.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/exports/export_arrays.hpp"
+#include "voxdag/formats/exports/export_common.hpp"
+#include "voxdag/formats/exports/export_ply.hpp"
+#include "voxdag/formats/exports/faces/export_faces.hpp"
+#include "voxdag/formats/exports/grids/export_binvox.hpp"
+#include "voxdag/formats/exports/grids/export_playcanvas.hpp"
+#include "voxdag/formats/exports/grids/export_schem.hpp"
+#include "voxdag/formats/exports/grids/export_spc.hpp"
+#include "voxdag/formats/exports/grids/export_vdb.hpp"
+#include "voxdag/formats/exports/grids/export_vox.hpp"
+
+namespace voxdag {
+namespace {
+
+/// The arguments of export_voxels().
+struct Request {
+  const std::filesystem::path& path;
+  const VoxelSet& voxels;
+  const Grid& grid;
+  const ExportContent& content;
+  const ExportOptions& options;
+};
+
+using Files = std::vector<std::filesystem::path>;
+using Exporter = void (*)(const std::filesystem::path&, const VoxelSet&, const Grid&,
+                          const ExportOptions&);
+
+template <Exporter kExport>
+Files one_file(const Request& r) {
+  kExport(r.path, r.voxels, r.grid, r.options);
+  return {r.path};
+}
+
+Files npy(const Request& r) {
+  return r.options.window ? one_file<export_npy_dense>(r) : one_file<export_npy_coordinates>(r);
+}
+
+Files ply(const Request& r) {
+  return r.content.ply_faces ? one_file<export_ply_faces>(r) : one_file<export_ply_points>(r);
+}
+
+Files vox(const Request& r) { return export_vox(r.path, r.voxels, r.grid, r.options); }
+
+/// Writes a format that is for DAGs only, and that has no windows: crops the DAG.
+template <void (*kExport)(const std::filesystem::path&, const SvdagView&, const Grid&,
+                          const ExportOptions&)>
+Files dag_file(const Request& r) {
+  const SvdagView* const dag = r.voxels.dag();
+  if (dag == nullptr)
+    throw Error(r.path.string(), "",
+                "this format is for DAGs, but the scene is an ESVO: build a .vdag of its mesh");
+  const Box3i window = export_window(r.path, r.voxels, r.options);
+  if (r.options.window)
+    kExport(r.path, crop(*dag, window, r.options.memory, nullptr).view(), r.grid, r.options);
+  else
+    kExport(r.path, *dag, r.grid, r.options);
+  return {r.path};
+}
+
+struct Format {
+  std::string_view ending;
+  Files (*write)(const Request&);
+  bool has_colors;
+};
+
+/// ".spc.npy" comes before ".npy": the first ending that matches counts.
+constexpr Format kFormats[] = {{".spc.npy", dag_file<export_spc>, false},
+                               {".npy", npy, true},
+                               {".raw", one_file<export_raw>, false},
+                               {".ply", ply, true},
+                               {".glb", one_file<export_glb>, true},
+                               {".obj", one_file<export_obj>, true},
+                               {".stl", one_file<export_stl>, false},
+                               {".vox", vox, true},
+                               {".binvox", one_file<export_binvox>, false},
+                               {".schem", one_file<export_schem>, true},
+                               {".voxel.json", dag_file<export_playcanvas>, false},
+                               {".vdb", one_file<export_vdb>, true},
+                               {".nvdb", one_file<export_vdb>, true}};
+
+/// Returns the format of a file, or null.
+const Format* format_of(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  for (const Format& format : kFormats)
+    if (name.size() > format.ending.size() && name.ends_with(format.ending)) return &format;
+  return nullptr;
+}
+
+}  // namespace
+
+bool can_export_to(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
+std::string export_extensions() {
+  std::string text;
+  for (const Format& format : kFormats) {
+    if (!text.empty()) text += &format == std::end(kFormats) - 1 ? " or " : ", ";
+    text += format.ending;
+  }
+  return text;
+}
+
+bool export_has_colors(const std::filesystem::path& path, bool has_window) {
+  const Format* const format = format_of(path);
+  return format != nullptr && format->has_colors && !(format->write == npy && has_window);
+}
+
+std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& path,
+                                                 const VoxelSet& voxels, const Grid& grid,
+                                                 const ExportContent& content,
+                                                 const ExportOptions& options) {
+  const Format* const format = format_of(path);
+  if (format == nullptr)
+    throw Error(path.string(), "",
+                "cannot export to '" + path.extension().string() + "': the extension must be " +
+                    export_extensions());
+  return format->write({path, voxels, grid, content, options});
+}
+
+}  // namespace voxdag

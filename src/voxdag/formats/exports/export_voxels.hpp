@@ -1,0 +1,30 @@
+#pragma once
+/// Exports voxels to the format that the extension of the output names.
+#include <vector>
+
+#include "voxdag/formats/exports/export_options.hpp"
+
+namespace voxdag {
+
+/// Returns whether export_voxels() knows the extension of `path`.
+bool can_export_to(const std::filesystem::path& path);
+/// Returns the extensions that export_voxels() knows: ".npy, .ply, ... or .glb".
+std::string export_extensions();
+
+/// Chooses between contents of one extension.
+struct ExportContent {
+  bool ply_faces = false;  ///< For .ply: outer faces, not points.
+};
+
+/// Chooses the format by the extension: .npy (dense if there is a window, else coordinates), .raw,
+/// .spc.npy, .ply, .glb, .obj, .stl, .vox, .binvox, .schem, .voxel.json, .vdb, .nvdb. Returns the
+/// files with voxels that were written: more than one only for .vox.
+std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& path,
+                                                 const VoxelSet& voxels, const Grid& grid,
+                                                 const ExportContent& content = {},
+                                                 const ExportOptions& options = {});
+
+/// Returns whether export_voxels() writes colours to this file, if there are some.
+bool export_has_colors(const std::filesystem::path& path, bool has_window);
+
+}  // namespace voxdag

@@ -1,0 +1,35 @@
+#pragma once
+/// Collects points or voxels to batches.
+#include "voxdag/formats/imports/voxel_source.hpp"
+
+namespace voxdag {
+
+/// Passes points or voxels to `visit`, many at a time. Call finish() at the end.
+class BatchedVoxels {
+ public:
+  explicit BatchedVoxels(const VisitBatch& visit) : visit_(visit) { places_.reserve(kBatch); }
+
+  void add(Vec3d place) {
+    places_.push_back(place);
+    if (places_.size() == kBatch) finish();
+  }
+  /// A source gives all its places a colour, or none.
+  void add(Vec3d place, Rgb8 color) {
+    colors_.push_back(color);
+    add(place);
+  }
+  void finish() {
+    if (!places_.empty()) visit_({places_, colors_});
+    places_.clear();
+    colors_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kBatch = 4096;
+
+  const VisitBatch& visit_;
+  std::vector<Vec3d> places_;
+  std::vector<Rgb8> colors_;
+};
+
+}  // namespace voxdag

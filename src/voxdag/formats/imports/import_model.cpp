@@ -1,0 +1,23 @@
+#include "voxdag/formats/imports/import_model.hpp"
+
+#include <utility>
+
+namespace voxdag {
+
+ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
+                           const std::string& name, Progress* progress) {
+  ImportResult result = import_voxels(source, options, progress);
+  VdagMetadata metadata;
+  metadata.grid = result.grid;
+  metadata.source = {name, result.read, 0};
+  metadata.build = {{"cover", "imported"}};
+  if (result.attributes.view().has_colors()) {
+    metadata.attributes.resolution = result.grid.resolution();
+    metadata.attributes.colors = {options.color_bound, result.attributes.color_errors.squared};
+  }
+  return {DagModel(std::move(result.dag), std::move(result.attributes), std::move(metadata),
+                   options.memory),
+          result.read, result.outside};
+}
+
+}  // namespace voxdag

@@ -1,0 +1,21 @@
+#pragma once
+/// Builds models from files of voxels and points.
+#include <string>
+
+#include "voxdag/formats/imports/import_voxels.hpp"
+#include "voxdag/file/model/dag_model.hpp"
+
+namespace voxdag {
+
+struct ImportedModel {
+  DagModel model;
+  std::uint64_t read = 0;     ///< Points or voxels in the source.
+  std::uint64_t outside = 0;  ///< Points outside of the bounds, which are left out.
+};
+
+/// Imports a source with import_voxels(). The metadata call it `name`. Throws Error, OverMemory and
+/// Cancelled.
+ImportedModel import_model(const VoxelSource& source, const ImportOptions& options,
+                           const std::string& name, Progress* progress = nullptr);
+
+}  // namespace voxdag

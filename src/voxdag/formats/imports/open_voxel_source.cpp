@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <system_error>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/points/las_header.hpp"
+#include "voxdag/formats/imports/points/las_points.hpp"
+#include "voxdag/formats/imports/points/npy_points.hpp"
+#include "voxdag/formats/imports/points/pcd_points.hpp"
+#include "voxdag/formats/imports/points/ply_points.hpp"
+#include "voxdag/formats/imports/points/xyz_points.hpp"
+#include "voxdag/formats/imports/volumes/binvox.hpp"
+#include "voxdag/formats/imports/volumes/nifti.hpp"
+#include "voxdag/formats/imports/volumes/npy_volume.hpp"
+#include "voxdag/formats/imports/volumes/nrrd.hpp"
+#include "voxdag/formats/imports/volumes/png_slices.hpp"
+#include "voxdag/formats/imports/volumes/vdb.hpp"
+#include "voxdag/formats/imports/volumes/vox.hpp"
+
+namespace voxdag {
+namespace {
+
+using Path = std::filesystem::path;
+using Options = VoxelSourceOptions;
+
+struct Format {
+  const char* ending;
+  bool has_threshold;
+  std::unique_ptr<VoxelSource> (*open)(const Path& path, const Options& options);
+};
+
+constexpr Format kFormats[] = {
+    {".npy", true,
+     [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
+    {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".txt", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".csv", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
+    {".ply", false, [](const Path& path, const Options&) { return open_ply_points(path); }},
+    {".las", false, [](const Path& path, const Options&) { return open_las_points(path); }},
+    {".pcd", false, [](const Path& path, const Options&) { return open_pcd_points(path); }},
+    {".binvox", false, [](const Path& path, const Options&) { return open_binvox(path); }},
+    {".nrrd", true,
+     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+    {".nhdr", true,
+     [](const Path& path, const Options& options) { return open_nrrd(path, options.threshold); }},
+    {".nii", true,
+     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+    {".nii.gz", true,
+     [](const Path& path, const Options& options) { return open_nifti(path, options.threshold); }},
+    {".vdb", true,
+     [](const Path& path, const Options& options) { return open_vdb(path, options.threshold); }},
+    {".vox", false, [](const Path& path, const Options&) { return open_vox(path); }},
+};
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& options) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return open_png_slices(path, options.threshold);
+  std::string name = path.string(), endings;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Format& format : kFormats) {
+    if (name.ends_with(format.ending)) {
+      if (options.threshold && !format.has_threshold)
+        throw Error(path.string(), "", "has no values to compare with a threshold");
+      return format.open(path, options);
+    }
+    endings += std::string(endings.empty() ? "" : ", ") + format.ending;
+  }
+  if (name.ends_with(".laz")) throw Error(path.string(), "", kCompressedLas);
+  throw Error(path.string(), "", "is none of " + endings + ", or a folder of .png files");
+}
+
+}  // namespace voxdag

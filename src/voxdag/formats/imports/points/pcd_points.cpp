@@ -1,0 +1,223 @@
+#include "voxdag/formats/imports/points/pcd_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "voxdag/core/bits.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/load_value.hpp"
+#include "voxdag/formats/imports/points/lzf_stream.hpp"
+#include "voxdag/formats/imports/points/pcd_header.hpp"
+#include "voxdag/formats/readers/chunks.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Compressed points that are in memory at a time.
+constexpr std::size_t kBlock = 4096;
+/// Before compressed data: its size, and that of the decompressed body. 32 bits each.
+constexpr std::size_t kSizes = 8;
+
+double load_number(const PcdField& field, const char* p) {
+  const std::uint64_t size = field.size;
+  if (field.type == 'F') return size == 4 ? load_value<float>(p) : load_value<double>(p);
+  if (field.type == 'I') {
+    if (size == 1) return load_value<std::int8_t>(p);
+    if (size == 2) return load_value<std::int16_t>(p);
+    if (size == 4) return load_value<std::int32_t>(p);
+    return static_cast<double>(load_value<std::int64_t>(p));
+  }
+  if (size == 1) return load_value<std::uint8_t>(p);
+  if (size == 2) return load_value<std::uint16_t>(p);
+  if (size == 4) return load_value<std::uint32_t>(p);
+  return static_cast<double>(load_value<std::uint64_t>(p));
+}
+
+/// Returns the packed colour of a number of text.
+std::uint32_t parse_color(std::string_view token) {
+  std::int64_t integer = 0;
+  if (parse_int(token, integer)) {
+    if (integer < std::numeric_limits<std::int32_t>::min() ||
+        integer > std::numeric_limits<std::uint32_t>::max())
+      throw Fault{token.data(), "colour " + in_quotes(token) + " has more than 32 bits"};
+    return static_cast<std::uint32_t>(integer);
+  }
+  float packed = 0;
+  if (!parse_float(token, packed))
+    throw Fault{token.data(), "colour " + in_quotes(token) + " is not a number"};
+  // Text keeps no bits of a NaN.
+  return std::isnan(packed) ? 0 : bits_of_float(packed);
+}
+
+/// A point as the file has it.
+struct PcdPoint {
+  Vec3d place;
+  std::uint32_t color = 0;  ///< 0xAARRGGBB
+};
+
+class PcdPoints : public VoxelSource {
+ public:
+  explicit PcdPoints(const std::filesystem::path& path)
+      : file_(path, MappedFile::Access::kSequential),
+        source_{file_.text(), path.string(), {}, &file_, {}},
+        header_(parse_pcd_header(source_.bytes, source_.name)) {
+    for (const char* const axis : {"x", "y", "z"}) {
+      const int found = header_.find(axis);
+      if (found < 0) throw fail_in_header("has no field '" + std::string(axis) + "'");
+      used_.push_back(header_.fields[static_cast<std::size_t>(found)]);
+      if (used_.back().count != 1)
+        throw fail_in_header("field '" + std::string(axis) + "' has more than one value");
+    }
+    for (const char* const name : {"rgb", "rgba"}) {
+      const int found = header_.find(name);
+      if (found < 0 || used_.size() > 3) continue;
+      const PcdField& field = header_.fields[static_cast<std::size_t>(found)];
+      if (field.count == 1 && field.size == 4) used_.push_back(field);
+    }
+    if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();
+  }
+
+  bool has_points() const override { return true; }
+  bool has_colors() const override { return used_.size() > 3; }
+  void visit_all(const VisitBatch& visit) const override {
+    BatchedVoxels points(visit);
+    const bool is_text = header_.data == PcdData::kAscii;
+    try {
+      if (is_text)
+        visit_text(points);
+      else if (header_.data == PcdData::kBinary)
+        visit_binary(points);
+      else
+        visit_compressed(points);
+    } catch (const Fault& fault) {
+      throw_fault(source_, fault, is_text ? '\n' : kBinary);
+    }
+    points.finish();
+  }
+
+ private:
+  Error fail_in_header(const std::string& reason) const { return {source_.name, "header", reason}; }
+
+  void add(BatchedVoxels& points, const PcdPoint& point) const {
+    if (!is_finite(point.place)) return;
+    if (!has_colors()) return points.add(point.place);
+    const std::uint32_t color = point.color;
+    points.add(point.place,
+               {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8),
+                static_cast<std::uint8_t>(color)});
+  }
+
+  void load_field(std::size_t used, const char* at, PcdPoint& point) const {
+    if (used < 3)
+      point.place[static_cast<int>(used)] = load_number(used_[used], at);
+    else
+      point.color = load_value<std::uint32_t>(at);
+  }
+
+  void visit_text(BatchedVoxels& points) const {
+    std::string_view text = source_.bytes.substr(header_.body);
+    PassedPages pages(file_, text.data());
+    for (std::uint64_t i = 0; i < header_.points;) {
+      if (text.empty())
+        throw Fault{text.data(), "the file ends after " + std::to_string(i) + " of " +
+                                     std::to_string(header_.points) + " points"};
+      const std::string_view line = next_line(text, '\n');
+      pages.pass(text.data());
+      if (trim(line).empty()) continue;
+      add(points, parse_point(line));
+      ++i;
+    }
+  }
+
+  PcdPoint parse_point(std::string_view line) const {
+    PcdPoint point;
+    for (std::uint64_t value = 0; value < header_.point_values; ++value) {
+      const std::string_view token = next_token(line);
+      if (token.empty())
+        throw Fault{line.data(), "the point has " + std::to_string(value) + " of " +
+                                     std::to_string(header_.point_values) + " values"};
+      for (std::size_t used = 0; used < 3; ++used)
+        if (used_[used].ordinal == value &&
+            !parse_float(token, point.place[static_cast<int>(used)]))
+          throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
+      if (has_colors() && used_[3].ordinal == value) point.color = parse_color(token);
+    }
+    const std::string_view extra = next_token(line);
+    if (!extra.empty())
+      throw Fault{extra.data(), "the point has " + in_quotes(extra) + " after its last value"};
+    return point;
+  }
+
+  void visit_binary(BatchedVoxels& points) const {
+    const char* at = source_.bytes.data() + header_.body;
+    PassedPages pages(file_, at);
+    for (std::uint64_t i = 0; i < header_.points; ++i) {
+      PcdPoint point;
+      for (std::size_t used = 0; used < used_.size(); ++used)
+        load_field(used, at + used_[used].offset, point);
+      add(points, point);
+      at += header_.point_bytes;
+      pages.pass(at);
+    }
+  }
+
+  /// Checks the sizes of the compressed data.
+  void find_compressed() {
+    const std::string_view body = source_.bytes.substr(header_.body);
+    if (body.size() < kSizes)
+      throw source_.error_at_byte(header_.body, "the file ends before its compressed data");
+    const std::uint64_t packed = load_value<std::uint32_t>(body.data()),
+                        unpacked = load_value<std::uint32_t>(body.data() + 4);
+    if (packed > body.size() - kSizes)
+      throw source_.error_at_byte(header_.body, "the file ends inside its compressed data");
+    if (unpacked / header_.point_bytes != header_.points || unpacked % header_.point_bytes != 0)
+      throw source_.error_at_byte(
+          header_.body + 4, "compressed data of " + std::to_string(unpacked) + " bytes are not " +
+                                std::to_string(header_.points) + " points of " +
+                                std::to_string(header_.point_bytes) + " bytes");
+    if (unpacked > LzfStream::kMostRatio * packed)
+      throw source_.error_at_byte(header_.body, std::to_string(packed) +
+                                                    " compressed bytes cannot hold " +
+                                                    std::to_string(unpacked) + " bytes");
+    compressed_ = body.substr(kSizes, packed);
+  }
+
+  /// Decompresses as often as there are fields to read, so that no field is held in memory.
+  void visit_compressed(BatchedVoxels& points) const {
+    if (header_.points == 0) return;
+    std::vector<LzfStream> streams;
+    std::vector<std::vector<char>> columns;
+    for (const PcdField& field : used_) {
+      streams.emplace_back(compressed_).skip(field.offset * header_.points);
+      columns.emplace_back(kBlock * field.size);
+    }
+    for (std::uint64_t first = 0; first < header_.points; first += kBlock) {
+      const std::size_t count = std::min<std::uint64_t>(kBlock, header_.points - first);
+      for (std::size_t used = 0; used < used_.size(); ++used)
+        streams[used].read(columns[used].data(), count * used_[used].size);
+      for (std::size_t i = 0; i < count; ++i) {
+        PcdPoint point;
+        for (std::size_t used = 0; used < used_.size(); ++used)
+          load_field(used, columns[used].data() + i * used_[used].size, point);
+        add(points, point);
+      }
+    }
+  }
+
+  MappedFile file_;
+  MeshSource source_;
+  PcdHeader header_;
+  std::vector<PcdField> used_;   ///< x, y, z and perhaps the colour.
+  std::string_view compressed_;  ///< None if no point is compressed.
+};
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> open_pcd_points(const std::filesystem::path& path) {
+  return std::make_unique<PcdPoints>(path);
+}
+
+}  // namespace voxdag

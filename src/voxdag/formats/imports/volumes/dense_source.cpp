@@ -1,0 +1,108 @@
+#include "voxdag/formats/imports/volumes/dense_source.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/volumes/gzip_stream.hpp"
+#include "voxdag/formats/imports/volumes/text_values.hpp"
+
+namespace voxdag {
+namespace {
+
+class DenseSource : public VoxelSource {
+ public:
+  explicit DenseSource(DenseFile file) : file_(std::move(file)) {
+    if (file_.begin > file_.data.text().size())
+      throw Error(file_.path.string(), ErrorPlace::byte(file_.data.text().size()),
+                  "truncated: the data begin at byte " + std::to_string(file_.begin));
+    if (is_raw()) check_length();
+  }
+
+  bool has_points() const override { return false; }
+  bool has_colors() const override { return file_.volume.channels > 1; }
+  std::optional<Grid> grid() const override { return file_.grid; }
+  std::vector<std::string> warnings() const override { return file_.warnings; }
+
+  void visit_all(const VisitBatch& visit) const override {
+    switch (file_.encoding) {
+      case Encoding::kRaw:
+        return visit_raw(visit);
+      case Encoding::kPlanar:
+        return visit_planar(visit);
+      case Encoding::kGzip:
+        return visit_gzip(visit);
+      case Encoding::kAscii:
+      case Encoding::kHex:
+        return visit_text(visit);
+    }
+  }
+
+ private:
+  bool is_raw() const {
+    return file_.encoding == Encoding::kRaw || file_.encoding == Encoding::kPlanar;
+  }
+  std::string_view data() const { return file_.data.text().substr(file_.begin); }
+
+  void check_length() const {
+    const std::uint64_t size = data().size(), needed = file_.volume.bytes();
+    if (size < needed || (size > needed && !file_.may_have_more))
+      throw Error(file_.path.string(), ErrorPlace::byte(file_.begin + std::min(size, needed)),
+                  std::string(size < needed ? "truncated" : "trailing bytes") +
+                      ": the volume needs " + std::to_string(needed) + " bytes after byte " +
+                      std::to_string(file_.begin) + ", the file has " + std::to_string(size));
+  }
+
+  void visit_raw(const VisitBatch& visit) const {
+    const char* next = data().data();
+    const auto fill = [&](std::span<std::byte> bytes) {
+      std::memcpy(bytes.data(), next, bytes.size());
+      next += bytes.size();
+    };
+    visit_volume(file_.volume, fill, visit);
+  }
+
+  /// Gathers the channels of each voxel.
+  void visit_planar(const VisitBatch& visit) const {
+    const auto channels = static_cast<std::uint64_t>(file_.volume.channels);
+    const std::uint64_t plane = file_.volume.bytes() / channels;
+    const char* next = data().data();
+    const auto fill = [&](std::span<std::byte> bytes) {
+      for (std::size_t i = 0; i < bytes.size(); i += channels, ++next)
+        for (std::size_t c = 0; c < channels; ++c)
+          bytes[i + c] = static_cast<std::byte>(next[c * plane]);
+    };
+    visit_volume(file_.volume, fill, visit);
+  }
+
+  void visit_gzip(const VisitBatch& visit) const {
+    GzipStream stream(file_.path, file_.data.text(), file_.begin);
+    stream.skip(file_.skipped);
+    visit_volume(
+        file_.volume, [&](std::span<std::byte> bytes) { stream.fill(bytes); }, visit);
+    if (!file_.may_have_more) stream.expect_end();
+  }
+
+  void visit_text(const VisitBatch& visit) const {
+    TextValues values(file_.path, file_.data.text(), file_.begin);
+    const auto fill = [&](std::span<std::byte> bytes) {
+      if (file_.encoding == Encoding::kHex)
+        values.fill_hex(bytes);
+      else
+        values.fill_decimal(file_.volume.type, bytes);
+    };
+    visit_volume(file_.volume, fill, visit);
+    values.expect_end();
+  }
+
+  DenseFile file_;
+};
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> make_dense_source(DenseFile file) {
+  return std::make_unique<DenseSource>(std::move(file));
+}
+
+}  // namespace voxdag

@@ -1,0 +1,37 @@
+#pragma once
+/// Files that hold a dense volume.
+#include <string>
+#include <vector>
+
+#include "voxdag/formats/imports/volumes/dense_volume.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
+
+namespace voxdag {
+
+/// How numbers are written in a file.
+enum class Encoding : std::uint8_t {
+  kRaw,
+  kGzip,
+  kAscii,   ///< Decimal numbers between white space.
+  kHex,     ///< Two digits a byte; white space is ignored.
+  kPlanar,  ///< Raw, but all values of the first channel are followed by all of the second.
+};
+
+/// A file with a dense volume, as the parser of its header describes it.
+struct DenseFile {
+  DenseVolume volume = {};
+  Grid grid = {};
+  std::vector<std::string> warnings = {};
+  std::filesystem::path path = {};  ///< Of the data.
+  MappedFile data;
+  std::uint64_t begin = 0;  ///< First byte of the data in the file.
+  Encoding encoding = Encoding::kRaw;
+  std::uint64_t skipped = 0;   ///< For kGzip: bytes to drop after decompression.
+  bool may_have_more = false;  ///< Bytes after the volume are allowed.
+};
+
+/// Returns the source of the file's volume. Throws Error if the file is shorter than raw data must
+/// be, and visit_all() if other data end early, are damaged, or do not end where they should.
+std::unique_ptr<VoxelSource> make_dense_source(DenseFile file);
+
+}  // namespace voxdag

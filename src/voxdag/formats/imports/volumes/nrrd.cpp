@@ -1,0 +1,58 @@
+#include "voxdag/formats/imports/volumes/nrrd.hpp"
+
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/volumes/nrrd_header.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Sets the byte at which the data begin.
+void skip_to_data(const NrrdHeader& header, DenseFile& file) {
+  const std::string_view text = file.data.text();
+  for (std::uint64_t line = 0; line < header.line_skip; ++line) {
+    const std::size_t end = text.find('\n', file.begin);
+    if (end == std::string_view::npos)
+      throw Error(
+          file.path.string(), ErrorPlace::byte(text.size()),
+          "truncated: ends before the " + std::to_string(header.line_skip) + " lines to skip");
+    file.begin = end + 1;
+  }
+  if (header.byte_skip < 0) {
+    if (text.size() - file.begin > file.volume.bytes())
+      file.begin = text.size() - file.volume.bytes();
+    return;
+  }
+  const auto skip = static_cast<std::uint64_t>(header.byte_skip);
+  if (file.encoding == Encoding::kGzip) {
+    file.skipped = skip;
+    return;
+  }
+  if (skip > text.size() - file.begin)
+    throw Error(file.path.string(), ErrorPlace::byte(text.size()),
+                "truncated: ends before the " + std::to_string(skip) + " bytes to skip");
+  file.begin += skip;
+}
+
+}  // namespace
+
+std::unique_ptr<VoxelSource> open_nrrd(const std::filesystem::path& path,
+                                       std::optional<double> threshold) {
+  MappedFile mapping(path, MappedFile::Access::kSequential);
+  const NrrdHeader header = parse_nrrd_header(path, mapping.text());
+  std::vector<std::string> warnings;
+  const Grid grid = grid_of_volume(path, header.volume.size, header.placement, warnings);
+  const bool is_detached = !header.data_file.empty();
+  const std::filesystem::path data = is_detached ? path.parent_path() / header.data_file : path;
+  if (is_detached) mapping = MappedFile(data, MappedFile::Access::kSequential);
+  DenseFile file{
+      header.volume,  grid, warnings, data, std::move(mapping), is_detached ? 0 : header.end,
+      header.encoding};
+  file.volume.threshold = threshold;
+  file.may_have_more = is_detached && header.encoding == Encoding::kRaw;
+  skip_to_data(header, file);
+  return make_dense_source(std::move(file));
+}
+
+}  // namespace voxdag

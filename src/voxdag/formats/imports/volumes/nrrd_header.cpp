@@ -1,0 +1,296 @@
+#include "voxdag/formats/imports/volumes/nrrd_header.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 20;
+
+constexpr std::pair<std::string_view, ValueType> kTypes[] = {
+    {"signed char", ValueType::kInt8},
+    {"int8", ValueType::kInt8},
+    {"int8_t", ValueType::kInt8},
+    {"uchar", ValueType::kUint8},
+    {"unsigned char", ValueType::kUint8},
+    {"uint8", ValueType::kUint8},
+    {"uint8_t", ValueType::kUint8},
+    {"short", ValueType::kInt16},
+    {"short int", ValueType::kInt16},
+    {"signed short", ValueType::kInt16},
+    {"signed short int", ValueType::kInt16},
+    {"int16", ValueType::kInt16},
+    {"int16_t", ValueType::kInt16},
+    {"ushort", ValueType::kUint16},
+    {"unsigned short", ValueType::kUint16},
+    {"unsigned short int", ValueType::kUint16},
+    {"uint16", ValueType::kUint16},
+    {"uint16_t", ValueType::kUint16},
+    {"int", ValueType::kInt32},
+    {"signed int", ValueType::kInt32},
+    {"int32", ValueType::kInt32},
+    {"int32_t", ValueType::kInt32},
+    {"uint", ValueType::kUint32},
+    {"unsigned int", ValueType::kUint32},
+    {"uint32", ValueType::kUint32},
+    {"uint32_t", ValueType::kUint32},
+    {"longlong", ValueType::kInt64},
+    {"long long", ValueType::kInt64},
+    {"long long int", ValueType::kInt64},
+    {"signed long long", ValueType::kInt64},
+    {"signed long long int", ValueType::kInt64},
+    {"int64", ValueType::kInt64},
+    {"int64_t", ValueType::kInt64},
+    {"ulonglong", ValueType::kUint64},
+    {"unsigned long long", ValueType::kUint64},
+    {"unsigned long long int", ValueType::kUint64},
+    {"uint64", ValueType::kUint64},
+    {"uint64_t", ValueType::kUint64},
+    {"float", ValueType::kFloat},
+    {"double", ValueType::kDouble}};
+
+constexpr std::pair<std::string_view, Encoding> kEncodings[] = {
+    {"raw", Encoding::kRaw},     {"gzip", Encoding::kGzip},  {"gz", Encoding::kGzip},
+    {"ascii", Encoding::kAscii}, {"text", Encoding::kAscii}, {"txt", Encoding::kAscii},
+    {"hex", Encoding::kHex}};
+
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    // "(1, 0, 0)" is one word.
+    for (bool is_inside = false; end < text.size() && (is_inside || !is_space(text[end])); ++end)
+      is_inside = text[end] == '(' || (is_inside && text[end] != ')');
+    if (end > at) words.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
+
+struct Field {
+  std::string value;
+  std::uint64_t line;
+};
+
+class Parser {
+ public:
+  Parser(const std::filesystem::path& path, std::string_view text) : path_(path), text_(text) {}
+
+  NrrdHeader parse() {
+    read_fields();
+    parse_shape();
+    parse_data();
+    parse_spacing();
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t line, const std::string& reason) const {
+    throw Error(path_.string(), ErrorPlace::line(line), reason);
+  }
+
+  void read_fields() {
+    if (!text_.starts_with("NRRD")) fail(1, "does not begin with \"NRRD\"");
+    std::uint64_t number = 0;
+    for (std::size_t at = 0;;) {
+      ++number;
+      std::size_t end = text_.substr(0, kMostHeaderBytes).find('\n', at);
+      if (end == std::string_view::npos) {
+        if (text_.size() > kMostHeaderBytes) fail(number, "the header is longer than 1 MiB");
+        end = text_.size();
+      }
+      const std::string_view line = trimmed(text_.substr(at, end - at));
+      at = std::min(end + 1, text_.size());
+      header_.end = at;
+      if (line.empty()) return;
+      if (number > 1 && line[0] != '#') read_field(line, number);
+      if (at == text_.size()) break;
+    }
+    if (find("data file") == nullptr) fail(number, "the header has no empty line at its end");
+  }
+
+  void read_field(std::string_view line, std::uint64_t number) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos) fail(number, "has no colon");
+    if (line.substr(colon).starts_with(":=")) return;
+    std::string name = lower(trimmed(line.substr(0, colon)));
+    if (name == "datafile") name = "data file";
+    if (name == "lineskip") name = "line skip";
+    if (name == "byteskip") name = "byte skip";
+    const std::string value(trimmed(line.substr(colon + 1)));
+    if (!fields_.try_emplace(name, Field{value, number}).second)
+      fail(number, "the field " + name_in_quotes(name) + " is there twice");
+  }
+
+  const Field* find(const std::string& name) const {
+    const auto field = fields_.find(name);
+    return field == fields_.end() ? nullptr : &field->second;
+  }
+  const Field& get(const std::string& name) const {
+    const Field* field = find(name);
+    if (field == nullptr) throw Error(path_.string(), "header", "has no field '" + name + "'");
+    return *field;
+  }
+
+  template <class T>
+  std::optional<T> number_in(std::string_view word) const {
+    T value{};
+    const char* const end = word.data() + word.size();
+    const auto [next, error] = std::from_chars(word.data(), end, value);
+    if (error != std::errc() || next != end) return std::nullopt;
+    return value;
+  }
+  template <class T>
+  T number_in(const Field& field, std::string_view word) const {
+    const std::optional<T> value = number_in<T>(trimmed(word));
+    if (!value) fail(field.line, in_quotes(word) + " is not a number that is allowed here");
+    return *value;
+  }
+
+  /// Returns the value of a table for a field.
+  template <class Table>
+  auto named_value(const std::string& name, const Table& table) const {
+    const Field& field = get(name);
+    for (const auto& [key, value] : table)
+      if (lower(field.value) == key) return value;
+    fail(field.line, "the " + name + " " + in_quotes(field.value) + " is not supported");
+  }
+
+  /// Returns one word for each axis.
+  std::vector<std::string_view> words_of_axes(const Field& field) const {
+    std::vector<std::string_view> words = words_of(field.value);
+    if (words.size() != axes_)
+      fail(field.line, "has " + std::to_string(words.size()) + " values for " +
+                           std::to_string(axes_) + " axes");
+    return words;
+  }
+
+  void parse_shape() {
+    DenseVolume& volume = header_.volume;
+    volume.type = named_value("type", kTypes);
+    const Field& dimension = get("dimension");
+    axes_ = number_in<std::uint64_t>(dimension, dimension.value);
+    const char* const kAllowed =
+        "the volume must have 3 axes, or 4 if the first one has 3 or 4 channels of uint8";
+    if (axes_ != 3 && axes_ != 4) fail(dimension.line, kAllowed);
+    const Field& sizes = get("sizes");
+    std::vector<std::uint64_t> numbers;
+    for (const std::string_view word : words_of_axes(sizes))
+      numbers.push_back(number_in<std::uint64_t>(sizes, word));
+    if (axes_ == 4) {
+      if ((numbers[0] != 3 && numbers[0] != 4) || volume.type != ValueType::kUint8)
+        fail(sizes.line, kAllowed);
+      volume.channels = static_cast<int>(numbers[0]);
+    }
+    std::copy_n(numbers.end() - 3, 3, volume.size.begin());
+    check_volume_size(path_, volume.size);
+  }
+
+  void parse_data() {
+    header_.encoding = named_value("encoding", kEncodings);
+    if (bytes_of(header_.volume.type) > 1 && header_.encoding != Encoding::kAscii)
+      header_.volume.is_big_endian =
+          named_value("endian", std::array{std::pair<std::string_view, bool>{"little", false},
+                                           std::pair<std::string_view, bool>{"big", true}});
+    else if (header_.encoding == Encoding::kAscii)
+      header_.volume.is_big_endian = std::endian::native == std::endian::big;
+    if (const Field* skip = find("line skip"))
+      header_.line_skip = number_in<std::uint64_t>(*skip, skip->value);
+    if (const Field* skip = find("byte skip")) {
+      header_.byte_skip = number_in<std::int64_t>(*skip, skip->value);
+      if (header_.byte_skip < (header_.encoding == Encoding::kRaw ? -1 : 0))
+        fail(skip->line, "the byte skip must be 0 or greater, or -1 for raw data");
+    }
+    if (const Field* file = find("data file")) {
+      std::string name = file->value;
+      // Teem writes "./name" for a file beside the header.
+      if (name.starts_with("./")) name.erase(0, 2);
+      const bool is_list = name == "LIST" || name.starts_with("LIST ");
+      if (is_list || name.find('%') != std::string::npos)
+        fail(file->line, "data in several files are not supported");
+      if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos ||
+          name.find('\0') != std::string::npos)
+        fail(file->line, "the data file " + name_in_quotes(name) +
+                             " is not the name of a file in the folder of the header");
+      header_.data_file = name;
+    }
+  }
+
+  void parse_spacing() {
+    VolumePlacement& placement = header_.placement;
+    if (const Field* spacings = find("spacings")) {
+      const auto words = words_of_axes(*spacings);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto value = number_in<double>(*spacings, words[axes_ - 3 + axis]);
+        // NaN: not known.
+        if (!std::isnan(value)) placement.spacing[static_cast<int>(axis)] = value;
+      }
+    }
+    if (const Field* directions = find("space directions")) {
+      const auto words = words_of_axes(*directions);
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::string_view word = words[axes_ - 3 + static_cast<std::size_t>(axis)];
+        if (word == "none") continue;
+        const Vec3d direction = vector_in(*directions, word);
+        placement.spacing[axis] = length(direction);
+        placement.is_turned |= !is_along(direction, axis);
+      }
+    }
+    if (const Field* origin = find("space origin"))
+      placement.first_centre = vector_in(*origin, origin->value);
+  }
+
+  /// Reads "(x,y,z)".
+  Vec3d vector_in(const Field& field, std::string_view word) const {
+    Vec3d vector;
+    if (word.size() >= 2 && word.front() == '(' && word.back() == ')') {
+      word = word.substr(1, word.size() - 2);
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t end = axis < 2 ? word.find(',') : word.size();
+        if (end == std::string_view::npos) fail(field.line, "a vector has less than 3 components");
+        vector[axis] = number_in<double>(field, word.substr(0, end));
+        word.remove_prefix(std::min(end + 1, word.size()));
+      }
+      return vector;
+    }
+    fail(field.line, in_quotes(word) + " is not a vector of the form (x,y,z)");
+  }
+
+  const std::filesystem::path& path_;
+  std::string_view text_;
+  std::map<std::string, Field> fields_;
+  NrrdHeader header_;
+  std::uint64_t axes_ = 0;
+};
+
+}  // namespace
+
+NrrdHeader parse_nrrd_header(const std::filesystem::path& path, std::string_view text) {
+  return Parser(path, text).parse();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,155 @@
+#include "voxdag/formats/imports/volumes/png_slices.hpp"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/image/image_limits.hpp"
+#include "voxdag/image/png.hpp"
+#include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/volumes/dense_volume.hpp"
+#include "voxdag/formats/imports/volumes/value_test.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
+
+namespace voxdag {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Cuts the digits off the front of a name. Returns them without leading zeros.
+std::string_view cut_number(std::string_view& name) {
+  std::size_t end = 0;
+  while (end < name.size() && is_digit(name[end])) ++end;
+  std::string_view digits = name.substr(0, end);
+  name.remove_prefix(end);
+  while (digits.starts_with('0')) digits.remove_prefix(1);
+  return digits;
+}
+
+std::vector<std::string> names_of_slices(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::string ending = name.substr(name.size() - std::min<std::size_t>(4, name.size()));
+    for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (ending == ".png" && name[0] != '.') names.push_back(name);
+  }
+  if (error) throw Error(folder.string(), "", "cannot read the folder: " + error.message());
+  if (names.empty()) throw Error(folder.string(), "", "the folder has no .png files");
+  std::sort(names.begin(), names.end(), is_before_by_numbers);
+  return names;
+}
+
+class PngSlices : public VoxelSource {
+ public:
+  PngSlices(std::filesystem::path folder, std::optional<double> threshold)
+      : folder_(std::move(folder)), names_(names_of_slices(folder_)), threshold_(threshold) {
+    const DecodedImage first = decode(names_[0]);
+    width_ = first.width();
+    height_ = first.height();
+    has_colors_ = first.channels() >= 3;
+    const VolumeSize size{static_cast<std::uint64_t>(width_), static_cast<std::uint64_t>(height_),
+                          names_.size()};
+    check_volume_size(folder_, size);
+    grid_.levels = levels_of(size);
+  }
+
+  bool has_points() const override { return false; }
+  bool has_colors() const override { return has_colors_; }
+  std::optional<Grid> grid() const override { return grid_; }
+
+  void visit_all(const VisitBatch& visit) const override {
+    BatchedVoxels voxels(visit);
+    for (std::size_t z = 0; z < names_.size(); ++z) {
+      const DecodedImage image = decode(names_[z]);
+      check(image, names_[z]);
+      if (threshold_)
+        visit_slice(image, z, IsAtLeast<std::uint16_t>(*threshold_), voxels);
+      else
+        visit_slice(image, z, IsNotZero<std::uint16_t>(), voxels);
+    }
+    voxels.finish();
+  }
+
+ private:
+  DecodedImage decode(const std::string& name) const {
+    const std::filesystem::path path = folder_ / name;
+    const MappedFile mapping(path, MappedFile::Access::kSequential, kMaxImageFile);
+    const std::span<const std::byte> bytes = mapping.bytes();
+    return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+                      path.string());
+  }
+
+  void check(const DecodedImage& image, const std::string& name) const {
+    const auto fail = [&](const std::string& reason) {
+      throw Error((folder_ / name).string(), "header", reason);
+    };
+    if (image.width() != width_ || image.height() != height_)
+      fail("has " + std::to_string(image.width()) + " x " + std::to_string(image.height()) +
+           " pixels; the first slice has " + std::to_string(width_) + " x " +
+           std::to_string(height_));
+    if (image.channels() >= 3 && !has_colors_) fail("has colours; the first slice is grey");
+  }
+
+  template <class Test>
+  void visit_slice(const DecodedImage& image, std::size_t z, const Test& is_set,
+                   BatchedVoxels& voxels) const {
+    const int channels = image.channels();
+    const bool has_8_bits = image.row_bytes() == static_cast<std::size_t>(image.width()) *
+                                                     static_cast<std::size_t>(channels);
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x) {
+        const DecodedImage::Rgba pixel = image.pixel(x, y);
+        if (channels == 2 && pixel[3] == 0) continue;
+        const std::uint16_t value =
+            channels == 4 ? pixel[3] : std::max({pixel[0], pixel[1], pixel[2]});
+        // pixel() multiplies values of 8 bits by 257.
+        if (!is_set(has_8_bits ? value / 257 : value)) continue;
+        const Vec3d place{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+        if (has_colors_)
+          voxels.add(place, {to_8_bits(pixel[0]), to_8_bits(pixel[1]), to_8_bits(pixel[2])});
+        else
+          voxels.add(place);
+      }
+  }
+
+  static std::uint8_t to_8_bits(std::uint16_t value) {
+    return static_cast<std::uint8_t>((value + 128) / 257);
+  }
+
+  std::filesystem::path folder_;
+  std::vector<std::string> names_;
+  std::optional<double> threshold_;
+  int width_ = 0, height_ = 0;
+  bool has_colors_ = false;
+  Grid grid_;
+};
+
+}  // namespace
+
+bool is_before_by_numbers(std::string_view a, std::string_view b) {
+  const std::string_view whole_a = a, whole_b = b;
+  while (!a.empty() && !b.empty()) {
+    if (is_digit(a[0]) && is_digit(b[0])) {
+      const std::string_view number_a = cut_number(a), number_b = cut_number(b);
+      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
+      if (number_a != number_b) return number_a < number_b;
+    } else {
+      if (a[0] != b[0]) return a.substr(0, 1) < b.substr(0, 1);  // As unsigned characters.
+      a.remove_prefix(1);
+      b.remove_prefix(1);
+    }
+  }
+  if (a.empty() != b.empty()) return a.empty();
+  return whole_a < whole_b;  // They differ in leading zeros only.
+}
+
+std::unique_ptr<VoxelSource> open_png_slices(const std::filesystem::path& folder,
+                                             std::optional<double> threshold) {
+  return std::make_unique<PngSlices>(folder, threshold);
+}
+
+}  // namespace voxdag

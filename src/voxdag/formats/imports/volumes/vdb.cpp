@@ -1,0 +1,21 @@
+#include "voxdag/formats/imports/volumes/vdb.hpp"
+
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/formats/imports/volumes/vdb_module.hpp"
+#include "voxdag/core/io/load_module.hpp"
+
+namespace voxdag {
+std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,
+                                      std::optional<double> threshold) {
+  std::string reason;
+  const auto* const module =
+      static_cast<const VdbModule*>(load_module(kVdbModuleFile, kVdbModuleName, reason));
+  if (module == nullptr)
+    throw Error(path.string(), "",
+                "is read by a module that is built where OpenVDB is installed: " + reason);
+  return std::unique_ptr<VoxelSource>(module->open(path, threshold));
+}
+
+}  // namespace voxdag

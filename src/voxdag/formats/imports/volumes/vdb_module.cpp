@@ -1,0 +1,161 @@
+/// The module that reads .vdb files: the only part that links OpenVDB.
+#include "voxdag/formats/imports/volumes/vdb_module.hpp"
+
+#include <openvdb/openvdb.h>
+
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
+#include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/volumes/volume_grid.hpp"
+#include "voxdag/core/io/open_input.hpp"
+
+namespace voxdag {
+namespace {
+
+using GridTypes = std::tuple<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                             openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid>;
+
+/// Calls use(grid) with the grid as its own type. Returns whether it is one of GridTypes.
+template <class Use, std::size_t I = 0>
+bool with_grid(const openvdb::GridBase& grid, const Use& use) {
+  if constexpr (I < std::tuple_size_v<GridTypes>) {
+    using GridType = std::tuple_element_t<I, GridTypes>;
+    if (!grid.isType<GridType>()) return with_grid<Use, I + 1>(grid, use);
+    use(static_cast<const GridType&>(grid));
+    return true;
+  }
+  return false;
+}
+
+/// Decides which values set their voxels.
+struct ValueRule {
+  bool is_level_set;
+  std::optional<double> threshold;
+
+  bool operator()(double value, bool is_active) const {
+    if (threshold) return is_active && value >= *threshold;
+    return is_level_set ? value < 0 : is_active;
+  }
+};
+
+/// Calls visit(box) for all voxels and tiles that are set: first those of leaves.
+template <class GridType, class Visit>
+void for_each_box(const GridType& grid, const ValueRule& is_set, const Visit& visit) {
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->cbeginValueAll(); value; ++value)
+      if (is_set(static_cast<double>(*value), value.isValueOn()))
+        visit(openvdb::CoordBBox(value.getCoord(), value.getCoord()));
+  auto tile = grid.tree().cbeginValueAll();
+  tile.setMaxDepth(GridType::TreeType::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (is_set(static_cast<double>(*tile), tile.isValueOn())) visit(tile.getBoundingBox());
+}
+
+Vec3d vector_of(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
+Vec3l vector_of(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
+
+class Vdb : public VoxelSource {
+ public:
+  Vdb(std::filesystem::path path, std::optional<double> threshold)
+      : path_(std::move(path)), rule_{false, threshold} {
+    open_input(path_);  // Throws the usual errors.
+    read_first_grid();
+    rule_.is_level_set = vdb_->getGridClass() == openvdb::GRID_LEVEL_SET;
+    find_extent();
+  }
+
+  bool has_points() const override { return false; }
+  std::optional<Grid> grid() const override { return grid_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
+
+  void visit_all(const VisitBatch& visit) const override {
+    BatchedVoxels voxels(visit);
+    with_grid(*vdb_, [&](const auto& grid) {
+      for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box) {
+        const Vec3l lo = vector_of(box.min()) - lo_, hi = vector_of(box.max()) - lo_;
+        for (std::int64_t z = lo.z; z <= hi.z; ++z)
+          for (std::int64_t y = lo.y; y <= hi.y; ++y)
+            for (std::int64_t x = lo.x; x <= hi.x; ++x)
+              voxels.add(static_cast<Vec3d>(Vec3l{x, y, z}));
+      });
+    });
+    voxels.finish();
+  }
+
+ private:
+  void read_first_grid() {
+    openvdb::initialize();
+    openvdb::io::File file(path_.string());
+    file.open(/*delayLoad=*/false);
+    for (auto name = file.beginName(); name != file.endName() && !vdb_; ++name)
+      if (with_grid(*file.readGridMetadata(*name), [](const auto&) {})) vdb_ = file.readGrid(*name);
+    if (!vdb_)
+      throw Error(path_.string(), "", "has no grid of floats, doubles, integers or bools, no mask");
+  }
+
+  void find_extent() {
+    constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+    Vec3l lo{kNone, kNone, kNone}, hi{-kNone, -kNone, -kNone};
+    with_grid(*vdb_, [&](const auto& grid) {
+      for_each_box(grid, rule_, [&](const openvdb::CoordBBox& box) {
+        lo = min(lo, vector_of(box.min()));
+        hi = max(hi, vector_of(box.max()));
+      });
+    });
+    if (lo.x > hi.x) lo = hi = {};
+    lo_ = lo;
+    VolumeSize size;
+    for (int axis = 0; axis < 3; ++axis)
+      size[static_cast<std::size_t>(axis)] = static_cast<std::uint64_t>(hi[axis] - lo[axis] + 1);
+    check_volume_size(path_, size);
+    grid_ = grid_of_volume(path_, size, placement(), warnings_);
+  }
+
+  /// OpenVDB maps whole numbers to the centres of voxels.
+  VolumePlacement placement() const {
+    const openvdb::math::Transform& transform = vdb_->transform();
+    const openvdb::Vec3d first = vector_from(lo_);
+    VolumePlacement placement;
+    placement.first_centre = vector_of(transform.indexToWorld(first));
+    placement.is_turned = !transform.isLinear();
+    for (int axis = 0; axis < 3; ++axis) {
+      openvdb::Vec3d next = first;
+      next[axis] += 1;
+      const Vec3d direction = vector_of(transform.indexToWorld(next)) - *placement.first_centre;
+      placement.spacing[axis] = length(direction);
+      placement.is_turned |= !is_along(direction, axis);
+    }
+    return placement;
+  }
+
+  static openvdb::Vec3d vector_from(Vec3l v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  }
+
+  std::filesystem::path path_;
+  openvdb::GridBase::ConstPtr vdb_;
+  ValueRule rule_;
+  Vec3l lo_;
+  Grid grid_;
+  std::vector<std::string> warnings_;
+};
+
+VoxelSource* open_vdb_in_module(const std::filesystem::path& path,
+                                std::optional<double> threshold) {
+  try {
+    return new Vdb(path, threshold);
+  } catch (const openvdb::Exception& error) {
+    throw Error(path.string(), "", "OpenVDB: " + printable(error.what()));
+  } catch (const std::ios_base::failure& error) {
+    throw Error(path.string(), "", "OpenVDB: " + printable(error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace voxdag
+
+extern "C" const voxdag::VdbModule voxdag_vdb_module = {voxdag::open_vdb_in_module};

@@ -1,0 +1,164 @@
+#include "voxdag/formats/readers/gltf/gltf_file.hpp"
+
+#include "voxdag/core/printable.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::array kArrayNames = {"buffers", "bufferViews", "accessors", "meshes",   "nodes",
+                                    "scenes",  "materials",   "images",    "textures", "samplers"};
+
+/// Returns whether an array does not affect geometry. A malformed one counts as empty.
+bool is_optional(GltfArray array) { return array >= GltfArray::kImages; }
+
+std::uint32_t load_u32(std::string_view bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    value |= std::uint32_t{static_cast<unsigned char>(bytes[offset + i])} << 8 * i;
+  return value;
+}
+
+/// Returns whether an extension leaves the geometry unchanged.
+bool is_harmless_extension(std::string_view name) {
+  for (const std::string_view prefix :
+       {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_",
+        "EXT_lights_", "KHR_xmp", "KHR_animation_pointer", "KHR_mesh_quantization"})
+    if (name.starts_with(prefix)) return true;
+  return false;
+}
+
+}  // namespace
+
+GltfFile::GltfFile(const MeshSource& source)
+    : source_(source), named_files_(source), buffers_(source.options.memory) {
+  const std::string_view bytes = source.bytes;
+  if (!bytes.starts_with("glTF")) {
+    parse(bytes);
+    open_buffers(std::nullopt);
+    return;
+  }
+  if (bytes.size() < 20)
+    throw source.error_at_byte(bytes.size(), "the file ends inside its header");
+  if (load_u32(bytes, 4) != 2)
+    throw source.error_at_byte(
+        4, "GLB version " + std::to_string(load_u32(bytes, 4)) + ": only version 2 is read");
+  const std::string_view chunks = bytes.substr(0, load_u32(bytes, 8));
+  if (load_u32(bytes, 8) > bytes.size())
+    throw source.error_at_byte(bytes.size(),
+                               "the file ends before the end that its header states, byte " +
+                                   std::to_string(load_u32(bytes, 8)) + " bytes");
+  const std::size_t json_bytes = load_u32(bytes, 12);
+  if (chunks.size() < 20 || json_bytes > chunks.size() - 20 || chunks.substr(16, 4) != "JSON")
+    throw source.error_at_byte(12, "the first chunk must be JSON and end inside the file");
+  parse(chunks.substr(20, json_bytes));
+  const std::size_t second = 20 + json_bytes;
+  if (chunks.size() - second < 8) {
+    open_buffers(std::nullopt);
+    return;
+  }
+  const std::size_t binary_bytes = load_u32(chunks, second);
+  if (binary_bytes > chunks.size() - second - 8)
+    throw source.error_at_byte(second, "the binary chunk goes beyond the end of the file");
+  const bool is_binary = chunks.substr(second + 4, 4) == std::string_view("BIN\0", 4);
+  open_buffers(is_binary ? std::optional(chunks.substr(second + 8, binary_bytes)) : std::nullopt);
+}
+
+void GltfFile::parse(std::string_view text) {
+  json_ = std::make_unique<JsonDocument>(source_, text);
+  source_.done_with(text, "parse");
+  if (json_->node(json_->root()).kind != JsonKind::kObject)
+    throw source_.error("not glTF: the JSON is not an object");
+  for (std::size_t i = 0; i < arrays_.size(); ++i) try {
+      arrays_[i] = root()[kArrayNames[i]].items();
+    } catch (const Error&) {
+      if (!is_optional(static_cast<GltfArray>(i))) throw;
+    }
+  check_version();
+}
+
+void GltfFile::check_version() const {
+  const std::string version = root()["asset"]["version"].text();
+  if (version.empty()) throw source_.error("not glTF: 'asset.version' is missing");
+  if (!version.starts_with("2."))
+    throw source_.error("glTF version " + name_in_quotes(version) + ": only version 2 is read");
+  for (const GltfValue extension : root()["extensionsRequired"].items())
+    if (!is_harmless_extension(extension.text()))
+      throw extension.error("extension " + name_in_quotes(extension.text()) + " is not supported");
+}
+
+void GltfFile::open_buffers(std::optional<std::string_view> binary_chunk) {
+  CancelPoll poll(source_.options.progress);
+  for (const GltfValue value : array(GltfArray::kBuffers)) {
+    poll.step();
+    Buffer& buffer = buffers_.emplace_back();
+    std::string unescaped;
+    const std::string_view uri = value["uri"].text_view(unescaped);
+    if (!uri.empty()) {
+      open_uri(value, uri, buffer);
+    } else {
+      if (!binary_chunk || buffers_.size() > 1) throw value.error("the buffer has no URI");
+      buffer.bytes = *binary_chunk;
+    }
+    const std::uint64_t size = value["byteLength"].whole();
+    if (size > buffer.bytes.size())
+      throw value.error("buffer of " + std::to_string(buffer.bytes.size()) + " bytes, but " +
+                        std::to_string(size) + " are declared");
+    buffer.bytes = buffer.bytes.substr(0, size);
+    buffer_bytes_ += size;
+  }
+  // A short decoded string has moved with its buffer object, so its view must be set again.
+  for (Buffer& buffer : buffers_)
+    if (buffer.decoded)
+      buffer.bytes = std::string_view(buffer.decoded->bytes).substr(0, buffer.bytes.size());
+}
+
+void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const {
+  if (uri.starts_with("data:")) {
+    buffer.decoded = decode_data_uri(uri, source_.options.memory, source_.options.progress);
+    if (!buffer.decoded)
+      throw value.error(uri.find(',') == uri.npos ? "malformed data URI"
+                                                  : "data URI is not base64");
+    buffer.bytes = buffer.decoded->bytes;
+    return;
+  }
+  if (uri.find("://") != uri.npos || source_.file == nullptr)
+    throw value.error("a buffer must be in the glTF file, in a data URI or in a file beside it");
+  const std::string name = decode_percent(uri);
+  if (name.find('\0') != name.npos) throw value.error("malformed URI");
+  const std::filesystem::path path =
+      named_files_.find(source_.folder, name, {source_.name, value.path()});
+  try {
+    buffer.file.emplace(path, MappedFile::Access::kSequential);
+  } catch (const Error& fault) {
+    throw value.error("buffer " + name_in_quotes(name) + ": " + fault.reason());
+  }
+  buffer.bytes = buffer.file->text();
+}
+
+GltfValue GltfFile::item(GltfArray array, std::uint64_t index, const GltfValue& user) const {
+  const GltfItems& values = this->array(array);
+  if (index >= values.size())
+    throw user.error(std::string(kArrayNames[static_cast<std::size_t>(array)]) + "[" +
+                     std::to_string(index) + "] does not exist");
+  return values[index];
+}
+
+std::string_view GltfFile::view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const {
+  view = item(GltfArray::kBufferViews, user["bufferView"].whole(), user);
+  const std::uint64_t index = (*view)["buffer"].whole();
+  item(GltfArray::kBuffers, index, *view);
+  const std::string_view buffer = buffers_[index].bytes;
+  const std::uint64_t offset = (*view)["byteOffset"].whole(0);
+  const std::uint64_t length = (*view)["byteLength"].whole();
+  if (offset > buffer.size() || length > buffer.size() - offset)
+    throw view->error("buffer view goes beyond its buffer");
+  return buffer.substr(offset, length);
+}
+
+void GltfFile::release_pages() const {
+  if (source_.file != nullptr) source_.file->release(source_.bytes);
+  for (const Buffer& buffer : buffers_)
+    if (buffer.file) buffer.file->release(buffer.bytes);
+}
+
+}  // namespace voxdag

@@ -1,0 +1,74 @@
+#pragma once
+/// The container of a glTF 2.0 asset: its JSON, and the bytes of its buffers.
+#include <array>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/formats/readers/gltf/gltf_uri.hpp"
+#include "voxdag/formats/readers/gltf/gltf_value.hpp"
+#include "voxdag/formats/readers/named_files.hpp"
+
+namespace voxdag {
+
+/// The arrays of the asset that this library reads.
+enum class GltfArray {
+  kBuffers,
+  kBufferViews,
+  kAccessors,
+  kMeshes,
+  kNodes,
+  kScenes,
+  kMaterials,
+  kImages,
+  kTextures,
+  kSamplers
+};
+
+class GltfFile {
+ public:
+  /// Parses the container (JSON text or GLB) and checks version and required extensions. Maps
+  /// buffers in other files and decodes those in `data:` URIs; opens no images. Throws Error,
+  /// OverMemory, Cancelled.
+  explicit GltfFile(const MeshSource& source);
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  const MeshSource& source() const { return source_; }
+  const NamedFiles& named_files() const { return named_files_; }
+  GltfValue root() const { return {source_, *json_, json_->root()}; }
+  const GltfItems& array(GltfArray array) const { return arrays_[static_cast<std::size_t>(array)]; }
+  /// Returns item `index` of an array. If there is none, throws Error with the place of `user`.
+  GltfValue item(GltfArray array, std::uint64_t index, const GltfValue& user) const;
+
+  /// Returns the bytes of the buffer view that `user` refers to, which lie inside their buffer.
+  /// Sets `view` to the buffer view, which has the stride. Throws Error.
+  std::string_view view_bytes(const GltfValue& user, std::optional<GltfValue>& view) const;
+
+  /// Returns the total size of all buffers, in bytes.
+  std::uint64_t buffer_bytes() const { return buffer_bytes_; }
+  /// Drops the pages of mapped buffers from memory.
+  void release_pages() const;
+
+ private:
+  struct Buffer {
+    std::string_view bytes;
+    std::optional<MappedFile> file;
+    std::optional<DecodedUri> decoded;
+  };
+
+  void parse(std::string_view text);
+  void check_version() const;
+  void open_buffers(std::optional<std::string_view> binary_chunk);
+  void open_uri(const GltfValue& value, std::string_view uri, Buffer& buffer) const;
+
+  const MeshSource& source_;
+  const NamedFiles named_files_;
+  std::unique_ptr<JsonDocument> json_;
+  std::array<GltfItems, 10> arrays_;
+  CountedVector<Buffer> buffers_;
+  std::uint64_t buffer_bytes_ = 0;
+};
+
+}  // namespace voxdag

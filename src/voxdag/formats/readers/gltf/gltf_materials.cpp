@@ -1,0 +1,225 @@
+#include "voxdag/formats/readers/gltf/gltf_materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace voxdag {
+namespace {
+
+GltfValue transform_of(const GltfValue& texture_info) {
+  return texture_info["extensions"]["KHR_texture_transform"];
+}
+
+std::uint64_t uv_set_of(const GltfValue& texture_info) {
+  return transform_of(texture_info)["texCoord"].whole(texture_info["texCoord"].whole(0));
+}
+
+GltfValue color_texture(const GltfValue& material) {
+  return material["pbrMetallicRoughness"]["baseColorTexture"];
+}
+
+std::uint64_t uv_set_of_material(const GltfValue& material) {
+  const GltfValue color = color_texture(material);
+  return uv_set_of(color.exists() ? color : material["normalTexture"]);
+}
+
+/// Returns the transform T * R * S of the extension KHR_texture_transform.
+UvTransform uv_transform(const GltfValue& texture_info) {
+  const GltfValue transform = transform_of(texture_info);
+  const std::vector<double> offset = transform["offset"].numbers(2);
+  const std::vector<double> scale = transform["scale"].numbers(2);
+  const double sx = scale.empty() ? 1 : scale[0], sy = scale.empty() ? 1 : scale[1];
+  const double angle = transform["rotation"].number(0);
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return {f(c * sx),
+          f(s * sy),
+          f(-s * sx),
+          f(c * sy),
+          f(offset.empty() ? 0 : offset[0]),
+          f(offset.empty() ? 0 : offset[1])};
+}
+
+TextureWrap wrap_of(const GltfValue& mode) {
+  constexpr std::uint64_t kClampToEdge = 33071, kMirroredRepeat = 33648;
+  const std::uint64_t value = mode.whole(0);
+  return value == kClampToEdge      ? TextureWrap::kClamp
+         : value == kMirroredRepeat ? TextureWrap::kMirror
+                                    : TextureWrap::kRepeat;
+}
+
+/// Returns the name of an image's file; empty if the image is inside the glTF file. Throws Error.
+std::string file_name_of(const GltfValue& image) {
+  std::string unescaped;
+  const std::string_view uri = image["uri"].text_view(unescaped);
+  if (uri.empty() || uri.starts_with("data:")) return "";
+  if (uri.find("://") != uri.npos)
+    throw image.error("an image must be in the glTF file, in a data URI or in a file beside it");
+  std::string name = decode_percent(uri);
+  if (name.find('\0') != name.npos) throw image.error("malformed URI");
+  return name;
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(const GltfFile& file, Appearance& appearance, Warnings& warnings)
+      : file_(file),
+        appearance_(appearance),
+        warnings_(warnings),
+        memory_(file.source().options.memory, 0),
+        poll_(file.source().options.progress) {}
+
+  void read(const Mesh& mesh) {
+    const GltfItems& materials = file_.array(GltfArray::kMaterials);
+    const std::size_t count = std::max<std::size_t>(mesh.materials.size(), 1);
+    std::uint64_t bytes = count * sizeof(Material);
+    for (const std::string& name : mesh.materials) bytes += name.size() + 1;
+    add_memory(bytes);
+    appearance_.materials.resize(count);
+    read_images();
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      poll_.step();
+      attempt([&] { read_material(materials[i], appearance_.materials[i]); },
+              "the rest of the material is ignored");
+    }
+  }
+
+ private:
+  void add_memory(std::uint64_t bytes) { memory_.resize(memory_.bytes() + bytes); }
+
+  /// Runs body(). If it finds malformed data, adds a warning that names `replacement`.
+  template <class Body>
+  void attempt(const Body& body, const char* replacement) {
+    try {
+      body();
+    } catch (const OverMemory&) {
+      throw;
+    } catch (const Error& error) {
+      warnings_.add(std::string(error.what()) + ": " + replacement);
+    }
+  }
+
+  void read_images() {
+    const GltfItems& images = file_.array(GltfArray::kImages);
+    add_memory(images.size() * sizeof(TextureImage));
+    appearance_.images.reserve(images.size());
+    for (const GltfValue image : images) {
+      poll_.step();
+      TextureImage& out = appearance_.images.emplace_back();
+      out.name = file_.source().name + ": " + image.path();
+      std::string file_name;
+      attempt([&] { file_name = file_name_of(image); }, "the image is ignored");
+      if (!file_name.empty()) {
+        const std::filesystem::path& folder = file_.source().folder;
+        out.path = file_.named_files().find(folder, file_name, {file_.source().name, image.path()});
+        out.name = printable_path(folder, file_name);
+      } else {
+        attempt([&] { copy_image(image, out); }, "the image is ignored");
+      }
+      add_memory(out.name.size() + 3 * out.path.native().size());
+    }
+  }
+
+  /// Copies the bytes of an image inside the file.
+  void copy_image(const GltfValue& image, TextureImage& out) {
+    std::string unescaped;
+    const std::string_view uri = image["uri"].text_view(unescaped);
+    if (uri.starts_with("data:")) {
+      const auto decoded =
+          decode_data_uri(uri, file_.source().options.memory, file_.source().options.progress);
+      if (!decoded) throw image.error("malformed data URI");
+      set_bytes(decoded->bytes, out);
+    } else if (uri.empty()) {
+      std::optional<GltfValue> view;
+      const std::string_view bytes = file_.view_bytes(image, view);
+      // Images may share a buffer view, but a small file must not ask for many copies of a large
+      // one.
+      copied_bytes_ += bytes.size();
+      if (copied_bytes_ / kMostCopies > file_.buffer_bytes())
+        throw image.error("the images in buffer views have " + std::to_string(copied_bytes_) +
+                          " bytes, more than " + std::to_string(kMostCopies) +
+                          " times the bytes of all buffers");
+      set_bytes(bytes, out);
+    }
+  }
+
+  void set_bytes(std::string_view bytes, TextureImage& out) {
+    add_memory(bytes.size());
+    out.bytes.assign(bytes.begin(), bytes.end());
+  }
+
+  void read_material(const GltfValue& value, Material& material) {
+    material.name = value["name"].text();
+    const GltfValue pbr = value["pbrMetallicRoughness"];
+    const std::vector<double> factor = pbr["baseColorFactor"].numbers(4);
+    for (int c = 0; c < 3 && !factor.empty(); ++c)
+      material.base_color[c] =
+          static_cast<float>(std::clamp(factor[static_cast<std::size_t>(c)], 0.0, 1.0));
+    if (!factor.empty()) material.alpha = static_cast<float>(std::clamp(factor[3], 0.0, 1.0));
+    material.texture_tint = material.base_color;
+    const std::string mode = value["alphaMode"].text("OPAQUE");
+    material.alpha_mode = mode == "MASK"    ? AlphaMode::kMask
+                          : mode == "BLEND" ? AlphaMode::kBlend
+                                            : AlphaMode::kOpaque;
+    material.alpha_cutoff = static_cast<float>(value["alphaCutoff"].number(0.5));
+    attempt([&] { material.color_map = use(color_texture(value), value); },
+            "the material's colour replaces the texture");
+    const GltfValue normal = value["normalTexture"];
+    attempt([&] { material.normal_map = use(normal, value); }, "the normal texture is ignored");
+    material.normal_scale = static_cast<float>(normal["scale"].number(1));
+  }
+
+  TextureUse use(const GltfValue& info, const GltfValue& material) const {
+    TextureUse use;
+    if (!info.exists()) return use;
+    if (uv_set_of(info) != uv_set_of_material(material))
+      throw info.error("uses other texture coordinates than the colour texture");
+    const GltfValue texture = file_.item(GltfArray::kTextures, info["index"].whole(), info);
+    const std::uint64_t image = texture["source"].whole();
+    file_.item(GltfArray::kImages, image, texture);
+    use.image = static_cast<int>(image);
+    use.uv = uv_transform(info);
+    if (!texture["sampler"].exists()) return use;
+    const GltfValue sampler = file_.item(GltfArray::kSamplers, texture["sampler"].whole(), texture);
+    use.wrap_u = wrap_of(sampler["wrapS"]);
+    use.wrap_v = wrap_of(sampler["wrapT"]);
+    return use;
+  }
+
+  static constexpr std::uint64_t kMostCopies = 4;  ///< Limit on copies, in sizes of all buffers.
+
+  const GltfFile& file_;
+  Appearance& appearance_;
+  Warnings& warnings_;
+  MemoryReservation memory_;
+  CancelPoll poll_;
+  std::uint64_t copied_bytes_ = 0;
+};
+
+}  // namespace
+
+std::uint64_t gltf_uv_set(const GltfFile& file, const GltfValue& primitive) {
+  const GltfValue index = primitive["material"];
+  if (!index.exists()) return 0;
+  try {
+    return uv_set_of_material(file.item(GltfArray::kMaterials, index.whole(), primitive));
+  } catch (const Error&) {
+    return 0;  // read_gltf_materials() adds a warning.
+  }
+}
+
+void read_gltf_materials(const GltfFile& file, const Mesh& mesh, Appearance& appearance,
+                         Warnings& warnings) {
+  MaterialReader(file, appearance, warnings).read(mesh);
+}
+
+void report_gltf_images(const GltfFile& file) {
+  if (file.source().options.named_files == nullptr) return;
+  for (const GltfValue image : file.array(GltfArray::kImages)) try {
+      const std::string name = file_name_of(image);
+      if (!name.empty()) file.named_files().report(file.source().folder / name);
+    } catch (const Error&) {  // The name of the file is unknown.
+    }
+}
+
+}  // namespace voxdag

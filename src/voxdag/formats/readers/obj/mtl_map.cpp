@@ -1,0 +1,76 @@
+#include "voxdag/formats/readers/obj/mtl_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "voxdag/formats/readers/text_scan.hpp"
+
+namespace voxdag {
+namespace {
+
+bool take_switch(std::string_view& text) {
+  const std::string value = to_lower(next_token(text));
+  if (value != "on" && value != "off") throw MalformedMtl("-clamp takes on or off");
+  return value == "on";
+}
+
+}  // namespace
+
+std::string to_lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return out;
+}
+
+std::size_t take_numbers(std::string_view& text, std::span<float> numbers) {
+  std::size_t count = 0;
+  std::string_view rest = text;
+  for (float number; count < numbers.size() && parse_float(next_token(rest), number); text = rest)
+    numbers[count++] = number;
+  return count;
+}
+
+bool all_finite(std::span<const float> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });
+}
+
+void take_numbers(std::string_view& text, std::span<float> numbers, std::size_t least,
+                  const char* expected) {
+  const std::size_t count = take_numbers(text, numbers);
+  if (count < least || !all_finite(numbers.first(count))) throw MalformedMtl(expected);
+}
+
+MtlMap parse_mtl_map(std::string_view text) {
+  MtlMap map;
+  for (text = trim(text); text.starts_with('-'); text = trim(text)) {
+    std::string_view rest = text;
+    const std::string option = to_lower(next_token(rest));
+    std::array<float, 3> ignored{};
+    if (option == "-s")
+      take_numbers(rest, map.scale, 1, "-s takes one to three finite numbers");
+    else if (option == "-o")
+      take_numbers(rest, map.offset, 1, "-o takes one to three finite numbers");
+    else if (option == "-mm")
+      take_numbers(rest, map.base_gain, 2, "-mm takes two finite numbers");
+    else if (option == "-bm")
+      take_numbers(rest, std::span(&map.bump, 1), 1, "-bm takes a finite number");
+    else if (option == "-clamp")
+      map.clamp = take_switch(rest);
+    else if (option == "-t")
+      take_numbers(rest, ignored);
+    else if (option == "-boost" || option == "-texres")
+      take_numbers(rest, std::span(ignored).first(1));
+    else if (option == "-blendu" || option == "-blendv" || option == "-cc" ||
+             option == "-imfchan" || option == "-type")
+      next_token(rest);
+    else
+      break;  // Not an option: a file whose name starts with a dash.
+    text = rest;
+  }
+  map.file = text;
+  if (map.file.empty()) throw MalformedMtl("it names no file");
+  return map;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,216 @@
+#include "voxdag/formats/readers/obj/mtl_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "voxdag/image/color.hpp"
+#include "voxdag/formats/readers/name_table.hpp"
+#include "voxdag/formats/readers/obj/mtl_map.hpp"
+#include "voxdag/formats/readers/obj/obj_lines.hpp"
+
+namespace voxdag {
+
+class MtlReader::Impl {
+ public:
+  Impl(const MeshSource& source, const NamedFiles& files, Appearance& appearance,
+       Warnings& warnings)
+      : source_(source),
+        files_(files),
+        appearance_(appearance),
+        warnings_(warnings),
+        names_(source.options.memory),
+        images_(source.options.memory),
+        image_memory_(source.options.memory, 0),
+        is_described_(appearance.materials.size(), false) {
+    for (const Material& material : appearance.materials) names_.find_or_add(material.name);
+  }
+
+  void read(std::string_view text, const std::filesystem::path& folder, const std::string& name) {
+    folder_ = folder;
+    file_ = name;
+    material_ = nullptr;
+    text = without_byte_order_mark(text);
+    const char line_end = line_end_of(text);
+    line_number_ = 1;
+    const char* counted = text.data();
+    CancelPoll poll(source_.options.progress);
+    for_each_line(
+        text, line_end, source_.options.memory, [&](std::string_view line, const char* position) {
+          poll.step();
+          line_number_ += static_cast<std::size_t>(std::count(counted, position, line_end));
+          counted = position;
+          statement_ = trim(line);
+          const std::string keyword = to_lower(next_token(line));
+          if (keyword == "newmtl")
+            start(trim(line));
+          else if (material_ != nullptr)
+            take(keyword, trim(line));
+        });
+  }
+
+  bool describes(std::size_t material) const { return is_described_[material]; }
+
+ private:
+  void start(std::string_view name) {
+    const auto found = names_.find(name);
+    material_ = found ? &appearance_.materials[*found] : nullptr;
+    if (!found) return;
+    *material_ = {};
+    material_->name = name;
+    is_described_[*found] = true;
+  }
+
+  /// Adds a warning about the current statement, with its fault and its replacement.
+  void warn(const std::string& what) {
+    warnings_.add(file_ + ": " + ErrorPlace::line(line_number_).text() + ": " +
+                  in_quotes(statement_) + ": " + what);
+  }
+
+  /// Runs body(), which parses a statement. If the statement is malformed, adds a warning that
+  /// names `replacement`, the value that the caller has set before.
+  template <class Body>
+  void attempt(const char* replacement, const Body& body) {
+    try {
+      body();
+    } catch (const MalformedMtl& fault) {
+      warn(std::string(fault.what()) + ": " + replacement);
+    }
+  }
+
+  void take(const std::string& keyword, std::string_view line) {
+    Material& material = *material_;
+    if (keyword == "kd") {
+      material.base_color = kDefaultColor;
+      attempt("the material's colour is grey", [&] { set_color(line); });
+    } else if (keyword == "d" || keyword == "tr") {
+      material.alpha = 1;
+      attempt("the material is opaque", [&] { set_alpha(line, keyword == "tr"); });
+      if (material.alpha < 1 && material.alpha_mode == AlphaMode::kOpaque)
+        material.alpha_mode = AlphaMode::kBlend;
+    } else if (keyword == "map_kd") {
+      material.color_map = {};
+      attempt("the material's colour replaces the texture",
+              [&] { material.color_map = use(parse_mtl_map(line)); });
+    } else if (keyword == "map_d") {
+      material.alpha_map = {};
+      attempt("the material is opaque without its alpha map", [&] {
+        material.alpha_map = use(parse_mtl_map(line));
+        material.alpha_mode = AlphaMode::kMask;
+      });
+    } else if (keyword == "norm" || keyword == "map_kn") {
+      set_normal_map(line, NormalMapKind::kTangentSpace);
+    } else if (keyword == "bump" || keyword == "map_bump") {
+      if (material.normal_map.exists() && material.normal_kind == NormalMapKind::kTangentSpace)
+        return;  // `norm` has one meaning; `bump` may be of either kind.
+      set_normal_map(line, NormalMapKind::kEither);
+    } else if (keyword == "disp" || keyword == "map_disp") {
+      material.displacement_map = {};
+      attempt("the surface is not displaced", [&] {
+        const MtlMap map = parse_mtl_map(line);
+        material.displacement_map = use(map);
+        material.displacement_base = map.base_gain[0];
+        material.displacement_gain = map.base_gain[1];
+      });
+    }
+  }
+
+  void set_color(std::string_view line) {
+    std::string_view rest = line;
+    if (const std::string kind = to_lower(next_token(rest)); kind == "spectral" || kind == "xyz")
+      throw MalformedMtl("spectral curves and CIEXYZ are not supported");
+    std::array<float, 3> kd{};
+    const std::size_t count = take_numbers(line, kd);
+    // A single number stands for all three channels.
+    const bool is_grey = count == 1 && next_corner(line).empty();
+    if (is_grey) kd[1] = kd[2] = kd[0];
+    if ((count != 3 && !is_grey) || !all_finite(kd)) throw MalformedMtl(kColorNumbers);
+    for (std::size_t c = 0; c < 3; ++c)
+      material_->base_color[static_cast<int>(c)] = srgb_to_linear(std::clamp(kd[c], 0.0f, 1.0f));
+    if (std::any_of(kd.begin(), kd.end(), is_outside)) warn(kClamped);
+  }
+
+  void set_alpha(std::string_view line, bool is_transparency) {
+    if (line.starts_with("-halo")) next_token(line);
+    float value = 0;
+    take_numbers(line, std::span(&value, 1), 1, "not a finite number");
+    material_->alpha = std::clamp(is_transparency ? 1 - value : value, 0.0f, 1.0f);
+    if (is_outside(value)) warn(kClamped);
+  }
+
+  void set_normal_map(std::string_view line, NormalMapKind kind) {
+    material_->normal_map = {};
+    attempt("the mesh's own normals replace the normal map", [&] {
+      const MtlMap map = parse_mtl_map(line);
+      material_->normal_map = use(map);
+      material_->normal_kind = kind;
+      material_->normal_scale = map.bump;
+    });
+  }
+
+  TextureUse use(const MtlMap& map) {
+    TextureUse use;
+    use.image = image(map.file);
+    if (map.clamp) use.wrap_u = use.wrap_v = TextureWrap::kClamp;
+    // The file's v runs up and ours, 1 - v, down: s * v + o becomes s * (1 - v) + (1 - s - o).
+    use.uv = {map.scale[0], 0, 0, map.scale[1], map.offset[0], 1 - map.scale[1] - map.offset[1]};
+    return use;
+  }
+
+  /// Returns the index of an image, which it adds if it is new.
+  int image(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');  // Files from Windows use backslashes.
+    std::vector<TextureImage>& images = appearance_.images;
+    const std::string key = (folder_ / name).string();
+    if (const auto known = images_.find(key)) return static_cast<int>(*known);
+    const std::filesystem::path path =
+        files_.find(folder_, name, {file_, ErrorPlace::line(line_number_)});
+    if (images.size() == images.capacity())
+      images.reserve(grown(images.size(), sizeof(TextureImage)));
+    image_memory_.resize(image_memory_.bytes() + 3 * key.size());  // name, path and its parts
+    images.push_back({printable_path(folder_, name), path, {}});
+    return static_cast<int>(images_.find_or_add(key));
+  }
+
+  /// Reserves memory for twice as many elements and returns their number.
+  std::size_t grown(std::size_t count, std::size_t element_bytes) {
+    const std::size_t capacity = std::max<std::size_t>(16, 2 * count);
+    image_memory_.resize(image_memory_.bytes() + capacity * element_bytes);
+    return capacity;
+  }
+
+  static constexpr const char* kColorNumbers = "not one or three finite numbers";
+  static constexpr const char* kClamped = "outside of 0 to 1: it is clamped";
+  static bool is_outside(float value) { return value < 0 || value > 1; }
+
+  const MeshSource& source_;
+  const NamedFiles& files_;
+  Appearance& appearance_;
+  Warnings& warnings_;
+  NameTable names_;   ///< Names of the materials.
+  NameTable images_;  ///< Paths of the images.
+  MemoryReservation image_memory_;
+  std::vector<bool> is_described_;
+  std::filesystem::path folder_;  ///< Folder of the current file.
+  std::string file_;              ///< Its name in messages.
+  std::size_t line_number_ = 1;
+  std::string_view statement_;
+  Material* material_ = nullptr;
+};
+
+MtlReader::MtlReader(const MeshSource& source, const NamedFiles& files, Appearance& appearance,
+                     Warnings& warnings)
+    : impl_(std::make_unique<Impl>(source, files, appearance, warnings)) {}
+
+MtlReader::~MtlReader() = default;
+
+void MtlReader::read(std::string_view text, const std::filesystem::path& folder,
+                     const std::string& name) {
+  impl_->read(text, folder, name);
+}
+
+bool MtlReader::describes(std::size_t material) const { return impl_->describes(material); }
+
+}  // namespace voxdag

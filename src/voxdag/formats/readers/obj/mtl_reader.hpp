@@ -1,0 +1,40 @@
+#pragma once
+/// MTL, the material files of Wavefront OBJ.
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/formats/readers/named_files.hpp"
+#include "voxdag/formats/readers/warnings.hpp"
+
+namespace voxdag {
+
+/// Fills materials from MTL files, by name, and adds the images that they use.
+///
+/// Reads Kd (as sRGB), d and Tr, map_Kd, map_d, norm, bump (map_bump) with -bm, disp (map_disp)
+/// with -mm, and for each map -s, -o and -clamp; ignores other statements and options. If there is
+/// a map_Kd, it alone gives the colour; Kd replaces it if the image cannot be read. A map_d makes
+/// the material a mask. A malformed statement is a warning that names its line and its replacement.
+class MtlReader {
+ public:
+  /// `appearance` has the materials, with distinct names. The references must stay valid.
+  MtlReader(const MeshSource& source, const NamedFiles& files, Appearance& appearance,
+            Warnings& warnings);
+  ~MtlReader();
+
+  /// Reads the text of one file. Names of images are relative to `folder`. `name` names the file in
+  /// messages. Throws Error for an image outside the mesh file's folder, OverMemory, Cancelled.
+  void read(std::string_view text, const std::filesystem::path& folder, const std::string& name);
+
+  /// Returns whether a file that was read describes appearance.materials[material].
+  bool describes(std::size_t material) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace voxdag

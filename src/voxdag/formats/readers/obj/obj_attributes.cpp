@@ -1,0 +1,126 @@
+#include "voxdag/formats/readers/obj/obj_attributes.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "voxdag/image/color.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
+
+namespace voxdag {
+namespace {
+
+/// Parses the finite numbers at the start of a line and returns how many there are.
+std::size_t parse_numbers(std::string_view line, std::span<float> numbers) {
+  std::size_t count = 0;
+  while (count < numbers.size() && parse_float(next_token(line), numbers[count]) &&
+         std::isfinite(numbers[count]))
+    ++count;
+  return count;
+}
+
+/// Returns the index that a reference names, or kNone. `seen` values precede it in the file,
+/// `total` are in the file.
+std::uint32_t resolve(std::string_view reference, std::size_t seen, std::size_t total) {
+  std::int64_t index = 0;
+  if (!parse_int(reference, index)) return ObjReferences::kNone;
+  if (index < 0) index += static_cast<std::int64_t>(seen) + 1;
+  const bool exists = index >= 1 && static_cast<std::uint64_t>(index) <= total;
+  return exists ? static_cast<std::uint32_t>(index - 1) : ObjReferences::kNone;
+}
+
+}  // namespace
+
+ObjAttributes::ObjAttributes(const MeshSource& source, const ObjCounts& totals, bool has_colors)
+    : source_(source),
+      totals_(totals),
+      uvs_(source.options.memory),
+      normals_(source.options.memory),
+      colors_(source.options.memory),
+      uv_references_(source.options.memory),
+      normal_references_(source.options.memory),
+      results_(source.options.memory, 0) {
+  if (std::max(totals.uvs, totals.normals) >= ObjReferences::kNone)
+    throw source.error("the mesh has more than 4,294,967,294 texture coordinates or normals");
+  uvs_.resize(totals.uvs);
+  normals_.resize(totals.normals);
+  if (has_colors) colors_.resize(totals.vertices);
+  if (!uvs_.empty()) uv_references_.resize(3 * totals.triangles);
+  if (!normals_.empty()) normal_references_.resize(3 * totals.triangles);
+}
+
+void ObjAttributes::set_uv(std::size_t index, std::string_view numbers) {
+  std::array<float, 2> uv{};
+  if (parse_numbers(numbers, uv) < 1) return;
+  if (!std::isfinite(uv[1])) uv[1] = 0;
+  uvs_[index] = {uv[0], 1 - uv[1]};  // In the file, v points up.
+}
+
+void ObjAttributes::set_normal(std::size_t index, std::string_view numbers) {
+  std::array<float, 3> n{};
+  if (parse_numbers(numbers, n) < 3) return;
+  normals_[index] = normalized_or(Vec3f{n[0], n[1], n[2]}, {});
+}
+
+void ObjAttributes::set_color(std::size_t vertex, std::string_view numbers) {
+  std::array<float, 3> rgb{};
+  if (parse_numbers(numbers, rgb) == 3)
+    colors_[vertex] =
+        to_rgba16({srgb_to_linear(rgb[0]), srgb_to_linear(rgb[1]), srgb_to_linear(rgb[2])}, 1);
+}
+
+ObjReferences ObjAttributes::parse_references(std::string_view text, const ObjCounts& seen) {
+  const std::size_t slash = text.find('/');
+  const std::string_view uv = text.substr(0, slash);
+  const std::string_view rest = slash == text.npos ? std::string_view() : text.substr(slash + 1);
+  const std::string_view normal = rest.substr(0, rest.find('/'));
+  const ObjReferences references{resolve(uv, seen.uvs, totals_.uvs),
+                                 resolve(normal, seen.normals, totals_.normals)};
+  if ((references.uv == ObjReferences::kNone && !uv.empty()) ||
+      (references.normal == ObjReferences::kNone && !normal.empty()))
+    bad_references_.fetch_add(1, std::memory_order_relaxed);
+  return references;
+}
+
+void ObjAttributes::set_references(std::size_t triangle, const ObjReferences& a,
+                                   const ObjReferences& b, const ObjReferences& c) {
+  const ObjReferences* corners[] = {&a, &b, &c};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!uvs_.empty()) uv_references_[3 * triangle + i] = corners[i]->uv;
+    if (!normals_.empty()) normal_references_[3 * triangle + i] = corners[i]->normal;
+  }
+}
+
+void ObjAttributes::move_references(const FaceCutter& cutter, std::size_t first,
+                                    std::size_t triangles) {
+  for (auto* references : {&uv_references_, &normal_references_})
+    if (!references->empty())
+      cutter.move_attributes(std::span(*references).subspan(3 * first, 3 * triangles));
+}
+
+template <class T>
+void ObjAttributes::look_up(CountedVector<std::uint32_t>& references, CountedVector<T>& values,
+                            std::vector<T>& result) {
+  if (values.empty()) return;
+  results_.resize(results_.bytes() + references.size() * sizeof(T));
+  result.resize(references.size());
+  parallel_for(references.size(), 65536, [&](std::size_t i) {
+    if (references[i] != ObjReferences::kNone) result[i] = values[references[i]];
+  });
+  references = CountedVector<std::uint32_t>(source_.options.memory);
+  values = CountedVector<T>(source_.options.memory);
+}
+
+void ObjAttributes::finish(const Mesh& mesh, Appearance& appearance) {
+  look_up(uv_references_, uvs_, appearance.uvs);
+  look_up(normal_references_, normals_, appearance.normals);
+  if (colors_.empty()) return;
+  results_.resize(results_.bytes() + 3 * mesh.triangles.size() * sizeof(Rgba16));
+  appearance.colors.resize(3 * mesh.triangles.size());
+  parallel_for(mesh.triangles.size(), 65536, [&](std::size_t t) {
+    for (std::size_t c = 0; c < 3; ++c)
+      appearance.colors[3 * t + c] = colors_[mesh.triangles[t][c]];
+  });
+}
+
+}  // namespace voxdag

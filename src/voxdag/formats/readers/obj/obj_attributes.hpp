@@ -1,0 +1,63 @@
+#pragma once
+/// Texture coordinates, normals and vertex colours of an OBJ file.
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/formats/readers/face_cutter.hpp"
+#include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/formats/readers/obj/obj_chunk.hpp"
+
+namespace voxdag {
+
+/// Indices of the values that a corner refers to.
+struct ObjReferences {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t uv = kNone, normal = kNone;
+};
+
+/// Holds the file's values and the references of all corners until every value is known, because
+/// faces may precede their values. Threads may set distinct values and corners concurrently.
+class ObjAttributes {
+ public:
+  /// Makes room for all values and corners of the file. Throws OverMemory.
+  ObjAttributes(const MeshSource& source, const ObjCounts& totals, bool has_colors);
+
+  void set_uv(std::size_t index, std::string_view numbers);
+  void set_normal(std::size_t index, std::string_view numbers);
+  /// Sets the colour of a vertex from the numbers that follow its coordinates, if there are three.
+  void set_color(std::size_t vertex, std::string_view numbers);
+
+  /// Parses a corner "v/vt/vn" from "vt" on. `seen` counts the values that precede the face in the
+  /// file. A reference to a value that does not exist counts as bad.
+  ObjReferences parse_references(std::string_view text, const ObjCounts& seen);
+  /// Sets the references of the three corners of a triangle.
+  void set_references(std::size_t triangle, const ObjReferences& a, const ObjReferences& b,
+                      const ObjReferences& c);
+  /// Moves the references of a face that `cutter` has cut, whose fan starts at triangle `first`.
+  void move_references(const FaceCutter& cutter, std::size_t first, std::size_t triangles);
+
+  /// Replaces the references by their values. Call it once, at the end. Throws OverMemory.
+  void finish(const Mesh& mesh, Appearance& appearance);
+
+  bool has_colors() const { return !colors_.empty(); }
+  std::size_t bad_references() const { return bad_references_; }
+
+ private:
+  template <class T>
+  void look_up(CountedVector<std::uint32_t>& references, CountedVector<T>& values,
+               std::vector<T>& result);
+
+  const MeshSource& source_;
+  const ObjCounts totals_;
+  CountedVector<Vec2f> uvs_;
+  CountedVector<Vec3f> normals_;
+  CountedVector<Rgba16> colors_;                                    ///< Per vertex.
+  CountedVector<std::uint32_t> uv_references_, normal_references_;  ///< Per corner.
+  MemoryReservation results_;                                       ///< The appearance's arrays.
+  std::atomic<std::size_t> bad_references_{0};
+};
+
+}  // namespace voxdag

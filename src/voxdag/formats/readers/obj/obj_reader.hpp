@@ -1,0 +1,21 @@
+#pragma once
+/// Wavefront OBJ.
+#include "voxdag/mesh/appearance.hpp"
+#include "voxdag/formats/readers/mesh_source.hpp"
+
+namespace voxdag {
+
+/// Reads vertices (`v`), polygons (`f`, every form of reference, negative ones too) and the names
+/// of materials (`usemtl`). Cuts polygons with cut_polygon(). Ignores points, lines, free-form
+/// curves and surfaces, polygons of fewer than three corners, and the fourth number of a vertex.
+/// Faces may come before their vertices. A backslash at the end of a line continues it.
+///
+/// With its appearance: reads `vt`, `vn`, colours that follow a vertex's coordinates (`v x y z r g
+/// b`, sRGB) and the MTL files of `mtllib`. A corner whose `vt` or `vn` does not exist has no
+/// texture coordinates or normal.
+///
+/// Throws Error with the line: malformed vertices or faces, references out of range, triangles with
+/// a vertex that is not finite. Throws Error if there are no triangles.
+MeshWithAppearance read_obj(const MeshSource& source, ReadParts parts);
+
+}  // namespace voxdag

@@ -1,0 +1,228 @@
+/// Reads the body of an ascii PLY file, which has one row per line. One pass over chunks of lines
+/// counts the rows, a second pass counts the triangles. Then all values are parsed into arrays of
+/// their final size.
+#include "voxdag/formats/readers/ply/ply_attributes.hpp"
+#include "voxdag/formats/readers/ply/ply_rows.hpp"
+#include "voxdag/formats/readers/ply/ply_text_row.hpp"
+
+namespace voxdag {
+namespace {
+
+std::int64_t to_int(std::string_view token) {
+  std::int64_t value = 0;
+  if (!parse_int(token, value))
+    throw Fault{token.data(), "value " + in_quotes(token) + " is not an integer"};
+  return value;
+}
+
+class AsciiReader {
+ public:
+  AsciiReader(const PlyBody& body, MemoryReservation& memory)
+      : body_(body),
+        source_(body.source),
+        header_(body.header),
+        fields_(body.fields),
+        memory_(memory),
+        texts_(split_lines(source_.bytes.substr(header_.body), header_.line_end)),
+        first_rows_(texts_.size() + 1),
+        first_triangles_(texts_.size() + 1),
+        has_bad_vertex_(texts_.size(), 0),
+        mesh_(empty_mesh(source_.options.arrays)) {}
+
+  Mesh read() {
+    count_rows();
+    resize_ply_vertices(body_, memory_, mesh_);
+    std::vector<std::size_t> triangles(texts_.size(), 0);
+    for_each_row("scan", face_rows_, [&](Chunk& chunk, std::size_t, std::string_view row) {
+      const std::size_t corners = count_corners(row, chunk.poll);
+      if (corners > 2) triangles[chunk.index] += corners - 2;
+    });
+    for (std::size_t i = 0; i < texts_.size(); ++i)
+      first_triangles_[i + 1] = first_triangles_[i] + triangles[i];
+    resize_ply_triangles(body_, first_triangles_.back(), memory_, mesh_);
+    for_each_row("read", vertex_rows_, [this](Chunk& chunk, std::size_t i, std::string_view row) {
+      parse_vertex(chunk, i, row);
+    });
+    source_.end_pass();
+    for_each_row("read", face_rows_, [this](Chunk& chunk, std::size_t, std::string_view row) {
+      parse_face(chunk, row);
+    });
+    check_finite();
+    return std::move(mesh_);
+  }
+
+ private:
+  /// Rows of the body that belong to one element.
+  struct Rows {
+    std::size_t first = 0, last = 0;
+  };
+
+  /// The state of a thread that parses a chunk.
+  struct Chunk {
+    Chunk(const MeshSource& source, std::size_t i, std::size_t first_triangle)
+        : index(i),
+          triangle(first_triangle),
+          poll(source.options.progress),
+          values(source.options.memory),
+          cutter(source) {}
+
+    std::size_t index;
+    std::size_t triangle;  ///< The next triangle to write.
+    CancelPoll poll;
+    PlyRowValues values;
+    FaceCutter cutter;
+  };
+
+  void count_rows() {
+    for_each_chunk(source_, texts_, header_.line_end, "scan", [this](std::size_t i) {
+      std::string_view text = texts_[i];
+      while (!text.empty())
+        if (!trim(next_line(text, header_.line_end)).empty()) ++first_rows_[i + 1];
+    });
+    for (std::size_t i = 0; i < texts_.size(); ++i) first_rows_[i + 1] += first_rows_[i];
+    std::size_t row = 0;
+    for (const PlyElement& element : header_.elements) {
+      if (element.properties.empty()) continue;  // Without properties, rows have no lines.
+      const Rows rows{row, row + element.count};
+      if (rows.last > first_rows_.back())
+        throw_fault(
+            source_,
+            {source_.bytes.data() + source_.bytes.size(),
+             "the file ends after " + std::to_string(first_rows_.back() - row) + " of " +
+                 std::to_string(element.count) + " rows of element " + in_quotes(element.name)},
+            header_.line_end);
+      if (&element == &fields_.vertex) vertex_rows_ = rows;
+      if (&element == &fields_.face) face_rows_ = rows;
+      row = rows.last;
+    }
+  }
+
+  /// Calls body(chunk, index in the element, row) for the rows of one element; chunks are parallel.
+  template <class Body>
+  void for_each_row(std::string_view stage, Rows rows, const Body& body) {
+    for_each_chunk(source_, texts_, header_.line_end, stage, [&](std::size_t i) {
+      if (first_rows_[i + 1] <= rows.first || first_rows_[i] >= rows.last) return;
+      std::string_view text = texts_[i];
+      Chunk chunk(source_, i, first_triangles_[i]);
+      for (std::size_t row = first_rows_[i]; row < rows.last && !text.empty();) {
+        const std::string_view line = next_line(text, header_.line_end);
+        if (trim(line).empty()) continue;
+        if (row >= rows.first) body(chunk, row - rows.first, line);
+        ++row;
+      }
+    });
+  }
+
+  std::size_t count_corners(std::string_view row, CancelPoll& poll) const {
+    for (int p = 0; p < fields_.indices; ++p)
+      take_ply_property(row, fields_.face.properties[static_cast<std::size_t>(p)], poll,
+                        [](std::string_view) {});
+    const char* const start = row.data();
+    std::int64_t corners = 0;
+    // A corner needs at least two characters, so a count that is too large for the line is refused
+    // before it is summed.
+    if (!parse_int(next_token(row), corners) || corners < 0 ||
+        static_cast<std::uint64_t>(corners) > row.size() / 2 + 1)
+      throw Fault{start, "the number of vertex indices is missing, or the row is too short for it"};
+    return static_cast<std::size_t>(corners);
+  }
+
+  /// Stores a value of the appearance. A malformed number counts as the number that it starts with,
+  /// or as 0.
+  static void take_value(const PlyColumns& columns, std::size_t property, std::string_view token,
+                         PlyRowValues& values) {
+    float value = 0;
+    if (static_cast<int>(property) == columns.texcoord) {
+      parse_float(token, value);
+      values.texcoord.push_back(value);
+    } else if (columns.slots[property] >= 0) {
+      parse_float(token, value);
+      values.scalars[static_cast<std::size_t>(columns.slots[property])] = value;
+    }
+  }
+
+  void parse_vertex(Chunk& chunk, std::size_t index, std::string_view row) {
+    const auto& properties = fields_.vertex.properties;
+    const bool has_values = body_.attributes != nullptr;
+    Vec3f vertex;
+    for (std::size_t p = 0; p < properties.size(); ++p)
+      take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
+        for (int axis = 0; axis < 3; ++axis)
+          if (fields_.axes[static_cast<std::size_t>(axis)] == static_cast<int>(p) &&
+              !parse_float(token, vertex[axis]))
+            throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
+        if (has_values) take_value(body_.attributes->vertex_columns(), p, token, chunk.values);
+      });
+    check_ply_row_end(row);
+    if (!is_finite(vertex)) has_bad_vertex_[chunk.index] = 1;
+    mesh_.vertices[index] = vertex;
+    if (has_values) body_.attributes->take_vertex(index, chunk.values);
+  }
+
+  /// Writes the triangles of one face from chunk.triangle on, and adds their number to
+  /// chunk.triangle.
+  void parse_face(Chunk& chunk, std::string_view row) {
+    const auto& properties = fields_.face.properties;
+    const bool has_values = body_.attributes != nullptr;
+    const std::size_t first_triangle = chunk.triangle;
+    std::uint32_t material = 0;
+    chunk.values.texcoord.clear();
+    for (std::size_t p = 0; p < properties.size(); ++p) {
+      const int property = static_cast<int>(p);
+      std::uint32_t first = 0, previous = 0;
+      std::size_t corner = 0;
+      take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
+        if (property == fields_.material)
+          material = checked_material(to_int(token), mesh_.materials.size(), token.data());
+        if (has_values) take_value(body_.attributes->face_columns(), p, token, chunk.values);
+        if (property != fields_.indices) return;
+        const std::uint32_t index =
+            checked_index(to_int(token), mesh_.vertices.size(), token.data());
+        if (corner == 0) first = index;
+        if (corner >= 2) mesh_.triangles[chunk.triangle++] = {first, previous, index};
+        previous = index;
+        ++corner;
+      });
+    }
+    check_ply_row_end(row);
+    const std::size_t count = chunk.triangle - first_triangle;
+    const auto fan = std::span(mesh_.triangles).subspan(first_triangle, count);
+    if (has_values) {
+      chunk.cutter.cut_and_match(fan, mesh_.vertices);
+      body_.attributes->take_face(first_triangle, count, chunk.values, chunk.cutter);
+    } else {
+      chunk.cutter.cut(fan, mesh_.vertices);
+    }
+    for (std::size_t t = first_triangle; t < chunk.triangle && fields_.material >= 0; ++t)
+      mesh_.triangle_materials[t] = material;
+  }
+
+  void check_finite() {
+    if (std::find(has_bad_vertex_.begin(), has_bad_vertex_.end(), 1) == has_bad_vertex_.end())
+      return;
+    const auto bad = find_bad_vertex(source_, mesh_);
+    if (!bad) return;
+    for_each_row("read", vertex_rows_, [&](Chunk&, std::size_t i, std::string_view row) {
+      if (i == *bad) throw Fault{row.data(), kBadVertex};
+    });
+  }
+
+  const PlyBody& body_;
+  const MeshSource& source_;
+  const PlyHeader& header_;
+  const PlyFields& fields_;
+  MemoryReservation& memory_;
+  const std::vector<std::string_view> texts_;
+  std::vector<std::size_t> first_rows_, first_triangles_;  ///< Per chunk, and then the totals.
+  std::vector<char> has_bad_vertex_;                       ///< Per chunk.
+  Rows vertex_rows_, face_rows_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh read_ply_ascii(const PlyBody& body, MemoryReservation& memory) {
+  return AsciiReader(body, memory).read();
+}
+
+}  // namespace voxdag

@@ -1,0 +1,188 @@
+#include "voxdag/formats/readers/ply/ply_attributes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "voxdag/image/color.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/formats/readers/named_files.hpp"
+#include "voxdag/formats/readers/ply/ply_color.hpp"
+
+namespace voxdag {
+namespace {
+
+using Slot = PlyRowValues::Slot;
+
+void set_slots(PlyColumns& columns, const std::vector<int>& properties, Slot first) {
+  for (std::size_t i = 0; i < properties.size(); ++i)
+    columns.slots[static_cast<std::size_t>(properties[i])] = first + static_cast<int>(i);
+}
+
+void find_color(const PlyElement& element, PlyColumns& columns) {
+  const std::vector<int> found = find_ply_color(element);
+  set_slots(columns, found, Slot::kRed);
+  columns.color_components = static_cast<int>(found.size());
+}
+
+void find_uv(const PlyElement& element, PlyColumns& columns) {
+  for (const auto& names :
+       {std::array{"s", "t"}, std::array{"u", "v"}, std::array{"texture_u", "texture_v"},
+        std::array{"texture_s", "texture_t"}}) {
+    const std::vector<int> found = find_ply_scalars(element, {names[0], names[1]});
+    if (found.empty()) continue;
+    set_slots(columns, found, Slot::kU);
+    columns.has_uvs = true;
+    return;
+  }
+}
+
+void find_normal(const PlyElement& element, PlyColumns& columns) {
+  const std::vector<int> found = find_ply_scalars(element, {"nx", "ny", "nz"});
+  set_slots(columns, found, Slot::kNormalX);
+  columns.has_normals = !found.empty();
+}
+
+/// Converts texture coordinates: in the file, v points up.
+Vec2f to_uv(float u, float v) {
+  return std::isfinite(u) && std::isfinite(v) ? Vec2f{u, 1 - v} : Vec2f{};
+}
+
+}  // namespace
+
+PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
+                             const PlyFields& fields)
+    : source_(source),
+      header_(header),
+      vertex_colors_(source.options.memory),
+      vertex_normals_(source.options.memory),
+      vertex_uvs_(source.options.memory),
+      memory_(source.options.memory, 0) {
+  vertex_.slots.assign(fields.vertex.properties.size(), -1);
+  face_.slots.assign(fields.face.properties.size(), -1);
+  find_color(fields.vertex, vertex_);
+  find_normal(fields.vertex, vertex_);
+  find_uv(fields.vertex, vertex_);
+  if (vertex_.color_components == 0) find_color(fields.face, face_);
+  const int list = fields.face.find({"texcoord"});
+  if (!vertex_.has_uvs && list >= 0 &&
+      fields.face.properties[static_cast<std::size_t>(list)].count_type)
+    face_.texcoord = list;
+  const PlyElement& colored = vertex_.color_components > 0 ? fields.vertex : fields.face;
+  const PlyColumns& columns = vertex_.color_components > 0 ? vertex_ : face_;
+  for (std::size_t p = 0; p < columns.slots.size(); ++p)
+    if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha)
+      color_scales_[static_cast<std::size_t>(columns.slots[p])] =
+          ply_color_scale(colored.properties[p].type);
+}
+
+void PlyAttributes::resize_vertices(std::size_t count) {
+  if (vertex_.color_components > 0) vertex_colors_.resize(count);
+  if (vertex_.has_normals) vertex_normals_.resize(count);
+  if (vertex_.has_uvs) vertex_uvs_.resize(count);
+}
+
+void PlyAttributes::resize_triangles(std::size_t count) {
+  const bool has_colors = vertex_.color_components > 0 || face_.color_components > 0;
+  const bool has_uvs = vertex_.has_uvs || face_.texcoord >= 0;
+  memory_.resize(3 * count *
+                 ((has_colors ? sizeof(Rgba16) : 0) + (vertex_.has_normals ? sizeof(Vec3f) : 0) +
+                  (has_uvs ? sizeof(Vec2f) : 0)));
+  if (has_colors) appearance_.colors.resize(3 * count);
+  if (vertex_.has_normals) appearance_.normals.resize(3 * count);
+  if (has_uvs) appearance_.uvs.resize(3 * count);
+}
+
+Rgba16 PlyAttributes::color_of(const PlyColumns& columns, const PlyRowValues& row) const {
+  std::array<float, 4> rgba{0, 0, 0, 1};
+  for (std::size_t c = 0; c < static_cast<std::size_t>(columns.color_components); ++c)
+    rgba[c] = row.scalars[c] * color_scales_[c];
+  return to_rgba16({srgb_to_linear(rgba[0]), srgb_to_linear(rgba[1]), srgb_to_linear(rgba[2])},
+                   rgba[3]);
+}
+
+void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {
+  if (vertex_.color_components > 0) vertex_colors_[index] = color_of(vertex_, row);
+  if (vertex_.has_normals) {
+    const Vec3f n{row.scalars[Slot::kNormalX], row.scalars[Slot::kNormalY],
+                  row.scalars[Slot::kNormalZ]};
+    vertex_normals_[index] = normalized_or(n, {});
+  }
+  if (vertex_.has_uvs) vertex_uvs_[index] = to_uv(row.scalars[Slot::kU], row.scalars[Slot::kV]);
+}
+
+void PlyAttributes::take_face(std::size_t first, std::size_t count, const PlyRowValues& row,
+                              const FaceCutter& cutter) {
+  if (face_.color_components > 0) {
+    const Rgba16 color = color_of(face_, row);
+    for (std::size_t i = 3 * first; i < 3 * (first + count); ++i) appearance_.colors[i] = color;
+  }
+  if (face_.texcoord < 0 || row.texcoord.size() != 2 * (count + 2)) return;
+  const auto uvs = std::span(appearance_.uvs).subspan(3 * first, 3 * count);
+  for (std::size_t t = 0; t < count; ++t)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t corner = c == 0 ? 0 : t + c;
+      uvs[3 * t + c] = to_uv(row.texcoord[2 * corner], row.texcoord[2 * corner + 1]);
+    }
+  cutter.move_attributes(uvs);
+}
+
+Appearance PlyAttributes::finish(const Mesh& mesh, std::vector<std::string>& warnings) {
+  read_materials(mesh, warnings);
+  if (vertex_.is_used() || face_.is_used()) ignore_alpha_that_hides_all();
+  if (vertex_.is_used())
+    parallel_for(mesh.triangles.size(), 65536, [&](std::size_t t) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t vertex = mesh.triangles[t][c];
+        if (!vertex_colors_.empty()) appearance_.colors[3 * t + c] = vertex_colors_[vertex];
+        if (!vertex_normals_.empty()) appearance_.normals[3 * t + c] = vertex_normals_[vertex];
+        if (!vertex_uvs_.empty()) appearance_.uvs[3 * t + c] = vertex_uvs_[vertex];
+      }
+    });
+  return std::move(appearance_);
+}
+
+void PlyAttributes::read_materials(const Mesh& mesh, std::vector<std::string>& warnings) {
+  std::vector<Material>& materials = appearance_.materials;
+  const std::size_t count = std::max<std::size_t>(mesh.materials.size(), 1);
+  std::uint64_t bytes = memory_.bytes() + count * sizeof(Material);
+  for (const std::string& name : mesh.materials) bytes += name.size() + 1;
+  memory_.resize(bytes);
+  materials.resize(count);
+  for (std::size_t i = 0; i < mesh.materials.size(); ++i) materials[i].name = mesh.materials[i];
+
+  const bool has_uvs = vertex_.has_uvs || face_.texcoord >= 0;
+  if (!header_.textures.empty() && !has_uvs)
+    warnings.push_back(source_.name + ": texture " + name_in_quotes(header_.textures[0]) +
+                       " is ignored: the mesh has no texture coordinates");
+  if (header_.textures.size() > 1 && has_uvs)
+    warnings.push_back(source_.name + ": only the first of " +
+                       std::to_string(header_.textures.size()) + " textures is used");
+  const bool is_textured = has_uvs && !header_.textures.empty();
+  if (is_textured) {
+    const std::string_view name = header_.textures[0];
+    const NamedFiles files(source_);
+    const std::filesystem::path path =
+        files.find(source_.folder, name, {source_.name, "comment TextureFile"});
+    appearance_.images.push_back({printable_path(source_.folder, name), path, {}});
+  }
+  const int components = std::max(vertex_.color_components, face_.color_components);
+  for (Material& material : materials) {
+    if (is_textured) material.color_map.image = 0;
+    if (components == 4) material.alpha_mode = AlphaMode::kBlend;
+    if (components == 0) material.base_color = kDefaultColor;
+  }
+}
+
+/// Makes all materials opaque if every colour would be invisible: some programs write an alpha of 0
+/// everywhere without meaning it.
+void PlyAttributes::ignore_alpha_that_hides_all() {
+  const auto is_visible = [](Rgba16 color) { return color.alpha() >= kBlendCutoff; };
+  if (std::any_of(vertex_colors_.begin(), vertex_colors_.end(), is_visible) ||
+      (vertex_colors_.empty() &&
+       std::any_of(appearance_.colors.begin(), appearance_.colors.end(), is_visible)))
+    return;
+  for (Material& material : appearance_.materials) material.alpha_mode = AlphaMode::kOpaque;
+}
+
+}  // namespace voxdag

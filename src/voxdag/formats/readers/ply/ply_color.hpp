@@ -1,0 +1,54 @@
+#pragma once
+/// The properties of a PLY element that hold a colour, by the names that programs give them.
+#include <array>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "voxdag/formats/readers/ply/ply_header.hpp"
+
+namespace voxdag {
+
+/// Returns the indices of scalar properties by name; empty if one is missing or a list.
+inline std::vector<int> find_ply_scalars(const PlyElement& element,
+                                         std::initializer_list<std::string_view> names) {
+  std::vector<int> found;
+  for (const std::string_view name : names) {
+    const int property = element.find({name});
+    if (property < 0 || element.properties[static_cast<std::size_t>(property)].count_type)
+      return {};
+    found.push_back(property);
+  }
+  return found;
+}
+
+/// Returns the indices of red, green, blue and, if there is one, alpha; empty without colours.
+inline std::vector<int> find_ply_color(const PlyElement& element) {
+  for (const auto& names :
+       {std::array{"red", "green", "blue", "alpha"},
+        std::array{"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"},
+        std::array{"r", "g", "b", "a"}}) {
+    std::vector<int> found = find_ply_scalars(element, {names[0], names[1], names[2]});
+    if (found.empty()) continue;
+    const std::vector<int> alpha = find_ply_scalars(element, {names[3]});
+    found.insert(found.end(), alpha.begin(), alpha.end());
+    return found;
+  }
+  return {};
+}
+
+/// Returns the factor that maps a component of a colour to 0..1.
+inline float ply_color_scale(PlyType type) {
+  switch (type) {
+    case PlyType::kInt8:
+    case PlyType::kUint8:
+      return 1.0f / 255;
+    case PlyType::kInt16:
+    case PlyType::kUint16:
+      return 1.0f / 65535;
+    default:
+      return is_integer(type) ? 1.0f / 255 : 1.0f;
+  }
+}
+
+}  // namespace voxdag

@@ -1,0 +1,72 @@
+#pragma once
+/// The header of a PLY file (Greg Turk, The PLY Polygon File Format, 1994).
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "voxdag/formats/readers/mesh_source.hpp"
+
+namespace voxdag {
+
+enum class PlyType : std::uint8_t {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kFloat,
+  kDouble
+};
+
+constexpr std::size_t size_of(PlyType type) {
+  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<int>(type)];
+}
+constexpr bool is_integer(PlyType type) { return type < PlyType::kFloat; }
+
+/// Names are views into the file.
+struct PlyProperty {
+  std::string_view name;
+  PlyType type;                       ///< Type of the value, or of the items of a list.
+  std::optional<PlyType> count_type;  ///< Type of a list's item count. None: not a list.
+};
+
+struct PlyElement {
+  std::string_view name;
+  std::uint64_t count = 0;  ///< Number of rows.
+  CountedVector<PlyProperty> properties;
+
+  /// Returns the index of the property that has one of the names, or -1.
+  int find(std::initializer_list<std::string_view> names) const;
+  /// Returns the minimum number of bytes of a row in a binary file.
+  std::size_t least_row_bytes() const;
+};
+
+enum class PlyFormat : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::kAscii;
+  char line_end = '\n';  ///< Ends the lines of the header, and of a body of text.
+  std::vector<PlyElement> elements;
+  CountedVector<std::string_view> materials;  ///< Comments `material NUMBER NAME`, by number.
+  CountedVector<std::string_view> textures;   ///< Comments `TextureFile NAME`.
+  std::size_t body = 0;                       ///< Offset of the first byte after the header.
+
+  int vertex = -1;  ///< Index of element `vertex`; always in range after parse_ply_header().
+  int face = -1;    ///< Index of element `face`; always in range if the use is kMesh.
+};
+
+/// The parts of a file that a reader wants.
+enum class PlyUse : std::uint8_t {
+  kMesh,   ///< Vertices and faces.
+  kPoints  ///< Vertices; the file may have faces, strips or other elements.
+};
+
+/// Parses the header and checks it: every line is known, vertices have x, y and z, and the file is
+/// at least as long as the counts imply. A mesh also needs faces with a list of integer indices and
+/// at most 2^32 - 2 vertices. Throws Error with the line, OverMemory.
+PlyHeader parse_ply_header(const MeshSource& source, PlyUse use = PlyUse::kMesh);
+
+}  // namespace voxdag

@@ -1,0 +1,24 @@
+#include "voxdag/formats/readers/ply/ply_reader.hpp"
+
+#include "voxdag/formats/readers/named_files.hpp"
+#include "voxdag/formats/readers/ply/ply_attributes.hpp"
+
+namespace voxdag {
+
+MeshWithAppearance read_ply(const MeshSource& source, ReadParts parts) {
+  const PlyHeader header = parse_ply_header(source);
+  const NamedFiles files(source);
+  for (const std::string_view name : header.textures) files.report(source.folder / name);
+  const PlyFields fields(header);
+  std::optional<PlyAttributes> attributes;
+  if (parts == ReadParts::kMeshAndAppearance) attributes.emplace(source, header, fields);
+  PlyBody body{source, header, fields, attributes ? &*attributes : nullptr};
+  MeshWithAppearance result;
+  MemoryReservation memory(source.options.memory, 0);
+  result.mesh = header.format == PlyFormat::kAscii ? read_ply_ascii(body, memory)
+                                                   : read_ply_binary(body, memory);
+  if (attributes) result.appearance = attributes->finish(result.mesh, result.warnings);
+  return result;
+}
+
+}  // namespace voxdag

@@ -1,0 +1,33 @@
+#pragma once
+/// Options of mesh readers.
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/io/mapped_arrays.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+
+namespace voxdag {
+
+struct ReadOptions {
+  Progress* progress = nullptr;    ///< Null: no reports, no cancellation.
+  MemoryBudget* memory = nullptr;  ///< Counts mesh and scratch memory. Null: no limit.
+  /// If not null: the arrays of the mesh are here, and do not count as memory. It must outlive the
+  /// mesh. The arrays of the appearance stay on the heap.
+  MappedArrays* arrays = nullptr;
+  /// Whether a mesh file may name files outside its own folder. If false, such a name is an error.
+  bool allow_outside = false;
+  /// Whether assimp may use all its importers. If false, it uses only those that survive fuzzing.
+  bool any_assimp_importer = false;
+  /// If not null: receives the paths of all files that the mesh names (MTL, buffers, textures), so
+  /// that the caller does not overwrite them. They need not exist.
+  std::vector<std::filesystem::path>* named_files = nullptr;
+
+  /// Returns how many bytes of an array of the mesh count as memory: none if it is in a file.
+  std::uint64_t counted(std::uint64_t array_bytes) const {
+    return arrays == nullptr ? array_bytes : 0;
+  }
+};
+
+}  // namespace voxdag

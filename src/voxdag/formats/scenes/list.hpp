@@ -1,0 +1,26 @@
+#pragma once
+/// The generators behind make_scene(), one file each. `size` must be in the range of the scene's
+/// SceneInfo. `progress` may be null; if it is cancelled, a generator throws Cancelled.
+#include <cstdint>
+
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/formats/scenes/scenes.hpp"
+
+namespace voxdag::scenes {
+
+Mesh make_city(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset city_preset(double size);
+
+Mesh make_courtyard(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset courtyard_preset(double size);
+
+Mesh make_hairball(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset hairball_preset(double size);
+
+Mesh make_sponge(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset sponge_preset(double size);
+
+Mesh make_terrain(double size, std::uint32_t seed, const Progress* progress);
+ScenePreset terrain_preset(double size);
+
+}  // namespace voxdag::scenes

@@ -1,7 +1,0 @@
-#include "voxdag/model/written_by.hpp"
-
-namespace voxdag {
-
-std::string written_by() { return "voxdag " VOXDAG_VERSION; }
-
-}  // namespace voxdag

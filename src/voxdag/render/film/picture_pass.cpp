@@ -1,0 +1,149 @@
+#include "voxdag/render/film/picture_pass.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "voxdag/image/color.hpp"
+#include "voxdag/image/dither.hpp"
+#include "voxdag/image/exr.hpp"
+#include "voxdag/image/png.hpp"
+#include "voxdag/render/heat_map.hpp"
+
+namespace voxdag {
+namespace {
+
+template <std::vector<float> RenderedImage::*kValues>
+ImageF scalars(const RenderedImage& image) {
+  ImageF out(image.width, image.height, 1);
+  out.pixels = image.*kValues;
+  return out;
+}
+
+template <std::vector<Vec3f> RenderedImage::*kValues>
+ImageF vectors(const RenderedImage& image) {
+  ImageF out(image.width, image.height, 3);
+  const std::vector<Vec3f>& values = image.*kValues;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) out.pixels[3 * i + axis] = values[i][axis];
+  return out;
+}
+
+std::uint8_t nearest_code(float value, int, int) {
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
+}
+
+/// Returns a picture of all values. color(value) is the display colour, from 0 to 1; to_code()
+/// rounds it.
+template <class Value, class Color>
+ImageRgb8 colored(const RenderedImage& image, const std::vector<Value>& values, const Color& color,
+                  std::uint8_t (*to_code)(float value, int x, int y) = nearest_code) {
+  ImageRgb8 png(image.width, image.height);
+  std::size_t i = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x, ++i) {
+      const Vec3f rgb = color(values[i]);
+      for (int axis = 0; axis < 3; ++axis) png.pixels[3 * i + axis] = to_code(rgb[axis], x, y);
+    }
+  return png;
+}
+
+Vec3f grey(float value) { return {value, value, value}; }
+
+Vec3f encoded(Vec3f linear) {
+  Vec3f rgb;
+  for (int axis = 0; axis < 3; ++axis)
+    rgb[axis] = linear_to_srgb(std::clamp(linear[axis], 0.0f, 1.0f));
+  return rgb;
+}
+
+template <std::vector<Vec3f> RenderedImage::*kValues>
+ImageRgb8 light(const RenderedImage& image) {
+  return colored(image, image.*kValues, encoded, dithered_code);
+}
+
+template <std::vector<float> RenderedImage::*kValues>
+ImageRgb8 greys(const RenderedImage& image) {
+  return colored(image, image.*kValues, grey);
+}
+
+/// Returns a picture of grey values that are linear in 1 / depth.
+ImageRgb8 depths(const RenderedImage& image) {
+  float nearest = HUGE_VALF, farthest = 0;
+  for (const float d : image.depth) {
+    if (!std::isfinite(d)) continue;
+    nearest = std::min(nearest, d);
+    farthest = std::max(farthest, d);
+  }
+  return colored(image, image.depth, [nearest, farthest](float d) {
+    if (!std::isfinite(d)) return Vec3f{};
+    const float range = 1 / nearest - 1 / farthest;
+    const float near = range > 0 ? (1 / d - 1 / farthest) / range : 1.0f;
+    return grey(0.15f + 0.85f * near);
+  });
+}
+
+ImageRgb8 normals(const RenderedImage& image) {
+  return colored(image, image.normal, [](Vec3f n) { return n * 0.5f + Vec3f{0.5f, 0.5f, 0.5f}; });
+}
+
+ImageRgb8 heat(const RenderedImage& image) {
+  const float most = *std::max_element(image.steps.begin(), image.steps.end());
+  return colored(image, image.steps, [most](float steps) { return heat_color(steps / most); });
+}
+
+/// Returns a picture of grey steps: white is 64, as in Figure 9 of Laine and Karras 2010.
+ImageRgb8 grey_steps(const RenderedImage& image) {
+  return colored(image, image.steps, [](float steps) { return grey(steps / 64); });
+}
+
+bool has_extension(const std::string& path, const char* extension) {
+  return std::filesystem::path(path).extension() == extension;
+}
+
+}  // namespace
+
+std::span<const PictureKind> picture_kinds() {
+  using Image = RenderedImage;
+  static const std::array kKinds{
+      PictureKind{"picture", {"R", "G", "B"}, vectors<&Image::rgb>, light<&Image::rgb>},
+      PictureKind{"radiance", {"R", "G", "B"}, vectors<&Image::radiance>, light<&Image::radiance>},
+      PictureKind{"depth", {"Z"}, scalars<&Image::depth>, depths},
+      PictureKind{"normal",
+                  {"N.X", "N.Y", "N.Z"},
+                  vectors<&Image::normal>,
+                  normals,
+                  &RenderOptions::with_normal},
+      PictureKind{"occlusion",
+                  {"occlusion"},
+                  scalars<&Image::occlusion>,
+                  greys<&Image::occlusion>,
+                  &RenderOptions::with_occlusion},
+      PictureKind{"shadow",
+                  {"shadow"},
+                  scalars<&Image::shadow>,
+                  greys<&Image::shadow>,
+                  &RenderOptions::with_shadow},
+      PictureKind{"steps", {"steps"}, scalars<&Image::steps>, heat, &RenderOptions::with_steps},
+      PictureKind{
+          "steps64", {"steps"}, scalars<&Image::steps>, grey_steps, &RenderOptions::with_steps}};
+  return kKinds;
+}
+
+const PictureKind* find_picture_kind(std::string_view name) {
+  for (const PictureKind& kind : picture_kinds())
+    if (kind.name == name) return &kind;
+  return nullptr;
+}
+
+bool is_picture_path(const std::string& path) {
+  return has_extension(path, ".png") || has_extension(path, ".exr");
+}
+
+void write_pass(const PictureKind& kind, const std::string& path, const RenderedImage& image) {
+  if (has_extension(path, ".exr")) return write_exr(path, kind.values(image), kind.channels);
+  write_png(path, kind.shown(image));
+}
+
+}  // namespace voxdag

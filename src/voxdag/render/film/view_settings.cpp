@@ -1,0 +1,212 @@
+#include "voxdag/render/film/view_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "voxdag/render/film/json_file.hpp"
+
+namespace voxdag {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+constexpr int kVersion = 1;
+
+/// Reads the settings. `key` is the whole key of a value, such as "sun.angle".
+class Reader {
+ public:
+  explicit Reader(const std::string& file) : file_(file) {}
+
+  ViewSettings read() {
+    const Json json = read_json_file(file_, {kMostBytes, "a view"});
+    RenderOptions& options = settings_.options;
+    each_member(
+        json, "",
+        {{"version", [&](const Json& value) { check_version(value); }},
+         {"camera", [&](const Json& value) { read_camera(value); }},
+         {"sun", [&](const Json& value) { read_sun(value); }},
+         {"sky",
+          [&](const Json& value) { options.sky = real(value, "sky", 0, RenderLimits::kSky); }},
+         {"exposure",
+          [&](const Json& value) { options.exposure = real(value, "exposure", 0, 1e30); }},
+         {"shadows", [&](const Json& value) { options.shadows = flag(value, "shadows"); }},
+         {"occlusion", [&](const Json& value) { read_occlusion(value); }},
+         {"lod",
+          [&](const Json& value) {
+            options.lod_pixels = real(value, "lod", 0, RenderLimits::kLodPixels);
+          }},
+         {"cubes",
+          [&](const Json& value) {
+            options.cube_pixels = real(value, "cubes", 0, RenderLimits::kCubePixels);
+          }},
+         {"level",
+          [&](const Json& value) {
+            if (!value.is_null()) ignore("level", "a picture shows the finest level");
+          }},
+         {"colors", [&](const Json& value) { settings_.colors = flag(value, "colors"); }},
+         {"normals", [&](const Json& value) { settings_.normals = flag(value, "normals"); }},
+         {"show",
+          [&](const Json& value) {
+            if (value != "light") ignore("show", "a picture shows the light; --pass writes others");
+          }},
+         {"section", [&](const Json& value) { read_section(value); }},
+         {"mode", nothing},
+         {"measures", nothing},
+         {"annotations", nothing},
+         {"path", nothing}});
+    return std::move(settings_);
+  }
+
+ private:
+  using Members = std::map<std::string, std::function<void(const Json&)>>;
+
+  static void nothing(const Json&) {}
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& reason) const {
+    throw Error(file_, "", key.empty() ? reason : "\"" + key + "\" " + reason);
+  }
+  void ignore(const std::string& key, const std::string& why) {
+    settings_.ignored.push_back("\"" + key + "\" is ignored: " + why);
+  }
+
+  /// Calls the function of each member of an object, whose key is `key`.
+  void each_member(const Json& json, const std::string& key, const Members& members) {
+    if (!json.is_object()) refuse(key, key.empty() ? "must be an object" : "is not an object");
+    for (const auto& [name, value] : json.items()) {
+      const auto member = members.find(name);
+      if (member == members.end())
+        ignore((key.empty() ? "" : key + ".") + name, "the key is unknown");
+      else
+        member->second(value);
+    }
+  }
+
+  double number(const Json& json, const std::string& key, double least, double most) const {
+    const double value = json_number(json, {file_, ""}, key);
+    if (!(value >= least && value <= most))
+      refuse(key, fmt::format("is {}; allowed are {} to {}", value, least, most));
+    return value;
+  }
+  float real(const Json& json, const std::string& key, double least, double most) const {
+    return static_cast<float>(number(json, key, least, most));
+  }
+  Vec3d vector(const Json& json, const std::string& key) const {
+    return json_vector(json, {file_, ""}, key);
+  }
+  Vec3d direction(const Json& json, const std::string& key) const {
+    return json_direction(json, {file_, ""}, key);
+  }
+  bool flag(const Json& json, const std::string& key) const {
+    if (!json.is_boolean()) refuse(key, "is not true or false");
+    return json.get<bool>();
+  }
+
+  void check_version(const Json& json) const {
+    if (json != kVersion)
+      refuse("version", fmt::format("is {}; this program reads version {}", json.dump(), kVersion));
+  }
+
+  void read_camera(const Json& json) {
+    if (json.is_null()) return;
+    ViewRequest& view = settings_.options.view;
+    view.up = View{}.up;
+    view.vertical_fov_degrees = View{}.vertical_fov_degrees;
+    each_member(
+        json, "camera",
+        {{"eye", [&](const Json& value) { view.eye = vector(value, "camera.eye"); }},
+         {"target", [&](const Json& value) { view.target = vector(value, "camera.target"); }},
+         {"up", [&](const Json& value) { view.up = direction(value, "camera.up"); }},
+         {"fov", [&](const Json& value) {
+            view.vertical_fov_degrees = number(value, "camera.fov", kLeastFovDegrees, 179);
+          }}});
+    if (!view.eye) refuse("camera.eye", "is missing");
+    if (!view.target) refuse("camera.target", "is missing");
+    const Vec3d forward = *view.target - *view.eye;
+    if (!(length(forward) > 0)) refuse("camera", "has eye and target at one point");
+    if (!(length(cross(normalized(forward), normalized(*view.up))) > 1e-6))
+      refuse("camera.up", "points along the view");
+  }
+
+  void read_sun(const Json& json) {
+    RenderOptions& options = settings_.options;
+    each_member(json, "sun",
+                {{"direction",
+                  [&](const Json& value) {
+                    if (!value.is_null()) options.sun = direction(value, "sun.direction");
+                  }},
+                 {"angle",
+                  [&](const Json& value) {
+                    options.sun_degrees = number(value, "sun.angle", 0, RenderLimits::kSunDegrees);
+                  }},
+                 {"on", [&](const Json& value) { options.with_sun = flag(value, "sun.on"); }}});
+  }
+
+  void read_occlusion(const Json& json) {
+    RenderOptions& options = settings_.options;
+    each_member(json, "occlusion",
+                {{"samples",
+                  [&](const Json& value) {
+                    const double samples =
+                        number(value, "occlusion.samples", 0, RenderLimits::kOcclusionSamples);
+                    if (samples != std::floor(samples))
+                      refuse("occlusion.samples", "is not a whole number");
+                    options.occlusion_samples = static_cast<int>(samples);
+                  }},
+                 {"distance",
+                  [&](const Json& value) {
+                    options.occlusion_distance = number(value, "occlusion.distance", 0, 1e30);
+                  }},
+                 {"cone", [&](const Json& value) {
+                    options.occlusion_cone =
+                        number(value, "occlusion.cone", 0, RenderLimits::kOcclusionCone);
+                  }}});
+  }
+
+  void read_section(const Json& json) {
+    SectionOptions& section = settings_.options.section;
+    each_member(json, "section",
+                {{"box",
+                  [&](const Json& value) {
+                    if (!value.is_null()) section.box = read_box(value, "section.box");
+                  }},
+                 {"plane", [&](const Json& value) {
+                    if (!value.is_null()) section.plane = read_plane(value, "section.plane");
+                  }}});
+  }
+
+  Box3d read_box(const Json& json, const std::string& key) {
+    std::optional<Vec3d> low, high;
+    each_member(json, key,
+                {{"low", [&](const Json& value) { low = vector(value, key + ".low"); }},
+                 {"high", [&](const Json& value) { high = vector(value, key + ".high"); }}});
+    if (!low) refuse(key + ".low", "is missing");
+    if (!high) refuse(key + ".high", "is missing");
+    for (int axis = 0; axis < 3; ++axis)
+      if (!((*low)[axis] <= (*high)[axis])) refuse(key, "has its low corner above its high one");
+    return {*low, *high};
+  }
+
+  SectionOptions::Plane read_plane(const Json& json, const std::string& key) {
+    std::optional<Vec3d> point, normal;
+    each_member(
+        json, key,
+        {{"point", [&](const Json& value) { point = vector(value, key + ".point"); }},
+         {"normal", [&](const Json& value) { normal = direction(value, key + ".normal"); }}});
+    if (!point) refuse(key + ".point", "is missing");
+    if (!normal) refuse(key + ".normal", "is missing");
+    return {*point, *normal};
+  }
+
+  const std::string& file_;
+  ViewSettings settings_;
+};
+
+}  // namespace
+
+ViewSettings read_view_settings(const std::string& file) { return Reader(file).read(); }
+
+}  // namespace voxdag

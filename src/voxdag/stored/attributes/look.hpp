@@ -1,0 +1,85 @@
+#pragma once
+/// The colours and normals of voxels, from an ESVO or from the attributes of a DAG.
+#include "voxdag/stored/esvo/esvo_lookup.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/esvo/stored_values.hpp"
+
+namespace voxdag {
+
+/// The colour and the normal of a voxel, as far as they are stored.
+struct StoredLook {
+  bool has_color = false, has_normal = false;
+  Vec3f color{};   ///< sRGB encoded, in [0,1].
+  Vec3f normal{};  ///< World space, unit length.
+};
+
+/// A view for kernels and readers: of an ESVO, of a DAG with attributes, or of nothing (default).
+struct LookView {
+  EsvoView esvo;
+  ColoredDagView dag;
+
+  LookView() = default;
+  LookView(const EsvoView& of) : esvo(of) {}       // NOLINT(google-explicit-constructor)
+  LookView(const ColoredDagView& of) : dag(of) {}  // NOLINT(google-explicit-constructor)
+
+  VOXDAG_HD bool is_empty() const { return esvo.is_empty() && dag.is_empty(); }
+  VOXDAG_HD bool has_colors() const {
+    return has_stored(esvo, EsvoAttachmentKind::kColors) || dag.attributes.has_colors();
+  }
+  VOXDAG_HD bool has_normals() const {
+    return has_stored(esvo, EsvoAttachmentKind::kNormals) || dag.attributes.has_normals();
+  }
+  VOXDAG_HD bool has_materials() const { return dag.attributes.has_materials(); }
+};
+
+/// Sets `number` to the number of a cell of `level`, or of its ancestor of the finest level with
+/// attributes if `level` is finer. The grid of the cell may have more or fewer levels than that of
+/// the DAG. Returns false if the DAG has no attributes there.
+VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int level,
+                                  std::uint64_t& number) {
+  const int finer = level - colored.dag.levels;
+  if (finer > 0) {
+    cell = {cell.x >> finer, cell.y >> finer, cell.z >> finer};
+    level = colored.dag.levels;
+  }
+  return !colored.is_empty() &&
+         find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
+}
+
+/// Returns the material of the cell of find_number(); kMostMaterials if there is none. `colored`
+/// must have materials.
+VOXDAG_HD inline std::uint32_t material_at(const ColoredDagView& colored, Vec3i cell, int level) {
+  std::uint64_t number = 0;
+  return find_number(colored, cell, level, number)
+             ? read_material(colored.attributes.materials, number)
+             : kMostMaterials;
+}
+
+/// Returns the colour and the normal that a DAG stores for the cell of find_number().
+VOXDAG_HD inline StoredLook look_at(const ColoredDagView& colored, Vec3i cell, int level) {
+  StoredLook look;
+  const DagAttributesView& attributes = colored.attributes;
+  std::uint64_t number = 0;
+  if (!find_number(colored, cell, level, number)) return look;
+  look.has_color = attributes.has_colors();
+  if (look.has_color) {
+    const Value8 color = read_value(attributes.colors, number);
+    for (int c = 0; c < 3; ++c) look.color[c] = static_cast<float>(color[c]) / 255;
+  }
+  look.has_normal = attributes.has_normals();
+  if (look.has_normal) look.normal = unpack_normal(read_value(attributes.normals, number));
+  return look;
+}
+
+/// Returns what `look` stores for a cell of `level`.
+VOXDAG_HD inline StoredLook look_at(const LookView& look, Vec3i cell, int level) {
+  if (look.esvo.is_empty()) return look_at(look.dag, cell, level);
+  StoredLook stored;
+  EsvoVoxel voxel;
+  if (!find_esvo_voxel(look.esvo, cell, level, voxel)) return stored;
+  stored.has_color = stored_srgb(look.esvo, voxel, stored.color);
+  stored.has_normal = stored_normal(look.esvo, voxel, stored.normal);
+  return stored;
+}
+
+}  // namespace voxdag

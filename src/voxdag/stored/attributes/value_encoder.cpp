@@ -1,0 +1,95 @@
+#include "voxdag/stored/attributes/value_encoder.hpp"
+
+#include <algorithm>
+
+namespace voxdag {
+
+ValueEncoder::ValueEncoder(std::uint64_t values, const ValueMetric& metric, MemoryBudget* memory)
+    : values_(values),
+      metric_(metric),
+      precision_(choose_precision(metric)),
+      memory_(memory),
+      open_(memory),
+      places_((values + kPageValues - 1) / kPageValues, {}, memory) {}
+
+void ValueEncoder::add(std::uint64_t first, std::span<const Value8> values) {
+  while (!values.empty()) {
+    const std::uint64_t page = first / kPageValues;
+    const std::size_t count =
+        std::min<std::size_t>(values.size(), kPageValues - first % kPageValues);
+    if (count == kPageValues)
+      keep(page, encode_page(values.first<kPageValues>(), metric_, precision_));
+    else
+      add_part(first, values.first(count));
+    first += count;
+    values = values.subspan(count);
+  }
+}
+
+/// Adds values of one page. Compresses the page if it is complete.
+void ValueEncoder::add_part(std::uint64_t first, std::span<const Value8> values) {
+  const std::uint64_t page = first / kPageValues, begin = page * kPageValues;
+  const std::uint64_t whole = std::min<std::uint64_t>(kPageValues, values_ - begin);
+  OpenPage complete;
+  {
+    const std::lock_guard lock(mutex_);
+    OpenPage& open = open_[page];
+    std::copy(values.begin(), values.end(),
+              open.values.begin() + static_cast<std::ptrdiff_t>(first - begin));
+    open.count += values.size();
+    if (open.count < whole) return;
+    complete = open;
+    open_.erase(page);
+  }
+  std::fill(complete.values.begin() + static_cast<std::ptrdiff_t>(whole), complete.values.end(),
+            complete.values[whole - 1]);
+  keep(page, encode_page(complete.values, metric_, precision_, static_cast<int>(whole)));
+}
+
+/// Stores a compressed page.
+void ValueEncoder::keep(std::uint64_t page, const EncodedPage& encoded) {
+  const auto words = static_cast<std::size_t>((encoded.bits + 63) / 64);
+  const std::lock_guard lock(mutex_);
+  if (chunks_.empty() || chunks_.back().size() + words > kChunkWords) {
+    chunks_.emplace_back(memory_);
+    chunks_.back().reserve(kChunkWords);
+  }
+  CountedVector<std::uint64_t>& chunk = chunks_.back();
+  places_[page] = {static_cast<std::uint32_t>(chunks_.size() - 1),
+                   static_cast<std::uint16_t>(chunk.size()),
+                   static_cast<std::uint16_t>((encoded.bits + 7) / 8)};
+  chunk.insert(chunk.end(), encoded.words.begin(),
+               encoded.words.begin() + static_cast<std::ptrdiff_t>(words));
+  errors_ += encoded.errors;
+}
+
+ValuePages ValueEncoder::finish() {
+  ValuePages pages;
+  pages.values = values_;
+  pages.precision = precision_;
+  std::uint64_t bytes = 0;
+  for (const PagePlace& place : places_) bytes += place.bytes;
+  const std::uint64_t words = (bytes + 7) / 8;
+  const std::uint64_t groups = (places_.size() + kGroupPages - 1) / kGroupPages;
+  const MemoryReservation counted(memory_, 8 * groups + 2 * places_.size() + 8 * words);
+  pages.groups.reserve(groups);
+  pages.pages.reserve(places_.size());
+  std::uint64_t begin = 0;
+  for (std::uint64_t page = 0; page < places_.size(); ++page) {
+    pages.add_page(begin);
+    begin += places_[page].bytes;
+  }
+  pages.words.assign(words, 0);
+  std::uint64_t at = 0;
+  for (const PagePlace& place : places_) {
+    const std::uint64_t* from = chunks_[place.chunk].data() + place.word;
+    for (int left = 8 * place.bytes; left > 0; left -= 64) {
+      const int bits = std::min(left, 64);
+      write_bits(pages.words.data(), at, bits, *from++);
+      at += static_cast<std::uint64_t>(bits);
+    }
+  }
+  return pages;
+}
+
+}  // namespace voxdag

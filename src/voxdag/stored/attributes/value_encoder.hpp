@@ -1,0 +1,63 @@
+#pragma once
+/// Compresses values that many threads give in ranges, in any order.
+#include <functional>
+#include <mutex>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "voxdag/stored/attributes/encode_page.hpp"
+#include "voxdag/core/memory_budget.hpp"
+
+namespace voxdag {
+
+/// Compresses each page as soon as all its values have come. Holds the compressed pages, and the
+/// values of incomplete pages.
+class ValueEncoder {
+ public:
+  /// Expects `values` values. Counts its memory in `memory`; null: no limit.
+  ValueEncoder(std::uint64_t values, const ValueMetric& metric, MemoryBudget* memory);
+
+  /// Takes the values from number `first` on. Every value must be in exactly one call. Thread-safe.
+  /// Throws OverMemory.
+  void add(std::uint64_t first, std::span<const Value8> values);
+
+  /// Returns all pages, which depend on the values alone. Every value must have come. Does not
+  /// count the result once it has returned. Throws OverMemory.
+  ValuePages finish();
+
+  /// Returns the errors of all compressed values.
+  const ValueErrors& errors() const { return errors_; }
+
+ private:
+  struct OpenPage {
+    std::array<Value8, kPageValues> values;
+    std::uint64_t count = 0;
+  };
+  using OpenPages = std::unordered_map<std::uint64_t, OpenPage, std::hash<std::uint64_t>,
+                                       std::equal_to<std::uint64_t>,
+                                       CountedAllocator<std::pair<const std::uint64_t, OpenPage>>>;
+  /// The place of a compressed page in `chunks_`.
+  struct PagePlace {
+    std::uint32_t chunk = 0;
+    std::uint16_t word = 0;   // the page's first word in the chunk
+    std::uint16_t bytes = 0;  // size of the page
+  };
+  static constexpr std::size_t kChunkWords = 1 << 15;
+
+  void add_part(std::uint64_t first, std::span<const Value8> values);
+  void keep(std::uint64_t page, const EncodedPage& encoded);
+
+  const std::uint64_t values_;
+  const ValueMetric metric_;
+  const EndPrecision precision_;
+  MemoryBudget* memory_;
+  std::mutex mutex_;
+  OpenPages open_;  // by page
+  CountedVector<PagePlace> places_;
+  std::vector<CountedVector<std::uint64_t>> chunks_;
+  ValueErrors errors_;
+};
+
+}  // namespace voxdag

@@ -1,0 +1,128 @@
+#include "voxdag/stored/wire/wire_values.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "voxdag/core/error.hpp"
+#include "voxdag/stored/wire/material_model.hpp"
+
+namespace voxdag::wire {
+namespace {
+
+/// Reads the bits of pages.
+struct PageSource {
+  const std::uint64_t* words;
+  std::uint64_t at = 0;
+
+  std::uint64_t take(int width) {
+    const std::uint64_t value = read_bits(words, at, width);
+    at += static_cast<std::uint64_t>(width);
+    return value;
+  }
+  void put(int, std::uint64_t) {}
+  static bool has_room(int) { return true; }
+};
+
+/// Writes the bits of pages.
+struct PageSink {
+  std::uint64_t* words;
+  std::uint64_t at = 0, end = 0;  ///< Bits.
+
+  static std::uint64_t take(int) { return 0; }
+  void put(int width, std::uint64_t value) {
+    write_bits(words, at, width, value);
+    at += static_cast<std::uint64_t>(width);
+  }
+  bool has_room(int width) const { return at + static_cast<std::uint64_t>(width) <= end; }
+  void to_whole_byte() { at = (at + 7) / 8 * 8; }
+};
+
+[[noreturn]] void fail_segment(std::uint64_t segment, const std::string& reason) {
+  throw Error("", "", "segment " + std::to_string(segment) + " " + reason);
+}
+
+/// `make_model` returns a model with fresh contexts.
+template <class MakeModel>
+WireValues encode(const CellPagesView& pages, const MakeModel& make_model) {
+  WireValues wire;
+  PageSource source{pages.words};
+  std::uint64_t page = 0;
+  while (page < pages.page_count()) {
+    const auto model = make_model();
+    RangeEncoder encoder(wire.bytes);
+    do {
+      source.at = pages.page_begin(page);
+      model->code_page(encoder, source);
+    } while (++page < pages.page_count() && page % kSegmentPages != 0);
+    encoder.finish();
+    wire.segments.push_back({wire.bytes.size(), (source.at + 7) / 8});
+  }
+  return wire;
+}
+
+template <class MakeModel>
+void decode(std::span<const WireSegment> segments, std::span<const std::byte> bytes,
+            const PagesTarget& target, const MakeModel& make_model) {
+  const std::uint64_t count = CellPagesView{.values = target.values}.page_count();
+  if (segments.size() != segment_count(count))
+    throw Error("", "",
+                "has " + std::to_string(segments.size()) + " segments instead of " +
+                    std::to_string(segment_count(count)));
+  PageSink sink{target.words};
+  std::uint64_t coded = 0;
+  for (std::uint64_t s = 0; s < segments.size(); ++s) {
+    const WireSegment& segment = segments[s];
+    if (segment.coded_end < coded || segment.coded_end > bytes.size())
+      fail_segment(s, "ends outside of the coded bytes");
+    if (segment.page_end < sink.at / 8 || segment.page_end > 8 * target.word_count)
+      fail_segment(s, "has pages outside of the words");
+    RangeDecoder decoder(bytes.subspan(coded, segment.coded_end - coded));
+    coded = segment.coded_end;
+    const auto model = make_model();
+    sink.end = 8 * segment.page_end;
+    const std::uint64_t first = s * kSegmentPages;
+    for (std::uint64_t page = first; page < std::min(first + kSegmentPages, count); ++page) {
+      std::uint64_t& group = target.groups[page / kGroupPages];
+      if (page % kGroupPages == 0) group = sink.at / 8;
+      target.pages[page] = static_cast<std::uint16_t>(sink.at / 8 - group);
+      if (!model->code_page(decoder, sink)) fail_segment(s, "has more than its pages hold");
+      sink.to_whole_byte();
+    }
+    if (sink.at != sink.end || !decoder.is_at_end())
+      fail_segment(s, "does not end where it should");
+  }
+  if (coded != bytes.size()) throw Error("", "", "has bytes after its last segment");
+}
+
+auto value_models(EndPrecision precision, ValueKind kind) {
+  return [=] { return std::make_unique<ValueModel>(precision, kind); };
+}
+
+auto material_models(std::uint32_t materials) {
+  MaterialIdsView view;
+  view.materials = materials;
+  return [bits = view.id_bits()] { return std::make_unique<MaterialModel>(bits); };
+}
+
+}  // namespace
+
+WireValues encode_wire_values(const ValuePagesView& pages, ValueKind kind) {
+  return encode(pages, value_models(pages.precision, kind));
+}
+
+WireValues encode_wire_materials(const MaterialIdsView& pages) {
+  return encode(pages, material_models(pages.materials));
+}
+
+void decode_wire_values(std::span<const WireSegment> segments, std::span<const std::byte> bytes,
+                        EndPrecision precision, ValueKind kind, const PagesTarget& target) {
+  decode(segments, bytes, target, value_models(precision, kind));
+}
+
+void decode_wire_materials(std::span<const WireSegment> segments, std::span<const std::byte> bytes,
+                           std::uint32_t materials, const PagesTarget& target) {
+  decode(segments, bytes, target, material_models(materials));
+}
+
+}  // namespace voxdag::wire

@@ -1,0 +1,258 @@
+// Meshes of outer faces against the faces themselves. GLB and OBJ have their own readers here.
+#include "voxdag/formats/exports/faces/export_faces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <sstream>
+
+#include "colored_scene.hpp"
+#include "support/error_of.hpp"
+#include "support/temp_dir.hpp"
+#include "voxdag/core/srgb.hpp"
+#include "voxdag/formats/exports/faces/rectangles.hpp"
+
+namespace voxdag {
+namespace {
+
+/// A triangle or quad: corners in voxel coordinates, and a colour (0 to 65535, linear).
+struct Polygon {
+  std::vector<Vec3d> corners;
+  Vec3i color{};
+};
+
+/// Returns all polygons' areas by the place of the plane and its direction, and checks that the
+/// polygons agree with the rectangles of the scene.
+using PlaneAreas = std::map<std::tuple<int, int, int>, double>;
+
+PlaneAreas areas_of(const std::vector<Polygon>& polygons) {
+  PlaneAreas areas;
+  for (const Polygon& p : polygons) {
+    Vec3d normal{};
+    for (std::size_t i = 1; i + 1 < p.corners.size(); ++i)
+      normal = normal + cross(p.corners[i] - p.corners[0], p.corners[i + 1] - p.corners[0]) * 0.5;
+    for (int axis = 0; axis < 3; ++axis)
+      if (normal[axis] != 0)
+        areas[{axis, normal[axis] > 0 ? 1 : -1,
+               static_cast<int>(std::lround(p.corners[0][axis]))}] += std::abs(normal[axis]);
+  }
+  return areas;
+}
+
+PlaneAreas areas_of(const VoxelSet& voxels, const Box3i& window) {
+  PlaneAreas areas;
+  for_each_rectangle(voxels, window, nullptr, false, nullptr, [&](const FaceRectangle& r) {
+    areas[{face_axis(r.face), dot(face_normal(r.face), Vec3i{1, 1, 1}), r.lo[face_axis(r.face)]}] +=
+        1;
+  });
+  return areas;
+}
+
+template <class T>
+T read_at(const std::string& bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+struct Glb {
+  nlohmann::json json;
+  std::string data;
+  mutable Vec3d lo{1e9, 1e9, 1e9}, hi{-1e9, -1e9, -1e9};  ///< Bounds of triangles().
+
+  explicit Glb(const std::string& bytes) {
+    EXPECT_EQ(bytes.substr(0, 4), "glTF");
+    EXPECT_EQ(read_at<std::uint32_t>(bytes, 4), 2u);
+    EXPECT_EQ(read_at<std::uint32_t>(bytes, 8), bytes.size());
+    const auto json_bytes = read_at<std::uint32_t>(bytes, 12);
+    EXPECT_EQ(bytes.substr(16, 4), "JSON");
+    EXPECT_EQ(json_bytes % 4, 0u);
+    json = nlohmann::json::parse(bytes.substr(20, json_bytes));
+    if (bytes.size() == 20 + json_bytes) return;
+    EXPECT_EQ(bytes.substr(24 + json_bytes, 4), std::string("BIN\0", 4));
+    data = bytes.substr(28 + json_bytes);
+    EXPECT_EQ(data.size(), read_at<std::uint32_t>(bytes, 20 + json_bytes));
+    EXPECT_EQ(data.size(), json["buffers"][0]["byteLength"].get<std::size_t>());
+  }
+  std::size_t place(std::size_t accessor, std::size_t i, std::size_t size) const {
+    const auto& a = json["accessors"][accessor];
+    const auto& view = json["bufferViews"][a["bufferView"].get<std::size_t>()];
+    return view.value("byteOffset", std::size_t{0}) + a.value("byteOffset", std::size_t{0}) +
+           i * view.value("byteStride", size);
+  }
+  /// Returns the triangles with coordinates in the world.
+  std::vector<Polygon> triangles() const {
+    std::vector<Polygon> result;
+    const auto& node = json["nodes"][0];
+    Vec3d scale{1, 1, 1}, translation{};
+    for (int axis = 0; axis < 3 && node.contains("scale"); ++axis) {
+      scale[axis] = node["scale"][static_cast<std::size_t>(axis)];
+      translation[axis] = node["translation"][static_cast<std::size_t>(axis)];
+    }
+    const auto count = json["accessors"][1]["count"].get<std::size_t>();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % 3 == 0) result.emplace_back();
+      const auto index = read_at<std::uint32_t>(data, place(1, i, 4));
+      const Vec3d corner(read_at<Vec3f>(data, place(0, index, 12)));
+      lo = min(lo, corner);
+      hi = max(hi, corner);
+      result.back().corners.push_back({corner.x * scale.x + translation.x,
+                                       corner.y * scale.y + translation.y,
+                                       corner.z * scale.z + translation.z});
+      if (json["accessors"].size() > 2) {
+        const auto color = read_at<std::array<std::uint16_t, 4>>(data, place(2, index, 8));
+        EXPECT_EQ(color[3], 65535);
+        result.back().color = {color[0], color[1], color[2]};
+      }
+    }
+    return result;
+  }
+};
+
+/// Changes coordinates to voxels of the grid.
+std::vector<Polygon> in_grid(std::vector<Polygon> polygons, const Grid& grid) {
+  for (Polygon& polygon : polygons)
+    for (Vec3d& corner : polygon.corners) corner = (corner - grid.origin) * (1 / grid.voxel_size);
+  return polygons;
+}
+
+TEST(ExportGlb, TrianglesAreTheOuterFacesInTheWorld) {
+  const TempDir dir;
+  ExportedScene scene(5, 2000);
+  for (const double origin : {10.0, 1e6})
+    for (const Box3i& window : {whole_grid(5), Box3i{{3, 1, 6}, {29, 32, 13}}}) {
+      scene.grid.origin.x = origin;
+      export_glb(dir / "v.glb", scene.view(), scene.grid, windowed(window.lo, window.hi));
+      const Glb glb(read_text(dir / "v.glb"));
+      EXPECT_EQ(areas_of(in_grid(glb.triangles(), scene.grid)), areas_of(scene.view(), window));
+      // Far from the origin, floats cannot tell sixteenths of a voxel.
+      EXPECT_EQ(glb.json["nodes"][0].contains("scale"), origin == 1e6);
+      const auto& places = glb.json["accessors"][0];
+      EXPECT_EQ(places["min"], nlohmann::json({glb.lo.x, glb.lo.y, glb.lo.z}));
+      EXPECT_EQ(places["max"], nlohmann::json({glb.hi.x, glb.hi.y, glb.hi.z}));
+    }
+  EXPECT_EQ(dir.count(), 1);
+}
+
+TEST(ExportGlb, ColorsAreThoseOfTheVoxelsInLinearLight) {
+  const TempDir dir;
+  const ColoredScene scene(6);
+  export_glb(dir / "v.glb", scene.view(), scene.grid, scene.options);
+  std::map<std::array<int, 3>, double> found, expected;
+  for (const Polygon& t : in_grid(Glb(read_text(dir / "v.glb")).triangles(), scene.grid))
+    found[{t.color.x, t.color.y, t.color.z}] +=
+        length(cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0])) / 2;
+  for_each_rectangle(scene.view(), whole_grid(6), nullptr, false, nullptr,
+                     [&](const FaceRectangle& r) {
+                       Vec3i voxel = r.lo;
+                       if ((static_cast<int>(r.face) & 1) != 0) --voxel[face_axis(r.face)];
+                       const Value8 color = scene.value(voxel);
+                       const auto linear = [](std::uint8_t c) {
+                         return static_cast<int>(std::lround(srgb_to_linear(c / 255.0f) * 65535));
+                       };
+                       expected[{linear(color.x), linear(color.y), linear(color.z)}] += 1;
+                     });
+  EXPECT_EQ(found, expected);
+}
+
+TEST(ExportGlb, AnEmptySceneHasNoMesh) {
+  const TempDir dir;
+  const ExportedScene scene(4, 0);
+  export_glb(dir / "v.glb", scene.view(), scene.grid);
+  const Glb glb(read_text(dir / "v.glb"));
+  EXPECT_FALSE(glb.json.contains("meshes"));
+  EXPECT_TRUE(glb.data.empty());
+}
+
+std::vector<Polygon> read_obj(const std::string& text, const Grid& grid) {
+  std::vector<Polygon> polygons;
+  std::vector<std::pair<Vec3d, Vec3d>> corners;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    if (kind == "v") {
+      Vec3d p, color{};
+      words >> p.x >> p.y >> p.z >> color.x >> color.y >> color.z;
+      corners.emplace_back((p - grid.origin) * (1 / grid.voxel_size), color);
+    } else if (kind == "f") {
+      Polygon polygon;
+      for (std::size_t index = 0; words >> index;) {
+        const auto& [place, color] = corners.at(index - 1);
+        polygon.corners.push_back(place);
+        for (int i = 0; i < 3; ++i)
+          polygon.color[i] = static_cast<int>(std::lround(color[i] * 255));
+      }
+      polygons.push_back(polygon);
+    }
+  }
+  return polygons;
+}
+
+TEST(ExportObj, TrianglesAreTheOuterFacesInTheWorld) {
+  const TempDir dir;
+  const ColoredScene scene(6);
+  ExportOptions options = scene.options;
+  options.window = Box3i{{3, 1, 6}, {64, 62, 33}};
+  export_obj(dir / "v.obj", scene.view(), scene.grid, options);
+  const std::vector<Polygon> triangles = read_obj(read_text(dir / "v.obj"), scene.grid);
+  EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), *options.window));
+  std::set<std::array<int, 3>> colors, expected;
+  for (const Polygon& t : triangles) {
+    EXPECT_EQ(t.corners.size(), 3u);
+    colors.insert({t.color.x, t.color.y, t.color.z});
+  }
+  for (const Vec3i v : scene.voxels) {
+    const Value8 color = scene.value(v);
+    expected.insert({color.x, color.y, color.z});
+  }
+  for (const auto& color : colors) EXPECT_TRUE(expected.contains(color));
+}
+
+TEST(ExportStl, TheMeshIsClosed) {
+  const TempDir dir;
+  const ExportedScene scene(5, 3000);
+  export_stl(dir / "v.stl", scene.view(), scene.grid);
+  const std::string bytes = read_text(dir / "v.stl");
+  const auto count = read_at<std::uint32_t>(bytes, 80);
+  ASSERT_EQ(bytes.size(), 84 + std::size_t{50} * count);
+  EXPECT_FALSE(bytes.starts_with("solid"));
+  std::vector<Polygon> triangles;
+  using Corner = std::array<float, 3>;
+  std::map<std::pair<Corner, Corner>, int> edges;
+  for (std::size_t i = 0; i < count; ++i) {
+    Polygon triangle;
+    std::array<Corner, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto p = read_at<Vec3f>(bytes, 84 + 50 * i + 12 * (c + 1));
+      corners[c] = {p.x, p.y, p.z};
+      triangle.corners.push_back((Vec3d(p) - scene.grid.origin) * 4.0);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      ++edges[{corners[c], corners[(c + 1) % 3]}];
+      --edges[{corners[(c + 1) % 3], corners[c]}];
+    }
+    const Vec3d normal =
+        cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
+    EXPECT_EQ(Vec3f(normal), read_at<Vec3f>(bytes, 84 + 50 * i));
+    triangles.push_back(triangle);
+  }
+  for (const auto& [edge, balance] : edges) EXPECT_EQ(balance, 0);
+  EXPECT_EQ(areas_of(triangles), areas_of(scene.view(), whole_grid(5)));
+}
+
+TEST(ExportStl, RefusesGridsThatFloatsCannotPlace) {
+  const TempDir dir;
+  ExportedScene scene(6, 100);
+  scene.grid.origin.x = 1e6;
+  EXPECT_EQ(error_of([&] { export_stl(dir / "v.stl", scene.view(), scene.grid); }),
+            (dir / "v.stl").string() +
+                ": STL has float coordinates, which are too coarse for this grid's place in the "
+                "world: export .obj, .ply or .glb");
+  EXPECT_EQ(dir.count(), 0);
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,210 @@
+// Imports against sets of voxels that are computed one by one, and damaged files of every format.
+#include "voxdag/formats/imports/import_voxels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "support/brute_svdag.hpp"
+#include "support/error_of.hpp"
+#include "support/temp_dir.hpp"
+#include "support/voxel_sets.hpp"
+#include "voxdag/file/npy.hpp"
+
+namespace voxdag {
+namespace {
+
+class Import : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return dir_ / name; }
+  ImportResult import(const std::string& name, ImportOptions options = {}) const {
+    options.folder = dir_.path();
+    return import_voxels(*open_voxel_source(path(name)), options);
+  }
+  std::string import_error(const std::string& name, const ImportOptions& options = {}) const {
+    return error_of([&] { import(name, options); });
+  }
+  template <class T>
+  void write_npy(const std::string& name, const char* dtype, const std::vector<Vec3<T>>& rows) {
+    NpyWriter writer(path(name), dtype, {3}, sizeof(T), rows.size());
+    writer.write_rows(rows.data(), rows.size());
+    writer.commit();
+  }
+
+  TempDir dir_;
+};
+
+ImportOptions with_levels(int levels) {
+  ImportOptions options;
+  options.levels = levels;
+  return options;
+}
+
+TEST_F(Import, ArraysOfVoxelsKeepTheirNumbers) {
+  for (const int levels : {2, 3, 5})
+    for (const NamedVoxels& set : voxel_sets(levels, 3)) {
+      write_npy("v.npy", "<i4", set.voxels);
+      const ImportResult result = import("v.npy", with_levels(levels));
+      EXPECT_EQ(result.dag, brute_svdag(levels, set.voxels)) << set.name;
+      EXPECT_EQ(result.read, set.voxels.size());
+    }
+  write_npy<std::int32_t>("v.npy", "<i4", {{7, 0, 0}, {0, 8, 1}});
+  EXPECT_EQ(import("v.npy").grid.levels, 4);
+  write_npy<std::int32_t>("v.npy", "<i4", {{-1, 0, 0}});
+  EXPECT_NE(import_error("v.npy").find("voxel (-1, 0, 0) lies outside"), std::string::npos);
+  write_npy<std::int32_t>("v.npy", "<i4", {{0, 1 << 20, 0}});
+  EXPECT_NE(import_error("v.npy").find("beyond 1048575"), std::string::npos);
+}
+
+/// Returns points in a box, and their voxels in the grid that holds their bounds.
+std::vector<Vec3d> random_points(int count, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> x(-3, 9), y(100, 104), z(0.5, 0.75);
+  std::vector<Vec3d> points;
+  for (int i = 0; i < count; ++i) points.push_back({x(rng), y(rng), z(rng)});
+  return points;
+}
+
+std::vector<Vec3i> voxels_of(const std::vector<Vec3d>& points, const Grid& grid) {
+  std::vector<Vec3i> voxels;
+  for (const Vec3d p : points) {
+    Vec3i v;
+    for (int axis = 0; axis < 3; ++axis)
+      v[axis] = static_cast<std::int32_t>(
+          std::min<double>(std::floor((p[axis] - grid.origin[axis]) / grid.voxel_size),
+                           static_cast<double>(grid.resolution() - 1)));
+    voxels.push_back(v);
+  }
+  return voxels;
+}
+
+TEST_F(Import, PointsSetTheirVoxels) {
+  const std::vector<Vec3d> points = random_points(5'000, 1);
+  write_npy("p.npy", "<f8", points);
+  const ImportResult result = import("p.npy", with_levels(6));
+  EXPECT_EQ(result.dag, brute_svdag(6, voxels_of(points, result.grid)));
+  EXPECT_EQ(result.outside, 0u);
+  ImportOptions options;
+  options.voxel_size = 0.25;
+  const ImportResult sized = import("p.npy", options);
+  EXPECT_EQ(sized.grid.voxel_size, 0.25);
+  EXPECT_EQ(sized.grid.levels, 6);
+  EXPECT_EQ(sized.dag, brute_svdag(6, voxels_of(points, sized.grid)));
+
+  std::vector<Vec3f> singles(points.begin(), points.end());
+  write_npy("f.npy", "<f4", singles);
+  const ImportResult of_floats = import("f.npy", with_levels(5));
+  EXPECT_EQ(of_floats.dag,
+            brute_svdag(5, voxels_of({singles.begin(), singles.end()}, of_floats.grid)));
+}
+
+TEST_F(Import, PointsOutsideOfGivenBoundsAreLeftOut) {
+  write_npy<double>("p.npy", "<f8", {{0, 0, 0}, {0.99, 0.5, 0.5}, {1, 0, 0}, {-0.01, 0, 0}});
+  ImportOptions options = with_levels(3);
+  options.bounds = Box3d{{0, 0, 0}, {1, 1, 1}};
+  const ImportResult result = import("p.npy", options);
+  EXPECT_EQ(result.outside, 2u);
+  EXPECT_EQ(result.dag, brute_svdag(3, {{0, 0, 0}, {7, 4, 4}}));
+}
+
+TEST_F(Import, OnePointHasAGrid) {
+  write_npy<double>("p.npy", "<f8", {{5, 6, 7}});
+  const ImportResult result = import("p.npy", with_levels(4));
+  EXPECT_EQ(result.grid.voxel_size, 1);
+  EXPECT_EQ(result.dag, brute_svdag(4, {{0, 0, 0}}));
+  write_npy<double>("p.npy", "<f8", {});
+  EXPECT_NE(import_error("p.npy", with_levels(4)).find("has no points"), std::string::npos);
+  write_npy<double>("p.npy", "<f8", {{0, 0, 0}, {0, std::nan(""), 0}});
+  EXPECT_NE(import_error("p.npy", with_levels(4)).find("point 1 is not finite"), std::string::npos);
+}
+
+TEST_F(Import, ArraysOfOtherTypesAreRefused) {
+  NpyWriter writer(path("a.npy"), "<f4", {4}, 4, 0);
+  writer.commit();
+  EXPECT_NE(import_error("a.npy").find("is no array of shape (N, 3)"), std::string::npos);
+  EXPECT_NE(import_error("none.npy").find("none.npy"), std::string::npos);
+  EXPECT_NE(import_error("a.xyy").find("is none of"), std::string::npos);
+}
+
+TEST_F(Import, TextsOfPointsAreRead) {
+  write_text(path("p.xyz"),
+             "# x y z\n0 0 0 255 0 0\n\n  1.5\t2e0,+3; 7 # the last one\r\n-1,-1,-1\n4 4 4");
+  const ImportResult result = import("p.xyz", with_levels(3));
+  EXPECT_EQ(result.read, 4u);
+  EXPECT_EQ(result.dag, brute_svdag(3, voxels_of({{0, 0, 0}, {1.5, 2, 3}, {-1, -1, -1}, {4, 4, 4}},
+                                                 result.grid)));
+  const auto error = [&](const std::string& text) {
+    write_text(path("p.xyz"), text);
+    return import_error("p.xyz", with_levels(3));
+  };
+  EXPECT_NE(error("1 2 3\n1 2\n").find("line 2"), std::string::npos);
+  EXPECT_NE(error("1 2 3\n1 2\n").find("has 2 numbers instead of three"), std::string::npos);
+  EXPECT_NE(error("1 2 x\n").find("number 3 is not a finite number"), std::string::npos);
+  EXPECT_NE(error("1 2 nan\n").find("number 3 is not a finite number"), std::string::npos);
+  EXPECT_NE(error("1 2 1e999\n").find("number 3"), std::string::npos);
+  EXPECT_NE(error("1 2 3x\n").find("number 3"), std::string::npos);
+  EXPECT_NE(error(std::string(std::size_t{1} << 21, ' ')).find("longer than 1 MiB"),
+            std::string::npos);
+  EXPECT_NE(error("").find("has no points"), std::string::npos);
+}
+
+/// Returns a binvox file of a grid of `side` voxels.
+std::string binvox_of(int side, const std::vector<Vec3i>& voxels) {
+  const auto n = static_cast<std::size_t>(side);
+  std::vector<bool> set(n * n * n);
+  for (const Vec3i v : voxels)
+    set[static_cast<std::size_t>(v.x) * n * n + static_cast<std::size_t>(v.z) * n +
+        static_cast<std::size_t>(v.y)] = true;
+  std::string text = "#binvox 1\ndim " + std::to_string(side) + " " + std::to_string(side) + " " +
+                     std::to_string(side) + "\ntranslate -1 2 0.5\nscale 4\ndata\n";
+  for (std::size_t i = 0; i < set.size();) {
+    std::size_t end = i;
+    while (end < set.size() && end - i < 255 && set[end] == set[i]) ++end;
+    text += static_cast<char>(set[i]);
+    text += static_cast<char>(end - i);
+    i = end;
+  }
+  return text;
+}
+
+TEST_F(Import, BinvoxFilesHaveTheirGrid) {
+  for (const NamedVoxels& set : voxel_sets(4, 9)) {
+    write_text(path("b.binvox"), binvox_of(16, set.voxels));
+    const ImportResult result = import("b.binvox");
+    EXPECT_EQ(result.dag, brute_svdag(4, set.voxels)) << set.name;
+    EXPECT_EQ(result.grid.origin, (Vec3d{-1, 2, 0.5}));
+    EXPECT_EQ(result.grid.voxel_size, 0.25);
+  }
+  write_text(path("b.binvox"), binvox_of(5, {{4, 3, 0}}));
+  EXPECT_EQ(import("b.binvox").dag, brute_svdag(3, {{4, 3, 0}}));
+}
+
+TEST_F(Import, EveryTruncatedOrDamagedBinvoxFileIsRefusedOrSafe) {
+  const std::string good = binvox_of(6, {{1, 2, 3}, {5, 5, 5}, {0, 0, 0}});
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    write_text(path("b.binvox"), good.substr(0, size));
+    EXPECT_NE(import_error("b.binvox"), "no error") << size;
+  }
+  int refused = 0;
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    std::string bad = good;
+    bad[bit / 8] ^= static_cast<char>(1 << bit % 8);
+    write_text(path("b.binvox"), bad);
+    refused += import_error("b.binvox") != "no error" ? 1 : 0;
+  }
+  EXPECT_GT(refused, 100);
+  const auto error = [&](const std::string& text) {
+    write_text(path("b.binvox"), text);
+    return import_error("b.binvox");
+  };
+  EXPECT_NE(error("#binvox 1\ndim 4 4 5\ndata\n").find("three equal whole numbers"),
+            std::string::npos);
+  EXPECT_NE(error("#binvox 1\ndim 1e9 1e9 1e9\ndata\n").find("three equal whole numbers"),
+            std::string::npos);
+  EXPECT_NE(error("#binvox 1\ndim 4 4 4\nscale 0\ndata\n").find("scale"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,159 @@
+// Dense arrays of NumPy, and the threshold of dense volumes, against values compared one by one.
+#include <limits>
+
+#include "random_volume.hpp"
+#include "support/brute_svdag.hpp"
+#include "voxdag/formats/imports/volumes/value_test.hpp"
+
+namespace voxdag {
+namespace {
+
+std::string npy(const std::string& dtype, bool is_fortran, const std::string& shape,
+                const std::string& data) {
+  std::string header = "{'descr': '" + dtype +
+                       "', 'fortran_order': " + (is_fortran ? "True" : "False") + ", 'shape': (" +
+                       shape + "), }";
+  header.resize((header.size() + 10 + 64) / 64 * 64 - 11, ' ');
+  header += '\n';
+  std::string text("\x93NUMPY\x01\x00", 8);
+  append(text, header.size(), 2);
+  return text + header + data;
+}
+std::string shape_of(Vec3i size) {
+  return std::to_string(size.x) + ", " + std::to_string(size.y) + ", " + std::to_string(size.z);
+}
+
+class NpyVolume : public VolumeTest {
+ protected:
+  template <class T>
+  void check_type(const std::string& dtype) {
+    unsigned seed = 1;
+    for (const Vec3i size : {Vec3i{1, 1, 1}, Vec3i{3, 9, 4}, Vec3i{6, 2, 5}})
+      for (const bool is_big_endian : {false, true})
+        for (const bool is_fortran : {false, true}) {
+          const RandomVolume<T> volume(size, ++seed);
+          const char* order = sizeof(T) == 1 ? "|" : is_big_endian ? ">" : "<";
+          write("a.npy", npy(order + dtype, is_fortran, shape_of(size),
+                             volume.bytes(is_big_endian, !is_fortran)));
+          const auto set = volume.voxels_not_0(!is_fortran);
+          EXPECT_EQ(read("a.npy").voxels, set) << dtype << order << is_fortran;
+          const ImportResult result = import("a.npy");
+          EXPECT_EQ(result.grid.levels, size.y == 9 ? 4 : size.x == 6 ? 3 : 2);
+          EXPECT_EQ(result.dag, brute_svdag(result.grid.levels, set));
+          for (const double threshold : {-1.5, 0.0, 0.25, 1.0, 2.5, 1e300, -1e300})
+            EXPECT_EQ(read("a.npy", threshold).voxels,
+                      volume.voxels([&](T v) { return static_cast<double>(v) >= threshold; },
+                                    !is_fortran))
+                << dtype << " " << threshold;
+        }
+  }
+};
+
+TEST_F(NpyVolume, EveryTypeAndOrderIsRead) {
+  check_type<std::int8_t>("i1");
+  check_type<std::uint8_t>("u1");
+  check_type<std::uint8_t>("b1");
+  check_type<std::int16_t>("i2");
+  check_type<std::uint16_t>("u2");
+  check_type<std::int32_t>("i4");
+  check_type<std::uint32_t>("u4");
+  check_type<std::int64_t>("i8");
+  check_type<std::uint64_t>("u8");
+  check_type<float>("f4");
+  check_type<double>("f8");
+}
+
+TEST_F(NpyVolume, VolumesLargerThanABufferAreRead) {
+  const RandomVolume<std::int16_t> volume({70, 33, 65}, 3);
+  write("a.npy", npy("<i2", false, "70, 33, 65", volume.bytes(false, true)));
+  const ImportResult result = import("a.npy");
+  EXPECT_EQ(result.grid.levels, 7);
+  EXPECT_EQ(result.dag, brute_svdag(7, volume.voxels_not_0()));
+}
+
+TEST_F(NpyVolume, ColorsOfFourAxes) {
+  const Vec3i size{3, 2, 4};
+  for (const int channels : {3, 4})
+    for (const bool is_fortran : {false, true})
+      for (const std::optional<double> threshold : {std::optional<double>(), {0.0}, {2.0}}) {
+        std::mt19937 rng(9);
+        std::vector<std::vector<std::uint8_t>> pixels;  // In the order of C.
+        for (int i = 0; i < 24; ++i) {
+          pixels.emplace_back();
+          for (int c = 0; c < channels; ++c)
+            pixels.back().push_back(static_cast<std::uint8_t>(rng() % 2 * (rng() % 4)));
+        }
+        const RandomVolume<std::uint8_t> order(size, 1);
+        std::string data;
+        SourceVoxels expected;
+        const auto pixel = [&](Vec3i v) {
+          return pixels[static_cast<std::size_t>((v.x * size.y + v.y) * size.z + v.z)];
+        };
+        order.for_each(!is_fortran, [&](Vec3i v) {
+          const auto p = pixel(v);
+          const int value = channels == 4 ? p[3] : std::max({p[0], p[1], p[2]});
+          if (threshold ? value >= *threshold : value != 0) {
+            expected.voxels.push_back(v);
+            expected.colors.push_back({p[0], p[1], p[2]});
+          }
+        });
+        if (is_fortran)
+          for (std::size_t c = 0; c < pixels[0].size(); ++c)
+            order.for_each(false, [&](Vec3i v) { data += static_cast<char>(pixel(v)[c]); });
+        else
+          for (const auto& p : pixels) data.append(p.begin(), p.end());
+        write("a.npy", npy("|u1", is_fortran, "3, 2, 4, " + std::to_string(channels), data));
+        EXPECT_TRUE(open("a.npy")->has_colors());
+        EXPECT_EQ(read("a.npy", threshold).voxels, expected.voxels);
+        EXPECT_EQ(read("a.npy", threshold).colors, expected.colors);
+      }
+}
+
+TEST_F(NpyVolume, OtherArraysAreRefused) {
+  const auto error = [&](const std::string& dtype, const std::string& shape) {
+    return error_of_bytes("a.npy", npy(dtype, false, shape, "12345678"));
+  };
+  EXPECT_TRUE(
+      has(error("<f2", "1, 2, 2"), "must be bools, integers, float32 or float64, not '<f2'"));
+  EXPECT_TRUE(has(error("<c8", "1, 1, 1"), "not '<c8'"));
+  EXPECT_TRUE(has(error("|f4", "1, 1, 2"), "not '|f4'"));
+  EXPECT_TRUE(has(error("", "1, 1, 2"), "not ''"));
+  EXPECT_TRUE(has(error("<f4", "1, 1, 3"), "truncated: the volume needs 12 bytes"));
+  EXPECT_TRUE(has(error("<f4", "1, 1, 1"), "trailing bytes: the volume needs 4 bytes"));
+  EXPECT_TRUE(has(error("<f4", "0, 1, 1"), "a side of the volume has 0 voxels"));
+  EXPECT_TRUE(has(error("|u1", "1048577, 1, 1"), "has 1048577 voxels; 1 to 1048576"));
+  EXPECT_TRUE(has(error("<f8", "1048576, 1048576, 1048576"), "needs 9223372036854775808 bytes"));
+  EXPECT_TRUE(has(error("|u1", "1, 2, 2, 2"), "an array of four axes must be uint8"));
+  EXPECT_TRUE(has(error("|i1", "1, 1, 2, 4"), "an array of four axes must be uint8"));
+  EXPECT_TRUE(has(error("|u1", "1, 1, 2, 2, 2"), "is no array of shape (N, 3)"));
+  EXPECT_TRUE(has(error_of_bytes("a.npy", npy("<i4", false, "1, 3", "123456789012"), 1.0),
+                  "has no values to compare with a threshold"));
+}
+
+TEST_F(NpyVolume, EveryTruncatedOrDamagedFileIsRefusedOrSafe) {
+  const RandomVolume<std::int16_t> volume({3, 2, 4}, 5);
+  const std::string good = npy("<i2", false, "3, 2, 4", volume.bytes(false, true));
+  expect_no_prefix_is_read("a.npy", good);
+  EXPECT_GT(flip_every_bit("a.npy", good), 500);
+}
+
+TEST(ValueTest, ThresholdsOfIntegersAreExact) {
+  const std::int64_t big = std::int64_t{1} << 53;
+  EXPECT_FALSE(IsAtLeast<std::int64_t>(9007199254740994.0)(big + 1));
+  EXPECT_TRUE(IsAtLeast<std::int64_t>(9007199254740994.0)(big + 2));
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_FALSE(IsAtLeast<std::uint64_t>(18446744073709551616.0)(kMost));
+  EXPECT_TRUE(IsAtLeast<std::uint64_t>(18446744073709549568.0)(kMost));
+  EXPECT_TRUE(IsAtLeast<std::int64_t>(-1e300)(std::numeric_limits<std::int64_t>::min()));
+  EXPECT_TRUE(IsAtLeast<std::int8_t>(-128)(-128));
+  EXPECT_FALSE(IsAtLeast<std::uint8_t>(255.5)(255));
+  EXPECT_TRUE(IsAtLeast<std::uint8_t>(254.5)(255));
+  EXPECT_FALSE(IsAtLeast<std::uint8_t>(std::nan(""))(255));
+  EXPECT_FALSE(IsAtLeast<double>(std::nan(""))(255));
+  EXPECT_FALSE(IsAtLeast<double>(-1)(std::nan("")));
+  EXPECT_TRUE(IsAtLeast<std::uint8_t>(-HUGE_VAL)(0));
+  EXPECT_FALSE(IsAtLeast<std::uint8_t>(HUGE_VAL)(255));
+}
+
+}  // namespace
+}  // namespace voxdag

@@ -1,0 +1,143 @@
+#include "voxdag/formats/readers/obj/obj_reader.hpp"
+
+#include "formats/readers/mesh_text.hpp"
+
+namespace voxdag {
+namespace {
+
+constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+Mesh square_with(std::string_view faces) {
+  return read_text(read_obj, std::string(kSquare) + std::string(faces));
+}
+
+TEST(ObjReader, TriangleKeepsItsVerticesAndOrder) {
+  const Mesh mesh = read_text(read_obj, "v 1 2 3\nv 4 5 6\nv 7 8 9.5\nf 3 1 2\n");
+  EXPECT_EQ(mesh.vertices, (StoredVector<Vec3f>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9.5f}}));
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{2, 0, 1}}));
+  EXPECT_TRUE(mesh.materials.empty());
+  EXPECT_TRUE(mesh.triangle_materials.empty());
+}
+
+TEST(ObjReader, EveryFormOfCornerGivesTheVertex) {
+  const StoredVector<Triangle> expected{{0, 1, 2}};
+  EXPECT_EQ(square_with("f 1 2 3").triangles, expected);
+  EXPECT_EQ(square_with("f 1/7 2/8 3/9").triangles, expected);
+  EXPECT_EQ(square_with("f 1//7 2//8 3//9").triangles, expected);
+  EXPECT_EQ(square_with("f 1/4/7 2/5/8 3/6/9").triangles, expected);
+  EXPECT_EQ(square_with("f -4 -3/1 -2/1/1").triangles, expected);
+  EXPECT_EQ(square_with("\tf  1\t2   3  # a comment\r\n").triangles, expected);
+}
+
+TEST(ObjReader, PolygonBecomesAFan) {
+  EXPECT_EQ(square_with("f 1 2 3 4").triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(ObjReader, NegativeIndicesCountFromTheLineTheyAreOn) {
+  const Mesh mesh = read_text(read_obj,
+                              "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"
+                              "v 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n");
+  EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+}
+
+TEST(ObjReader, FacesMayComeBeforeTheirVertices) {
+  EXPECT_EQ(read_text(read_obj, "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles.size(), 1u);
+}
+
+TEST(ObjReader, PointsLinesAndSmallPolygonsAreLeftOut) {
+  EXPECT_EQ(square_with("p 1 2\nl 1 2 3\nf 1\nf 1 2\nf 1 2 3\n").triangles.size(), 1u);
+}
+
+TEST(ObjReader, WeightAndColourOfAVertexAreIgnored) {
+  const Mesh mesh =
+      read_text(read_obj, "v 1 2 3 0.5\nv 0 0 1 0.1 0.2 0.3\nv 0 1 0 1 1 1 1\nf 1 2 3\n");
+  EXPECT_EQ(mesh.vertices[0], (Vec3f{1, 2, 3}));
+}
+
+TEST(ObjReader, MaterialNamesAreKeptInOrderOfUse) {
+  const Mesh mesh = square_with(
+      "mtllib none.mtl\nusemtl red wine \r\nf 1 2 3\nusemtl blue\nf 1 3 4\n"
+      "usemtl red wine\nf 1 2 4\n");
+  EXPECT_EQ(mesh.materials, (std::vector<std::string>{"red wine", "blue"}));
+  EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 1, 0}));
+}
+
+TEST(ObjReader, FacesBeforeAnyMaterialHaveTheUnnamedOne) {
+  const Mesh mesh = square_with("f 1 2 3\nusemtl blue\nf 1 3 4\n");
+  EXPECT_EQ(mesh.materials, (std::vector<std::string>{"", "blue"}));
+  EXPECT_EQ(mesh.triangle_materials, (StoredVector<std::uint32_t>{0, 1}));
+}
+
+TEST(ObjReader, BackslashContinuesALine) {
+  EXPECT_EQ(square_with("f 1 2 \\\n 3 \\\r\n 4\n").triangles.size(), 2u);
+  EXPECT_EQ(square_with("# comment \\\nf 1 2 3\n").triangles.size(), 1u);
+}
+
+TEST(ObjReader, EveryLineEndIsUnderstood) {
+  const Mesh unix_ends = square_with("usemtl a\nf 1 2 3\n");
+  for (const std::string end : {"\r\n", "\r"}) {
+    std::string text = "\xEF\xBB\xBF";
+    for (const char c : std::string(kSquare) + "usemtl a\nf 1 2 3\n")
+      c == '\n' ? text += end : text += c;
+    EXPECT_TRUE(read_text(read_obj, text) == unix_ends);
+  }
+}
+
+TEST(ObjReader, UnusedVertexMayBeNotFinite) {
+  EXPECT_EQ(square_with("v nan inf -inf\nf 1 2 3\n").vertices.size(), 5u);
+}
+
+TEST(ObjReader, RefusalsNameTheLineAndTheReason) {
+  const auto refused = [](std::string_view text) {
+    return refusal(read_obj, std::string(kSquare) + std::string(text));
+  };
+  EXPECT_EQ(refusal(read_obj, ""), "mesh: the file is empty");
+  EXPECT_EQ(refused(""), "mesh: OBJ without faces: there is no surface to read");
+  EXPECT_EQ(refused("f 1 2 5"), "mesh: line 5: vertex index 5 is out of range: 4 vertices");
+  EXPECT_EQ(refused("f 1 2 0"), "mesh: line 5: vertex index 0 is out of range: 4 vertices");
+  EXPECT_EQ(refused("\nf 1 2 -5"),
+            "mesh: line 6: vertex index -5 is out of range: 4 vertices so far");
+  EXPECT_EQ(refused("f 1 2 99999999999999999999"),
+            "mesh: line 5: face corner '99999999999999999999' is not a vertex index");
+  EXPECT_EQ(refused("f 1 2 x"), "mesh: line 5: face corner 'x' is not a vertex index");
+  EXPECT_EQ(refused("v 1 2\nf 1 2 3"), "mesh: line 5: the vertex has fewer than three coordinates");
+  EXPECT_EQ(refused("v 1 2 3,5\nf 1 2 3"), "mesh: line 5: coordinate '3,5' is not a number");
+  EXPECT_EQ(refused("v 1 2 1e39\nf 1 2 3\nf 1 2 5"),
+            "mesh: line 5: vertex is not finite and a face uses it");
+  EXPECT_EQ(refused("v 1 nan 1\nf 1 2 5"), "mesh: line 5: vertex is not finite and a face uses it");
+  EXPECT_EQ(refusal(read_obj, std::string_view("\xFF\xFEv\0", 4)),
+            "mesh: OBJ in UTF-16: save it as ASCII or UTF-8");
+}
+
+TEST(ObjReader, AnyPrefixIsSafe) {
+  expect_any_prefix_is_safe(read_obj,
+                            "# c\nmtllib a.mtl\nv 0 0 0 \\\n 1\r\nv 1e0 0 0\nv 0 -1.5 0\n"
+                            "usemtl m\nf 1/1/1 2//2 \\\n -1 1\nf 1 2 3\n");
+}
+
+TEST(ObjReader, ALargeFileReadsLikeItsParts) {
+  std::string text;
+  StoredVector<Triangle> expected;
+  for (std::uint32_t i = 0; i < 60'000; ++i) {
+    for (const char* rest : {" 0 0\n", " 1 0.5\n", " 0 1\n"})
+      text.append("v ").append(std::to_string(i)).append(rest);
+    const std::string first = i % 2 ? "-3" : std::to_string(3 * i + 1);
+    text.append("f ").append(first).append(" -2 -1\n");
+    if (i % 1000 == 0) text.append("usemtl m").append(std::to_string(i / 1000 % 7)).append("\n");
+    expected.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const Mesh mesh = read_text(read_obj, text);
+  EXPECT_EQ(mesh.triangles, expected);
+  ASSERT_EQ(mesh.vertices.size(), 180'000u);
+  for (std::size_t i = 0; i < 60'000; ++i)
+    EXPECT_EQ(mesh.vertices[3 * i + 1], (Vec3f{static_cast<float>(i), 1, 0.5f}));
+  EXPECT_EQ(mesh.materials[mesh.triangle_materials[0]], "");
+  for (std::size_t i = 1; i < 60'000; ++i)
+    EXPECT_EQ(mesh.materials[mesh.triangle_materials[i]],
+              std::string("m").append(std::to_string((i - 1) / 1000 % 7)));
+  EXPECT_EQ(refusal(read_obj, text + "f 1 2 bad\n"),
+            "mesh: line 240061: face corner 'bad' is not a vertex index");
+}
+
+}  // namespace
+}  // namespace voxdag
