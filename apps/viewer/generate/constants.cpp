@@ -112,17 +112,17 @@ Json wire_constants() {
       VOXDAG_OFFSET(WireHeader, words),
       VOXDAG_OFFSET(WireHeader, coded_bytes),
       {"mostExpansion", kMostWireExpansion},
-      {"segmentPages", kSegmentPages},
-      VOXDAG_CONSTANT(RangeCoder, kProbabilityBits),
-      VOXDAG_CONSTANT(RangeCoder, kLeastRange),
-      VOXDAG_CONSTANT(AdaptiveBit, kFast),
-      VOXDAG_CONSTANT(AdaptiveBit, kSlow),
+      {"segmentPages", wire::kSegmentPages},
+      VOXDAG_CONSTANT(wire::RangeCoder, kProbabilityBits),
+      VOXDAG_CONSTANT(wire::RangeCoder, kLeastRange),
+      VOXDAG_CONSTANT(wire::AdaptiveBit, kFast),
+      VOXDAG_CONSTANT(wire::AdaptiveBit, kSlow),
       {"model",
-       {VOXDAG_CONSTANT(ValueModelSizes, kTypes), VOXDAG_CONSTANT(ValueModelSizes, kLengthBits),
-        VOXDAG_CONSTANT(ValueModelSizes, kLengthContexts),
-        VOXDAG_CONSTANT(ValueModelSizes, kEndBits), VOXDAG_CONSTANT(ValueModelSizes, kEndContexts),
-        VOXDAG_CONSTANT(ValueModelSizes, kStepBits), VOXDAG_CONSTANT(ValueModelSizes, kWeightBits),
-        VOXDAG_CONSTANT(ValueModelSizes, kNoWeight)}}};
+       {VOXDAG_CONSTANT(wire::ValueModelSizes, kTypes), VOXDAG_CONSTANT(wire::ValueModelSizes, kLengthBits),
+        VOXDAG_CONSTANT(wire::ValueModelSizes, kLengthContexts),
+        VOXDAG_CONSTANT(wire::ValueModelSizes, kEndBits), VOXDAG_CONSTANT(wire::ValueModelSizes, kEndContexts),
+        VOXDAG_CONSTANT(wire::ValueModelSizes, kStepBits), VOXDAG_CONSTANT(wire::ValueModelSizes, kWeightBits),
+        VOXDAG_CONSTANT(wire::ValueModelSizes, kNoWeight)}}};
 }
 
 /// The light, and the options of a picture whose defaults the page shares.

@@ -41,11 +41,11 @@ struct QueryArguments {
 };
 
 /// A batch of rows in memory at a time.
-constexpr std::size_t kBatch = std::size_t{1} << 18;
+constexpr std::size_t kPointsPerBatch = std::size_t{1} << 18;
 
 /// Appends the bytes of a value to a row.
 template <class T>
-std::byte* put(std::byte* at, const T& value) {
+std::byte* store_value(std::byte* at, const T& value) {
   std::memcpy(at, &value, sizeof value);
   return at + sizeof value;
 }
@@ -58,7 +58,7 @@ std::uint64_t answer_rows(const std::string& input, std::uint64_t columns,
                           std::size_t row_bytes, Session& session, const Answer& answer) {
   NpyReader reader(input, "<f4", {columns}, sizeof(float));
   NpyWriter writer(output, dtype, {}, row_bytes, reader.rows());
-  const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
+  const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(kPointsPerBatch, reader.rows()));
   std::vector<float> values(most * columns);
   std::vector<std::byte> rows(most * row_bytes);
   while (const std::size_t count = reader.read_rows(values.data(), most)) {
@@ -94,10 +94,10 @@ std::string answer_points(const QueryArguments& arguments, const DagModel& file,
                     nearest_voxel(dag, (world - grid.origin) * (1 / grid.voxel_size));
                 const bool is_occupied = nearest && nearest->voxel == voxel;
                 std::byte* row = rows.data() + kBytes * i;
-                row = put(row, is_occupied);
-                row = put(row, voxel);
-                row = put(row, nearest ? nearest->voxel : Vec3i{-1, -1, -1});
-                put(row, nearest
+                row = store_value(row, is_occupied);
+                row = store_value(row, voxel);
+                row = store_value(row, nearest ? nearest->voxel : Vec3i{-1, -1, -1});
+                store_value(row, nearest
                              ? static_cast<float>(std::sqrt(nearest->distance2) * grid.voxel_size)
                              : HUGE_VALF);
               }
@@ -129,9 +129,9 @@ std::string answer_segments(const QueryArguments& arguments, const DagModel& fil
           const Hit& hit = hits[i];
           clear += hit.hit ? 0 : 1;
           std::byte* row = rows.data() + kBytes * i;
-          row = put(row, !hit.hit);
-          row = put(row, hit.hit ? hit.t : 1.0f);
-          put(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
+          row = store_value(row, !hit.hit);
+          row = store_value(row, hit.hit ? hit.t : 1.0f);
+          store_value(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
         }
       });
   return fmt::format("{} segments, {} clear", with_commas(segments), with_commas(clear));

@@ -9,7 +9,7 @@ namespace voxdag::cli {
 namespace {
 
 template <class T>
-void put(std::byte*& row, const T& value) {
+void append_value(std::byte*& row, const T& value) {
   std::memcpy(row, &value, sizeof value);
   row += sizeof value;
 }
@@ -43,10 +43,10 @@ void HitRows::pack(std::span<const Hit> hits, std::byte* rows) const {
 }
 
 void HitRows::pack_one(const Hit& hit, std::byte* row) const {
-  put(row, hit.hit ? hit.t : std::numeric_limits<float>::infinity());
-  put(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
-  put(row, hit.hit ? hit.face : Face::kNone);
-  put(row, hit.hit);
+  append_value(row, hit.hit ? hit.t : std::numeric_limits<float>::infinity());
+  append_value(row, hit.hit ? hit.voxel : Vec3i{-1, -1, -1});
+  append_value(row, hit.hit ? hit.face : Face::kNone);
+  append_value(row, hit.hit);
   if (!normals_ && !colors_ && !look_.has_materials()) return;
   Vec3f normal{};
   Vec3<std::uint8_t> color{};
@@ -57,10 +57,10 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
     normal = look.normal;
     for (int c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(255 * look.color[c] + 0.5f);
   }
-  if (normals_) put(row, normal);
-  if (colors_) put(row, color);
+  if (normals_) append_value(row, normal);
+  if (colors_) append_value(row, color);
   if (look_.has_materials())
-    put(row, static_cast<std::uint16_t>(hit.hit ? material_at(look_.dag, cell, hit.level)
+    append_value(row, static_cast<std::uint16_t>(hit.hit ? material_at(look_.dag, cell, hit.level)
                                                 : kMostMaterials));
 }
 

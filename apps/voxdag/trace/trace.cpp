@@ -24,7 +24,7 @@ namespace voxdag::cli {
 namespace {
 
 /// The number of rays in memory at a time: enough for all threads of a CPU or GPU.
-constexpr std::size_t kBatch = std::size_t{1} << 20;
+constexpr std::size_t kRaysPerBatch = std::size_t{1} << 20;
 
 struct TraceArguments {
   std::string rays, output, look;
@@ -39,7 +39,7 @@ std::string trace_rays(const TraceArguments& arguments, const HitRows& hit_rows,
                        const std::string& device, Session& session, const Cast& cast) {
   NpyWriter writer(arguments.output, hit_rows.dtype(), {}, hit_rows.row_bytes(), reader.rows());
   const std::size_t batch =
-      static_cast<std::size_t>(std::min<std::uint64_t>(kBatch, reader.rows()));
+      static_cast<std::size_t>(std::min<std::uint64_t>(kRaysPerBatch, reader.rows()));
   std::vector<Ray> rays(batch);
   std::vector<Hit> hits(batch);
   std::vector<std::byte> rows(batch * hit_rows.row_bytes());

@@ -43,6 +43,11 @@ class Error : public std::runtime_error {
   std::string reason_;
 };
 
+/// Throws Error for a place of a file whose name the caller adds.
+[[noreturn]] inline void fail_at(ErrorPlace place, const std::string& reason) {
+  throw Error("", std::move(place), reason);
+}
+
 /// Thrown by long work that its caller cancelled (Ctrl-C).
 class Cancelled : public Error {
  public:

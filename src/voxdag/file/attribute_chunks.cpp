@@ -15,15 +15,13 @@ namespace {
 
 constexpr std::uint32_t kValueChunks[] = {kChunkColors, kChunkNormals, kChunkMaterials};
 
-[[noreturn]] void fail(const std::string& reason) { throw Error("", "", reason); }
-
 template <class Header>
 Header read_header(std::span<const std::byte> bytes) {
   Header header;
   if (bytes.size() < sizeof header)
-    fail("has " + std::to_string(bytes.size()) + " bytes, but its header needs " +
+    fail_at("", "has " + std::to_string(bytes.size()) + " bytes, but its header needs " +
          std::to_string(sizeof header));
-  if (bytes.size() % 8 != 0) fail("length in bytes is not a multiple of 8");
+  if (bytes.size() % 8 != 0) fail_at("", "length in bytes is not a multiple of 8");
   std::memcpy(&header, bytes.data(), sizeof header);
   return header;
 }
@@ -31,14 +29,14 @@ Header read_header(std::span<const std::byte> bytes) {
 template <class T, std::size_t n>
 void check_zeros(std::uint32_t reserved, const T (&padding)[n]) {
   if (reserved != 0 || std::any_of(padding, padding + n, [](T v) { return v != 0; }))
-    fail("reserved bytes of the header are not zero");
+    fail_at("", "reserved bytes of the header are not zero");
 }
 
 CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag) {
   const auto header = read_header<CellIndexHeader>(bytes);
   check_zeros(header.reserved, header.padding);
   if (header.finest_level > static_cast<std::uint32_t>(dag.levels))
-    fail("its finest level, " + std::to_string(header.finest_level) +
+    fail_at("", "its finest level, " + std::to_string(header.finest_level) +
          ", is finer than the voxels, level " + std::to_string(dag.levels));
   CellIndexView index;
   index.words = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
@@ -53,7 +51,7 @@ CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag)
   }
   index.begin[kMaxLevels] = words;
   if (words != (bytes.size() - sizeof header) / 8)
-    fail("has " + std::to_string((bytes.size() - sizeof header) / 8) +
+    fail_at("", "has " + std::to_string((bytes.size() - sizeof header) / 8) +
          " words, but its header needs " + std::to_string(words));
   validate_cell_index(dag, index);
   return index;
@@ -66,7 +64,7 @@ void read_tables(std::span<const std::byte> bytes, const Header& header, std::ui
                  View& view) {
   check_zeros(header.reserved, header.padding);
   if (header.values != cells)
-    fail("has " + std::to_string(header.values) + " values, but the DAG has " +
+    fail_at("", "has " + std::to_string(header.values) + " values, but the DAG has " +
          std::to_string(cells) + " numbered cells");
   view.values = header.values;
   view.word_count = header.words;
@@ -74,20 +72,20 @@ void read_tables(std::span<const std::byte> bytes, const Header& header, std::ui
   const std::uint64_t words = (bytes.size() - sizeof header) / 8;
   const std::uint64_t table_words = view.group_count() + (view.page_count() + 3) / 4;
   if (header.words > words || table_words != words - header.words)
-    fail("has " + std::to_string(words) + " words, but its tables need " +
+    fail_at("", "has " + std::to_string(words) + " words, but its tables need " +
          std::to_string(table_words) + " and its pages " + std::to_string(header.words));
   const auto* const first = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
   view.groups = first;
   view.words = first + view.group_count();
   view.pages = reinterpret_cast<const std::uint16_t*>(view.words + view.word_count);
   for (std::uint64_t page = view.page_count(); page % 4 != 0; ++page)
-    if (view.pages[page] != 0) fail("padding is not zero");
+    if (view.pages[page] != 0) fail_at("", "padding is not zero");
 }
 
 ValuePagesView read_pages(std::span<const std::byte> bytes, std::uint64_t cells) {
   const auto header = read_header<ValuePagesHeader>(bytes);
   if (header.precision > 3)
-    fail("unknown precision " + std::to_string(header.precision) + ": 0 to 3 are allowed");
+    fail_at("", "unknown precision " + std::to_string(header.precision) + ": 0 to 3 are allowed");
   ValuePagesView view;
   view.precision = {static_cast<int>(header.precision)};
   read_tables(bytes, header, cells, view);
@@ -143,14 +141,14 @@ AttributeChunks::AttributeChunks(const DagAttributesView& attributes, Index of_c
                         std::as_bytes(std::span(index.words, index.word_count()))}});
   }
   const auto add_values = [&](std::uint32_t id, const ValuePagesView& pages,
-                              ValuePagesHeader& header, ValueKind kind) {
+                              ValuePagesHeader& header, wire::ValueKind kind) {
     if (pages.is_empty() ||
         (form == AttributeForm::kWire && add_wire(std::make_unique<WireChunk>(pages, kind))))
       return;
     add(id, pages, header);
   };
-  add_values(kChunkColors, attributes.colors, colors_, ValueKind::kColor);
-  add_values(kChunkNormals, attributes.normals, normals_, ValueKind::kNormal);
+  add_values(kChunkColors, attributes.colors, colors_, wire::ValueKind::kColor);
+  add_values(kChunkNormals, attributes.normals, normals_, wire::ValueKind::kNormal);
   if (!attributes.has_materials()) return;
   const MaterialIdsView& ids = attributes.materials;
   if (form == AttributeForm::kPages || !add_wire(std::make_unique<WireChunk>(ids)))
@@ -211,7 +209,7 @@ DagAttributesView read_attribute_chunks(const std::vector<VdagChunk>& chunks,
   if (!has_index)
     for (const std::uint32_t id : kValueChunks)
       read_chunk(chunks, id, [](std::span<const std::byte>) {
-        fail("needs the chunk CIDX, which is missing");
+        fail_at("", "needs the chunk CIDX, which is missing");
       });
   return read_attribute_values(chunks, index);
 }

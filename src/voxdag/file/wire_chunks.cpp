@@ -22,12 +22,10 @@ constexpr WireKind kWireKinds[] = {{kChunkWireColors, kChunkColors, &WireBytes::
                                    {kChunkWireNormals, kChunkNormals, &WireBytes::normals},
                                    {kChunkWireMaterials, kChunkMaterials, &WireBytes::materials}};
 
-[[noreturn]] void fail(const std::string& reason) { throw Error("", "", reason); }
-
 /// The parts of a chunk in the wire form, and the sizes of the chunk that it stands for.
 struct WireParts {
   WireHeader header;
-  std::span<const WireSegment> segments;
+  std::span<const wire::WireSegment> segments;
   std::span<const std::byte> coded;
   CellPagesView pages;  ///< Without arrays.
 
@@ -41,47 +39,47 @@ struct WireParts {
 WireParts read_parts(std::span<const std::byte> bytes) {
   WireParts parts;
   if (bytes.size() < sizeof parts.header || bytes.size() % 8 != 0)
-    fail("has " + std::to_string(bytes.size()) +
+    fail_at("", "has " + std::to_string(bytes.size()) +
          " bytes: fewer than its header, or no multiple of 8");
   std::memcpy(&parts.header, bytes.data(), sizeof parts.header);
   const WireHeader& header = parts.header;
   if (header.reserved != 0 || std::any_of(std::begin(header.padding), std::end(header.padding),
                                           [](std::uint64_t word) { return word != 0; }))
-    fail("reserved bytes of the header are not zero");
+    fail_at("", "reserved bytes of the header are not zero");
   if (header.words > kMostWireExpansion * bytes.size() / 8)
-    fail("expands to " + std::to_string(header.words) + " words, more than allowed for its " +
+    fail_at("", "expands to " + std::to_string(header.words) + " words, more than allowed for its " +
          std::to_string(bytes.size()) + " bytes");
   parts.pages.values = header.values;
   parts.pages.word_count = header.words;
   // A page takes at least a byte. So this bounds the tables, too.
   if (parts.pages.page_count() > 8 * header.words)
-    fail("has too few words for " + std::to_string(header.values) + " values");
-  const std::uint64_t segments = segment_count(parts.pages.page_count());
+    fail_at("", "has too few words for " + std::to_string(header.values) + " values");
+  const std::uint64_t segments = wire::segment_count(parts.pages.page_count());
   const std::uint64_t rest = bytes.size() - sizeof header;
-  if (segments > rest / sizeof(WireSegment) ||
-      header.coded_bytes > rest - segments * sizeof(WireSegment) ||
-      (header.coded_bytes + 7) / 8 * 8 != rest - segments * sizeof(WireSegment))
-    fail("has " + std::to_string(bytes.size()) + " bytes, but its header needs others");
+  if (segments > rest / sizeof(wire::WireSegment) ||
+      header.coded_bytes > rest - segments * sizeof(wire::WireSegment) ||
+      (header.coded_bytes + 7) / 8 * 8 != rest - segments * sizeof(wire::WireSegment))
+    fail_at("", "has " + std::to_string(bytes.size()) + " bytes, but its header needs others");
   const std::byte* const table = bytes.data() + sizeof header;
-  parts.segments = {reinterpret_cast<const WireSegment*>(table), segments};
-  parts.coded = bytes.subspan(sizeof header + segments * sizeof(WireSegment), header.coded_bytes);
+  parts.segments = {reinterpret_cast<const wire::WireSegment*>(table), segments};
+  parts.coded = bytes.subspan(sizeof header + segments * sizeof(wire::WireSegment), header.coded_bytes);
   const std::size_t padding = (8 - header.coded_bytes % 8) % 8;
   for (std::size_t i = bytes.size() - padding; i < bytes.size(); ++i)
-    if (bytes[i] != std::byte{0}) fail("padding is not zero");
+    if (bytes[i] != std::byte{0}) fail_at("", "padding is not zero");
   return parts;
 }
 
-void decode(std::uint32_t id, const WireParts& parts, const PagesTarget& target) {
+void decode(std::uint32_t id, const WireParts& parts, const wire::PagesTarget& target) {
   const std::uint32_t parameter = parts.header.parameter;
   if (id == kChunkMaterials) {
     if (parameter == 0 || parameter > kMostMaterials)
-      fail("has " + std::to_string(parameter) + " materials; 1 to 65,535 are allowed");
-    return decode_wire_materials(parts.segments, parts.coded, parameter, target);
+      fail_at("", "has " + std::to_string(parameter) + " materials; 1 to 65,535 are allowed");
+    return wire::decode_wire_materials(parts.segments, parts.coded, parameter, target);
   }
   if (parameter > 3)
-    fail("unknown precision " + std::to_string(parameter) + ": 0 to 3 are allowed");
-  decode_wire_values(parts.segments, parts.coded, EndPrecision{static_cast<int>(parameter)},
-                     id == kChunkColors ? ValueKind::kColor : ValueKind::kNormal, target);
+    fail_at("", "unknown precision " + std::to_string(parameter) + ": 0 to 3 are allowed");
+  wire::decode_wire_values(parts.segments, parts.coded, EndPrecision{static_cast<int>(parameter)},
+                     id == kChunkColors ? wire::ValueKind::kColor : wire::ValueKind::kNormal, target);
 }
 
 /// Sets `memory` to the bytes of the chunk `id` that the parts stand for. Returns them.
@@ -114,7 +112,7 @@ void each_wire_chunk(Chunks& chunks, const Work& work) {
       if (chunk.id != kind.wire) continue;
       try {
         if (has_chunk(chunks, kind.expanded))
-          fail("stands for the chunk " + vdag_chunk_name(kind.expanded) +
+          fail_at("", "stands for the chunk " + vdag_chunk_name(kind.expanded) +
                ", which the file also has");
         work(chunk, kind);
       } catch (const Error& error) {
@@ -127,7 +125,7 @@ void each_wire_chunk(Chunks& chunks, const Work& work) {
 }  // namespace
 
 WireChunk::WireChunk(std::uint32_t id, std::uint32_t parameter, const CellPagesView& pages,
-                     WireValues values)
+                     wire::WireValues values)
     : id_(id), values_(std::move(values)) {
   header_.parameter = parameter;
   header_.values = pages.values;
@@ -135,13 +133,13 @@ WireChunk::WireChunk(std::uint32_t id, std::uint32_t parameter, const CellPagesV
   header_.coded_bytes = values_.bytes.size();
 }
 
-WireChunk::WireChunk(const ValuePagesView& pages, ValueKind kind)
-    : WireChunk(kind == ValueKind::kColor ? kChunkWireColors : kChunkWireNormals,
+WireChunk::WireChunk(const ValuePagesView& pages, wire::ValueKind kind)
+    : WireChunk(kind == wire::ValueKind::kColor ? kChunkWireColors : kChunkWireNormals,
                 static_cast<std::uint32_t>(pages.precision.code), pages,
-                encode_wire_values(pages, kind)) {}
+                wire::encode_wire_values(pages, kind)) {}
 
 WireChunk::WireChunk(const MaterialIdsView& pages)
-    : WireChunk(kChunkWireMaterials, pages.materials, pages, encode_wire_materials(pages)) {}
+    : WireChunk(kChunkWireMaterials, pages.materials, pages, wire::encode_wire_materials(pages)) {}
 
 OutputChunk WireChunk::chunk() const {
   static constexpr std::byte kZeros[8]{};

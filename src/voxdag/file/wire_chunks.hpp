@@ -2,7 +2,7 @@
 /// The chunks WCOL, WNRM and WMTI: the chunks COLR, NRML and MTID in the wire form (layout/wire/).
 ///
 ///   0    WireHeader       64 bytes
-///   64   WireSegment[]    of the number of pages
+///   64   wire::WireSegment[]    of the number of pages
 ///        the coded bytes, zeros up to a multiple of 8
 #include <filesystem>
 #include <vector>
@@ -21,7 +21,7 @@ struct WireHeader {
   std::uint64_t coded_bytes;
   std::uint64_t padding[4];  ///< Zero.
 };
-static_assert(sizeof(WireHeader) == 64 && sizeof(WireSegment) == 16);
+static_assert(sizeof(WireHeader) == 64 && sizeof(wire::WireSegment) == 16);
 
 /// The pages of a wire chunk have at most so many times its bytes, so that the memory of a reader
 /// follows from the size of the file. A writer keeps the chunk of smaller pages as it is.
@@ -31,7 +31,7 @@ inline constexpr std::uint64_t kMostWireExpansion = 64;
 class WireChunk {
  public:
   /// Encode the pages.
-  WireChunk(const ValuePagesView& pages, ValueKind kind);
+  WireChunk(const ValuePagesView& pages, wire::ValueKind kind);
   explicit WireChunk(const MaterialIdsView& pages);
 
   /// Returns the chunk, which refers to this object.
@@ -41,11 +41,11 @@ class WireChunk {
 
  private:
   WireChunk(std::uint32_t id, std::uint32_t parameter, const CellPagesView& pages,
-            WireValues values);
+            wire::WireValues values);
 
   std::uint32_t id_;
   WireHeader header_{};
-  WireValues values_;
+  wire::WireValues values_;
 };
 
 bool has_wire_chunk(const std::vector<VdagChunk>& chunks);

@@ -10,6 +10,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/image/image_limits.hpp"
+#include "voxdag/image/png_silence.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
@@ -68,7 +69,6 @@ struct PngDecoder {
   static_cast<PngDecoder*>(png_get_error_ptr(png))->message = message;
   png_longjmp(png, 1);
 }
-void on_warning(png_structp, png_const_charp) {}
 void on_read(png_structp png, png_bytep to, png_size_t size) {
   auto& rest = static_cast<PngDecoder*>(png_get_io_ptr(png))->rest;
   if (size > rest.size()) png_error(png, "the file ends inside a chunk");
@@ -80,7 +80,7 @@ void on_read(png_structp png, png_bytep to, png_size_t size) {
 // return false if decoding failed.
 
 bool read_header(PngDecoder& decoder) {
-  decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, on_error, on_warning);
+  decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, on_error, ignore_warning);
   decoder.info = decoder.png == nullptr ? nullptr : png_create_info_struct(decoder.png);
   if (decoder.info == nullptr || setjmp(png_jmpbuf(decoder.png))) return false;
   png_structp png = decoder.png;

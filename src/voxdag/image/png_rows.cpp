@@ -8,6 +8,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/image/png_silence.hpp"
 
 namespace voxdag {
 
@@ -49,7 +50,6 @@ template <class Encoder>
   encoder_of<Encoder>(png_get_error_ptr(png)).message = message;
   png_longjmp(png, 1);
 }
-void on_warning(png_structp, png_const_charp) {}
 template <class Encoder>
 void on_write(png_structp png, png_bytep data, png_size_t size) {
   try {
@@ -64,7 +64,7 @@ void on_flush(png_structp) {}
 template <class Encoder>
 bool begin(Encoder& encoder, std::uint32_t width, std::uint32_t height, PngPixels pixels) {
   encoder.png =
-      png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder, on_error<Encoder>, on_warning);
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder, on_error<Encoder>, ignore_warning);
   encoder.info = encoder.png == nullptr ? nullptr : png_create_info_struct(encoder.png);
   if (encoder.info == nullptr || setjmp(png_jmpbuf(encoder.png))) return false;
   png_structp png = encoder.png;

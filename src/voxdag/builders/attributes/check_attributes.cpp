@@ -20,7 +20,7 @@ namespace voxdag {
 namespace {
 
 constexpr std::uint64_t kMostSubtree = 1 << 16;  ///< Cells in the subtree of a cell to compare.
-constexpr std::uint64_t kMostAtOnce = 1 << 18;   ///< Samples.
+constexpr std::uint64_t kCellSamplesAtOnce = 1 << 18;   ///< Samples.
 
 /// Returns the error of a colour, 0 to 1.
 double color_error(Value8 stored, const std::uint8_t (&exact)[3]) {
@@ -193,7 +193,7 @@ class SampleWalk {
 /// samples.
 std::vector<std::uint64_t> next_samples(std::uint64_t cells, std::uint64_t left, bool is_all,
                                         std::uint64_t first, std::mt19937_64& random) {
-  std::vector<std::uint64_t> numbers(std::min(left, kMostAtOnce));
+  std::vector<std::uint64_t> numbers(std::min(left, kCellSamplesAtOnce));
   if (is_all) {
     std::iota(numbers.begin(), numbers.end(), first);
     return numbers;
@@ -228,7 +228,7 @@ AttributeCheck check_attributes(const Mesh& mesh, const Grid& grid, const Colore
     const std::vector<std::uint64_t> numbers =
         next_samples(cells, count - done, is_all, done, random);
     walk.compare(numbers, check);
-    done += std::min(count - done, kMostAtOnce);
+    done += std::min(count - done, kCellSamplesAtOnce);
   }
   return check;
 }

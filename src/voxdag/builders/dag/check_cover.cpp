@@ -16,7 +16,7 @@ namespace voxdag {
 namespace {
 
 constexpr int kCoarserLevels = 4;
-constexpr std::uint64_t kMostAtOnce = 1 << 20;  // cells
+constexpr std::uint64_t kCellsAtOnce = 1 << 20;  // cells
 
 /// Returns a uniform number in [0, 1) that is equal on every machine
 /// (std::uniform_real_distribution is not).
@@ -135,7 +135,7 @@ CoverCheck check_cover(const SvdagView& dag, const Grid& grid, const Mesh& mesh,
     // Each level takes half of the samples that are left; the coarsest takes the rest.
     const std::uint64_t to_leave = level == coarsest ? 0 : left / 2;
     while (left > to_leave) {
-      const std::uint64_t count = std::min(left - to_leave, kMostAtOnce);
+      const std::uint64_t count = std::min(left - to_leave, kCellsAtOnce);
       left -= count;
       const std::vector<Vec3i> cells =
           sample_cells(surface, grid.levels, level, count, random, progress);

@@ -64,14 +64,14 @@ Files dag_file(const Request& r) {
   return {r.path};
 }
 
-struct Format {
+struct ExportFormat {
   std::string_view ending;
   Files (*write)(const Request&);
   bool has_colors;
 };
 
 /// ".spc.npy" comes before ".npy": the first ending that matches counts.
-constexpr Format kFormats[] = {{".spc.npy", dag_file<export_spc>, false},
+constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, false},
                                {".npy", npy, true},
                                {".raw", one_file<export_raw>, false},
                                {".ply", ply, true},
@@ -86,9 +86,9 @@ constexpr Format kFormats[] = {{".spc.npy", dag_file<export_spc>, false},
                                {".nvdb", one_file<export_vdb>, true}};
 
 /// Returns the format of a file, or null.
-const Format* format_of(const std::filesystem::path& path) {
+const ExportFormat* format_of(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
-  for (const Format& format : kFormats)
+  for (const ExportFormat& format : kExportFormats)
     if (name.size() > format.ending.size() && name.ends_with(format.ending)) return &format;
   return nullptr;
 }
@@ -99,15 +99,15 @@ bool can_export_to(const std::filesystem::path& path) { return format_of(path) !
 
 std::string export_extensions() {
   std::string text;
-  for (const Format& format : kFormats) {
-    if (!text.empty()) text += &format == std::end(kFormats) - 1 ? " or " : ", ";
+  for (const ExportFormat& format : kExportFormats) {
+    if (!text.empty()) text += &format == std::end(kExportFormats) - 1 ? " or " : ", ";
     text += format.ending;
   }
   return text;
 }
 
 bool export_has_colors(const std::filesystem::path& path, bool has_window) {
-  const Format* const format = format_of(path);
+  const ExportFormat* const format = format_of(path);
   return format != nullptr && format->has_colors && !(format->write == npy && has_window);
 }
 
@@ -115,7 +115,7 @@ std::vector<std::filesystem::path> export_voxels(const std::filesystem::path& pa
                                                  const VoxelSet& voxels, const Grid& grid,
                                                  const ExportContent& content,
                                                  const ExportOptions& options) {
-  const Format* const format = format_of(path);
+  const ExportFormat* const format = format_of(path);
   if (format == nullptr)
     throw Error(path.string(), "",
                 "cannot export to '" + path.extension().string() + "': the extension must be " +

@@ -15,12 +15,12 @@ namespace voxdag {
 namespace {
 
 /// Voxels in memory at a time, without a limit: 512 MiB.
-constexpr std::size_t kMostVoxels = std::size_t{1} << 26;
+constexpr std::size_t kMaxBufferedVoxels = std::size_t{1} << 26;
 
 std::size_t voxels_in_memory(const MemoryBudget* memory, std::size_t bytes_per_voxel) {
-  if (memory == nullptr || memory->limit() == 0) return kMostVoxels;
+  if (memory == nullptr || memory->limit() == 0) return kMaxBufferedVoxels;
   // The other half is for the nodes.
-  return std::min<std::size_t>(kMostVoxels, memory->left() / 2 / bytes_per_voxel);
+  return std::min<std::size_t>(kMaxBufferedVoxels, memory->left() / 2 / bytes_per_voxel);
 }
 
 /// The least and greatest coordinates in the file.

@@ -24,13 +24,13 @@ namespace {
 using Path = std::filesystem::path;
 using Options = VoxelSourceOptions;
 
-struct Format {
+struct SourceFormat {
   const char* ending;
   bool has_threshold;
   std::unique_ptr<VoxelSource> (*open)(const Path& path, const Options& options);
 };
 
-constexpr Format kFormats[] = {
+constexpr SourceFormat kSourceFormats[] = {
     {".npy", true,
      [](const Path& path, const Options& options) { return open_npy(path, options.threshold); }},
     {".xyz", false, [](const Path& path, const Options&) { return open_xyz_points(path); }},
@@ -61,7 +61,7 @@ std::unique_ptr<VoxelSource> open_voxel_source(const Path& path, const Options& 
   std::string name = path.string(), endings;
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const Format& format : kFormats) {
+  for (const SourceFormat& format : kSourceFormats) {
     if (name.ends_with(format.ending)) {
       if (options.threshold && !format.has_threshold)
         throw Error(path.string(), "", "has no values to compare with a threshold");

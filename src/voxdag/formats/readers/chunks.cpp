@@ -25,7 +25,7 @@ std::size_t end_of_line(std::string_view text, std::size_t at, char line_end) {
 }
 
 void throw_fault(const MeshSource& source, const Fault& fault, char line_end) {
-  if (line_end == kBinary)
+  if (line_end == kNoLines)
     throw source.error_at_byte(static_cast<std::size_t>(fault.position - source.bytes.data()),
                                fault.reason);
   const auto line = 1 + std::count(source.bytes.data(), fault.position, line_end);

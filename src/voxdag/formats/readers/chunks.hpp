@@ -26,7 +26,7 @@ std::vector<std::string_view> split_lines(std::string_view text, char line_end,
 std::size_t end_of_line(std::string_view text, std::size_t at, char line_end);
 
 /// A value for `line_end`: the file is binary, and errors name the byte.
-inline constexpr char kBinary = '\0';
+inline constexpr char kNoLines = '\0';
 
 /// A fault at `position`, which points into the file's bytes.
 struct Fault {

@@ -62,10 +62,6 @@ std::uint64_t count_cells(const SvdagView& dag, const CellIndexView& index) {
                                                    : 1 + children;
 }
 
-[[noreturn]] void fail(ErrorPlace place, const std::string& reason) {
-  throw Error("", std::move(place), reason);
-}
-
 }  // namespace
 
 CellIndex build_cell_index(const SvdagView& dag, int finest_level, MemoryBudget* memory) {
@@ -105,43 +101,43 @@ CellIndex build_cell_index(const SvdagView& dag, int finest_level, MemoryBudget*
 
 void validate_cell_index(const SvdagView& dag, const CellIndexView& index) {
   if (index.finest_level > dag.levels)
-    fail("", "its finest level, " + std::to_string(index.finest_level) +
+    fail_at("", "its finest level, " + std::to_string(index.finest_level) +
                  ", is finer than the voxels, level " + std::to_string(dag.levels));
   std::uint64_t words = 0;
   for (int level = 0; level < kMaxLevels; ++level) {
     const bool has_slots = !dag.is_empty() && has_cell_sums(dag, level, index.finest_level);
     const int width = index.width[level];
     if (width > 64 || (width != 0) != has_slots)
-      fail(ErrorPlace::level(level), "cannot have slots of " + std::to_string(width) + " bits");
+      fail_at(ErrorPlace::level(level), "cannot have slots of " + std::to_string(width) + " bits");
     if (index.begin[level] != words)
-      fail(ErrorPlace::level(level), "does not begin at word " + std::to_string(words));
+      fail_at(ErrorPlace::level(level), "does not begin at word " + std::to_string(words));
     words += level_words(dag, level, width);
   }
   if (index.word_count() != words)
-    fail("", "has " + std::to_string(index.word_count()) +
+    fail_at("", "has " + std::to_string(index.word_count()) +
                  " words, but the widths of its slots need " + std::to_string(words));
   for (int level = dag.levels - 3; level >= 0; --level) {
     const int width = index.width[level];
     if (width == 0) continue;
     const int needed = needed_width(dag, index, level);
     if (needed != width)
-      fail(ErrorPlace::level(level), "has slots of " + std::to_string(width) +
+      fail_at(ErrorPlace::level(level), "has slots of " + std::to_string(width) +
                                          " bits, but the DAG needs " + std::to_string(needed));
     for_each_sum(dag, index, level, [&](std::uint64_t word, std::uint64_t sum) {
       const std::uint64_t stored = cell_sum(dag, index, level, word);
       if (stored != sum)
-        fail(
+        fail_at(
             ErrorPlace::level(level) / ErrorPlace::word(word),
             "the slot is " + std::to_string(stored) + ", but the DAG needs " + std::to_string(sum));
     });
     const std::uint64_t bits =
         (dag.level_begin[level + 1] - dag.level_begin[level]) * static_cast<std::uint64_t>(width);
     if (bits % 64 != 0 && index.words[index.begin[level + 1] - 1] >> (bits % 64) != 0)
-      fail(ErrorPlace::level(level), "padding is not zero");
+      fail_at(ErrorPlace::level(level), "padding is not zero");
   }
   const std::uint64_t cells = count_cells(dag, index);
   if (cells != index.cells)
-    fail("", "is for " + std::to_string(index.cells) + " cells, but the DAG has " +
+    fail_at("", "is for " + std::to_string(index.cells) + " cells, but the DAG has " +
                  std::to_string(cells));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// The attributes of a coarser grid.
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
 
 namespace voxdag {

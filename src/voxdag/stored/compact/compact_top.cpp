@@ -7,7 +7,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNotPlaced = std::numeric_limits<std::uint32_t>::max();
 
 /// Walks the compact DAG depth first, which meets the nodes of each level in canonical order.
 class TopReader {
@@ -17,7 +17,7 @@ class TopReader {
       : compact_(compact), poll_(poll), unit_level_(compact.coded_levels() - 4) {
     for (int level = 0; level < unit_level_; ++level) top_.levels.emplace_back(memory);
     for (int level = 0; level <= unit_level_; ++level)
-      places_.emplace_back(compact.shared_nodes(level), kNone, memory);
+      places_.emplace_back(compact.shared_nodes(level), kNotPlaced, memory);
     top_.units = CountedVector<CompactRange>(memory);
   }
 
@@ -33,7 +33,7 @@ class TopReader {
   /// level, or the unit's place.
   std::uint32_t place_node(int level, CompactRange range) {
     if (level == unit_level_) {
-      if (top_.units.size() >= kNone) fail_too_large();
+      if (top_.units.size() >= kNotPlaced) fail_too_large();
       top_.units.push_back(range);
       return static_cast<std::uint32_t>(top_.units.size() - 1);
     }
@@ -42,7 +42,7 @@ class TopReader {
     CompactNode node;
     if (read_node(compact_, range, level, node) != CompactFault::kNone) fail_broken_stream();
     const std::size_t place = words.size();
-    if (place > kNone - 16) fail_too_large();
+    if (place > kNotPlaced - 16) fail_too_large();
     words.resize(place + static_cast<std::size_t>(1 + popcount8(node.mask)));
     words[place] = node.mask;
     std::size_t word = place + 1;
@@ -57,7 +57,7 @@ class TopReader {
   }
 
   std::uint32_t place_shared(int level, std::uint32_t number) {
-    if (places_[at(level)][number] == kNone) {
+    if (places_[at(level)][number] == kNotPlaced) {
       const std::uint32_t place = place_node(level, shared_node(compact_, level, number));
       places_[at(level)][number] = place;
     }

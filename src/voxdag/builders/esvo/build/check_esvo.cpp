@@ -13,7 +13,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::uint64_t kMostAtOnce = 1 << 18;  // samples
+constexpr std::uint64_t kSamplesAtOnce = 1 << 18;  // samples
 
 /// Returns a random number for each counter value, by splitmix64.
 std::uint64_t mix(std::uint64_t v) {
@@ -146,7 +146,7 @@ EnclosureCheck check_enclosure(const EsvoView& esvo, const QuantizedMesh& mesh, 
     result.outside = PointOutside{source, point, walk.deepest + 1};
   };
   for (std::uint64_t left = samples; left > 0;) {
-    const std::uint64_t begin = samples - left, now = std::min(left, kMostAtOnce);
+    const std::uint64_t begin = samples - left, now = std::min(left, kSamplesAtOnce);
     left -= now;
     if (progress != nullptr) {
       progress->throw_if_cancelled();

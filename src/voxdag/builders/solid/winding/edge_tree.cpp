@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "voxdag/builders/solid/winding/morton_order.hpp"
+#include "voxdag/builders/solid/winding/winding_point.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::size_t kLeafEdges = 4;
-constexpr double kSphere = 4 * std::numbers::pi;
 
 double length_of(const BoundaryEdge& edge) {
   return length(static_cast<Vec3d>(edge.b) - static_cast<Vec3d>(edge.a));

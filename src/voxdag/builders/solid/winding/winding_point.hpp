@@ -1,10 +1,14 @@
 #pragma once
 /// The points at which winding numbers are taken, and the side of a triangle that they lie on.
 #include <cmath>
+#include <numbers>
 
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
+
+/// The solid angle of all directions.
+inline constexpr double kSphere = 4 * std::numbers::pi;
 
 /// Returns a point of a cell of 2^log2_side voxels a side, in units of 1/256 voxel. It lies a
 /// little beside the centre, by less than a unit: no line between two whole units runs through it.

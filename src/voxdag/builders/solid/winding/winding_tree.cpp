@@ -14,7 +14,6 @@ namespace voxdag {
 namespace {
 
 constexpr std::size_t kLeafTriangles = 8;
-constexpr double kSphere = 4 * std::numbers::pi;
 
 /// A sum of angles, as the argument of a product of complex numbers and whole turns.
 class AngleSum {

@@ -4,6 +4,7 @@
 
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
+#include "voxdag/formats/exports/json_of.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
 #include "voxdag/formats/exports/faces/exported_rectangles.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
@@ -23,8 +24,6 @@ static_assert(sizeof(ColoredCorner) == 20);
 std::uint16_t linear16(std::uint8_t srgb) {
   return static_cast<std::uint16_t>(srgb_to_linear(static_cast<float>(srgb) / 255) * 65535 + 0.5f);
 }
-
-nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 /// Computes the sizes and the JSON of a GLB file from the number of its rectangles.
 struct GlbPlan {

@@ -7,6 +7,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
+#include "voxdag/formats/exports/json_of.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/full_nodes.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
@@ -79,8 +80,6 @@ class NodeWords {
   std::vector<std::uint32_t> begins_;  ///< For the first word of a node: where its children begin.
   std::uint64_t count_ = 1, inner_ = 0;
 };
-
-nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 std::string metadata(const SvdagView& dag, const Grid& grid, const NodeWords& nodes) {
   const Box3d bounds = grid.bounds();

@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::int64_t kMostSide = 32767, kMostBlocks = 0x7FFFFFFF;
+constexpr std::int64_t kMaxSchemSide = 32767, kMostBlocks = 0x7FFFFFFF;
 
 /// Writes named binary tags (NBT), big-endian.
 class NbtWriter {
@@ -84,7 +84,7 @@ class BlockOfColor {
 
 void check_size(const std::filesystem::path& path, Vec3i size) {
   for (int axis = 0; axis < 3; ++axis)
-    if (size[axis] > kMostSide)
+    if (size[axis] > kMaxSchemSide)
       refuse_export(path, std::to_string(size[axis]) +
                               " blocks along an axis are more than the 32767 of a schematic");
   const std::int64_t blocks = std::int64_t{size.x} * size.y * size.z;  // at most 2^45

@@ -16,7 +16,7 @@ namespace voxdag {
 namespace {
 
 constexpr std::int32_t kModelSide = 256, kSectionSide = 2000, kHeight = 1000;
-constexpr std::uint64_t kMostVoxels = 500'000'000;  ///< Sizes in the file are signed 32-bit.
+constexpr std::uint64_t kMaxVoxVoxels = 500'000'000;  ///< Sizes in the file are signed 32-bit.
 constexpr std::size_t kMostSections = 500;          ///< All files are open at the same time.
 constexpr int kMostColors = 255;
 constexpr Value8 kGrey{200, 198, 195};
@@ -127,7 +127,7 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
   std::vector<std::pair<std::filesystem::path, Box3i>> sections;
   for_each_part(window, kSectionSide, [&](const Box3i& box) {
     const std::uint64_t count = source.count(box);
-    if (count > kMostVoxels)
+    if (count > kMaxVoxVoxels)
       refuse_export(path, std::to_string(count) +
                               " voxels in 2000³ are more than the 500000000 that fit into a file");
     Vec3i number;

@@ -10,19 +10,19 @@ namespace voxdag {
 namespace {
 
 /// Far more than real files have.
-constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 20, kMostFields = 1000;
+constexpr std::size_t kMaxPcdHeaderBytes = std::size_t{1} << 20, kMostFields = 1000;
 constexpr std::int64_t kMostValues = 1'000'000'000;  ///< Per field.
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  HeaderParser(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), rest_(bytes.substr(0, kMostHeaderBytes)), name_(name) {}
+  PcdHeaderParser(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), rest_(bytes.substr(0, kMaxPcdHeaderBytes)), name_(name) {}
 
   PcdHeader parse() {
     if (bytes_.empty()) throw Error(name_, "", "the file is empty");
     for (bool is_last = false; !is_last;) {
       if (rest_.empty())
-        fail(bytes_.size() > kMostHeaderBytes ? "the header has no line DATA in its first MiB"
+        fail(bytes_.size() > kMaxPcdHeaderBytes ? "the header has no line DATA in its first MiB"
                                               : "the file ends before the line DATA");
       ++line_;
       std::string_view text = next_line(rest_, '\n');
@@ -184,7 +184,7 @@ int PcdHeader::find(std::string_view name) const {
 }
 
 PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name) {
-  return HeaderParser(bytes, name).parse();
+  return PcdHeaderParser(bytes, name).parse();
 }
 
 }  // namespace voxdag

@@ -93,7 +93,7 @@ class PcdPoints : public VoxelSource {
       else
         visit_compressed(points);
     } catch (const Fault& fault) {
-      throw_fault(source_, fault, is_text ? '\n' : kBinary);
+      throw_fault(source_, fault, is_text ? '\n' : kNoLines);
     }
     points.finish();
   }

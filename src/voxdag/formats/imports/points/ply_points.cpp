@@ -49,7 +49,7 @@ class PlyPoints : public VoxelSource {
       else
         visit_binary(points);
     } catch (const Fault& fault) {
-      throw_fault(source_, fault, is_text ? header_.line_end : kBinary);
+      throw_fault(source_, fault, is_text ? header_.line_end : kNoLines);
     }
     points.finish();
   }

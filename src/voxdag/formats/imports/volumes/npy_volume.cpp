@@ -16,7 +16,7 @@ struct NamedType {
   ValueType type;
 };
 
-constexpr NamedType kTypes[] = {
+constexpr NamedType kNpyTypes[] = {
     {"b1", ValueType::kUint8},  {"i1", ValueType::kInt8},   {"u1", ValueType::kUint8},
     {"i2", ValueType::kInt16},  {"u2", ValueType::kUint16}, {"i4", ValueType::kInt32},
     {"u4", ValueType::kUint32}, {"i8", ValueType::kInt64},  {"u8", ValueType::kUint64},
@@ -25,7 +25,7 @@ constexpr NamedType kTypes[] = {
 void parse_dtype(const std::filesystem::path& path, std::string_view dtype, DenseVolume& volume) {
   const char order = dtype.empty() ? '\0' : dtype[0];
   if (order == '<' || order == '>' || order == '|')
-    for (const NamedType& named : kTypes)
+    for (const NamedType& named : kNpyTypes)
       if (dtype.substr(1) == named.dtype && (order != '|' || bytes_of(named.type) == 1)) {
         volume.type = named.type;
         volume.is_big_endian = order == '>';

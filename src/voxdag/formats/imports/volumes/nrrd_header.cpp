@@ -14,9 +14,9 @@
 namespace voxdag {
 namespace {
 
-constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxNrrdHeaderBytes = std::size_t{1} << 20;
 
-constexpr std::pair<std::string_view, ValueType> kTypes[] = {
+constexpr std::pair<std::string_view, ValueType> kNrrdTypes[] = {
     {"signed char", ValueType::kInt8},
     {"int8", ValueType::kInt8},
     {"int8_t", ValueType::kInt8},
@@ -63,11 +63,11 @@ constexpr std::pair<std::string_view, Encoding> kEncodings[] = {
     {"ascii", Encoding::kAscii}, {"text", Encoding::kAscii}, {"txt", Encoding::kAscii},
     {"hex", Encoding::kHex}};
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool is_nrrd_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  while (!text.empty() && is_nrrd_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_nrrd_space(text.back())) text.remove_suffix(1);
   return text;
 }
 
@@ -83,7 +83,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = at;
     // "(1, 0, 0)" is one word.
-    for (bool is_inside = false; end < text.size() && (is_inside || !is_space(text[end])); ++end)
+    for (bool is_inside = false; end < text.size() && (is_inside || !is_nrrd_space(text[end])); ++end)
       is_inside = text[end] == '(' || (is_inside && text[end] != ')');
     if (end > at) words.push_back(text.substr(at, end - at));
     at = end + 1;
@@ -96,9 +96,9 @@ struct Field {
   std::uint64_t line;
 };
 
-class Parser {
+class NrrdHeaderParser {
  public:
-  Parser(const std::filesystem::path& path, std::string_view text) : path_(path), text_(text) {}
+  NrrdHeaderParser(const std::filesystem::path& path, std::string_view text) : path_(path), text_(text) {}
 
   NrrdHeader parse() {
     read_fields();
@@ -118,9 +118,9 @@ class Parser {
     std::uint64_t number = 0;
     for (std::size_t at = 0;;) {
       ++number;
-      std::size_t end = text_.substr(0, kMostHeaderBytes).find('\n', at);
+      std::size_t end = text_.substr(0, kMaxNrrdHeaderBytes).find('\n', at);
       if (end == std::string_view::npos) {
-        if (text_.size() > kMostHeaderBytes) fail(number, "the header is longer than 1 MiB");
+        if (text_.size() > kMaxNrrdHeaderBytes) fail(number, "the header is longer than 1 MiB");
         end = text_.size();
       }
       const std::string_view line = trimmed(text_.substr(at, end - at));
@@ -191,7 +191,7 @@ class Parser {
 
   void parse_shape() {
     DenseVolume& volume = header_.volume;
-    volume.type = named_value("type", kTypes);
+    volume.type = named_value("type", kNrrdTypes);
     const Field& dimension = get("dimension");
     axes_ = number_in<std::uint64_t>(dimension, dimension.value);
     const char* const kAllowed =
@@ -290,7 +290,7 @@ class Parser {
 }  // namespace
 
 NrrdHeader parse_nrrd_header(const std::filesystem::path& path, std::string_view text) {
-  return Parser(path, text).parse();
+  return NrrdHeaderParser(path, text).parse();
 }
 
 }  // namespace voxdag

@@ -15,12 +15,12 @@
 namespace voxdag {
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
 /// Cuts the digits off the front of a name. Returns them without leading zeros.
 std::string_view cut_number(std::string_view& name) {
   std::size_t end = 0;
-  while (end < name.size() && is_digit(name[end])) ++end;
+  while (end < name.size() && is_decimal(name[end])) ++end;
   std::string_view digits = name.substr(0, end);
   name.remove_prefix(end);
   while (digits.starts_with('0')) digits.remove_prefix(1);
@@ -133,7 +133,7 @@ class PngSlices : public VoxelSource {
 bool is_before_by_numbers(std::string_view a, std::string_view b) {
   const std::string_view whole_a = a, whole_b = b;
   while (!a.empty() && !b.empty()) {
-    if (is_digit(a[0]) && is_digit(b[0])) {
+    if (is_decimal(a[0]) && is_decimal(b[0])) {
       const std::string_view number_a = cut_number(a), number_b = cut_number(b);
       if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
       if (number_a != number_b) return number_a < number_b;

@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == ',' || (c >= '\t' && c <= '\r'); }
+bool separates(char c) { return c == ' ' || c == ',' || (c >= '\t' && c <= '\r'); }
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void TextValues::fill_decimal(ValueType type, std::span<std::byte> bytes) {
       auto value = zero;
       const auto [next, error] = std::from_chars(begin, end, value);
       if (begin == end) fail("truncated: the volume has more values than the file");
-      if (error != std::errc() || (next != end && !is_space(*next)))
+      if (error != std::errc() || (next != end && !separates(*next)))
         fail("is not a number of the volume's type");
       at_ += static_cast<std::uint64_t>(next - begin);
       std::memcpy(bytes.data() + i, &value, sizeof value);
@@ -50,7 +50,7 @@ void TextValues::expect_end() {
 }
 
 void TextValues::skip_spaces() {
-  while (at_ < text_.size() && is_space(text_[at_])) ++at_;
+  while (at_ < text_.size() && separates(text_[at_])) ++at_;
 }
 
 void TextValues::fail(const std::string& reason) const {

@@ -11,7 +11,7 @@ namespace {
 
 /// Spacings that differ by less are equal but for rounding.
 constexpr double kSameSpacing = 1e-5;
-constexpr double kFarthest = 1e30;
+constexpr double kMaxCoordinate = 1e30;
 
 std::string text_of(double value) {
   char text[32];
@@ -30,11 +30,11 @@ Grid grid_of_volume(const std::filesystem::path& path, const VolumeSize& size,
                     const VolumePlacement& placement, std::vector<std::string>& warnings) {
   const Vec3d spacing = placement.spacing;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(spacing[axis] >= 1 / kFarthest && spacing[axis] <= kFarthest))
+    if (!(spacing[axis] >= 1 / kMaxCoordinate && spacing[axis] <= kMaxCoordinate))
       throw Error(path.string(), "header",
                   "the spacing of the voxels must be between 1e-30 and 1e30, not " +
                       text_of(spacing[axis]));
-    if (placement.first_centre && !(std::abs((*placement.first_centre)[axis]) <= kFarthest))
+    if (placement.first_centre && !(std::abs((*placement.first_centre)[axis]) <= kMaxCoordinate))
       throw Error(path.string(), "header", "the volume lies beyond 1e30");
   }
   Grid grid;

@@ -14,7 +14,7 @@ namespace voxdag {
 namespace {
 
 /// Voxels of all instances of all models.
-constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 36;
+constexpr std::uint64_t kMaxSceneVoxels = std::uint64_t{1} << 36;
 
 class Vox : public VoxelSource {
  public:
@@ -66,10 +66,10 @@ class Vox : public VoxelSource {
       }
     }
     if (voxels == 0) return;
-    if (voxels > kMostVoxels)
+    if (voxels > kMaxSceneVoxels)
       throw Error(path_.string(), "",
                   "the scene has " + std::to_string(voxels) + " voxels, more than " +
-                      std::to_string(kMostVoxels));
+                      std::to_string(kMaxSceneVoxels));
     std::int64_t last = 0;
     for (int axis = 0; axis < 3; ++axis) last = std::max(last, hi[axis] - lo[axis]);
     grid_.levels =

@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::int32_t kMostSide = 256;
+constexpr std::int32_t kMaxModelSide = 256;
 
 /// Returns the palette of files without one: the colours with components 00, 33, ... FF except
 /// black, then ten darker shades of red, green, blue and grey.
@@ -68,9 +68,9 @@ Vec3i parse_translation(const VoxCursor& cursor, std::string_view text) {
   return translation;
 }
 
-class Parser {
+class VoxParser {
  public:
-  Parser(const std::filesystem::path& path, std::string_view bytes) : cursor_(path, bytes) {
+  VoxParser(const std::filesystem::path& path, std::string_view bytes) : cursor_(path, bytes) {
     file_.palette = default_palette();
   }
 
@@ -113,7 +113,7 @@ class Parser {
     size_ = Vec3i{};
     for (int axis = 0; axis < 3; ++axis) {
       const std::int32_t side = (*size_)[axis] = content.int32();
-      if (side < 1 || side > kMostSide)
+      if (side < 1 || side > kMaxModelSide)
         content.fail("the model is " + std::to_string(side) + " voxels long; 1 to 256 are allowed");
     }
   }
@@ -203,7 +203,7 @@ class Parser {
 }  // namespace
 
 VoxFile parse_vox(const std::filesystem::path& path, std::string_view bytes) {
-  return Parser(path, bytes).parse();
+  return VoxParser(path, bytes).parse();
 }
 
 }  // namespace voxdag

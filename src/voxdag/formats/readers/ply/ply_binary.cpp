@@ -73,7 +73,7 @@ class BinaryReader {
       layout.has_lists() ? split_lists(element, layout, blocks.blocks)
                          : split_fixed(element, layout, blocks.blocks);
     } catch (const Fault& fault) {
-      throw_fault(source_, fault, kBinary);
+      throw_fault(source_, fault, kNoLines);
     }
     for (const Block& block : blocks.blocks) blocks.parts.push_back(block.bytes);
     return blocks;
@@ -160,7 +160,7 @@ class BinaryReader {
     if (has_values)
       columns = used_columns(fields_.vertex, layout, body_.attributes->vertex_columns());
     std::vector<char> bad(vertices_.blocks.size(), 0);
-    for_each_chunk(source_, vertices_.parts, kBinary, "read", [&](std::size_t i) {
+    for_each_chunk(source_, vertices_.parts, kNoLines, "read", [&](std::size_t i) {
       const Block& block = vertices_.blocks[i];
       const char* p = block.bytes.data();
       const char* const end = p + block.bytes.size();
@@ -191,7 +191,7 @@ class BinaryReader {
     const bool has_values = body_.attributes != nullptr;
     std::vector<Column> columns;
     if (has_values) columns = used_columns(fields_.face, layout, body_.attributes->face_columns());
-    for_each_chunk(source_, faces_.parts, kBinary, "read", [&](std::size_t i) {
+    for_each_chunk(source_, faces_.parts, kNoLines, "read", [&](std::size_t i) {
       const char* p = faces_.parts[i].data();
       const char* const end = p + faces_.parts[i].size();
       std::size_t triangle = faces_.blocks[i].first_triangle;
@@ -256,7 +256,7 @@ class BinaryReader {
     const char* const end = p + vertices_.parts[i].size();
     for (std::size_t row = vertices_.blocks[i].first_row; row < *bad; ++row)
       p = layout.walk(p, end, swap_, [](std::size_t, const char*, std::size_t) {});
-    throw_fault(source_, {p, kBadVertex}, kBinary);
+    throw_fault(source_, {p, kBadVertex}, kNoLines);
   }
 
   const PlyBody& body_;

@@ -26,9 +26,9 @@ std::optional<PlyType> parse_type(std::string_view name) {
   return std::nullopt;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(const MeshSource& source) : source_(source), rest_(source.bytes) {
+  explicit PlyHeaderParser(const MeshSource& source) : source_(source), rest_(source.bytes) {
     header_.materials = CountedVector<std::string_view>(source.options.memory);
     header_.textures = CountedVector<std::string_view>(source.options.memory);
   }
@@ -216,7 +216,7 @@ std::size_t PlyElement::least_row_bytes() const {
 }
 
 PlyHeader parse_ply_header(const MeshSource& source, PlyUse use) {
-  return HeaderParser(source).parse(use);
+  return PlyHeaderParser(source).parse(use);
 }
 
 }  // namespace voxdag

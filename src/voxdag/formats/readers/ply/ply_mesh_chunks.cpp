@@ -42,7 +42,7 @@ class PlyMeshChunks final : public MeshChunks {
                faces = rows(chunk, fields_.face.count);
     const std::string_view bytes = face_bytes(faces);
     bool all_triangles = true;
-    read(bytes, kBinary, [&] {
+    read(bytes, kNoLines, [&] {
       for (std::uint64_t i = 0; i < faces.count && all_triangles; ++i)
         all_triangles =
             load_int(count_type(), bytes.data() + i * face_stride_ + list_offset(), swap_) == 3;
@@ -53,7 +53,7 @@ class PlyMeshChunks final : public MeshChunks {
 
   void read_vertices(std::uint64_t chunk, std::span<Vec3f> vertices) const override {
     const std::string_view bytes = vertex_bytes(rows(chunk, fields_.vertex.count));
-    read(bytes, kBinary, [&] {
+    read(bytes, kNoLines, [&] {
       const char* row = bytes.data();
       for (Vec3f& vertex : vertices) {
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -67,7 +67,7 @@ class PlyMeshChunks final : public MeshChunks {
                       std::span<Triangle> triangles) const override {
     const PlyType type = indices().type;
     const std::string_view bytes = face_bytes(rows(chunk, fields_.face.count));
-    read(bytes, kBinary, [&] {
+    read(bytes, kNoLines, [&] {
       const char* row = bytes.data();
       for (Triangle& triangle : triangles) {
         const char* item = row + list_offset();
@@ -85,7 +85,7 @@ class PlyMeshChunks final : public MeshChunks {
 
   [[noreturn]] void throw_bad_vertex(std::uint64_t chunk, std::uint64_t index) const override {
     const Rows vertices = rows(chunk, fields_.vertex.count);
-    throw_fault(source(), {vertex_bytes({vertices.first + index, 1}).data(), kBadVertex}, kBinary);
+    throw_fault(source(), {vertex_bytes({vertices.first + index, 1}).data(), kBadVertex}, kNoLines);
   }
 
  private:

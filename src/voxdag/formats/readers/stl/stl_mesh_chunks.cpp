@@ -62,7 +62,7 @@ class StlMeshChunks final : public MeshChunks {
                                                           (last - first) * kStlFacetBytes);
     // The caller's table: each corner may need a vertex and a slot; both arrays may double.
     const MemoryReservation table(source().options.memory, 3 * (last - first) * 44);
-    read(facets, kBinary, [&] { parse_stl_binary(facets, body); });
+    read(facets, kNoLines, [&] { parse_stl_binary(facets, body); });
   }
 
   std::uint64_t facets_, chunks_;

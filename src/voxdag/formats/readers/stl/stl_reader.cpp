@@ -66,7 +66,7 @@ Mesh read_stl(const MeshSource& source) {
     });
   }
   const std::vector<std::string_view> parts = split_binary(source);
-  return weld_facets(source, parts, kBinary,
+  return weld_facets(source, parts, kNoLines,
                      [&](std::size_t i, auto&& body) { parse_stl_binary(parts[i], body); });
 }
 
