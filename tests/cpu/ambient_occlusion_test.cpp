@@ -7,7 +7,7 @@ namespace voxdag {
 namespace {
 
 TEST(AmbientOcclusion, AnOpenPlaneHasNone) {
-  const Svdag dag = voxels_where(6, [](int, int y, int) { return y == 8; });
+  const Svdag dag = dag_where(6, [](int, int y, int) { return y == 8; });
   RenderOptions options = from_above(1);
   options.occlusion_distance = 1;
   const RenderedImage image = render_image(dag.view(), test_grid(6), options);
@@ -18,7 +18,7 @@ TEST(AmbientOcclusion, BesideAWallItEqualsQuadrature) {
   constexpr int kLevels = 7, kWall = 40;
   constexpr double kReach = 0.5;
   const Svdag dag =
-      voxels_where(kLevels, [](int x, int y, int) { return y == 8 || (x == kWall && y > 8); });
+      dag_where(kLevels, [](int x, int y, int) { return y == 8 || (x == kWall && y > 8); });
   const Grid grid = test_grid(kLevels);
   const double wall = -1 + (kWall + 1) * grid.voxel_size, floor = -1 + 9 * grid.voxel_size;
   RenderOptions options = from_above(1.6);
@@ -59,7 +59,7 @@ TEST(AmbientOcclusion, BesideAWallItEqualsQuadrature) {
 
 TEST(AmbientOcclusion, TheEdgeOfAWallHidesHalfOfTheSky) {
   constexpr int kLevels = 8;
-  const Svdag dag = voxels_where(kLevels, [](int x, int y, int z) {
+  const Svdag dag = dag_where(kLevels, [](int x, int y, int z) {
     return std::abs(z - 128) < 40 && ((y == 8 && std::abs(x - 128) < 40) || (x == 127 && y > 8));
   });
   const Grid grid = test_grid(kLevels);

@@ -22,7 +22,7 @@ inline Grid test_grid(int levels) {
 
 /// Returns a DAG of the voxels (x,y,z) of a grid of 2^levels for which keep(x,y,z) is true.
 template <class Keep>
-Svdag voxels_where(int levels, const Keep& keep) {
+Svdag dag_where(int levels, const Keep& keep) {
   std::vector<Vec3i> voxels;
   const std::int32_t n = 1 << levels;
   for (std::int32_t z = 0; z < n; ++z)
@@ -36,7 +36,7 @@ Svdag voxels_where(int levels, const Keep& keep) {
 inline Svdag mixed_scene(int levels, unsigned seed) {
   std::mt19937 rng(seed);
   const double n = 1 << levels;
-  return voxels_where(levels, [&](int x, int y, int z) {
+  return dag_where(levels, [&](int x, int y, int z) {
     const double dx = x / n - 0.5, dy = y / n - 0.5, dz = z / n - 0.4;
     const double r = std::sqrt(dx * dx + dy * dy + dz * dz);
     const bool is_pillar = (x * 4 / (1 << levels)) % 2 == 1 && std::fabs(dz - 0.35) < 0.05;

@@ -84,7 +84,7 @@ TEST(RenderBeams, ChangeNoSoftShadowOfAnyLight) {
 
 TEST(RenderBeams, VoxelsRightBehindALampAreNotInItsWay) {
   // A post, and a roof whose lower side is the lamp's plane.
-  const Svdag dag = voxels_where(
+  const Svdag dag = dag_where(
       6, [](int x, int y, int z) { return y < 8 || y >= 40 || (x == 30 && z == 34 && y < 20); });
   RenderOptions options = small_picture();
   options.view.eye = {0.7, 0.1, 0.9};

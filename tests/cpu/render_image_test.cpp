@@ -27,7 +27,7 @@ Svdag block_on_a_floor() {
   return brute_svdag(kPictureLevels, voxels);
 }
 
-RenderOptions small_picture() {
+RenderOptions small_options() {
   RenderOptions options;
   options.width = 97;
   options.height = 61;
@@ -37,7 +37,7 @@ RenderOptions small_picture() {
 
 TEST(RenderImage, HasOnlyTheValuesThatTheOptionsAskFor) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   const RenderedImage all = render_image(dag.view(), picture_grid(), options);
   options.with_normal = options.with_occlusion = options.with_shadow = false;
   const RenderedImage few = render_image(dag.view(), picture_grid(), options);
@@ -50,7 +50,7 @@ TEST(RenderImage, HasOnlyTheValuesThatTheOptionsAskFor) {
 
 TEST(RenderImage, PixelsDoNotDependOnThreads) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.samples_per_pixel = 3;
   RenderedImage first;
   for (const int threads : {1, 2, 7}) {
@@ -67,7 +67,7 @@ TEST(RenderImage, PixelsDoNotDependOnThreads) {
 
 TEST(RenderImage, DepthOfAFacingPlaneIsItsDistance) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0.1, 3, 0.2};  // above the block, whose top is at y = -1 + 40 / 32
   options.view.target = {0.1, 0, 0.2};
   options.view.up = {0, 0, -1};
@@ -93,7 +93,7 @@ Svdag part_of_a_block() {
 
 TEST(RenderImage, ASectionShowsThatPartAndColoursTheCut) {
   const Svdag dag = block_on_a_floor(), part = part_of_a_block();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0.3, 0.9, -2.5};
   options.view.target = {0, -0.7, 0};
   options.exposure = 1;
@@ -127,7 +127,7 @@ TEST(RenderImage, ASectionShowsThatPartAndColoursTheCut) {
 
 TEST(RenderImage, APlaneCutsAlongItsNormal) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0.1, 3, 0.2};
   options.view.target = {0.1, 0, 0.2};
   options.view.up = {0, 0, -1};
@@ -146,7 +146,7 @@ TEST(RenderImage, APlaneCutsAlongItsNormal) {
 
 TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0.1, 3, 0.2};
   options.view.target = {0.1, 0, 0.2};
   options.view.up = {0, 0, -1};
@@ -168,7 +168,7 @@ TEST(RenderImage, TheFilterIsOfTheVoxelsSizes) {
 
 TEST(RenderImage, EachKindOfFilterIsThatOfTheUnfilteredPicture) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0.5, 1, 2};
   options.view.target = {0, -0.5, 0};
   options.view.vertical_fov_degrees = 20;
@@ -191,7 +191,7 @@ TEST(RenderImage, EachKindOfFilterIsThatOfTheUnfilteredPicture) {
 
 TEST(RenderImage, TheFilterLeavesTheSkyAlone) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.filter = FilterKind::kGuided;
   options.view.eye = {0, 1, 6};
   const RenderedImage filtered = render_image(dag.view(), picture_grid(), options);
@@ -209,7 +209,7 @@ TEST(RenderImage, TheFilterLeavesTheSkyAlone) {
 
 TEST(RenderImage, TheBlockShadowsTheFloorAndNothingElseIsDark) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0, 6, 3};
   options.view.target = {0, -0.8, 0};
   options.exposure = 0.5f;
@@ -235,7 +235,7 @@ TEST(RenderImage, ASlantedPlaneDoesNotShadowItself) {
   for (std::int32_t z = 0; z < 64; ++z)
     for (std::int32_t x = 0; x < 64; ++x) voxels.push_back({x, (2 * x + z) / 5 + 5, z});
   const Svdag dag = brute_svdag(kPictureLevels, voxels);
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   const RenderedImage with = render_image(dag.view(), picture_grid(), options);
   options.shadows = false;
   EXPECT_EQ(with.rgb, render_image(dag.view(), picture_grid(), options).rgb);
@@ -243,7 +243,7 @@ TEST(RenderImage, ASlantedPlaneDoesNotShadowItself) {
 
 TEST(RenderImage, TheSunLightsTheSideThatFacesIt) {
   const Svdag dag = block_on_a_floor();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_options();
   options.view.eye = {0, 0, 6};
   options.view.target = {0, 0, 0};
   options.view.vertical_fov_degrees = 2;  // the front of the block, at z = 0.25
@@ -258,7 +258,7 @@ TEST(RenderImage, TheSunLightsTheSideThatFacesIt) {
 }
 
 TEST(RenderImage, AnEmptySceneIsSky) {
-  const RenderedImage image = render_image(Svdag{}.view(), Grid{}, small_picture());
+  const RenderedImage image = render_image(Svdag{}.view(), Grid{}, small_options());
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     EXPECT_TRUE(std::isinf(image.depth[i]));
     EXPECT_EQ(image.normal[i], Vec3f{});
@@ -278,7 +278,7 @@ TEST(RenderImage, RefusesImpossibleSizesAndStopsWhenCancelled) {
   }
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(render_image(dag.view(), picture_grid(), small_picture(), &progress), Cancelled);
+  EXPECT_THROW(render_image(dag.view(), picture_grid(), small_options(), &progress), Cancelled);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ using test::expect_same_picture;
 
 TEST(SoftShadow, APlaneUnderASphereReceivesTheAnalyticIrradiance) {
   constexpr double kHeight = 1.5, kRadius = 0.2;
-  const Svdag dag = voxels_where(6, [](int, int y, int) { return y == 8; });
+  const Svdag dag = dag_where(6, [](int, int y, int) { return y == 8; });
   const Grid grid = test_grid(6);
   RenderOptions options = from_above(1.8);
   const double floor = -1 + 9 * grid.voxel_size;
@@ -33,7 +33,7 @@ TEST(SoftShadow, APlaneUnderASphereReceivesTheAnalyticIrradiance) {
 TEST(SoftShadow, ThePenumbraOfAStraightEdgeIsACircularSegment) {
   constexpr int kLevels = 7, kTop = 100;
   const Svdag dag =
-      voxels_where(kLevels, [](int x, int y, int) { return y == 8 || (y == kTop && x < 64); });
+      dag_where(kLevels, [](int x, int y, int) { return y == 8 || (y == kTop && x < 64); });
   const Grid grid = test_grid(kLevels);
   RenderOptions options = from_above(1);
   // The cover hides the floor from above, so the camera is between cover and floor.
@@ -97,7 +97,7 @@ std::vector<Arriving> arriving(const LightSpec& light, Vec3d point) {
 }
 
 TEST(Highlights, OnAPlaneEqualTheLobeInDoublePrecision) {
-  const Svdag dag = voxels_where(6, [](int, int y, int) { return y == 8; });
+  const Svdag dag = dag_where(6, [](int, int y, int) { return y == 8; });
   LightSpec sun;
   sun.kind = LightKind::kSun;
   sun.position = {-0.6, 0.9, -0.5};

@@ -33,7 +33,7 @@ std::string colored_file(int finest = 5, AttributeForm form = AttributeForm::kPa
   return read_text(dir / "file.vdag");
 }
 
-std::string error_of(const std::string& bytes) {
+std::string chunk_error_of(const std::string& bytes) {
   return voxdag::error_of([&] { parse_vdag(AlignedBytes(bytes).span()); });
 }
 
@@ -95,7 +95,7 @@ TEST(AttributeChunks, EveryFlippedBitIsRefusedWithoutChecksums) {
       for (std::uint64_t at = 0; at < entry_of(bytes, i).length; ++at) {
         std::string changed = bytes;
         changed[entry_of(bytes, i).offset + at] ^= static_cast<char>(1 << at % 8);
-        ASSERT_NE(error_of(changed), "no error");
+        ASSERT_NE(chunk_error_of(changed), "no error");
       }
   }
 }
@@ -143,10 +143,10 @@ std::string shortened(const std::string& bytes, std::size_t index, std::uint64_t
 TEST(AttributeChunks, EveryTruncatedChunkIsRefused) {
   for (const AttributeForm form : kForms) {
     const std::string bytes = colored_file(4, form);
-    ASSERT_EQ(error_of(shortened(bytes, 4, 0)), "no error");
+    ASSERT_EQ(chunk_error_of(shortened(bytes, 4, 0)), "no error");
     for (std::size_t i = 4; i < 8; ++i)
       for (std::uint64_t cut = 1; cut <= entry_of(bytes, i).length; ++cut)
-        ASSERT_NE(error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
+        ASSERT_NE(chunk_error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
   }
 }
 
@@ -181,11 +181,11 @@ TEST(AttributeChunks, AWireChunkThatExpandsTooFarIsRefused) {
   const VdagChunkEntry entry = entry_of(bytes, 5);
   poke(bytes, entry.offset + offsetof(WireHeader, words), 8 * entry.length + 1);
   repair_checksums(bytes);
-  EXPECT_NE(error_of(bytes).find("chunk WCOL: expands to"), std::string::npos) << error_of(bytes);
+  EXPECT_NE(chunk_error_of(bytes).find("chunk WCOL: expands to"), std::string::npos) << chunk_error_of(bytes);
   poke(bytes, entry.offset + offsetof(WireHeader, words), std::uint64_t{0});
   repair_checksums(bytes);
-  EXPECT_NE(error_of(bytes).find("chunk WCOL: has too few words"), std::string::npos)
-      << error_of(bytes);
+  EXPECT_NE(chunk_error_of(bytes).find("chunk WCOL: has too few words"), std::string::npos)
+      << chunk_error_of(bytes);
 }
 
 TEST(AttributeChunks, ColoursInBothFormsAreRefused) {
@@ -194,8 +194,8 @@ TEST(AttributeChunks, ColoursInBothFormsAreRefused) {
   entry.id = kChunkColors;
   poke(bytes, entry_offset(7), entry);
   repair_checksums(bytes);
-  EXPECT_NE(error_of(bytes).find("WCOL: stands for the chunk COLR"), std::string::npos)
-      << error_of(bytes);
+  EXPECT_NE(chunk_error_of(bytes).find("WCOL: stands for the chunk COLR"), std::string::npos)
+      << chunk_error_of(bytes);
 }
 
 TEST(AttributeChunks, ColoursWithoutNumbersAreRefused) {
@@ -204,8 +204,8 @@ TEST(AttributeChunks, ColoursWithoutNumbersAreRefused) {
   entry.id = vdag_chunk_id("XXXX");
   poke(bytes, entry_offset(4), entry);
   repair_checksums(bytes);
-  EXPECT_NE(error_of(bytes).find("COLR: needs the chunk CIDX"), std::string::npos)
-      << error_of(bytes);
+  EXPECT_NE(chunk_error_of(bytes).find("COLR: needs the chunk CIDX"), std::string::npos)
+      << chunk_error_of(bytes);
 }
 
 }  // namespace

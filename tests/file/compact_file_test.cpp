@@ -24,7 +24,7 @@ std::string compact_file_bytes(const Svdag& dag) {
 std::string small_file() { return compact_file_bytes(brute_svdag(6, random_voxels(6, 40, 3))); }
 
 /// Returns a file with colours and normals of the cells down to level `finest`.
-std::string colored_file(int finest) {
+std::string colored_compact_file(int finest) {
   const Svdag dag = brute_svdag(6, random_voxels(6, 40, 3));
   VdagMetadata metadata = example_metadata(dag.view());
   metadata.attributes.resolution = std::int64_t{1} << finest;
@@ -76,7 +76,7 @@ TEST(CompactFile, GivesBackWhatWasWritten) {
 TEST(CompactFile, TheAttributesOfAllCellsAreThoseThatWereWritten) {
   const Svdag dag = brute_svdag(6, random_voxels(6, 40, 3));
   for (int finest = 0; finest <= 6; ++finest) {
-    const AlignedBytes bytes(colored_file(finest));
+    const AlignedBytes bytes(colored_compact_file(finest));
     const CompactContents contents = parse_compact(bytes.span());
     EXPECT_FALSE(has_chunk(contents.chunks, kChunkCellIndex));
     const CellIndex index = build_cell_index(dag.view(), contents.metadata.attributes.level());
@@ -92,7 +92,7 @@ TEST(CompactFile, TheAttributesOfAllCellsAreThoseThatWereWritten) {
 
 TEST(CompactFile, ColoursOfAnotherNumberOfCellsAreRefused) {
   const Svdag dag = brute_svdag(6, random_voxels(6, 40, 3));
-  const AlignedBytes bytes(colored_file(6));
+  const AlignedBytes bytes(colored_compact_file(6));
   const CompactContents contents = parse_compact(bytes.span());
   const CellIndex coarser = build_cell_index(dag.view(), 5);
   ExpandedChunks expanded;
@@ -113,7 +113,7 @@ TEST(CompactFile, ColoursThatTheMetadataDoesNotDescribeAreNotWritten) {
 }
 
 TEST(CompactFile, NumbersOfCellsAreRefused) {
-  std::string bytes = colored_file(6);
+  std::string bytes = colored_compact_file(6);
   auto entry = peek<VdagChunkEntry>(bytes, entry_offset(3));
   entry.id = kChunkCellIndex;
   poke(bytes, entry_offset(3), entry);
@@ -138,17 +138,17 @@ TEST(CompactFile, IsNotReadAsAPlainDag) {
 
 TEST(CompactFile, EveryTruncationIsRefused) {
   expect_truncations_are_refused(small_file(), decode_error);
-  expect_truncations_are_refused(colored_file(5), decode_error);
+  expect_truncations_are_refused(colored_compact_file(5), decode_error);
 }
 
 TEST(CompactFile, EveryBitFlipIsRefused) {
   expect_bit_flips_are_refused(small_file(), decode_error);
-  expect_bit_flips_are_refused(colored_file(5), decode_error);
+  expect_bit_flips_are_refused(colored_compact_file(5), decode_error);
 }
 
 TEST(CompactFile, EveryBitFlipWithRightChecksumsIsSurvived) {
   survive_bit_flips(small_file(), decode_error);
-  survive_bit_flips(colored_file(5), decode_error);
+  survive_bit_flips(colored_compact_file(5), decode_error);
 }
 
 }  // namespace

@@ -18,11 +18,11 @@ namespace {
 using test::packed_esvo;
 using test::PackedEsvo;
 
-std::string error_of(const std::string& bytes) {
+std::string esvo_error_of(const std::string& bytes) {
   return voxdag::error_of([&] { parse_esvo(AlignedBytes(bytes).span()); });
 }
 
-std::string small_file() {
+std::string small_esvo_file() {
   const TempDir dir;
   write_esvo(dir / "a.esvo", packed_esvo(3, 64, 5));
   return read_text(dir / "a.esvo");
@@ -67,17 +67,17 @@ TEST(EsvoFile, DagsAndEsvosAreDistinguished) {
 }
 
 TEST(EsvoFile, EveryTruncationIsRefused) {
-  const std::string bytes = small_file();
+  const std::string bytes = small_esvo_file();
   for (std::size_t size = 0; size < bytes.size(); size += size < 512 ? 1 : 61)
-    EXPECT_NE(error_of(bytes.substr(0, size)), "no error") << size << " bytes";
+    EXPECT_NE(esvo_error_of(bytes.substr(0, size)), "no error") << size << " bytes";
 }
 
 TEST(EsvoFile, EveryBitFlipIsRefused) {
-  const std::string bytes = small_file();
+  const std::string bytes = small_esvo_file();
   for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += bit < 8 * 512 ? 1 : 13) {
     std::string changed = bytes;
     changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ 1 << bit % 8);
-    EXPECT_NE(error_of(changed), "no error") << "byte " << bit / 8;
+    EXPECT_NE(esvo_error_of(changed), "no error") << "byte " << bit / 8;
   }
 }
 

@@ -27,7 +27,7 @@ std::string rays_header(const std::string& shape) {
 }
 
 /// Opens `bytes` as rays and reads them all. Returns the error without the file's name.
-std::string error_of(const std::string& bytes) {
+std::string npy_error_of(const std::string& bytes) {
   const TempDir dir;
   write_text(dir / "a.npy", bytes);
   try {
@@ -92,14 +92,14 @@ TEST(Npy, KnownAndUnknownCountsMakeTheSameFile) {
 
 TEST(Npy, ReadsWhatNumpyWrites) {
   const std::string row(32, '\0');
-  EXPECT_EQ(error_of(npy_bytes(rays_header("(2, 8)"), row + row)), "no error");
-  EXPECT_EQ(error_of(npy_bytes(rays_header("(0, 8)"), "")), "no error");
-  EXPECT_EQ(error_of(npy_bytes("{\"shape\":(1,8),\"fortran_order\":False,\"descr\":\"<f4\"}", row)),
+  EXPECT_EQ(npy_error_of(npy_bytes(rays_header("(2, 8)"), row + row)), "no error");
+  EXPECT_EQ(npy_error_of(npy_bytes(rays_header("(0, 8)"), "")), "no error");
+  EXPECT_EQ(npy_error_of(npy_bytes("{\"shape\":(1,8),\"fortran_order\":False,\"descr\":\"<f4\"}", row)),
             "no error");
   std::string version2 = npy_bytes(rays_header("(1, 8)"), row);
   version2[6] = 2;
   version2.insert(10, 2, '\0');
-  EXPECT_EQ(error_of(version2), "no error");
+  EXPECT_EQ(npy_error_of(version2), "no error");
 }
 
 TEST(Npy, ReadsAPipe) {
@@ -117,17 +117,17 @@ TEST(Npy, ReadsAPipe) {
 TEST(Npy, EveryTruncationIsRefused) {
   const std::string bytes = npy_bytes(rays_header("(2, 8)"), std::string(64, '\0'));
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_NE(error_of(bytes.substr(0, size)), "no error") << size;
-  EXPECT_EQ(error_of(bytes.substr(0, 150)), "byte 150: truncated: 2 rows need 192 bytes");
-  EXPECT_EQ(error_of(bytes + "x"), "byte 192: trailing bytes: 2 rows need 192 bytes");
+    EXPECT_NE(npy_error_of(bytes.substr(0, size)), "no error") << size;
+  EXPECT_EQ(npy_error_of(bytes.substr(0, 150)), "byte 150: truncated: 2 rows need 192 bytes");
+  EXPECT_EQ(npy_error_of(bytes + "x"), "byte 192: trailing bytes: 2 rows need 192 bytes");
 }
 
 TEST(Npy, NamesTheFault) {
   const auto header_error = [](const std::string& dictionary) {
-    return error_of(npy_bytes(dictionary, ""));
+    return npy_error_of(npy_bytes(dictionary, ""));
   };
-  EXPECT_EQ(error_of("some text that is no array"), "byte 0: not a .npy file");
-  EXPECT_EQ(error_of(std::string("\x93NUMPY\x07\x00..........", 18)),
+  EXPECT_EQ(npy_error_of("some text that is no array"), "byte 0: not a .npy file");
+  EXPECT_EQ(npy_error_of(std::string("\x93NUMPY\x07\x00..........", 18)),
             "byte 8: .npy version 7 is unknown: only versions 1 to 3 are read");
   EXPECT_EQ(header_error("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 8), }"),
             "byte 128: items must be '<f4', not '<f8'");

@@ -15,7 +15,7 @@ namespace {
 
 VdagMetadata example() { return example_metadata(brute_svdag(3, {{1, 2, 3}}).view()); }
 
-std::string error_of(const std::string& json) {
+std::string metadata_error_of(const std::string& json) {
   return voxdag::error_of([&] { parse_vdag_metadata(json); });
 }
 
@@ -78,34 +78,34 @@ TEST(VdagMetadata, UnknownKeysAreIgnored) {
 }
 
 TEST(VdagMetadata, NamesTheFault) {
-  EXPECT_EQ(error_of(""), "byte 1: not valid JSON");
-  EXPECT_EQ(error_of("{\"grid\":"), "byte 9: not valid JSON");
+  EXPECT_EQ(metadata_error_of(""), "byte 1: not valid JSON");
+  EXPECT_EQ(metadata_error_of("{\"grid\":"), "byte 9: not valid JSON");
   EXPECT_EQ(
-      error_of(vdag_metadata_json(example()) + "x"),
+      metadata_error_of(vdag_metadata_json(example()) + "x"),
       "byte " + std::to_string(vdag_metadata_json(example()).size() + 1) + ": not valid JSON");
-  EXPECT_EQ(error_of("[]"), "not an object");
-  EXPECT_EQ(error_of("{}"), "grid: missing");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":1")),
+  EXPECT_EQ(metadata_error_of("[]"), "not an object");
+  EXPECT_EQ(metadata_error_of("{}"), "grid: missing");
+  EXPECT_EQ(metadata_error_of(with("\"levels\":3", "\"levels\":1")),
             "grid.levels: 1 is not in the range 2 to 20");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":3.0")),
+  EXPECT_EQ(metadata_error_of(with("\"levels\":3", "\"levels\":3.0")),
             "grid.levels: not a whole number of 0 or more");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":-3")),
+  EXPECT_EQ(metadata_error_of(with("\"levels\":3", "\"levels\":-3")),
             "grid.levels: not a whole number of 0 or more");
-  EXPECT_EQ(error_of(with("\"levels\":3", "\"levels\":4")),
+  EXPECT_EQ(metadata_error_of(with("\"levels\":3", "\"levels\":4")),
             "counts.svo_nodes_per_level: not an array of 4 values");
-  EXPECT_EQ(error_of(with("[-1.5,", "[")), "grid.origin: not an array of 3 values");
-  EXPECT_EQ(error_of(with("-1.5", "null")), "grid.origin[0]: not a finite number");
-  EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":0.0")),
+  EXPECT_EQ(metadata_error_of(with("[-1.5,", "[")), "grid.origin: not an array of 3 values");
+  EXPECT_EQ(metadata_error_of(with("-1.5", "null")), "grid.origin[0]: not a finite number");
+  EXPECT_EQ(metadata_error_of(with("\"voxel_size\":0.01", "\"voxel_size\":0.0")),
             "grid.voxel_size: not positive");
-  EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":1e308")),
+  EXPECT_EQ(metadata_error_of(with("\"voxel_size\":0.01", "\"voxel_size\":1e308")),
             "grid: the far corner of the grid is not a finite number");
-  EXPECT_EQ(error_of(with("\"voxel_size\":0.01", "\"voxel_size\":4e-324")),
+  EXPECT_EQ(metadata_error_of(with("\"voxel_size\":0.01", "\"voxel_size\":4e-324")),
             "grid.voxel_size: is too small: 1 / voxel_size is not a finite number");
-  EXPECT_EQ(error_of(with("\"voxels\":1", "\"voxels\":\"1\"")),
+  EXPECT_EQ(metadata_error_of(with("\"voxels\":1", "\"voxels\":\"1\"")),
             "counts.voxels: not a whole number of 0 or more");
-  EXPECT_EQ(error_of(with("\"bunny.ply\"", "7")), "source.name: not a string");
-  EXPECT_EQ(error_of(with("\"exact\"", "1")), "build.cover: not a string");
-  EXPECT_NE(error_of(with("0.01", "1e999")).find("not valid JSON"), std::string::npos);
+  EXPECT_EQ(metadata_error_of(with("\"bunny.ply\"", "7")), "source.name: not a string");
+  EXPECT_EQ(metadata_error_of(with("\"exact\"", "1")), "build.cover: not a string");
+  EXPECT_NE(metadata_error_of(with("0.01", "1e999")).find("not valid JSON"), std::string::npos);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kLobePi = std::numbers::pi;
 constexpr int kExponents[] = {1, 2, 7, 20, 333, 10'000};
 
 Vec3d random_direction(std::mt19937& rng) {
@@ -33,7 +33,7 @@ TEST(Specular, TheLobeIsThatOfDoublePrecision) {
       const double spread = (i % 4) / std::sqrt(exponent + 1.0);
       const Vec3d light = normalized(mirrored + random_direction(rng) * spread);
       const double cosine = std::max(0.0, dot(mirrored, light));
-      const double expected = 0.4 * (exponent + 2) / (2 * kPi) * std::pow(cosine, exponent);
+      const double expected = 0.4 * (exponent + 2) / (2 * kLobePi) * std::pow(cosine, exponent);
       const Vec3f reflected = mirrored_view(static_cast<Vec3f>(view), static_cast<Vec3f>(normal));
       const float lobe = phong_lobe({0.4f, exponent}, reflected, static_cast<Vec3f>(light));
       // Below the largest value times 2^-20 a lobe is black, and a cosine near 0 has no digits.
@@ -57,14 +57,14 @@ double reflected_part(const Specular& specular, double view_angle) {
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < kSteps; ++j) {
       // Steps of equal power of the cosine, so that there are as many in small lobes as in large.
-      const double power = (i + 0.5) / kSteps, angle = 2 * kPi * (j + 0.5) / kSteps;
+      const double power = (i + 0.5) / kSteps, angle = 2 * kLobePi * (j + 0.5) / kSteps;
       const double cosine = std::pow(power, 1.0 / (specular.exponent + 1));
       const double sine = std::sqrt(1 - cosine * cosine);
       const Vec3d light = static_cast<Vec3d>(mirrored) * cosine +
                           (basis.u * std::cos(angle) + basis.v * std::sin(angle)) * sine;
       if (light.y <= 0) continue;
       const double density =
-          (specular.exponent + 1) / (2 * kPi) * std::pow(cosine, specular.exponent);
+          (specular.exponent + 1) / (2 * kLobePi) * std::pow(cosine, specular.exponent);
       const float lobe = phong_lobe(specular, mirrored, static_cast<Vec3f>(light));
       sum += static_cast<double>(lobe) * light.y / density;
     }
@@ -79,7 +79,7 @@ TEST(Specular, AViewerStraightAboveGetsThePartThatIsTheStrength) {
 TEST(Specular, NoSurfaceReflectsMoreThanItReceives) {
   for (const int exponent : kExponents) {
     double before = 1 + 2e-3;  // the rounding of the highest power
-    for (double angle = 0; angle < kPi / 2; angle += 0.1) {
+    for (double angle = 0; angle < kLobePi / 2; angle += 0.1) {
       const double part = reflected_part({1, exponent}, angle);
       EXPECT_LE(part, before) << exponent << " at " << angle;
       EXPECT_GE(part, 0) << exponent << " at " << angle;

@@ -16,7 +16,7 @@
 namespace voxdag {
 namespace {
 
-Grid test_grid(int levels) {
+Grid section_grid(int levels) {
   Grid grid;
   grid.levels = levels;
   grid.origin = {-3.7, 11.3, 0.1};
@@ -57,7 +57,7 @@ Box3i random_box(int levels, std::mt19937& rng) {
 TEST(RaySection, ABoxOfVoxelsHidesAllOthers) {
   int hits = 0;
   for (int levels = 2; levels <= 5; ++levels) {
-    const Grid grid = test_grid(levels);
+    const Grid grid = section_grid(levels);
     std::mt19937 rng(static_cast<unsigned>(levels));
     for (const NamedVoxels& set : voxel_sets(levels, 7)) {
       SCOPED_TRACE(set.name + " at level " + std::to_string(levels));
@@ -138,7 +138,7 @@ double first_below(const DenseSet& set, const GridRay& ray, const RaySection& se
 TEST(RaySection, APlaneHidesWhatIsAboveIt) {
   constexpr int kLevels = 3;
   constexpr double kSlack = 1e-5;
-  const Grid grid = test_grid(kLevels);
+  const Grid grid = section_grid(kLevels);
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> component(-1, 1), place(1, 2);
   int hits = 0, hidden = 0;
@@ -176,7 +176,7 @@ TEST(RaySection, APlaneHidesWhatIsAboveIt) {
 }
 
 TEST(RaySection, ACutFacesTheRay) {
-  const Grid grid = test_grid(4);
+  const Grid grid = section_grid(4);
   const GridRay ray =
       make_grid_ray(grid, grid.origin - Vec3d{1, -0.1, -0.1}, {1, 0.01, 0.02}, 0, HUGE_VAL);
   RaySection section;

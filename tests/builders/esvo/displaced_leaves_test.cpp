@@ -44,7 +44,7 @@ std::shared_ptr<const HeightTexture> heights(const std::function<double(double, 
   return std::make_shared<const HeightTexture>(kSize, kSize, std::move(texels));
 }
 
-struct Leaf {
+struct DisplacedLeaf {
   int log2_size;
   Vec3i cell;
 };
@@ -72,7 +72,7 @@ class DisplacedLeaves : public testing::Test {
 
   int leaves_of(int log2_size) const {
     int count = 0;
-    for (const Leaf& leaf : leaves_) count += leaf.log2_size == log2_size ? 1 : 0;
+    for (const DisplacedLeaf& leaf : leaves_) count += leaf.log2_size == log2_size ? 1 : 0;
     return count;
   }
 
@@ -150,7 +150,7 @@ class DisplacedLeaves : public testing::Test {
 
   std::unique_ptr<DisplacedTriangles> displaced_;
   Esvo esvo_;
-  std::vector<Leaf> leaves_;
+  std::vector<DisplacedLeaf> leaves_;
 };
 
 constexpr double kMaxError = 0.5 + 0.02;  // the default, and rounding

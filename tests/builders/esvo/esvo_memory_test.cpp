@@ -22,7 +22,7 @@ Mesh sheet(int n) {
   });
 }
 
-const Grid kGrid{8, {0, 0, 0}, 1.0, kSubvoxels};
+const Grid kMemoryGrid{8, {0, 0, 0}, 1.0, kSubvoxels};
 
 /// Builds on four threads. Returns nothing if the memory is too small. Does not count the blocks.
 std::optional<std::vector<std::uint64_t>> build_within(const Mesh& mesh, MemoryBudget* memory) {
@@ -31,7 +31,7 @@ std::optional<std::vector<std::uint64_t>> build_within(const Mesh& mesh, MemoryB
   tbb::task_arena arena(4);
   try {
     EsvoMemory sink;
-    arena.execute([&] { build_esvo(mesh, kGrid, options, nullptr, nullptr, sink); });
+    arena.execute([&] { build_esvo(mesh, kMemoryGrid, options, nullptr, nullptr, sink); });
     return sink.take();
   } catch (const OverMemory&) {
     return std::nullopt;

@@ -12,7 +12,7 @@
 namespace voxdag {
 namespace {
 
-std::set<VoxelKey> read_back(const std::filesystem::path& path, Vec3i moved_by) {
+std::set<VoxelKey> read_vdb_back(const std::filesystem::path& path, Vec3i moved_by) {
   std::set<VoxelKey> voxels;
   open_voxel_source(path)->visit_all([&](const VoxelBatch& batch) {
     for (const Vec3d place : batch.places) {
@@ -48,7 +48,7 @@ TEST(ExportVdb, VoxelsAndFullCellsAreReadBack) {
       lo = min(lo, v);
     }
     export_vdb(dir / "v.vdb", dag.view(), grid, windowed(window.lo, window.hi));
-    EXPECT_EQ(read_back(dir / "v.vdb", lo), expected);
+    EXPECT_EQ(read_vdb_back(dir / "v.vdb", lo), expected);
     const Grid back = *open_voxel_source(dir / "v.vdb")->grid();
     EXPECT_NEAR(back.voxel_size, 0.25, 1e-9);
     for (int axis = 0; axis < 3; ++axis)

@@ -5,11 +5,11 @@
 namespace voxdag {
 namespace {
 
-const std::string kSquare =
+const std::string kOffSquare =
     "OFF # by hand\n4 1 0\n0 0 0\n1 0 0\n\n1 1 0.5 # a corner\n0 1 0\n4 0 1 2 3 255 0 0\n";
 
 TEST(OffReader, PolygonBecomesAFan) {
-  const Mesh mesh = read_text(read_off, kSquare);
+  const Mesh mesh = read_text(read_off, kOffSquare);
   EXPECT_EQ(mesh.vertices, (StoredVector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5f}, {0, 1, 0}}));
   EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
@@ -23,7 +23,7 @@ TEST(OffReader, VariantsWithMorePerVertexAreRead) {
 
 TEST(OffReader, RefusalsNameTheLine) {
   const auto refused = [](std::string_view from, std::string_view to) {
-    std::string text = kSquare;
+    std::string text = kOffSquare;
     return refusal(read_off, text.replace(text.find(from), from.size(), to));
   };
   EXPECT_EQ(refusal(read_off, "off\n"),
@@ -43,7 +43,7 @@ TEST(OffReader, RefusalsNameTheLine) {
   EXPECT_EQ(refused("0.5", "inf"), "mesh: line 8: vertex 2 is not finite and this face uses it");
 }
 
-TEST(OffReader, AnyPrefixIsSafe) { expect_any_prefix_is_safe(read_off, kSquare); }
+TEST(OffReader, AnyPrefixIsSafe) { expect_any_prefix_is_safe(read_off, kOffSquare); }
 
 }  // namespace
 }  // namespace voxdag

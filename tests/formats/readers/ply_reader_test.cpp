@@ -5,7 +5,7 @@
 namespace voxdag {
 namespace {
 
-const std::string kSquare =
+const std::string kPlySquare =
     "ply\nformat ascii 1.0\ncomment made by hand\nobj_info none\nelement vertex 4\n"
     "property float x\nproperty float y\nproperty float z\nelement face 1\n"
     "property list uchar int vertex_indices\nend_header\n"
@@ -56,7 +56,7 @@ std::string binary_square(bool big_endian, bool with_lists = true) {
 }
 
 TEST(PlyReader, AsciiPolygonBecomesAFan) {
-  const Mesh mesh = read_text(read_ply, kSquare);
+  const Mesh mesh = read_text(read_ply, kPlySquare);
   EXPECT_EQ(mesh.vertices, (StoredVector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
   EXPECT_EQ(mesh.triangles, (StoredVector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
@@ -74,10 +74,10 @@ TEST(PlyReader, BinaryInBothOrdersSkipsWhatItDoesNotKnow) {
 }
 
 TEST(PlyReader, EveryLineEndIsUnderstood) {
-  const Mesh expected = read_text(read_ply, kSquare);
+  const Mesh expected = read_text(read_ply, kPlySquare);
   for (const std::string end : {"\r\n", "\r"}) {
     std::string text;
-    for (const char c : kSquare) c == '\n' ? text += end : text += c;
+    for (const char c : kPlySquare) c == '\n' ? text += end : text += c;
     EXPECT_TRUE(read_text(read_ply, text) == expected);
   }
 }
@@ -101,16 +101,16 @@ TEST(PlyReader, BinaryBodyMayStartWithALineEnd) {
 TEST(PlyReader, EveryScalarTypeHasItsTwoNames) {
   for (const std::string type : {"char", "int8", "uchar", "uint8", "short", "int16", "ushort",
                                  "uint16", "int", "int32", "uint", "uint32"}) {
-    std::string text = replaced(kSquare, "list uchar int", "list " + type + " " + type);
+    std::string text = replaced(kPlySquare, "list uchar int", "list " + type + " " + type);
     EXPECT_EQ(read_text(read_ply, text).triangles.size(), 2u) << type;
   }
   for (const std::string type : {"float", "float32", "double", "float64"})
-    EXPECT_EQ(read_text(read_ply, replaced(kSquare, "float x", type + " x")).vertices[1].x, 1.0f);
+    EXPECT_EQ(read_text(read_ply, replaced(kPlySquare, "float x", type + " x")).vertices[1].x, 1.0f);
 }
 
 TEST(PlyReader, HeaderFaultsNameTheLine) {
   const auto refused = [](std::string_view from, std::string_view to) {
-    return refusal(read_ply, replaced(kSquare, from, to));
+    return refusal(read_ply, replaced(kPlySquare, from, to));
   };
   EXPECT_EQ(refusal(read_ply, ""), "mesh: the file is empty");
   EXPECT_EQ(refusal(read_ply, "plum\n"),
@@ -140,7 +140,7 @@ TEST(PlyReader, HeaderFaultsNameTheLine) {
 
 TEST(PlyReader, BodyFaultsNameTheLine) {
   const auto refused = [](std::string_view from, std::string_view to) {
-    return refusal(read_ply, replaced(kSquare, from, to));
+    return refusal(read_ply, replaced(kPlySquare, from, to));
   };
   EXPECT_EQ(refused("4 0 1 2 3", "4 0 1 2 4"),
             "mesh: line 16: vertex index 4 is out of range: 4 vertices");
@@ -178,7 +178,7 @@ TEST(PlyReader, BinaryFaultsNameTheByte) {
 }
 
 TEST(PlyReader, AnyPrefixIsSafe) {
-  expect_any_prefix_is_safe(read_ply, kSquare);
+  expect_any_prefix_is_safe(read_ply, kPlySquare);
   expect_any_prefix_is_safe(read_ply, binary_square(false));
   expect_any_prefix_is_safe(read_ply, binary_square(true, false));
 }

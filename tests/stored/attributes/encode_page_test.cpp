@@ -52,7 +52,7 @@ std::vector<NamedValues> value_sets(std::size_t count) {
            make([&](std::size_t) { return grey(static_cast<unsigned>(rng() % 2) * 255); })}};
 }
 
-double error_of(Value8 a, Value8 b, const std::array<int, 3>& weights) {
+double squared_error(Value8 a, Value8 b, const std::array<int, 3>& weights) {
   double sum = 0, all = 0;
   for (int c = 0; c < 3; ++c) {
     const double d = a[c] - b[c], w = weights[static_cast<std::size_t>(c)];
@@ -75,7 +75,7 @@ TEST(EncodePage, EveryValueKeepsTheBound) {
         const ValuePages pages = encode(set.values, make_value_metric(weights, bound));
         ASSERT_NO_THROW(validate_value_pages(pages.view()));
         for (std::size_t i = 0; i < set.values.size(); ++i)
-          ASSERT_LE(error_of(read_value(pages.view(), i), set.values[i], weights), bound + 1e-9)
+          ASSERT_LE(squared_error(read_value(pages.view(), i), set.values[i], weights), bound + 1e-9)
               << set.name << ", bound " << bound << ", value " << i;
       }
 }

@@ -29,7 +29,7 @@ std::vector<Vec3i> repeated_plane(int levels) {
   return voxels;
 }
 
-std::vector<Svdag> example_dags() {
+std::vector<Svdag> compact_examples() {
   std::vector<Svdag> dags;
   for (int levels = 2; levels <= 8; ++levels)
     for (const int count : {0, 1, 2, 30, 400, 5000})
@@ -47,7 +47,7 @@ std::vector<Svdag> example_dags() {
 }
 
 TEST(CompactSvdag, EveryDagComesBack) {
-  for (const Svdag& dag : example_dags()) {
+  for (const Svdag& dag : compact_examples()) {
     const CompactSvdag compact = encode_svdag(dag.view());
     EXPECT_EQ(compact.levels, dag.levels);
     EXPECT_EQ(decode_svdag(compact.view()), dag) << dag.levels << " levels";
@@ -55,7 +55,7 @@ TEST(CompactSvdag, EveryDagComesBack) {
 }
 
 TEST(CompactSvdag, TheHeadComesBack) {
-  for (const Svdag& dag : example_dags()) {
+  for (const Svdag& dag : compact_examples()) {
     const CompactSvdag compact = encode_svdag(dag.view());
     const std::vector<std::byte> head = compact_head(compact);
     CompactSvdag read = parse_compact_head(head, dag.levels, compact.words().size());
@@ -102,7 +102,7 @@ TEST(CompactSvdag, IsSmallerThanThePapersLayout) {
 }
 
 TEST(CompactSvdag, ThePartsAddUp) {
-  for (const Svdag& dag : example_dags()) {
+  for (const Svdag& dag : compact_examples()) {
     const CompactSvdag compact = encode_svdag(dag.view());
     const CompactParts parts = compact_parts(compact.view());
     EXPECT_EQ(parts.node_bits + parts.unit_bits + parts.shared_brick_bits, compact.stream_bits);

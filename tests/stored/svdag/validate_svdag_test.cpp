@@ -25,7 +25,7 @@ std::string fault(Check check, const Svdag& dag) {
 }
 
 /// Returns a DAG whose root has children 0 and 7. Both have one child, one of two leaf blocks.
-Svdag two_corners() { return brute_svdag(4, {{0, 0, 0}, {15, 15, 15}}); }
+Svdag two_corner_dag() { return brute_svdag(4, {{0, 0, 0}, {15, 15, 15}}); }
 
 TEST(ValidateSvdag, AcceptsWhatTheReferenceBuilds) {
   for (int levels = 2; levels <= 8; ++levels)
@@ -46,38 +46,38 @@ TEST(ValidateSvdag, AcceptsADagWithoutVoxels) {
 }
 
 TEST(ValidateSvdag, RefusesANodeWithoutChildren) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[3] = 0;
   EXPECT_EQ(fault(validate_svdag, dag), "level 1, word 3: node has no children");
 }
 
 TEST(ValidateSvdag, RefusesAMaskOfMoreThanEightBits) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[3] |= 0x100;
   EXPECT_EQ(fault(validate_svdag, dag), "level 1, word 3: child mask has more than eight bits");
 }
 
 TEST(ValidateSvdag, RefusesANodeThatLeavesItsLevel) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[5] |= 1;
   EXPECT_EQ(fault(validate_svdag, dag), "level 1, word 5: node reaches past the end of its level");
 }
 
 TEST(ValidateSvdag, RefusesAPointerIntoTheMiddleOfANode) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[1] = 4;
   EXPECT_EQ(fault(validate_svdag, dag),
             "level 0, word 1: pointer does not point to the first word of a node");
 }
 
 TEST(ValidateSvdag, RefusesAPointerToTheSameLevel) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[1] = 0;
   EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 1: pointer points outside the next level");
 }
 
 TEST(ValidateSvdag, RefusesAPointerPastTheWords) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   for (const std::uint32_t pointer : {7u, 8u, 0xFFFFFFFFu}) {
     dag.nodes[2] = pointer;
     EXPECT_EQ(fault(validate_svdag, dag), "level 0, word 2: pointer points outside the next level");
@@ -85,13 +85,13 @@ TEST(ValidateSvdag, RefusesAPointerPastTheWords) {
 }
 
 TEST(ValidateSvdag, RefusesAPointerPastTheLeafBlocks) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[6] = 2;
   EXPECT_EQ(fault(validate_svdag, dag), "level 1, word 6: pointer is past the last leaf block");
 }
 
 TEST(ValidateSvdag, RefusesALeafBlockWithoutVoxels) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.leaf_blocks[1] = 0;
   EXPECT_EQ(fault(validate_svdag, dag), "leaf block 1: leaf block has no voxels");
 }
@@ -108,28 +108,28 @@ TEST(ValidateSvdag, RefusesTwoRoots) {
 }
 
 TEST(ValidateSvdag, RefusesABadLevelTable) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.level_begin[0] = 1;
   EXPECT_EQ(fault(validate_svdag, dag), "level table: level 0 does not begin at word 0");
-  dag = two_corners();
+  dag = two_corner_dag();
   dag.level_begin[1] = 8;
   EXPECT_EQ(fault(validate_svdag, dag), "level table: level 1 ends before it begins");
-  dag = two_corners();
+  dag = two_corner_dag();
   dag.level_begin[1] = 7;
   EXPECT_EQ(fault(validate_svdag, dag), "level table: level 1 has no nodes");
-  dag = two_corners();
+  dag = two_corner_dag();
   dag.level_begin[5] = 8;
   EXPECT_EQ(fault(validate_svdag, dag), "level table: level 4 must have no node words");
-  dag = two_corners();
+  dag = two_corner_dag();
   dag.levels = 1;
   EXPECT_EQ(fault(validate_svdag, dag), "level table: 1 levels are not in the range 2 to 20");
-  dag = two_corners();
+  dag = two_corner_dag();
   dag.leaf_blocks.clear();
   EXPECT_EQ(fault(validate_svdag, dag), "level table: there are nodes, but no leaf blocks");
 }
 
 TEST(CheckCanonical, RefusesSwappedNodes) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   std::swap(dag.nodes[1], dag.nodes[2]);
   EXPECT_EQ(fault(validate_svdag, dag), "");
   EXPECT_EQ(fault(check_canonical, dag),
@@ -137,17 +137,17 @@ TEST(CheckCanonical, RefusesSwappedNodes) {
 }
 
 TEST(CheckCanonical, RefusesNodesThatNothingPointsTo) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[2] = dag.nodes[1];
   EXPECT_EQ(fault(validate_svdag, dag), "");
   EXPECT_EQ(fault(check_canonical, dag), "level 1, word 5: node has no parent");
-  dag = two_corners();
+  dag = two_corner_dag();
   dag.leaf_blocks.push_back(5);
   EXPECT_EQ(fault(check_canonical, dag), "leaf block 2: leaf block has no parent");
 }
 
 TEST(CheckMinimal, RefusesEqualNodes) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.nodes[5] = dag.nodes[3];
   dag.nodes[6] = dag.nodes[4];
   EXPECT_EQ(fault(validate_svdag, dag), "");
@@ -155,7 +155,7 @@ TEST(CheckMinimal, RefusesEqualNodes) {
 }
 
 TEST(CheckMinimal, RefusesEqualLeafBlocks) {
-  Svdag dag = two_corners();
+  Svdag dag = two_corner_dag();
   dag.leaf_blocks[1] = dag.leaf_blocks[0];
   EXPECT_EQ(fault(check_minimal, dag), "leaf block 1: leaf block equals an earlier leaf block");
 }

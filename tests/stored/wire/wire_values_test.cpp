@@ -8,7 +8,7 @@
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/stored/attributes/validate_value_pages.hpp"
 
-namespace voxdag {
+namespace voxdag::wire {
 namespace {
 
 /// Returns pages of random blocks of every type. `busy`, 0 to 1, says how often ends and weights
@@ -175,4 +175,4 @@ TEST(WireValues, WrongSegmentsAreRefused) {
 }
 
 }  // namespace
-}  // namespace voxdag
+}  // namespace voxdag::wire

@@ -1,0 +1,28 @@
+# ctest includes this file when it starts: it reads the names of the suites from the sources.
+
+# add_suites(PROGRAM PREFIX EXTENDED tests/relative_test.cpp ...) adds a test for each suite:
+# PROGRAM --gtest_filter=SUITE.*, which also has the suite's parameterised tests.
+function(add_suites program prefix extended)
+  set(added "")
+  foreach(source ${ARGN})
+    file(STRINGS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/${source} lines REGEX "^(TYPED_)?TEST(_F|_P)?\\(")
+    set(room "${prefix}")
+    if(room STREQUAL "")
+      get_filename_component(room ${source} DIRECTORY)
+      get_filename_component(room ${room} NAME)
+    endif()
+    foreach(line ${lines})
+      string(REGEX REPLACE "^[A-Z_]+\\( *([A-Za-z0-9_]+).*" "\\1" suite "${line}")
+      if(suite IN_LIST added)
+        continue()
+      endif()
+      list(APPEND added ${suite})
+      set(name ${room}.${suite})
+      add_test(${name} ${program} "--gtest_filter=${suite}.*:*/${suite}.*:${suite}/*.*")
+      set_tests_properties(${name} PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)
+      if(extended OR suite MATCHES "Extended$")
+        set_tests_properties(${name} PROPERTIES LABELS extended)
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
