@@ -44,9 +44,9 @@ if(internal)
   message(FATAL_ERROR "internal headers were installed: ${internal}")
 endif()
 
-# A program that builds DAGs needs no package for images, meshes or files, to configure or to run.
+# A program that builds DAGs needs no package for files, to configure or to run.
 set(disabled "")
-foreach(package PNG JPEG OpenEXR nlohmann_json FastFloat assimp embree CUDAToolkit)
+foreach(package nlohmann_json FastFloat assimp embree CUDAToolkit)
   list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/dag_only -B ${WORK_DIR}/dag_only -G ${GENERATOR}
@@ -59,7 +59,7 @@ endif()
 run(readelf -d ${WORK_DIR}/dag_only/dag_only)
 string(REGEX MATCHALL "NEEDED[^\n]*" needed "${out}")
 foreach(library ${needed})
-  if(NOT library MATCHES "lib(tbb|hwy|stdc\\+\\+|m|gcc_s|c|atomic|pthread)\\.so|ld-linux")
-    message(FATAL_ERROR "a program that links voxdag::dag needs ${library}")
+  if(NOT library MATCHES "lib(tbb|hwy|png16|jpeg|OpenEXR.*|Imath.*|Iex.*|IlmThread.*|stdc\\+\\+|m|gcc_s|c|atomic|pthread)\\.so|ld-linux")
+    message(FATAL_ERROR "a program that links voxdag::builders needs ${library}")
   endif()
 endforeach()

@@ -115,6 +115,23 @@ std::vector<std::string> broken_links(const std::filesystem::path& root, const R
   return broken;
 }
 
+std::vector<std::string> includes_of(const std::filesystem::path& folder,
+                                     const std::string& prefix) {
+  std::vector<std::string> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    std::ifstream in(entry.path());
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      const std::string path = included_path(line, prefix);
+      if (!path.empty())
+        found.push_back(entry.path().string() + ":" + std::to_string(number) + ": includes " + path);
+    }
+  }
+  return found;
+}
+
 std::vector<std::string> broken_includes(const std::filesystem::path& root, const Rooms& rooms,
                                          const std::string& prefix) {
   namespace fs = std::filesystem;

@@ -60,8 +60,8 @@ TEST(Rooms, EverySourceOfTheViewerIncludesOnlyWhatItsRoomMay) {
 }
 
 TEST(Rooms, EveryBenchmarkIncludesOnlyWhatItsRoomMay) {
-  const fs::path root = kSourceDir / "bench";
-  for (const std::string& line : broken_includes(root, read_rooms(root / "rooms.txt"), "bench/"))
+  const fs::path root = kSourceDir / "lab";
+  for (const std::string& line : broken_includes(root, read_rooms(root / "rooms.txt"), "lab/"))
     ADD_FAILURE() << line;
 }
 
@@ -72,34 +72,39 @@ TEST(Rooms, EveryTargetLinksOnlyWhatItsRoomMay) {
 
 TEST(Rooms, ForbiddenLinksAreFound) {
   const TempDir tree;
-  write_source(tree / "voxelize/CMakeLists.txt",
-               "voxdag_library(voxelize\n  SOURCES a.cpp\n  LINK voxdag_mesh PNG::PNG)\n"
-               "target_link_libraries(voxdag_voxelize PRIVATE voxdag_file)\n"
-               "target_compile_options(voxdag_voxelize PRIVATE -O3)\n");
+  write_source(tree / "builders/CMakeLists.txt",
+               "voxdag_library(builders\n  LINK voxdag_mesh PNG::PNG)\n"
+               "target_link_libraries(voxdag_builders PRIVATE voxdag_file)\n"
+               "target_compile_options(voxdag_builders PRIVATE -O3)\n");
   const auto broken = broken_links(tree.path(), read_rooms(kTable));
   ASSERT_EQ(broken.size(), 2u);
-  EXPECT_EQ(broken[0], "voxelize/CMakeLists.txt: links PNG::PNG");
-  EXPECT_EQ(broken[1], "voxelize/CMakeLists.txt: links voxdag_file");
+  EXPECT_EQ(broken[0], "builders/CMakeLists.txt: links PNG::PNG");
+  EXPECT_EQ(broken[1], "builders/CMakeLists.txt: links voxdag_file");
 }
 
 TEST(Rooms, UseWhatTheirRoomsUse) {
   const Rooms rooms = read_rooms(kTable);
-  EXPECT_TRUE(rooms.at("esvo").rooms.count("image"));
-  EXPECT_TRUE(rooms.at("cpu").rooms.count("layout"));
+  EXPECT_TRUE(rooms.at("builders").rooms.count("image"));
+  EXPECT_TRUE(rooms.at("cpu").rooms.count("stored"));
 }
 
 TEST(Rooms, AViewerNeedsNoBuilder) {
   const Rooms rooms = read_rooms(kTable);
-  for (const char* viewer : {"trace", "render", "file"})
-    for (const char* builder : {"mesh", "readers", "voxelize", "dag", "esvo"})
+  for (const char* viewer : {"trace", "render", "file", "stored", "cpu", "cuda"})
+    for (const char* builder : {"mesh", "builders", "formats"})
       EXPECT_FALSE(rooms.at(viewer).rooms.count(builder)) << viewer << " may include " << builder;
 }
 
 TEST(Rooms, TheDagBuilderNeedsNoFileFormats) {
   const Rooms rooms = read_rooms(kTable);
-  for (const char* builder : {"voxelize", "dag"})
-    for (const char* format : {"io", "image", "readers", "file"})
-      EXPECT_FALSE(rooms.at(builder).rooms.count(format)) << builder << " may include " << format;
+  for (const char* format : {"formats", "file"})
+    EXPECT_FALSE(rooms.at("builders").rooms.count(format)) << "builders may include " << format;
+  // Folders of a room may be stricter than the room.
+  const fs::path root = kSourceDir / "src/voxdag";
+  for (const char* folder : {"builders/voxelize", "builders/dag"})
+    for (const char* format : {"core/io", "image", "mesh/surface", "mesh/displace"})
+      for (const std::string& line : includes_of(root / folder, std::string("voxdag/") + format + "/"))
+        ADD_FAILURE() << line;
 }
 
 TEST(Rooms, AForbiddenIncludeIsFoundWithItsLine) {
