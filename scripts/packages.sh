@@ -20,13 +20,14 @@ voxdag_test_packages=(
 )
 
 # The tests of the viewer in browsers skip themselves without these.
-voxdag_browser_packages=(chromium firefox-esr xvfb)
+voxdag_browser_packages=(chromium firefox-esr xvfb xauth)
 # A Node from elsewhere brings its own npm, which conflicts with Debian's package.
 command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packages+=(nodejs npm)
 
 # The tests that open exports with programs of others skip themselves without these, and without the
 # npm packages of tests/interop.
-voxdag_interop_packages=(python3-open3d python3-openvdb libopenvdb-tools libnanovdb-tools goxel xvfb)
+voxdag_interop_packages=(python3-open3d python3-openvdb libopenvdb-tools libnanovdb-tools goxel
+  xvfb xauth)
 
 # install_packages PACKAGE...
 install_packages() {

@@ -128,8 +128,10 @@ std::string Process::wait_for_line() const {
 void Process::wait_until_it_maps(const std::filesystem::path& file) const {
   const std::string name = std::filesystem::canonical(file);
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    // The list of maps can be empty although the program runs: while exec() replaces the process.
+    const bool is_last = has_ended();
     const std::string maps = read_text("/proc/" + std::to_string(pid_) + "/maps");
-    if (maps.empty() || maps.find(name) != std::string::npos) return;
+    if (is_last || maps.find(name) != std::string::npos) return;
   }
 }
 
