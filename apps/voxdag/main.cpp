@@ -9,6 +9,7 @@
 #include <new>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
@@ -41,6 +42,26 @@ std::string output_failure(const std::exception& error) {
   return "standard output: " + failure->code().message();
 }
 
+/// The subcommands of one heading of the help.
+struct Family {
+  const char* heading;
+  std::vector<void (*)(const Command& program, Session& session)> commands;
+};
+
+std::vector<Family> families() {
+  return {
+      {"Build",
+       {add_scene_command, add_build_command, add_import_command, add_convert_command,
+        add_coarsen_command}},
+      {"Edit", {add_combine_command, add_diff_command, add_components_command, add_edit_commands}},
+      {"Inspect", {add_info_command, add_verify_command, add_export_command}},
+      {"Render and view", {add_render_command, add_view_command}},
+      {"Trace and query", {add_trace_command, add_query_command}},
+      {"Benchmark", {add_bench_command}},
+      {"Shell", {add_completion_command}},
+  };
+}
+
 void work(Session& session) {
   std::optional<tbb::global_control> threads;
   if (session.threads > 0)
@@ -55,15 +76,13 @@ int run(int argc, char** argv) {
   CommandLine line("voxdag",
                    "Sparse voxel DAGs and octrees from triangle meshes: build, inspect, trace and "
                    "render them.",
-                   "voxdag " VOXDAG_VERSION);
+                   "voxdag " VOXDAG_VERSION,
+                   "`voxdag COMMAND --help` prints the options of a command, with an example.\n\n"
+                   "Results go to stdout; progress, warnings and errors go to stderr. Exit status: "
+                   "0 success, 1 failure, 2 wrong usage, 128 + N if signal N ended the work.");
   Session session;
-  for (const auto add :
-       {add_build_command, add_import_command, add_convert_command, add_coarsen_command,
-        add_combine_command, add_diff_command, add_components_command, add_edit_commands,
-        add_info_command, add_verify_command, add_view_command, add_render_command,
-        add_trace_command, add_query_command, add_export_command, add_scene_command,
-        add_bench_command, add_completion_command})
-    add(line.root(), session);
+  for (const Family& family : families())
+    for (const auto add : family.commands) add(line.root().with_heading(family.heading), session);
   try {
     if (!line.parse(argc, argv)) {
       check_output();

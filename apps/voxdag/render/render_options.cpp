@@ -111,7 +111,8 @@ void add_light_options(const Command& command, RenderOptions& options, Winners& 
   command.repeated(
       "--light", options.lights, parse_light, "KIND:...",
       "Add a light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
-      "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
+      "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable, up to "
+      "15 times");
   winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, RenderLimits::kSky),
                                    "FACTOR", "Factor that scales the light of the sky; 0: black"));
   const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
@@ -144,15 +145,17 @@ void add_occlusion_options(const Command& command, RenderOptions& options, Winne
           .only_if(has_occlusion, "with --ao 0"));
   winners.push_back(
       command
-          .number("--ao-cone", options.occlusion_cone,
-                  NumberRange::from(0, RenderLimits::kOcclusionCone), "SR",
-                  "End ambient occlusion rays at cells of this solid angle, such as 0.07; 0: never")
+          .number(
+              "--ao-cone", options.occlusion_cone,
+              NumberRange::from(0, RenderLimits::kOcclusionCone), "SR",
+              "End ambient occlusion rays at cells of this solid angle, such as 0.07: darker, and "
+              "faster on rough surfaces; 0: never")
           .only_if(has_occlusion, "with --ao 0"));
 }
 
 void add_quality_options(const Command& command, RenderOptions& options, Winners& winners) {
   command.number("--spp,--samples", options.samples_per_pixel, NumberRange::whole(1, 4096), "N",
-                 "Samples per pixel");
+                 "Samples per pixel; they share its shadow and occlusion rays");
   winners.push_back(command.number(
       "--lod", options.lod_pixels, NumberRange::from(0, RenderLimits::kLodPixels), "PIXELS",
       "End rays at cells of this size in the picture; 0: always at voxels"));
@@ -212,12 +215,12 @@ void add_section_options(const Command& command, RenderArguments& arguments) {
   Winners& winners = arguments.view.winners;
   winners.push_back(command
                         .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
-                                "Show only what is in this box, in world units")
+                                "Show only what is in this box, in world units; not with --mesh")
                         .only_if(has_no_mesh, "with --mesh"));
   winners.push_back(command
                         .parsed("--section-plane", section.plane, parse_plane, "PX,PY,PZ,NX,NY,NZ",
                                 "Remove the side of the plane through the point P to which the "
-                                "normal N points, in world units")
+                                "normal N points, in world units; not with --mesh")
                         .only_if(has_no_mesh, "with --mesh"));
 }
 
