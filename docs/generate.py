@@ -216,6 +216,19 @@ def summary(header):
     return sentence.rstrip(".:").replace("|", "\\|")
 
 
+def check_start(text, public, source):
+    """Exits unless the headers that the page says to start with are public and declare the names beside them."""
+    for names, headers in re.findall(r"^\| [^|]* \| (`[^|]*) \| ([^|]*\.hpp[^|]*) \|$", text, re.MULTILINE):
+        paths = re.findall(r"`([^`]*)`", headers)
+        for path in paths:
+            if path not in public:
+                sys.exit(f"docs/api.md: {path} is not a public header")
+        declared = "".join((source / path).read_text(encoding="utf-8") for path in paths)
+        for name in re.findall(r"`(\w+)`", names):
+            if not re.search(rf"\b{name}\b", declared):
+                sys.exit(f"docs/api.md: {headers} has no {name}")
+
+
 def api_page():
     source = DOCS.parent / "src/voxdag"
     rooms = {}
@@ -223,6 +236,7 @@ def api_page():
         if line and not line.startswith("#"):
             rooms.setdefault(line.split("/")[0], []).append(line)
     text = (DOCS / "api.md").read_text(encoding="utf-8").split(MARK)[0] + MARK
+    check_start(text, [header for headers in rooms.values() for header in headers], source)
     for room, headers in rooms.items():
         text += f"\n### {room}\n\n| header | content |\n|---|---|\n"
         for header in sorted(headers):
