@@ -21,8 +21,9 @@ const fs::path kSource = VOXDAG_SOURCE_DIR;
 std::vector<fs::path> documents() {
   std::vector<fs::path> pages = {kSource / "README.md", kSource / "HACKING.md",
                                  kSource / "CHANGELOG.md", kSource / "bench/README.md",
-                                 kSource / "bench/results/README.md"};
-  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs"))
+                                 kSource / "bench/results/README.md",
+                                 kSource / "bench/results/papers.md"};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "docs"))
     if (entry.path().extension() == ".md") pages.push_back(entry.path());
   return pages;
 }
@@ -44,18 +45,20 @@ std::vector<std::string> fenced_blocks(const std::string& text, const std::strin
   return blocks;
 }
 
-/// Returns the words of every line "voxdag COMMAND ..." up to a comment or a pipe.
+/// Returns the words of every line "voxdag COMMAND ..." up to a comment or a pipe, in blocks without
+/// language and in shell scripts.
 std::vector<std::vector<std::string>> documented_commands(const std::string& text) {
   std::vector<std::vector<std::string>> commands;
-  for (const std::string& block : fenced_blocks(text, "")) {
-    std::istringstream lines(block);
-    for (std::string line; std::getline(lines, line);) {
-      std::istringstream words(line.substr(0, line.find_first_of("#|>")));
-      std::vector<std::string> command;
-      for (std::string word; words >> word;) command.push_back(word);
-      if (command.size() > 1 && command[0] == "voxdag") commands.push_back(command);
+  for (const char* language : {"", "sh"})
+    for (const std::string& block : fenced_blocks(text, language)) {
+      std::istringstream lines(block);
+      for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line.substr(0, line.find_first_of("#|>$")));
+        std::vector<std::string> command;
+        for (std::string word; words >> word;) command.push_back(word);
+        if (command.size() > 1 && command[0] == "voxdag") commands.push_back(command);
+      }
     }
-  }
   return commands;
 }
 
@@ -128,9 +131,10 @@ TEST(Docs, EveryLinkLeadsToAFileAndItsHeading) {
 
 TEST(Docs, TheIndexNamesEveryPage) {
   const std::string index = read_text(kSource / "docs/README.md");
-  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs")) {
-    const std::string name = entry.path().filename();
-    if (!name.ends_with(".md") || name == "README.md") continue;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "docs")) {
+    const std::string name = entry.path().lexically_relative(kSource / "docs");
+    // cli.md lists the pages of cli/.
+    if (!name.ends_with(".md") || name == "README.md" || name.starts_with("cli/")) continue;
     EXPECT_NE(index.find("(" + name + ")"), std::string::npos) << name;
   }
 }
