@@ -250,7 +250,7 @@ void add_render_options(const Command& command, Session& session, RenderArgument
             "The picture to write: .png, or .exr for linear light")
       .required();
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
-                 "Width and height in pixels (default: 1920x1080)");
+                 "Width and height in pixels, 1 to 32768 each (default: 1920x1080)");
   Winners& winners = arguments.view.winners;
   const ViewOptions view = add_view_options(command, options.view, winners);
   add_light_options(command, options, winners);
@@ -261,8 +261,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
                "viewer saved; other options win over them");
   add_filter_options(command, arguments);
   add_section_options(command, arguments);
-  command.text("--depth", arguments.depth, "OUT", "Same as --pass depth=OUT");
-  command.text("--normal", arguments.normal, "OUT", "Same as --pass normal=OUT");
+  command.text("--depth", arguments.depth, "OUT", "Short for --pass depth=OUT");
+  command.text("--normal", arguments.normal, "OUT", "Short for --pass normal=OUT");
   command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",
                    "Also write a pass: picture, radiance, depth, normal, occlusion, shadow, steps "
                    "or steps64 to a .exr or .png file; repeatable");
