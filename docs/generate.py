@@ -216,6 +216,17 @@ def summary(header):
     return sentence.rstrip(".:").replace("|", "\\|")
 
 
+def follow_moved(text, public):
+    """Returns the text with the new paths of headers that have moved, where the name tells which one it is."""
+    def moved(match):
+        same_end = [header for header in public if header.endswith("/" + match[1])]
+        same_name = [header for header in public if header.split("/")[-1] == match[1].split("/")[-1]]
+        candidates = same_end or same_name
+        return f"`{candidates[0]}`" if match[1] not in public and len(candidates) == 1 else match[0]
+
+    return re.sub(r"`([a-z_/]+\.hpp)`", moved, text)
+
+
 def check_start(text, public, source):
     """Exits unless the headers that the page says to start with are public and declare the names beside them."""
     for names, headers in re.findall(r"^\| [^|]* \| (`[^|]*) \| ([^|]*\.hpp[^|]*) \|$", text, re.MULTILINE):
@@ -236,6 +247,7 @@ def api_page():
         if line and not line.startswith("#"):
             rooms.setdefault(line.split("/")[0], []).append(line)
     text = (DOCS / "api.md").read_text(encoding="utf-8").split(MARK)[0] + MARK
+    text = follow_moved(text, [header for headers in rooms.values() for header in headers])
     check_start(text, [header for headers in rooms.values() for header in headers], source)
     for room, headers in rooms.items():
         text += f"\n### {room}\n\n| header | content |\n|---|---|\n"
