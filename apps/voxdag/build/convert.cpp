@@ -150,7 +150,8 @@ void add_coarsen_command(const Command& program, Session& session) {
       "coarsen", "Drop levels of a DAG: each one halves the resolution",
       "voxdag coarsen scene.vdag --by 2 -o small.vdag\n\n"
       "A voxel of the result is set if any of the voxels in it is. Colours, normals and material "
-      "ids stay. `voxdag convert --levels` does the same, and can also store them with larger "
+      "ids stay. `voxdag convert --levels` drops levels, too, and can store their values with "
+      "larger "
       "errors.");
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   command

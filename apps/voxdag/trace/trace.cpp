@@ -127,7 +127,7 @@ void add_trace_command(const Command& program, Session& session) {
       program.add("trace", "Cast rays from a NumPy file and write what they hit",
                   "voxdag trace scene.vdag --rays rays.npy -o hits.npy\n\n"
                   "t is measured in lengths of the ray's direction. Hits, normals and colours are "
-                  "the same on every device, to the bit. Without --in-place, a file in the compact "
+                  "equal on every device, to the bit. Without --in-place, a file in the compact "
                   "form is decoded when it is opened.");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
