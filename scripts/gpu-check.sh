@@ -6,7 +6,7 @@
 #   scripts/gpu-check.sh [OPTION...]
 #     --tests        builds and tests, measures nothing
 #     --sanitize     also runs the tests under compute-sanitizer
-#     --out FOLDER   folder of the results (default: bench/results/DEVICE-NAME)
+#     --out FOLDER   folder of the results (default: lab/results/DEVICE-NAME)
 #     --pack FILE    builds for all devices, and packs the programs, their libraries and the scenes
 #                    into FILE, a .tar.gz; needs the CUDA toolkit, but no device
 #     --packed FILE  tests and measures the packed programs; needs only the driver, and a C library
@@ -108,7 +108,7 @@ device=$(nvidia-smi --query-gpu=name --format=csv,noheader | head -n 1) || true
 capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader | head -n 1) || true
 [ -n "$device" ] || die "nvidia-smi finds no device"
 echo "== $device, compute capability $capability"
-: "${folder:=bench/results/$(tr '[:upper:]' '[:lower:]' <<<"$device" | tr -cs 'a-z0-9\n' -)}"
+: "${folder:=lab/results/$(tr '[:upper:]' '[:lower:]' <<<"$device" | tr -cs 'a-z0-9\n' -)}"
 
 work=build/cuda-check
 if [ -n "$packed" ]; then

@@ -16,6 +16,7 @@ voxdag_test_packages=(
   pybind11-dev python3-dev python3-numpy python3-pytest  # the Python module
   libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
   libopenmpi-dev openmpi-bin  # several processes under mpirun
+  doxygen  # the reference of the public headers
   clang clang-format clang-tidy
 )
 

@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -19,10 +20,13 @@ const fs::path kSource = VOXDAG_SOURCE_DIR;
 
 /// Returns every Markdown page of the repository.
 std::vector<fs::path> documents() {
-  std::vector<fs::path> pages = {kSource / "README.md", kSource / "HACKING.md",
-                                 kSource / "CHANGELOG.md", kSource / "bench/README.md",
-                                 kSource / "bench/results/README.md"};
-  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs"))
+  std::vector<fs::path> pages = {kSource / "README.md",
+                                 kSource / "HACKING.md",
+                                 kSource / "CHANGELOG.md",
+                                 kSource / "lab/README.md",
+                                 kSource / "lab/results/README.md",
+                                 kSource / "lab/results/papers.md"};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "docs"))
     if (entry.path().extension() == ".md") pages.push_back(entry.path());
   return pages;
 }
@@ -44,32 +48,36 @@ std::vector<std::string> fenced_blocks(const std::string& text, const std::strin
   return blocks;
 }
 
-/// Returns the words of every line "voxdag COMMAND ..." up to a comment or a pipe.
+/// Returns the words of every line "voxdag COMMAND ..." up to a comment or a pipe, in blocks
+/// without language and in shell scripts.
 std::vector<std::vector<std::string>> documented_commands(const std::string& text) {
   std::vector<std::vector<std::string>> commands;
-  for (const std::string& block : fenced_blocks(text, "")) {
-    std::istringstream lines(block);
-    for (std::string line; std::getline(lines, line);) {
-      std::istringstream words(line.substr(0, line.find_first_of("#|>")));
-      std::vector<std::string> command;
-      for (std::string word; words >> word;) command.push_back(word);
-      if (command.size() > 1 && command[0] == "voxdag") commands.push_back(command);
+  for (const char* language : {"", "sh"})
+    for (const std::string& block : fenced_blocks(text, language)) {
+      std::istringstream lines(block);
+      for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line.substr(0, line.find_first_of("#|>$")));
+        std::vector<std::string> command;
+        for (std::string word; words >> word;) command.push_back(word);
+        if (command.size() > 1 && command[0] == "voxdag") commands.push_back(command);
+      }
     }
-  }
   return commands;
 }
 
 TEST(Docs, EveryCommandShownHasTheOptionsShown) {
   std::set<std::string> seen;
+  std::map<std::string, std::string> helps;
   for (const fs::path& document : documents())
     for (const std::vector<std::string>& command : documented_commands(read_text(document))) {
       seen.insert(command[1]);
       // The options of `voxdag bench build` belong to its second word.
       const bool nested = command[1] == "bench";
-      const std::string help =
-          run_voxdag(nested ? std::vector{command[1], command[2], std::string("--help")}
-                            : std::vector{command[1], std::string("--help")})
-              .out;
+      std::string& help = helps[command[1] + (nested ? " " + command[2] : "")];
+      if (help.empty())
+        help = run_voxdag(nested ? std::vector{command[1], command[2], std::string("--help")}
+                                 : std::vector{command[1], std::string("--help")})
+                   .out;
       for (const std::string& word : command) {
         // "-o" and "--eye", but not "-20,3,1".
         if (word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])))
@@ -128,9 +136,10 @@ TEST(Docs, EveryLinkLeadsToAFileAndItsHeading) {
 
 TEST(Docs, TheIndexNamesEveryPage) {
   const std::string index = read_text(kSource / "docs/README.md");
-  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs")) {
-    const std::string name = entry.path().filename();
-    if (!name.ends_with(".md") || name == "README.md") continue;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "docs")) {
+    const std::string name = entry.path().lexically_relative(kSource / "docs");
+    // cli.md lists the pages of cli/.
+    if (!name.ends_with(".md") || name == "README.md" || name.starts_with("cli/")) continue;
     EXPECT_NE(index.find("(" + name + ")"), std::string::npos) << name;
   }
 }

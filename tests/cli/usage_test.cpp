@@ -23,6 +23,13 @@ TEST(Usage, HelpNamesEveryCommand) {
     EXPECT_NE(result.out.find("\n  " + command + " "), std::string::npos) << command;
 }
 
+TEST(Usage, HelpListsCommandsByFamily) {
+  const std::string help = run_voxdag({"--help"}).out;
+  for (const std::string first : {"Build:\n  scene ", "Edit:\n  combine ", "Inspect:\n  info ",
+                                  "Render and view:\n  render ", "Trace and query:\n  trace "})
+    EXPECT_NE(help.find("\n" + first), std::string::npos) << first;
+}
+
 TEST(Usage, HelpOfEveryCommandHasAnExample) {
   for (const std::string& command : kCommands) {
     const ProcessResult result = run_voxdag({command, "--help"});

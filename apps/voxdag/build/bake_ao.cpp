@@ -36,8 +36,8 @@ void add_bake_options(const Command& command, BakeArguments& arguments,
       .in_group(group);
   command
       .parsed("--ao-resolution", arguments.levels, parse_levels, "N",
-              "With --bake-ao: voxels per side of the octree at which the rays are cast (default: "
-              "those of the ESVO)")
+              "With --bake-ao: voxels per side of the octree at which the rays are cast, at most "
+              "those of the ESVO; fewer take less memory (default: those of the ESVO)")
       .needs(bake)
       .in_group(group);
 }

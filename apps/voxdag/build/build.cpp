@@ -119,9 +119,23 @@ void check_build_arguments(const Command& command, BuildArguments& arguments, Se
 
 void add_build_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<BuildArguments>();
-  const Command command =
-      program.add("build", "Build the sparse voxel DAG or the ESVO of a triangle mesh",
-                  "voxdag build sponza.obj -r 8192 -o sponza.vdag");
+  const Command command = program.add(
+      "build", "Build the sparse voxel DAG or the ESVO of a triangle mesh",
+      "voxdag build sponza.obj -r 8192 -o sponza.vdag\n"
+      "  voxdag build scan.ply --voxel-size 0.5 -o scan.vdag\n"
+      "  voxdag build city.glb -r 16K --bounds 0,0,0,100,100,100 -o block.vdag\n"
+      "  voxdag build FlightHelmet.gltf -r 1024 --color --normal -o helmet.vdag\n"
+      "  voxdag build FlightHelmet.gltf -r 1024 -o helmet.esvo\n"
+      "  voxdag build sibenik.obj -r 2048 --displace stone:0.1:4 -o sibenik.esvo\n\n"
+      "The grid is a cube of 2^L voxels a side. With -r alone, the longest side of the "
+      "mesh's bounding box spans the grid. With --voxel-size alone, the grid is the "
+      "smallest one that holds the mesh. With --bounds, the grid starts at the lower "
+      "corner of the box: with -r, the longest side of the box spans it; with "
+      "--voxel-size, it is the smallest grid that holds the box. The build clips the "
+      "mesh to the grid.\n\n"
+      "By default a DAG stores the shape only: --color, --normal and --material-ids add "
+      "values of all its cells. If a texture cannot be read, build warns and uses the "
+      "material's colour.");
   command
       .text("mesh", session.subject, "MESH",
             "The mesh: OBJ, PLY, STL, OFF, glTF/GLB, or another format if voxdag was built with "
@@ -160,12 +174,12 @@ void add_build_command(const Command& program, Session& session) {
   add_attribute_options(command, arguments->attributes, kDagOptions);
   command
       .flag("--compact", arguments->compact,
-            "Write the compact form: the geometry takes about a quarter of the bytes; every "
-            "command reads it")
+            "Write the compact form: the geometry takes about a quarter of the bytes; those of "
+            "colours, normals and material ids do not change. Every command reads it")
       .in_group(kDagOptions);
   command.parsed("--memory", arguments->memory_limit, parse_memory, "LIMIT",
-                 "Maximum memory, including the program and the mesh: 512M, 16GiB (default: three "
-                 "quarters of the available memory)");
+                 "Maximum memory, including the program and the mesh: 512M, 16GiB. A build that "
+                 "needs more is refused (default: three quarters of the available memory)");
   add_parts_options(command, *arguments);
   add_mesh_access_options(command, arguments->access);
   command.flag("--stats", arguments->stats, "Also print the number of nodes of each level")

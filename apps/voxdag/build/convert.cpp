@@ -117,9 +117,24 @@ void add_work_options(const Command& command, const std::shared_ptr<ConvertArgum
 
 void add_convert_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  const Command command =
-      program.add("convert", "Write a DAG in the compact or the plain form, or with fewer levels",
-                  "voxdag convert scene.vdag --compact -o small.vdag");
+  const Command command = program.add(
+      "convert", "Write a DAG in the compact or the plain form, or with fewer levels",
+      "voxdag convert scene.vdag --compact -o small.vdag\n"
+      "  voxdag convert small.vdag --plain -o scene.vdag\n"
+      "  voxdag convert scene.vdag --levels 10 -o coarse.vdag\n"
+      "  voxdag convert scene.vdag --compact --wire -o to_send.vdag\n\n"
+      "The result depends on the voxels alone: converting there and back gives the same "
+      "bytes. The command holds the whole DAG in memory, refuses a file that needs more "
+      "than --memory, and then writes nothing.\n\n"
+      "Both forms and coarser grids keep colours, normals and material ids. In a coarser "
+      "grid every cell keeps the values that it had as an inner cell of the fine grid. "
+      "--color-bound and --normal-bound let these values change, so that they take fewer "
+      "bytes.\n\n"
+      "Without --wire, rays find the colours, normals and material ids of a cell at once. With "
+      "--wire, a reader decodes all of them before it uses any; they are smaller than `xz -9` "
+      "makes "
+      "them. `voxdag info` tells which form a file has. The web pages of `voxdag export` hold the "
+      "wire form, and `voxdag view` shows it.");
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   add_output_form(command, *arguments);
   command.flag("--wire", arguments->wire,
@@ -135,7 +150,9 @@ void add_coarsen_command(const Command& program, Session& session) {
       "coarsen", "Drop levels of a DAG: each one halves the resolution",
       "voxdag coarsen scene.vdag --by 2 -o small.vdag\n\n"
       "A voxel of the result is set if any of the voxels in it is. Colours, normals and material "
-      "ids stay; voxdag convert --levels can also store them with larger errors.");
+      "ids stay. `voxdag convert --levels` drops levels, too, and can store their values with "
+      "larger "
+      "errors.");
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   command
       .optional_number<int>("--by", arguments->coarsen_by,

@@ -93,12 +93,19 @@ void import(const ImportArguments& arguments, Session& session) {
 void add_import_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ImportArguments>();
   const Command command = program.add("import", "Build a DAG from a file of voxels or points",
-                                      "voxdag import cloud.xyz -r 2048 -o cloud.vdag");
+                                      "voxdag import cloud.xyz -r 2048 -o cloud.vdag\n"
+                                      "  voxdag import points.npy --voxel-size 0.05 --bounds "
+                                      "0,0,0,100,100,20 -o street.vdag\n"
+                                      "  voxdag import castle.vox -o castle.vdag\n"
+                                      "  voxdag import head.nii.gz --threshold 300 -o head.vdag\n\n"
+                                      "The file may have any number of points or voxels, in any "
+                                      "order. Each point sets the voxel that it lies in. The DAG "
+                                      "gets the colours of the file.");
   command
       .text("file", session.subject, "FILE",
             "Points: .ply, .las, .pcd, .xyz, .txt, .csv, or .npy of N x 3 floats. Voxels: .vox, "
-            ".binvox, or .npy of N x 3 int32. Volumes: .npy of X x Y x Z, .nrrd, .nii, .vdb, or a "
-            "folder of .png slices")
+            ".binvox, or .npy of N x 3 int32. Volumes: .npy of X x Y x Z, .nrrd, .nhdr, .nii, "
+            ".nii.gz, .vdb, or a folder of .png slices")
       .required();
   command.text("-o,--output", arguments->output, "OUT", "The .vdag file to write").required();
   ImportOptions& options = arguments->options;

@@ -50,10 +50,17 @@ Option Option::not_with(const Option& other) const {
 
 Command::Command(CLI::App& app) : app_(&app), rules_(std::make_shared<EffectRules>()) {}
 
+Command Command::with_heading(const std::string& heading) const {
+  Command command = *this;
+  command.heading_ = heading;
+  return command;
+}
+
 Command Command::add(const std::string& name, const std::string& purpose,
                      const std::string& footer) const {
   CLI::App& command = *app_->add_subcommand(name, purpose);
   command.footer("Example:\n  " + footer);
+  if (!heading_.empty()) command.group(heading_);
   return Command(command);
 }
 

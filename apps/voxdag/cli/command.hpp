@@ -23,8 +23,10 @@ class Command {
  public:
   explicit Command(CLI::App& app);
 
-  /// Adds a subcommand. `purpose` is one line. `footer` is the end of the help: an example, and
-  /// notes.
+  /// Returns a handle whose add() lists subcommands under this heading of the help.
+  Command with_heading(const std::string& heading) const;
+  /// Adds a subcommand. `purpose` is one line. `footer` is the end of the help: an example, more
+  /// examples on lines that begin with two spaces, and notes, one paragraph a line.
   Command add(const std::string& name, const std::string& purpose, const std::string& footer) const;
   /// Passes all arguments that follow, --help among them, to `run` when the command line was parsed.
   void pass_on(std::function<void(std::vector<std::string>)> run) const;
@@ -128,6 +130,7 @@ class Command {
 
   CLI::App* app_;
   std::shared_ptr<EffectRules> rules_;
+  std::string heading_;  ///< Heading of the subcommands that add() adds; empty: the usual one.
 };
 
 }  // namespace voxdag::cli

@@ -11,30 +11,35 @@ namespace {
 
 constexpr std::size_t kNameColumns = 30, kLineColumns = 96;
 
-/// Returns the name of an option and its description, broken into lines of at most kLineColumns
-/// columns.
+/// Returns the text, broken into lines of at most kLineColumns columns that start in column
+/// `indent`. The first line starts there without being indented.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string lines;
+  std::size_t column = indent;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (column != indent && column + 1 + word.size() > kLineColumns) {
+      lines += "\n" + std::string(indent, ' ');
+      column = indent;
+    }
+    if (column != indent) {
+      lines += " ";
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
+
+/// Returns the name of an option and its description.
 std::string help_row(const std::string& name, const std::string& description) {
   std::string text = "  " + name;
-  std::size_t column = text.size();
-  const auto begin_line = [&] {
+  if (text.size() + 2 > kNameColumns)
     text += "\n" + std::string(kNameColumns, ' ');
-    column = kNameColumns;
-  };
-  if (column + 2 > kNameColumns) {
-    begin_line();
-  } else {
+  else
     text.resize(kNameColumns, ' ');
-    column = kNameColumns;
-  }
-  std::istringstream words(description);
-  for (std::string word; words >> word;) {
-    const bool is_first = column == kNameColumns;
-    if (!is_first && column + 1 + word.size() > kLineColumns) begin_line();
-    if (column != kNameColumns) text += " ";
-    column += word.size() + (column != kNameColumns ? 1 : 0);
-    text += word;
-  }
-  return text + "\n";
+  return text + wrapped(description, kNameColumns) + "\n";
 }
 
 /// Formats the help like CLI11, but with line breaks, and without lists of other options.
@@ -51,6 +56,14 @@ class HelpFormatter : public CLI::Formatter {
   }
   std::string make_subcommand(const CLI::App* command) const override {
     return help_row(command->get_name(), command->get_description());
+  }
+  /// Breaks paragraphs into lines, and keeps lines that begin with two spaces, which are examples.
+  std::string make_footer(const CLI::App* app) const override {
+    std::string text;
+    std::istringstream lines(app->get_footer());
+    for (std::string line; std::getline(lines, line);)
+      text += (line.starts_with("  ") ? line : wrapped(line, 0)) + "\n";
+    return text;
   }
 };
 
@@ -85,11 +98,12 @@ std::string reason_of(const CLI::App& app, const CLI::ParseError& error) {
 }  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& purpose,
-                         const std::string& version)
+                         const std::string& version, const std::string& notes)
     : app_(std::make_unique<CLI::App>(purpose, program)) {
   app_->set_version_flag("--version", version, "Print the version and exit");
   app_->set_help_flag("-h,--help", "Print this help and exit");
   app_->require_subcommand(1);
+  app_->footer(notes);
   app_->formatter(std::make_shared<HelpFormatter>());
 }
 

@@ -9,8 +9,10 @@ namespace voxdag::cli {
 
 class CommandLine {
  public:
-  /// Makes the parser of `program`; `version` is the text that --version prints.
-  CommandLine(const std::string& program, const std::string& purpose, const std::string& version);
+  /// Makes the parser of `program`; `version` is the text that --version prints, `notes` the end of
+  /// the help.
+  CommandLine(const std::string& program, const std::string& purpose, const std::string& version,
+              const std::string& notes = "");
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;

@@ -51,9 +51,16 @@ void work(Session& session) {
 }
 
 int run(int argc, char** argv, const Program& program) {
-  CommandLine line(program.name, program.purpose, program.version);
+  CommandLine line(program.name, program.purpose, program.name + " " + program.version,
+                   "`" + program.name +
+                       " COMMAND --help` prints the options of a command, with an example.\n\n"
+                       "Results go to stdout; progress, warnings and errors go to stderr. Exit "
+                       "status: 0 success, 1 failure, 2 wrong usage, 128 + N if signal N ended the "
+                       "work.");
   Session session;
-  for (const AddCommand add : program.commands) add(line.root(), session);
+  for (const Family& family : program.families)
+    for (const AddCommand add : family.commands)
+      add(line.root().with_heading(family.heading), session);
   try {
     if (!line.parse(argc, argv)) {
       check_output();

@@ -11,10 +11,17 @@ namespace voxdag::cli {
 /// Declares a subcommand on the parser.
 using AddCommand = void (*)(const Command& program, Session& session);
 
-struct Program {
-  std::string name, purpose;  ///< "voxdag", and the first line of its help.
-  std::string version;        ///< What --version prints.
+/// The subcommands of one heading of the help.
+struct Family {
+  const char* heading;
   std::vector<AddCommand> commands;
+};
+
+struct Program {
+  std::string name;     ///< "voxdag"
+  std::string version;  ///< "0.1.0"
+  std::string purpose;  ///< The first line of the help.
+  std::vector<Family> families;
 };
 
 /// Parses the arguments, runs the chosen command, and returns the exit status.

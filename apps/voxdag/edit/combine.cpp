@@ -108,10 +108,14 @@ void run_diff(const DiffArguments& arguments, Session& session) {
 
 void add_combine_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<CombineArguments>();
-  const Command command =
-      program.add("combine", "Write the union, intersection or difference of two DAGs",
-                  "voxdag combine body.vdag hole.vdag --subtract -o drilled.vdag\n\n"
-                  "Grids of other sizes and places are aligned if their voxels coincide.");
+  const Command command = program.add(
+      "combine", "Write the union, intersection or difference of two DAGs",
+      "voxdag combine body.vdag hole.vdag --subtract -o drilled.vdag\n\n"
+      "The grids may have other sizes and places if their voxels coincide, within "
+      "1/1000 of a voxel: `voxdag build --voxel-size` and `voxdag build --bounds` make "
+      "such grids. Other grids are refused. The result of --union and --xor gets the "
+      "smallest grid that starts at the lower corner of both and holds both; the result "
+      "of --intersect and --subtract keeps the grid of A.");
   command.text("first", session.subject, "A", "A .vdag file").required();
   command.text("second", arguments->second, "B", "Another .vdag file").required();
   const Option all = command.flag("--union", arguments->is_union, "Voxels of A, of B or of both");
@@ -139,9 +143,11 @@ void add_combine_command(const Command& program, Session& session) {
 
 void add_diff_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<DiffArguments>();
-  const Command command =
-      program.add("diff", "Count the voxels in which two DAGs differ, and write them",
-                  "voxdag diff before.vdag after.vdag -o changed.vdag");
+  const Command command = program.add(
+      "diff", "Count the voxels in which two DAGs differ, and write them",
+      "voxdag diff before.vdag after.vdag -o changed.vdag\n\n"
+      "Counts the voxels that only A has, that only B has, and that both have. The grids "
+      "are aligned as by `voxdag combine --xor`.");
   command.text("first", session.subject, "A", "A .vdag file").required();
   command.text("second", arguments->second, "B", "Another .vdag file").required();
   EditArguments& edit = arguments->edit;

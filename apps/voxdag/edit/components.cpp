@@ -80,7 +80,10 @@ void add_components_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ComponentsArguments>();
   const Command command =
       program.add("components", "Count the connected components of a DAG, and keep the large ones",
-                  "voxdag components scan.vdag --largest -o body.vdag");
+                  "voxdag components scan.vdag --largest -o body.vdag\n"
+                  "  voxdag components scan.vdag --at-least 100 -o clean.vdag\n\n"
+                  "Voxels that are neighbours belong to one component. The command lists the ten "
+                  "largest sizes; --json lists all.");
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   add_neighbours_option(command, arguments->neighbours);
   EditArguments& edit = arguments->edit;

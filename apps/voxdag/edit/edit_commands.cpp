@@ -180,11 +180,15 @@ void add_grow_command(const Command& program, Session& session, bool is_dilation
     Neighbours neighbours = Neighbours::k26;
   };
   const Command command =
-      is_dilation ? program.add("dilate", "Add the voxels that are near those of a DAG",
-                                "voxdag dilate scene.vdag --steps 3 -o thick.vdag")
-                  : program.add("erode", "Remove the voxels of a DAG that are near empty places",
-                                "voxdag erode solid.vdag --steps 3 -o thin.vdag\n\n"
-                                "All places outside the grid are empty.");
+      is_dilation
+          ? program.add("dilate", "Add the voxels that are near those of a DAG",
+                        "voxdag dilate scene.vdag --steps 3 -o thick.vdag\n\n"
+                        "The result also has all voxels that are --steps steps from voxel to "
+                        "neighbour or less away.")
+          : program.add("erode", "Remove the voxels of a DAG that are near empty places",
+                        "voxdag erode solid.vdag --steps 3 -o thin.vdag\n\n"
+                        "The result has the voxels that are more than --steps steps away "
+                        "from every empty place. All places outside the grid are empty.");
   const auto arguments = std::make_shared<Arguments>();
   command.number("--steps", arguments->steps, NumberRange::whole(1, std::int64_t{1} << kMaxLevels),
                  "N", "Number of steps from voxel to neighbour");

@@ -98,7 +98,26 @@ void add_export_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ExportArguments>();
   const Command command = program.add(
       "export", "Write the voxels in the formats of other programs, or as a page that shows them",
-      "voxdag export scene.vdag -o scene.glb\n  voxdag export scene.vdag -o scene.html");
+      "voxdag export scene.vdag -o scene.glb\n"
+      "  voxdag export scene.vdag -o cubes.ply --faces\n"
+      "  voxdag export scene.vdag -o part.raw --window 0,0,0,512,512,512\n"
+      "  voxdag export solid.vdag -o layers/ --slices z\n"
+      "  voxdag export scene.vdag -o scene.html\n"
+      "  voxdag export scene.vdag -o site/\n\n"
+      "An ESVO exports its voxels of the finest level. The outputs have the colours of the file, "
+      "or "
+      "of --look, as far as their formats can. Formats that cannot hold a place in the world come "
+      "with OUT.json, which has it.\n\n"
+      "A page shows the whole DAG with its colours and normals; --levels, --color-bound, "
+      "--normal-bound and --drop-attributes make it smaller. The command prints its size, and "
+      "warns "
+      "if an .html file has more than 64 MiB: a browser reads such a file completely, but reads "
+      "only "
+      "the levels that it shows from a folder.\n\n"
+      "A folder that exists is replaced as a whole, and only if it has no files but those of an "
+      "older "
+      "page. It stays if the export fails. `kill -9`, or a second Ctrl-C, can leave the unfinished "
+      "folder OUT.voxdag-PID-N.");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
       .text("-o,--output", arguments->output, "OUT",

@@ -298,7 +298,18 @@ void add_verify_command(const Command& program, Session& session) {
       "verify",
       "Check a .vdag or .esvo file: checksums, structure, minimality; with --mesh also its voxels "
       "and attributes",
-      "voxdag verify sponza.vdag --mesh sponza.obj");
+      "voxdag verify sponza.vdag --mesh sponza.obj --samples 100000\n\n"
+      "Checks the container, the checksums, the metadata and the structure; for a DAG also the "
+      "canonical order, the minimality, the counts and the attributes. A DAG in the compact form "
+      "is "
+      "decoded and encoded again, which must give the same bytes. The exit status is 1 if a check "
+      "fails.\n\n"
+      "With --mesh, the command checks a random sample of a DAG's cells, and of its colours, "
+      "normals "
+      "and materials. For an ESVO it checks that random points of the surface, among them corners "
+      "and points on edges, lie in a leaf and between the planes of every contour above the leaf. "
+      "If "
+      "a texture file displaced the surface, give the --displace of the build.");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   const Option mesh =
       command.text("--mesh", arguments->mesh, "MESH",

@@ -234,8 +234,17 @@ void check_query_arguments(const QueryArguments& arguments, Session& session) {
 
 void add_query_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<QueryArguments>();
-  const Command command = program.add("query", "Answer questions about the voxels of a DAG",
-                                      "voxdag query scene.vdag --points points.npy -o answers.npy");
+  const Command command =
+      program.add("query", "Answer questions about the voxels of a DAG",
+                  "voxdag query scene.vdag --points points.npy -o answers.npy\n"
+                  "  voxdag query scene.vdag --segments segments.npy -o sight.npy\n"
+                  "  voxdag query scene.vdag --heights y -o heights.npy\n"
+                  "  voxdag query scene.vdag --count --window "
+                  "0,0,0,4096,4096,4096\n"
+                  "  voxdag query scene.vdag --area\n\n"
+                  "Each call answers one kind of question. All answers are "
+                  "exact. Distances are computed in double precision and rounded "
+                  "to float32.");
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   std::vector<Option> kinds;
   const auto add = [&kinds](Option option) {

@@ -70,9 +70,18 @@ void render(RenderArguments& arguments, Session& session) {
 
 void add_render_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<RenderArguments>();
-  const Command command =
-      program.add("render", "Render a picture with sun, sky, shadows and ambient occlusion",
-                  "voxdag render scene.vdag -o scene.png --size 1920x1080");
+  const Command command = program.add(
+      "render", "Render a picture with sun, sky, shadows and ambient occlusion",
+      "voxdag render scene.vdag -o scene.png --size 1920x1080\n"
+      "  voxdag render scene.vdag -o scene.exr --eye 8,3,0 --target 0,3,0 --fov 60 --pass "
+      "depth=z.exr\n"
+      "  voxdag render scene.vdag -o lamp.png --no-sun --sky 0.1 --light sphere:0,3,0,0.2\n"
+      "  voxdag render scene.vdag --mesh scene.obj -o triangles.png\n"
+      "  voxdag render scene.vdag --path flight.json -o frame_%04d.png\n\n"
+      "The command chooses each value that you do not give so that the picture shows the "
+      "scene well. It prints the view and the exposure as options that give the same "
+      "picture again. A scene without ground, such as a plant in the air, does not show "
+      "which way is up: give --up 0,0,1 if z is up.");
   add_render_options(command, session, *arguments);
   command.when_parsed([arguments, &session] {
     check_render_arguments(*arguments, session);

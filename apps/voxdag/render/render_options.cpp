@@ -111,7 +111,8 @@ void add_light_options(const Command& command, RenderOptions& options, Winners& 
   command.repeated(
       "--light", options.lights, parse_light, "KIND:...",
       "Add a light: point:X,Y,Z, sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS or "
-      "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable");
+      "rect:X,Y,Z,UX,UY,UZ,VX,VY,VZ, each optionally with ,R,G,B for its colour; repeatable, up to "
+      "15 times");
   winners.push_back(command.number("--sky", options.sky, NumberRange::from(0, RenderLimits::kSky),
                                    "FACTOR", "Factor that scales the light of the sky; 0: black"));
   const auto has_lights = [&options] { return options.with_sun || !options.lights.empty(); };
@@ -144,15 +145,17 @@ void add_occlusion_options(const Command& command, RenderOptions& options, Winne
           .only_if(has_occlusion, "with --ao 0"));
   winners.push_back(
       command
-          .number("--ao-cone", options.occlusion_cone,
-                  NumberRange::from(0, RenderLimits::kOcclusionCone), "SR",
-                  "End ambient occlusion rays at cells of this solid angle, such as 0.07; 0: never")
+          .number(
+              "--ao-cone", options.occlusion_cone,
+              NumberRange::from(0, RenderLimits::kOcclusionCone), "SR",
+              "End ambient occlusion rays at cells of this solid angle, such as 0.07: darker, and "
+              "faster on rough surfaces; 0: never")
           .only_if(has_occlusion, "with --ao 0"));
 }
 
 void add_quality_options(const Command& command, RenderOptions& options, Winners& winners) {
   command.number("--spp,--samples", options.samples_per_pixel, NumberRange::whole(1, 4096), "N",
-                 "Samples per pixel");
+                 "Samples per pixel; they share its shadow and occlusion rays");
   winners.push_back(command.number(
       "--lod", options.lod_pixels, NumberRange::from(0, RenderLimits::kLodPixels), "PIXELS",
       "End rays at cells of this size in the picture; 0: always at voxels"));
@@ -212,12 +215,12 @@ void add_section_options(const Command& command, RenderArguments& arguments) {
   Winners& winners = arguments.view.winners;
   winners.push_back(command
                         .parsed("--section-box", section.box, parse_box, "X0,Y0,Z0,X1,Y1,Z1",
-                                "Show only what is in this box, in world units")
+                                "Show only what is in this box, in world units; not with --mesh")
                         .only_if(has_no_mesh, "with --mesh"));
   winners.push_back(command
                         .parsed("--section-plane", section.plane, parse_plane, "PX,PY,PZ,NX,NY,NZ",
                                 "Remove the side of the plane through the point P to which the "
-                                "normal N points, in world units")
+                                "normal N points, in world units; not with --mesh")
                         .only_if(has_no_mesh, "with --mesh"));
 }
 
@@ -247,7 +250,7 @@ void add_render_options(const Command& command, Session& session, RenderArgument
             "The picture to write: .png, or .exr for linear light")
       .required();
   command.parsed("--size", arguments.size, parse_image_size, "WxH",
-                 "Width and height in pixels (default: 1920x1080)");
+                 "Width and height in pixels, 1 to 32768 each (default: 1920x1080)");
   Winners& winners = arguments.view.winners;
   const ViewOptions view = add_view_options(command, options.view, winners);
   add_light_options(command, options, winners);
@@ -258,8 +261,8 @@ void add_render_options(const Command& command, Session& session, RenderArgument
                "viewer saved; other options win over them");
   add_filter_options(command, arguments);
   add_section_options(command, arguments);
-  command.text("--depth", arguments.depth, "OUT", "Same as --pass depth=OUT");
-  command.text("--normal", arguments.normal, "OUT", "Same as --pass normal=OUT");
+  command.text("--depth", arguments.depth, "OUT", "Short for --pass depth=OUT");
+  command.text("--normal", arguments.normal, "OUT", "Short for --pass normal=OUT");
   command.repeated("--pass", arguments.passes, parse_pass, "NAME=OUT",
                    "Also write a pass: picture, radiance, depth, normal, occlusion, shadow, steps "
                    "or steps64 to a .exr or .png file; repeatable");

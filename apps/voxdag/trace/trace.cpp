@@ -125,7 +125,10 @@ void add_trace_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<TraceArguments>();
   const Command command =
       program.add("trace", "Cast rays from a NumPy file and write what they hit",
-                  "voxdag trace scene.vdag --rays rays.npy -o hits.npy");
+                  "voxdag trace scene.vdag --rays rays.npy -o hits.npy\n\n"
+                  "t is measured in lengths of the ray's direction. Hits, normals and colours are "
+                  "equal on every device, to the bit. Without --in-place, a file in the compact "
+                  "form is decoded when it is opened.");
   command.text("file", session.subject, "FILE", "The .vdag or .esvo file").required();
   command
       .text("--rays", arguments->rays, "RAYS.npy",

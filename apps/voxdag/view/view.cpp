@@ -24,8 +24,16 @@ void view(const ViewArguments& arguments, Session& session) {
 
 void add_view_command(const Command& program, Session& session) {
   const auto arguments = std::make_shared<ViewArguments>();
-  const Command command =
-      program.add("view", "Show a DAG in the browser", "voxdag view scene.vdag");
+  const Command command = program.add(
+      "view", "Show a DAG in the browser",
+      "voxdag view scene.vdag\n"
+      "  voxdag view scene.vdag --port 8080 --no-open\n\n"
+      "Starts a server, prints the address of the page as one line on stdout, and opens "
+      "it with xdg-open if there is a display (DISPLAY or WAYLAND_DISPLAY). Ctrl-C ends "
+      "the server at once.\n\n"
+      "A plain file of any size is served within a second: files of up to 32 MiB are "
+      "checked completely, larger ones in their header, chunk table and metadata. A "
+      "compact file is decoded first. An ESVO is refused.");
   command.text("file", session.subject, "FILE", "The .vdag file, in either form").required();
   command.number("--port", arguments->serve.port, NumberRange::whole(0, 65535), "N",
                  "Port of the server; 0: any free one");

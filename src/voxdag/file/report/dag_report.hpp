@@ -50,7 +50,7 @@ DagReport report_of(const Dag& dag, const VdagMetadata& metadata, std::uint64_t 
 /// Returns the bytes of a compact DAG whose head has `head_bytes`.
 CompactBytes bytes_of(const CompactSvdagView& compact, std::uint64_t head_bytes);
 
-/// Returns the keys of `info --json`; docs/cli.md lists them.
+/// Returns the keys of `info --json`; docs/json.md lists them.
 nlohmann::ordered_json dag_json(const DagReport& report);
 
 /// Returns the placement, then SVO and DAG side by side: nodes, bytes, bits per voxel.

@@ -23,7 +23,7 @@ struct EsvoReport {
 /// Returns the report of an octree that was parsed from a file of `file_bytes` bytes.
 EsvoReport report_of(const EsvoContents& contents, std::uint64_t file_bytes);
 
-/// Returns the keys of `info --json`; docs/cli.md lists them.
+/// Returns the keys of `info --json`; docs/json.md lists them.
 nlohmann::ordered_json esvo_json(const EsvoReport& report);
 
 /// Returns a table of grid and placement, counts, and bytes by purpose.
