@@ -3,13 +3,13 @@
 #include <limits>
 
 #include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/file/vdag_file.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 int main(int argc, char** argv) try {
   if (argc != 3) return std::fprintf(stderr, "usage: %s MESH OUT.vdag\n", argv[0]), 2;

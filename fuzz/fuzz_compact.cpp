@@ -13,10 +13,10 @@
 #include "support/brute_svdag.hpp"
 #include "support/compact_walk.hpp"
 #include "support/number_colors.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag {

@@ -14,16 +14,24 @@ voxdag_packages=(
 voxdag_test_packages=(
   libgtest-dev zstd python3-matplotlib
   pybind11-dev python3-dev python3-numpy python3-pytest  # the Python module
-  libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
   libopenmpi-dev openmpi-bin  # several processes under mpirun
   doxygen  # the reference of the public headers
-  clang clang-format clang-tidy
+  clang-format
+)
+
+# The tests of the page run under Node; one from elsewhere serves, too.
+command -v node >/dev/null || voxdag_test_packages+=(nodejs)
+
+# What `scripts/test.sh --extended` and `--tidy` need beside.
+voxdag_extended_packages=(
+  libopenvdb-dev libnanovdb-dev libboost-dev  # .vdb and .nvdb volumes
+  clang clang-tidy
 )
 
 # The tests of the viewer in browsers skip themselves without these.
 voxdag_browser_packages=(chromium firefox-esr xvfb xauth)
 # A Node from elsewhere brings its own npm, which conflicts with Debian's package.
-command -v node >/dev/null && command -v npm >/dev/null || voxdag_browser_packages+=(nodejs npm)
+command -v npm >/dev/null || voxdag_browser_packages+=(npm)
 
 # The tests that open exports with programs of others skip themselves without these, and without the
 # npm packages of tests/interop.

@@ -1,24 +1,29 @@
 #!/usr/bin/env bash
-# Builds voxdag with warnings as errors and runs every test, on a Debian 12 that has only git.
+# Builds voxdag with warnings as errors and tests it, on a Debian 12 that has only git.
 #
-#   scripts/test.sh           formatting, the library under clang, everything under g++, the tests
-#   scripts/test.sh --tidy    also builds the programs under clang, runs clang-tidy and looks for
-#                             types that are defined twice (takes minutes more)
+#   scripts/test.sh             formatting, the build under g++, the tests of what a change can break
+#   scripts/test.sh --extended  also the library under clang, a Debug build, voxdag-lab, OpenVDB, CUDA's
+#                               code on the host, browsers, programs of others, jobs that are killed
+#   scripts/test.sh --tidy      also builds each source by itself under clang, runs clang-tidy and looks
+#                               for types that are defined twice
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
 
-usage() { sed -n '2,6s/^# \{0,1\}//p' "$0"; }
-tidy=no
-case "${1-}" in
-  "") programs=OFF ;;
-  --tidy) tidy=yes programs=ON ;;
-  -h | --help) usage; exit 0 ;;
-  *) usage >&2; exit 2 ;;
-esac
+usage() { sed -n '2,9s/^# \{0,1\}//p' "$0"; }
+extended=no tidy=no
+for argument in "$@"; do
+  case "$argument" in
+    --extended) extended=yes ;;
+    --tidy) tidy=yes ;;
+    -h | --help) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+  esac
+done
 
-install_packages "${voxdag_packages[@]}" "${voxdag_test_packages[@]}"
 jobs=$(nproc)
+echo "== packages"
+install_packages "${voxdag_packages[@]}" "${voxdag_test_packages[@]}"
 
 # Installs the npm packages of a folder. npm writes its copy of package-lock.json when it has installed
 # all of them.
@@ -28,26 +33,39 @@ install_npm() {
     npm ci --no-audit --no-fund --loglevel=error
 }
 # Some tests skip themselves without these packages.
-(install_packages "${voxdag_browser_packages[@]}" && install_npm tests/browser) ||
-  echo "Skipping the tests of the viewer in browsers: the browsers or the npm packages could not be installed"
-install_packages "${voxdag_interop_packages[@]}" ||
-  echo "Skipping tests with programs of others: Debian's packages could not be installed"
-(install_npm tests/interop) ||
-  echo "Skipping tests with programs of others: npm's packages could not be installed"
+if [ "$extended" = yes ]; then
+  install_packages "${voxdag_extended_packages[@]}"
+  (install_packages "${voxdag_browser_packages[@]}" && install_npm tests/browser) ||
+    echo "Skipping the tests of the viewer in browsers: the browsers or the npm packages could not be installed"
+  install_packages "${voxdag_interop_packages[@]}" ||
+    echo "Skipping tests with programs of others: Debian's packages could not be installed"
+  (install_npm tests/interop) ||
+    echo "Skipping tests with programs of others: npm's packages could not be installed"
+fi
 
 echo "== clang-format"
 find . -name '*.[ch]pp' -not -path './build*' -print0 |
   xargs -0 -r clang-format --dry-run -Werror
 
-echo "== clang"
-cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=$programs >/dev/null
-cmake --build --preset clang -- -j "$jobs"
-
+# The ordinary tests do without OpenVDB and nvcc, which take minutes to compile.
+options=(-DVOXDAG_EXTENDED_TESTS=OFF -DVOXDAG_BUILD_LAB=OFF -DVOXDAG_CUDA=OFF -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=ON)
+[ "$extended" = no ] ||
+  options=(-DVOXDAG_EXTENDED_TESTS=ON -DVOXDAG_BUILD_LAB=ON -DVOXDAG_CUDA=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenVDB=OFF)
 echo "== g++"
-cmake --preset release -DVOXDAG_WERROR=ON -DVOXDAG_PYTHON=ON >/dev/null
+cmake --preset release -DVOXDAG_WERROR=ON -DVOXDAG_PYTHON=ON "${options[@]}" >/dev/null
 cmake --build --preset release -- -j "$jobs"
 
+if [ "$extended" = yes ]; then
+  echo "== clang"
+  cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=OFF >/dev/null
+  cmake --build --preset clang -- -j "$jobs"
+fi
+
 if [ "$tidy" = yes ]; then
+  echo "== clang, each source by itself"
+  cmake --preset clang -DVOXDAG_WERROR=ON -DVOXDAG_BUILD_APPS=ON -DVOXDAG_BUILD_LAB=ON -DCMAKE_UNITY_BUILD=OFF >/dev/null
+  cmake --build --preset clang -- -j "$jobs"
+
   echo "== clang-tidy"
   # The sources that the clang build compiles: optional parts only if their packages were found.
   sed -n 's/^ *"file": "\(.*\.cpp\)",\?$/\1/p' build/clang/compile_commands.json | sort -u |
@@ -64,9 +82,22 @@ if [ -z "${VOXDAG_SCENES-}" ] && [ -f ../shared/scenes/unpack.sh ]; then
   export VOXDAG_SCENES=$PWD/build/scenes
 fi
 
-echo "== tests"
-ctest --preset release -j "$jobs" --no-tests=error || {
-  echo "== the tests that failed, again, one by one: their output comes last"
-  ctest --preset release --rerun-failed || true
-  exit 1
+# run_tests PRESET [ctest option...]
+run_tests() {
+  ctest --preset "$1" -j "$jobs" --no-tests=error "${@:2}" || {
+    echo "== the tests that failed, again, one by one: their output comes last"
+    ctest --preset "$1" --rerun-failed -O build/rerun.log || true
+    exit 1
+  }
 }
+if [ "$extended" = yes ]; then
+  echo "== tests of a Debug build"
+  cmake --preset debug -DVOXDAG_WERROR=ON -DVOXDAG_CUDA=OFF >/dev/null
+  cmake --build --preset debug --target library_tests -- -j "$jobs"
+  run_tests debug -R "^(svdag|esvo|attributes|compact|wire|file|model|algebra|io|parallel|core)\."
+  echo "== tests"
+  run_tests release
+else
+  echo "== tests"
+  run_tests release -LE extended
+fi

@@ -15,13 +15,13 @@
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
-#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/wire/wire_values.hpp"
-#include "voxdag/core/parallel/parallel_for.hpp"
-#include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag::lab {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "lab/attributes/ms_ssim.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/cpu/cpu_scene.hpp"
-#include "voxdag/stored/attributes/stored_attributes.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/render/view.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
 
 namespace voxdag::lab {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "voxdag/builders/esvo/encode/encode_color_block.hpp"
-#include "voxdag/stored/attributes/numbered_cell.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/stored/attributes/numbered_cell.hpp"
 
 namespace voxdag::lab {
 namespace {

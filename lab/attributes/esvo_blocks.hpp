@@ -6,9 +6,9 @@
 /// (stored/esvo/color_block.hpp). The colour of the root is not stored.
 #include <vector>
 
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/attributes/cell_index.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::lab {
 

@@ -3,11 +3,11 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cli/mesh_input.hpp"
+#include "cli/parse.hpp"
 #include "lab/attributes/bench_attributes.hpp"
 #include "lab/commands/bench_output.hpp"
 #include "lab/commands/commands.hpp"
-#include "cli/mesh_input.hpp"
-#include "cli/parse.hpp"
 
 namespace voxdag::lab {
 namespace {

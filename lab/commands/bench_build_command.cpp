@@ -3,16 +3,16 @@
 #include <memory>
 #include <stdexcept>
 
-#include "lab/commands/bench_output.hpp"
-#include "lab/build/bench_build.hpp"
-#include "lab/build/bench_report.hpp"
-#include "lab/rivals/command_rival.hpp"
-#include "lab/commands/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
+#include "lab/build/bench_build.hpp"
+#include "lab/build/bench_report.hpp"
+#include "lab/commands/bench_output.hpp"
+#include "lab/commands/commands.hpp"
+#include "lab/rivals/command_rival.hpp"
+#include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
-#include "voxdag/builders/solid/solid_settings.hpp"
 
 namespace voxdag::lab {
 namespace {

@@ -4,11 +4,11 @@
 #include <memory>
 #include <stdexcept>
 
-#include "lab/commands/bench_output.hpp"
-#include "lab/compact/bench_compact.hpp"
-#include "lab/commands/commands.hpp"
 #include "cli/mesh_input.hpp"
 #include "cli/parse.hpp"
+#include "lab/commands/bench_output.hpp"
+#include "lab/commands/commands.hpp"
+#include "lab/compact/bench_compact.hpp"
 
 namespace voxdag::lab {
 namespace {

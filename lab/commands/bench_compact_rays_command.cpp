@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "lab/commands/bench_output.hpp"
-#include "lab/compact_rays/compact_rays.hpp"
-#include "lab/commands/commands.hpp"
 #include "cli/parse.hpp"
+#include "lab/commands/bench_output.hpp"
+#include "lab/commands/commands.hpp"
+#include "lab/compact_rays/compact_rays.hpp"
 #include "voxdag/file/model/scene_model.hpp"
 
 namespace voxdag::lab {

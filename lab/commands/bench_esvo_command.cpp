@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "lab/commands/bench_output.hpp"
-#include "lab/esvo/bench_esvo.hpp"
-#include "lab/report/bench_machine.hpp"
-#include "lab/commands/commands.hpp"
 #include "cli/device.hpp"
 #include "cli/parse.hpp"
+#include "lab/commands/bench_output.hpp"
+#include "lab/commands/commands.hpp"
+#include "lab/esvo/bench_esvo.hpp"
+#include "lab/report/bench_machine.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag::lab {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "lab/report/bench_machine.hpp"
-#include "lab/report/charts.hpp"
 #include "cli/command.hpp"
 #include "cli/output_files.hpp"
 #include "cli/session.hpp"
+#include "lab/report/bench_machine.hpp"
+#include "lab/report/charts.hpp"
 
 namespace voxdag::lab {
 using namespace cli;

@@ -9,12 +9,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "lab/papers/paper_scenes.hpp"
-#include "lab/reproduce/bench_papers.hpp"
-#include "lab/commands/commands.hpp"
 #include "cli/device.hpp"
 #include "cli/job.hpp"
 #include "cli/parse.hpp"
+#include "lab/commands/commands.hpp"
+#include "lab/papers/paper_scenes.hpp"
+#include "lab/reproduce/bench_papers.hpp"
 #include "voxdag/file/report/human.hpp"
 
 namespace voxdag::lab {

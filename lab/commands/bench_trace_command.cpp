@@ -10,19 +10,19 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cli/device.hpp"
+#include "cli/mesh_input.hpp"
+#include "cli/parse.hpp"
 #include "lab/commands/bench_output.hpp"
+#include "lab/commands/commands.hpp"
 #include "lab/report/bench_machine.hpp"
 #include "lab/rivals/embree_rival.hpp"
 #include "lab/trace/bench_trace.hpp"
 #include "lab/trace/listed_scenes.hpp"
 #include "lab/trace/trace_casters.hpp"
-#include "lab/commands/commands.hpp"
-#include "cli/device.hpp"
-#include "cli/mesh_input.hpp"
-#include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/render/film/path_file.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/render/film/path_file.hpp"
 
 namespace voxdag::lab {
 namespace {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/commands/bench_output.hpp"
+#include "lab/commands/commands.hpp"
 #include "lab/report/bench_machine.hpp"
 #include "lab/untrusted/untrusted.hpp"
-#include "lab/commands/commands.hpp"
 #include "voxdag/core/error.hpp"
 
 namespace voxdag::lab {

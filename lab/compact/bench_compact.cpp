@@ -7,16 +7,16 @@
 #include "lab/build/bench_mesh.hpp"
 #include "lab/compact/plain_sizes.hpp"
 #include "lab/report/scratch_folder.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
-#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/scene_file.hpp"
-#include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::lab {
 namespace {

@@ -3,8 +3,8 @@
 #include <span>
 
 #include "lab/report/size_in_parts.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag::lab {
 

@@ -12,8 +12,8 @@ namespace voxdag::lab {
 /// those of 2³ voxels. Nothing can walk it at random; it is the bound of all pointered octrees.
 SizeInParts svo_size(const SvdagView& dag);
 
-/// Returns the size of the layout of files and rays (stored/svdag/svdag.hpp): 4 bytes for each mask and
-/// each pointer, 8 for each leaf block of 4³ voxels.
+/// Returns the size of the layout of files and rays (stored/svdag/svdag.hpp): 4 bytes for each mask
+/// and each pointer, 8 for each leaf block of 4³ voxels.
 SizeInParts svdag_size(const SvdagView& dag);
 
 }  // namespace voxdag::lab

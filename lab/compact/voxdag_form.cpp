@@ -1,8 +1,8 @@
 #include "lab/compact/voxdag_form.hpp"
 
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 #include "voxdag/stored/compact/compact_parts.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 
 namespace voxdag::lab {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// The bytes of voxdag's own compact form.
 #include "lab/report/size_in_parts.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag::lab {
 

@@ -4,11 +4,11 @@
 
 #include "lab/rays/caster_runner.hpp"
 #include "lab/rays/trace_measure.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/cpu/packets/in_place_nodes.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::lab {

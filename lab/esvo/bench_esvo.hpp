@@ -11,9 +11,9 @@
 #include "lab/papers/paper_scenes.hpp"
 #include "lab/report/bench_child.hpp"
 #include "lab/report/charts.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/image/image_size.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::lab {
 

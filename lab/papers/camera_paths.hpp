@@ -4,8 +4,8 @@
 #include <span>
 #include <string_view>
 
-#include "voxdag/render/film/path_file.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
+#include "voxdag/render/film/path_file.hpp"
 
 namespace voxdag::lab {
 

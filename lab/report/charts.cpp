@@ -5,9 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "charts_py.hpp"
 #include "lab/report/bench_child.hpp"
 #include "lab/report/scratch_folder.hpp"
-#include "charts_py.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/open_input.hpp"

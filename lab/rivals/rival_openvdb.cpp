@@ -12,8 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include "lab/rays/trace_measure.hpp"
 #include "lab/report/bench_child.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/npy.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/file/npy.hpp"
 #include "voxdag/trace/ray.hpp"
 #include "voxdag/trace/visit_nodes.hpp"
 

@@ -10,9 +10,9 @@
 #include "lab/rays/trace_rays.hpp"
 #include "lab/report/charts.hpp"
 #include "lab/trace/soft_shadows.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/cuda/device_choice.hpp"
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag::lab {
 

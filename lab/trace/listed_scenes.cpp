@@ -4,12 +4,12 @@
 
 #include "lab/report/scratch_folder.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
-#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::lab {
 namespace {

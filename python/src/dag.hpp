@@ -9,8 +9,8 @@
 #include <string>
 
 #include "voxdag/cpu/cpu_scene.hpp"
-#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/file/model/dag_model.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag::python {
 

@@ -8,15 +8,15 @@
 #include "dag.hpp"
 #include "run_work.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
+#include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/solid/solid_settings.hpp"
+#include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/core/with_file_name.hpp"
-#include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/formats/imports/import_model.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/builders/solid/solid_settings.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
-#include "voxdag/builders/voxelize/grid_request.hpp"
 
 namespace py = pybind11;
 

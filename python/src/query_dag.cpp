@@ -6,15 +6,15 @@
 #include "arrays.hpp"
 #include "dag.hpp"
 #include "run_work.hpp"
-#include "voxdag/stored/svdag/for_each_voxel.hpp"
-#include "voxdag/stored/attributes/look_reader.hpp"
-#include "voxdag/stored/svdag/svdag_lookup.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/algebra/query/containing_voxel.hpp"
 #include "voxdag/algebra/query/distance_field.hpp"
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/attributes/look_reader.hpp"
+#include "voxdag/stored/svdag/for_each_voxel.hpp"
+#include "voxdag/stored/svdag/svdag_lookup.hpp"
 
 namespace py = pybind11;
 

@@ -6,11 +6,11 @@
 
 #include "shared_folder.hpp"
 #include "support/random_triangles.hpp"
-#include "voxdag/cluster/parts_job.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/cluster/parts_job.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 

@@ -11,11 +11,11 @@
 namespace voxdag {
 namespace {
 
-constexpr int kCounter = 3;
+constexpr int kQueueCounter = 3;
 
 TEST(RankQueue, DoesEveryItemOnceAndGivesAllResultsToAllRanks) {
   constexpr std::size_t kItems = 500;
-  RankQueue queue(ranks(), kCounter);
+  RankQueue queue(ranks(), kQueueCounter);
   for (int round = 0; round < 2; ++round) {
     std::array<std::uint64_t, kItems> mine{};
     const auto squares = results_of<std::uint64_t>(queue, kItems, [&](std::size_t item) {
@@ -31,7 +31,7 @@ TEST(RankQueue, DoesEveryItemOnceAndGivesAllResultsToAllRanks) {
 }
 
 TEST(RankQueue, ARankTakesItemsInAscendingOrder) {
-  RankQueue queue(ranks(), kCounter);
+  RankQueue queue(ranks(), kQueueCounter);
   std::size_t next = 0;
   queue.run(100, 0, [&](std::size_t item, std::span<std::byte> result) {
     EXPECT_GE(item, next);
@@ -41,13 +41,13 @@ TEST(RankQueue, ARankTakesItemsInAscendingOrder) {
 }
 
 TEST(RankQueue, NoItemsGiveNoResults) {
-  RankQueue queue(ranks(), kCounter);
+  RankQueue queue(ranks(), kQueueCounter);
   EXPECT_TRUE(results_of<int>(queue, 0, [](std::size_t) { return 1; }).empty());
 }
 
 TEST(RankQueue, RanksThatHaveDifferentItemsAreAnError) {
   if (ranks().count() == 1) GTEST_SKIP() << "one rank";
-  RankQueue queue(ranks(), kCounter);
+  RankQueue queue(ranks(), kQueueCounter);
   const auto count = static_cast<std::size_t>(5 + ranks().rank());
   EXPECT_THROW(results_of<int>(queue, count, [](std::size_t) { return 1; }), Error);
 }

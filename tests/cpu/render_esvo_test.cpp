@@ -10,10 +10,10 @@
 #include "support/brute_svdag.hpp"
 #include "support/picture_checks.hpp"
 #include "support/voxel_sets.hpp"
-#include "voxdag/core/srgb.hpp"
-#include "voxdag/cpu/render_image.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/srgb.hpp"
+#include "voxdag/cpu/render_image.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "support/grid_mesh.hpp"
+#include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/srgb.hpp"
-#include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/stored/esvo/color_block.hpp"
 
 namespace voxdag {

@@ -12,12 +12,12 @@
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/device.hpp"
+#include "voxdag/cuda/device_stream.hpp"
 #include "voxdag/cuda/memory.hpp"
 #include "voxdag/cuda/render_image.hpp"
 #include "voxdag/cuda/timed_casts.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/render/render_plan.hpp"
-#include "voxdag/cuda/device_stream.hpp"
 
 namespace voxdag {
 namespace {

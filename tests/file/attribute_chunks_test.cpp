@@ -146,7 +146,8 @@ TEST(AttributeChunks, EveryTruncatedChunkIsRefused) {
     ASSERT_EQ(chunk_error_of(shortened(bytes, 4, 0)), "no error");
     for (std::size_t i = 4; i < 8; ++i)
       for (std::uint64_t cut = 1; cut <= entry_of(bytes, i).length; ++cut)
-        ASSERT_NE(chunk_error_of(shortened(bytes, i, cut)), "no error") << i << ", " << cut << " bytes";
+        ASSERT_NE(chunk_error_of(shortened(bytes, i, cut)), "no error")
+            << i << ", " << cut << " bytes";
   }
 }
 
@@ -181,7 +182,8 @@ TEST(AttributeChunks, AWireChunkThatExpandsTooFarIsRefused) {
   const VdagChunkEntry entry = entry_of(bytes, 5);
   poke(bytes, entry.offset + offsetof(WireHeader, words), 8 * entry.length + 1);
   repair_checksums(bytes);
-  EXPECT_NE(chunk_error_of(bytes).find("chunk WCOL: expands to"), std::string::npos) << chunk_error_of(bytes);
+  EXPECT_NE(chunk_error_of(bytes).find("chunk WCOL: expands to"), std::string::npos)
+      << chunk_error_of(bytes);
   poke(bytes, entry.offset + offsetof(WireHeader, words), std::uint64_t{0});
   repair_checksums(bytes);
   EXPECT_NE(chunk_error_of(bytes).find("chunk WCOL: has too few words"), std::string::npos)

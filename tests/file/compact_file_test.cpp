@@ -7,10 +7,10 @@
 #include "support/error_of.hpp"
 #include "support/number_colors.hpp"
 #include "support/vdag_bytes.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/scene_file.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 
 namespace voxdag {
 namespace {

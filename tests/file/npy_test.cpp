@@ -94,8 +94,9 @@ TEST(Npy, ReadsWhatNumpyWrites) {
   const std::string row(32, '\0');
   EXPECT_EQ(npy_error_of(npy_bytes(rays_header("(2, 8)"), row + row)), "no error");
   EXPECT_EQ(npy_error_of(npy_bytes(rays_header("(0, 8)"), "")), "no error");
-  EXPECT_EQ(npy_error_of(npy_bytes("{\"shape\":(1,8),\"fortran_order\":False,\"descr\":\"<f4\"}", row)),
-            "no error");
+  EXPECT_EQ(
+      npy_error_of(npy_bytes("{\"shape\":(1,8),\"fortran_order\":False,\"descr\":\"<f4\"}", row)),
+      "no error");
   std::string version2 = npy_bytes(rays_header("(1, 8)"), row);
   version2[6] = 2;
   version2.insert(10, 2, '\0');

@@ -30,10 +30,13 @@ std::size_t chunk_offset(const std::string& bytes, std::size_t index) {
   return peek<VdagChunkEntry>(bytes, entry_offset(index)).offset;
 }
 
-TEST(VdagCorruption, TheSmallFileIsValid) { EXPECT_EQ(vdag_error_of(small_vdag_file()), "no error"); }
+TEST(VdagCorruption, TheSmallFileIsValid) {
+  EXPECT_EQ(vdag_error_of(small_vdag_file()), "no error");
+}
 
 TEST(VdagCorruption, EveryTruncationIsRefused) {
-  expect_truncations_are_refused(small_vdag_file(), [](const std::string& b) { return vdag_error_of(b); });
+  expect_truncations_are_refused(small_vdag_file(),
+                                 [](const std::string& b) { return vdag_error_of(b); });
 }
 
 TEST(VdagCorruption, EveryTruncationIsRefusedEvenIfTheHeaderAgrees) {
@@ -47,7 +50,8 @@ TEST(VdagCorruption, EveryTruncationIsRefusedEvenIfTheHeaderAgrees) {
 }
 
 TEST(VdagCorruption, EveryBitFlipIsRefused) {
-  expect_bit_flips_are_refused(small_vdag_file(), [](const std::string& b) { return vdag_error_of(b); });
+  expect_bit_flips_are_refused(small_vdag_file(),
+                               [](const std::string& b) { return vdag_error_of(b); });
 }
 
 /// With correct checksums, a flip may make another valid file, which must be safe to count.
@@ -87,12 +91,14 @@ TEST(VdagCorruption, DamageIsNamedByItsPlace) {
   EXPECT_EQ(vdag_error_of(bytes), "header: checksum of the header and chunk table is wrong");
   bytes = small_vdag_file();
   bytes.back() ^= 1;
-  EXPECT_EQ(vdag_error_of(bytes), "byte " + std::to_string(bytes.size() - 1) + ": padding is not zero");
+  EXPECT_EQ(vdag_error_of(bytes),
+            "byte " + std::to_string(bytes.size() - 1) + ": padding is not zero");
   bytes = small_vdag_file();
   EXPECT_EQ(vdag_error_of(bytes.substr(0, bytes.size() - 1)),
             "byte " + std::to_string(bytes.size() - 1) + ": truncated: the header says " +
                 std::to_string(bytes.size()) + " bytes");
-  EXPECT_EQ(vdag_error_of(bytes.substr(0, 20)), "byte 20: truncated: the file ends inside its header");
+  EXPECT_EQ(vdag_error_of(bytes.substr(0, 20)),
+            "byte 20: truncated: the file ends inside its header");
 }
 
 TEST(VdagCorruption, AbsurdSizesWithRightChecksumsAreRefused) {

@@ -13,10 +13,10 @@
 #include "lab/papers/paper_scenes.hpp"
 #include "support/clearance.hpp"
 #include "support/temp_dir.hpp"
-#include "voxdag/render/film/camera_path.hpp"
 #include "voxdag/core/io/checksum.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/render/film/camera_path.hpp"
 
 namespace voxdag::lab {
 

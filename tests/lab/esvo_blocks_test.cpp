@@ -4,11 +4,11 @@
 
 #include <cstdlib>
 
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/cell_index_lookup.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag::lab {
 namespace {

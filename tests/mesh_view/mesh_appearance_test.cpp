@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-constexpr int kSide = 16;
+constexpr int kPictureSide = 16;
 
 class MeshAppearanceTest : public testing::Test {
  protected:
@@ -22,10 +22,10 @@ class MeshAppearanceTest : public testing::Test {
   static std::vector<ViewSample> look(const Square& square, double height = 0.5,
                                       double degrees = 90) {
     const MeshViewSource source(square.mesh, square.appearance, {});
-    const Camera camera =
-        make_camera({{0.5, 0.5, height}, {0.5, 0.5, 0}, {0, 1, 0}, degrees}, kSide, kSide);
-    std::vector<ViewSample> samples(kSide * kSide);
-    source.sample(camera, {0, 0, kSide, kSide, 0, 0.5, 0.5}, samples);
+    const Camera camera = make_camera({{0.5, 0.5, height}, {0.5, 0.5, 0}, {0, 1, 0}, degrees},
+                                      kPictureSide, kPictureSide);
+    std::vector<ViewSample> samples(kPictureSide * kPictureSide);
+    source.sample(camera, {0, 0, kPictureSide, kPictureSide, 0, 0.5, 0.5}, samples);
     return samples;
   }
 };
@@ -50,9 +50,9 @@ TEST_F(MeshAppearanceTest, ShowsItsTextureAndWhatIsBehindItsHoles) {
   square.appearance.uvs.resize(9);
 
   const std::vector<ViewSample> samples = look(square);
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      const ViewSample& sample = samples[static_cast<std::size_t>(y * kSide + x)];
+  for (int y = 0; y < kPictureSide; ++y)
+    for (int x = 0; x < kPictureSide; ++x) {
+      const ViewSample& sample = samples[static_cast<std::size_t>(y * kPictureSide + x)];
       if (x == 7 || x == 8) continue;  // The hole's edge is somewhere between two texels.
       EXPECT_NEAR(sample.depth, x < 8 ? 0.5f : 1.5f, 1e-5f);
       EXPECT_NEAR(sample.albedo.x, x < 8 ? 1.0f : 0.0f, 1e-3f) << x;
@@ -80,10 +80,10 @@ TEST_F(MeshAppearanceTest, NormalsComeFromTheFileAndFaceTheViewer) {
   const Vec3f left = normalized(Vec3f{-1, 0, 2}), right = normalized(Vec3f{1, 0, 2});
   square.appearance.normals = {left, right, right, -left, -right, -left};
   const std::vector<ViewSample> samples = look(square);
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      const ViewSample& sample = samples[static_cast<std::size_t>(y * kSide + x)];
-      const float share = (static_cast<float>(x) + 0.5f) / kSide;
+  for (int y = 0; y < kPictureSide; ++y)
+    for (int x = 0; x < kPictureSide; ++x) {
+      const ViewSample& sample = samples[static_cast<std::size_t>(y * kPictureSide + x)];
+      const float share = (static_cast<float>(x) + 0.5f) / kPictureSide;
       const Vec3f expected = normalized(left * (1 - share) + right * share);
       EXPECT_GT(dot(sample.normal, expected), 0.9999f) << x << ", " << y;
       EXPECT_EQ(sample.face, (Vec3f{0, 0, 1}));

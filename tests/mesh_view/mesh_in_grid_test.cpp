@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "meshes.hpp"
-#include "voxdag/core/error.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "meshes.hpp"
-#include "voxdag/cpu/render_image.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
-#include "voxdag/mesh_view/mesh_view_source.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/mesh_view/mesh_view_source.hpp"
 
 namespace voxdag {
 namespace {

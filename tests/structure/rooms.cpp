@@ -126,7 +126,8 @@ std::vector<std::string> includes_of(const std::filesystem::path& folder,
       ++number;
       const std::string path = included_path(line, prefix);
       if (!path.empty())
-        found.push_back(entry.path().string() + ":" + std::to_string(number) + ": includes " + path);
+        found.push_back(entry.path().string() + ":" + std::to_string(number) + ": includes " +
+                        path);
     }
   }
   return found;

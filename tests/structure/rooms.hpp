@@ -27,9 +27,10 @@ Rooms read_rooms(const std::filesystem::path& table);
 std::vector<std::string> broken_includes(const std::filesystem::path& root, const Rooms& rooms,
                                          const std::string& prefix = "voxdag/");
 
-/// Returns one line, "file.hpp:12: includes voxdag/image/image.hpp", for every include of a path that
-/// begins with `prefix` in the sources below `folder`.
-std::vector<std::string> includes_of(const std::filesystem::path& folder, const std::string& prefix);
+/// Returns one line, "file.hpp:12: includes voxdag/image/image.hpp", for every include of a path
+/// that begins with `prefix` in the sources below `folder`.
+std::vector<std::string> includes_of(const std::filesystem::path& folder,
+                                     const std::string& prefix);
 
 /// Returns one line, "folder/CMakeLists.txt: links PNG::PNG", for every target that a folder's
 /// CMakeLists.txt links and the table does not allow.

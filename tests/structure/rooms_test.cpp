@@ -103,7 +103,8 @@ TEST(Rooms, TheDagBuilderNeedsNoFileFormats) {
   const fs::path root = kSourceDir / "src/voxdag";
   for (const char* folder : {"builders/voxelize", "builders/dag"})
     for (const char* format : {"core/io", "image", "mesh/surface", "mesh/displace"})
-      for (const std::string& line : includes_of(root / folder, std::string("voxdag/") + format + "/"))
+      for (const std::string& line :
+           includes_of(root / folder, std::string("voxdag/") + format + "/"))
         ADD_FAILURE() << line;
 }
 

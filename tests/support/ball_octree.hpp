@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "support/test_esvo.hpp"
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/esvo/encode/pack_blocks.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/render/film/camera_path.hpp"
 #include "voxdag/trace/cast.hpp"
 #include "voxdag/trace/svdag_nodes.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
+#include "voxdag/formats/scenes/stone_heights.hpp"
 #include "voxdag/mesh/displace/displaced_triangles.hpp"
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/formats/scenes/stone_heights.hpp"
 
 namespace voxdag {
 

@@ -9,10 +9,10 @@
 
 #include "support/brute_svdag.hpp"
 #include "support/temp_dir.hpp"
+#include "voxdag/core/io/checksum.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/file/vdag_writer.hpp"
-#include "voxdag/core/io/checksum.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {

@@ -5,12 +5,12 @@
 
 #include "support/grid_mesh.hpp"
 #include "support/temp_dir.hpp"
-#include "voxdag/cpu/render_image.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/cpu/render_image.hpp"
+#include "voxdag/cpu/stream/stream_blocks.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/esvo_writer.hpp"
-#include "voxdag/cpu/stream/stream_blocks.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

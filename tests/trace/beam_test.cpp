@@ -18,12 +18,12 @@
 namespace voxdag {
 namespace {
 
-constexpr int kLevels = 5;
+constexpr int kBeamLevels = 5;
 
 Grid unit_grid() {
   Grid grid;
-  grid.levels = kLevels;
-  grid.voxel_size = std::ldexp(1.0, -kLevels);
+  grid.levels = kBeamLevels;
+  grid.voxel_size = std::ldexp(1.0, -kBeamLevels);
   return grid;
 }
 
@@ -108,8 +108,8 @@ void expect_bounds_hold(const Nodes& nodes, const std::string& name, RandomBeams
 TEST(Beam, ItsBoundsShortenNoRayThatMeetsAnything) {
   RandomBeams random(5);
   BeamCounts counts;
-  for (const NamedVoxels& set : voxel_sets(kLevels, 3)) {
-    const Svdag dag = brute_svdag(kLevels, set.voxels);
+  for (const NamedVoxels& set : voxel_sets(kBeamLevels, 3)) {
+    const Svdag dag = brute_svdag(kBeamLevels, set.voxels);
     expect_bounds_hold(SvdagNodes(dag.view()), set.name, random, counts);
   }
   EXPECT_GT(counts.met, 5000);
@@ -121,7 +121,8 @@ TEST(Beam, ItsBoundsHoldForShapesAndCoarseLeaves) {
   BeamCounts counts;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     std::mt19937 rng(seed);
-    const Esvo esvo = TestEsvoAssembler(3, seed).assemble(*random_octree(rng, 0, kLevels), kLevels);
+    const Esvo esvo =
+        TestEsvoAssembler(3, seed).assemble(*random_octree(rng, 0, kBeamLevels), kBeamLevels);
     expect_bounds_hold(ContourNodes(esvo.view()), "contours", random, counts);
   }
   EXPECT_GT(counts.met, 2000);
@@ -131,8 +132,8 @@ TEST(Beam, ItsBoundsHoldForShapesAndCoarseLeaves) {
 TEST(Beam, ABeamOfOneRayEndsWhereTheRayDoes) {
   const Grid grid = unit_grid();
   RandomBeams random(7);
-  for (const NamedVoxels& set : voxel_sets(kLevels, 3)) {
-    const Svdag dag = brute_svdag(kLevels, set.voxels);
+  for (const NamedVoxels& set : voxel_sets(kBeamLevels, 3)) {
+    const Svdag dag = brute_svdag(kBeamLevels, set.voxels);
     const SvdagNodes nodes(dag.view());
     for (int i = 0; i < 300; ++i) {
       Beam beam = random.beam();
@@ -162,7 +163,7 @@ TEST(Beam, ABeamOfOneRayEndsWhereTheRayDoes) {
 }
 
 TEST(Beam, KeepsToItsRange) {
-  const Svdag dag = brute_svdag(kLevels, {{16, 16, 16}});
+  const Svdag dag = brute_svdag(kBeamLevels, {{16, 16, 16}});
   const SvdagNodes nodes(dag.view());
   Beam beam;
   beam.apex = {0.51, 0.51, -1};

@@ -8,13 +8,13 @@
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/stored/attributes/value_pages.hpp"
 #include "voxdag/render/exposure.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/stored_look.hpp"
 #include "voxdag/render/surface_normal.hpp"
 #include "voxdag/render/surface_point.hpp"
 #include "voxdag/render/tone_map.hpp"
+#include "voxdag/stored/attributes/value_pages.hpp"
 
 namespace voxdag {
 namespace {
@@ -105,24 +105,26 @@ Json pages_constants() {
 
 /// The wire form of values. Contexts count bits.
 Json wire_constants() {
-  return {
-      {"headerBytes", sizeof(WireHeader)},
-      {"precision", offsetof(WireHeader, parameter)},
-      VOXDAG_OFFSET(WireHeader, values),
-      VOXDAG_OFFSET(WireHeader, words),
-      VOXDAG_OFFSET(WireHeader, coded_bytes),
-      {"mostExpansion", kMostWireExpansion},
-      {"segmentPages", wire::kSegmentPages},
-      VOXDAG_CONSTANT(wire::RangeCoder, kProbabilityBits),
-      VOXDAG_CONSTANT(wire::RangeCoder, kLeastRange),
-      VOXDAG_CONSTANT(wire::AdaptiveBit, kFast),
-      VOXDAG_CONSTANT(wire::AdaptiveBit, kSlow),
-      {"model",
-       {VOXDAG_CONSTANT(wire::ValueModelSizes, kTypes), VOXDAG_CONSTANT(wire::ValueModelSizes, kLengthBits),
-        VOXDAG_CONSTANT(wire::ValueModelSizes, kLengthContexts),
-        VOXDAG_CONSTANT(wire::ValueModelSizes, kEndBits), VOXDAG_CONSTANT(wire::ValueModelSizes, kEndContexts),
-        VOXDAG_CONSTANT(wire::ValueModelSizes, kStepBits), VOXDAG_CONSTANT(wire::ValueModelSizes, kWeightBits),
-        VOXDAG_CONSTANT(wire::ValueModelSizes, kNoWeight)}}};
+  return {{"headerBytes", sizeof(WireHeader)},
+          {"precision", offsetof(WireHeader, parameter)},
+          VOXDAG_OFFSET(WireHeader, values),
+          VOXDAG_OFFSET(WireHeader, words),
+          VOXDAG_OFFSET(WireHeader, coded_bytes),
+          {"mostExpansion", kMostWireExpansion},
+          {"segmentPages", wire::kSegmentPages},
+          VOXDAG_CONSTANT(wire::RangeCoder, kProbabilityBits),
+          VOXDAG_CONSTANT(wire::RangeCoder, kLeastRange),
+          VOXDAG_CONSTANT(wire::AdaptiveBit, kFast),
+          VOXDAG_CONSTANT(wire::AdaptiveBit, kSlow),
+          {"model",
+           {VOXDAG_CONSTANT(wire::ValueModelSizes, kTypes),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kLengthBits),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kLengthContexts),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kEndBits),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kEndContexts),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kStepBits),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kWeightBits),
+            VOXDAG_CONSTANT(wire::ValueModelSizes, kNoWeight)}}};
 }
 
 /// The light, and the options of a picture whose defaults the page shares.

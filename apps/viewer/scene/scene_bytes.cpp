@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/vdag_bytes.hpp"
-#include "voxdag/file/vdag_format.hpp"
-#include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/core/io/checksum.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/io/open_input.hpp"
+#include "voxdag/file/vdag_bytes.hpp"
+#include "voxdag/file/vdag_format.hpp"
+#include "voxdag/file/vdag_parse.hpp"
 
 namespace voxdag {
 namespace {

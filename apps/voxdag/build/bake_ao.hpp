@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "voxdag/cpu/surface_openness.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
+#include "voxdag/cpu/surface_openness.hpp"
 
 namespace voxdag::cli {
 

@@ -7,15 +7,15 @@
 
 #include "build/build_arguments.hpp"
 #include "cli/stopwatch.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
-#include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/stored/compact/compact_bytes.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
-#include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
+#include "voxdag/stored/compact/compact_bytes.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::cli {
 namespace {

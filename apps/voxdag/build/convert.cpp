@@ -13,12 +13,12 @@
 #include "cli/reduced_dag.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/algebra/coarsen.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/long_vdag_file.hpp"
-#include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/file/vdag_writer.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 
 namespace voxdag::cli {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "cli/parse.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/image/decode.hpp"
 #include "voxdag/formats/scenes/stone_heights.hpp"
+#include "voxdag/image/decode.hpp"
 #include "voxdag/mesh/surface/material_textures.hpp"
 
 namespace voxdag::cli {

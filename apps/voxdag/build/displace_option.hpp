@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "voxdag/mesh/displace/displaced_triangles.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/displace/displaced_triangles.hpp"
 
 namespace voxdag::cli {
 

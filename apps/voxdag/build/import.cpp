@@ -10,11 +10,11 @@
 #include "cli/parse.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/with_file_name.hpp"
-#include "voxdag/formats/imports/import_model.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/formats/imports/import_model.hpp"
 
 namespace voxdag::cli {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
-#include "voxdag/render/film/path_file.hpp"
 #include "voxdag/file/report/human.hpp"
 #include "voxdag/formats/scenes/ply_writer.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
+#include "voxdag/render/film/path_file.hpp"
 
 namespace voxdag::cli {
 namespace {

@@ -28,7 +28,8 @@ class Command {
   /// Adds a subcommand. `purpose` is one line. `footer` is the end of the help: an example, more
   /// examples on lines that begin with two spaces, and notes, one paragraph a line.
   Command add(const std::string& name, const std::string& purpose, const std::string& footer) const;
-  /// Passes all arguments that follow, --help among them, to `run` when the command line was parsed.
+  /// Passes all arguments that follow, --help among them, to `run` when the command line was
+  /// parsed.
   void pass_on(std::function<void(std::vector<std::string>)> run) const;
 
   /// Adds a text option ("-o,--output") or a text positional ("file").

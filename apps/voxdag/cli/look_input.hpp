@@ -4,8 +4,8 @@
 #include <string>
 
 #include "cli/session.hpp"
-#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag::cli {
 

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/mesh_view/mesh_in_grid.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh_view/mesh_in_grid.hpp"
 
 namespace voxdag::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include "cli/output_files.hpp"
 #include "cli/session.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/stored/svdag/voxel_set.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag::cli {
 

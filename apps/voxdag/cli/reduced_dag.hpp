@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "voxdag/stored/attributes/coarsen_attributes.hpp"
 #include "voxdag/file/attribute_form.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/stored/attributes/coarsen_attributes.hpp"
 
 namespace voxdag::cli {
 

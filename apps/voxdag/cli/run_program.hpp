@@ -1,6 +1,6 @@
 #pragma once
-/// Runs a program of subcommands. Exit status 0: success, 1: failure, 2: wrong usage, 128 + N: signal
-/// N cancelled the work. Every error is one line on stderr.
+/// Runs a program of subcommands. Exit status 0: success, 1: failure, 2: wrong usage, 128 + N:
+/// signal N cancelled the work. Every error is one line on stderr.
 #include <string>
 #include <vector>
 

@@ -11,8 +11,8 @@
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
 #include "edit/edited_file.hpp"
-#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/model/aligned_models.hpp"
 #include "voxdag/file/report/human.hpp"
 

@@ -16,8 +16,8 @@
 #include "voxdag/algebra/reorient.hpp"
 #include "voxdag/algebra/shift.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/model/edited.hpp"
 
 namespace voxdag::cli {

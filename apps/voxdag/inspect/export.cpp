@@ -12,10 +12,10 @@
 #include "cli/parse.hpp"
 #include "view/export_page.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/exports/export_voxels.hpp"
-#include "voxdag/formats/exports/grids/export_slices.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/formats/exports/export_voxels.hpp"
+#include "voxdag/formats/exports/grids/export_slices.hpp"
 
 namespace voxdag::cli {
 namespace {

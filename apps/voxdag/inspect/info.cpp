@@ -8,11 +8,11 @@
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
-#include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/file/report/dag_report.hpp"
 #include "voxdag/file/report/esvo_report.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/file/wire_chunks.hpp"
 
 namespace voxdag::cli {
 namespace {

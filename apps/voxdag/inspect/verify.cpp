@@ -14,18 +14,18 @@
 #include "inspect/verify_compact.hpp"
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/builders/attributes/check_attributes.hpp"
-#include "voxdag/core/error.hpp"
-#include "voxdag/core/printable.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/check_cover.hpp"
 #include "voxdag/builders/esvo/build/check_esvo.hpp"
+#include "voxdag/builders/solid/solid_settings.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/esvo_file.hpp"
-#include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/file/report/human.hpp"
-#include "voxdag/builders/solid/solid_settings.hpp"
+#include "voxdag/file/verify_vdag.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::cli {
 namespace {

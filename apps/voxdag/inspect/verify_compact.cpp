@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "voxdag/stored/compact/encode_svdag.hpp"
+#include "voxdag/core/io/file_copy.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/core/io/file_copy.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag::cli {

@@ -2,8 +2,8 @@
 /// The checks of a compact DAG.
 #include <filesystem>
 
-#include "voxdag/file/verify_vdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/file/verify_vdag.hpp"
 
 namespace voxdag::cli {
 

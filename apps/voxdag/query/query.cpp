@@ -15,19 +15,19 @@
 #include "cli/parse.hpp"
 #include "cli/usage_error.hpp"
 #include "voxdag/algebra/crop.hpp"
-#include "voxdag/core/error.hpp"
-#include "voxdag/cpu/trace_batch.hpp"
-#include "voxdag/file/npy.hpp"
-#include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
-#include "voxdag/file/model/scene_model.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/algebra/query/containing_voxel.hpp"
 #include "voxdag/algebra/query/distance_field.hpp"
 #include "voxdag/algebra/query/height_map.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
 #include "voxdag/algebra/query/surface_area.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/cpu/trace_batch.hpp"
+#include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/file/npy.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::cli {
 namespace {
@@ -58,7 +58,8 @@ std::uint64_t answer_rows(const std::string& input, std::uint64_t columns,
                           std::size_t row_bytes, Session& session, const Answer& answer) {
   NpyReader reader(input, "<f4", {columns}, sizeof(float));
   NpyWriter writer(output, dtype, {}, row_bytes, reader.rows());
-  const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(kPointsPerBatch, reader.rows()));
+  const auto most =
+      static_cast<std::size_t>(std::min<std::uint64_t>(kPointsPerBatch, reader.rows()));
   std::vector<float> values(most * columns);
   std::vector<std::byte> rows(most * row_bytes);
   while (const std::size_t count = reader.read_rows(values.data(), most)) {
@@ -97,9 +98,9 @@ std::string answer_points(const QueryArguments& arguments, const DagModel& file,
                 row = store_value(row, is_occupied);
                 row = store_value(row, voxel);
                 row = store_value(row, nearest ? nearest->voxel : Vec3i{-1, -1, -1});
-                store_value(row, nearest
-                             ? static_cast<float>(std::sqrt(nearest->distance2) * grid.voxel_size)
-                             : HUGE_VALF);
+                store_value(row, nearest ? static_cast<float>(std::sqrt(nearest->distance2) *
+                                                              grid.voxel_size)
+                                         : HUGE_VALF);
               }
             });
       });

@@ -4,8 +4,8 @@
 
 #include "cli/device.hpp"
 #include "voxdag/cuda/device_attributes.hpp"
-#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag::cli {
 

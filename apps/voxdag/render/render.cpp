@@ -13,8 +13,8 @@
 #include "render/render_streamed.hpp"
 #include "voxdag/cpu/render_image.hpp"
 #include "voxdag/cuda/render_image.hpp"
-#include "voxdag/render/film/frame_names.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/render/film/frame_names.hpp"
 
 namespace voxdag::cli {
 namespace {

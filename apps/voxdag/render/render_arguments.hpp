@@ -7,8 +7,8 @@
 
 #include "cli/device.hpp"
 #include "cli/mesh_input.hpp"
-#include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/image/image_size.hpp"
+#include "voxdag/render/film/picture_pass.hpp"
 #include "voxdag/render/render_options.hpp"
 
 namespace voxdag::cli {

@@ -9,11 +9,11 @@
 #include "cli/output_files.hpp"
 #include "cli/stopwatch.hpp"
 #include "voxdag/cluster/rank_queue.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/file/report/human.hpp"
 #include "voxdag/render/film/frame_names.hpp"
 #include "voxdag/render/film/path_file.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/render/render_plan.hpp"
-#include "voxdag/file/report/human.hpp"
 
 namespace voxdag::cli {
 namespace {

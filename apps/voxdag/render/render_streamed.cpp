@@ -10,11 +10,11 @@
 #include "render/picture_summary.hpp"
 #include "render/render_film.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/render/coarse_cells.hpp"
-#include "voxdag/file/report/human.hpp"
 #include "voxdag/cpu/stream/paged_cells.hpp"
 #include "voxdag/cpu/stream/stream_blocks.hpp"
 #include "voxdag/cuda/device_stream.hpp"
+#include "voxdag/file/report/human.hpp"
+#include "voxdag/render/coarse_cells.hpp"
 
 namespace voxdag::cli {
 namespace {

@@ -16,8 +16,8 @@
 #include "voxdag/cpu/trace_batch.hpp"
 #include "voxdag/cuda/trace_batch.hpp"
 #include "voxdag/file/compact_file.hpp"
-#include "voxdag/file/npy.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/file/npy.hpp"
 #include "voxdag/file/report/human.hpp"
 
 namespace voxdag::cli {

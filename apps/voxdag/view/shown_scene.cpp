@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/compact_file.hpp"
 #include "voxdag/core/io/process_memory.hpp"
+#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/report/human.hpp"
 
 namespace voxdag::cli {

@@ -2,9 +2,9 @@
 /// Keeps the voxels in a box.
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/svdag/long_svdag.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

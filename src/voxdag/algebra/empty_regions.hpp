@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -3,8 +3,8 @@
 ///
 /// Source of the operations: Serra, "Image Analysis and Mathematical Morphology", 1982.
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -19,8 +19,8 @@
 #include <array>
 
 #include "voxdag/algebra/unique_items.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Moves voxels in their grid.
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

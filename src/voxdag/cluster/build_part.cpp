@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "voxdag/algebra/combine.hpp"
-#include "voxdag/cluster/part_file.hpp"
 #include "voxdag/builders/dag/build_range.hpp"
+#include "voxdag/cluster/part_file.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <vector>
 
+#include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/triangle_segments.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
-#include "voxdag/builders/voxelize/grid_request.hpp"
 
 namespace voxdag {
 

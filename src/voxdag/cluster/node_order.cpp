@@ -9,8 +9,8 @@
 #include "voxdag/cluster/ordered_level.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/page_vector.hpp"
-#include "voxdag/stored/svdag/long_svdag.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
-/// Brings merged nodes into canonical order (stored/svdag/svdag.hpp), level by level from the root down.
+/// Brings merged nodes into canonical order (stored/svdag/svdag.hpp), level by level from the root
+/// down.
 ///
 /// The nodes of a level are in the order in which the level above first refers to them. Each level
 /// takes four steps. The owner of a run of ordered nodes sends their references, with their

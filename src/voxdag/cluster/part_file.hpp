@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/builders/voxelize/cell_range.hpp"
 
 namespace voxdag {
 

@@ -17,8 +17,8 @@
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/svdag/long_svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
 
 namespace voxdag {
 

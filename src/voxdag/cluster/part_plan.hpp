@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/cluster/triangle_segments.hpp"
 #include "voxdag/builders/voxelize/cell_range.hpp"
+#include "voxdag/cluster/triangle_segments.hpp"
 
 namespace voxdag {
 

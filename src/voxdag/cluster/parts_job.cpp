@@ -16,10 +16,10 @@
 #include "voxdag/cluster/part_plan.hpp"
 #include "voxdag/cluster/parts_log.hpp"
 #include "voxdag/cluster/vdag_from_runs.hpp"
-#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/io/process_memory.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/core/with_file_name.hpp"
 
 namespace voxdag {
 namespace {

@@ -15,14 +15,14 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "voxdag/builders/voxelize/grid_request.hpp"
 #include "voxdag/cluster/part_merge.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
-#include "voxdag/builders/voxelize/grid_request.hpp"
 
 namespace voxdag {
 

@@ -10,10 +10,10 @@
 #include "voxdag/cluster/missing_files.hpp"
 #include "voxdag/cluster/unique_records.hpp"
 #include "voxdag/core/io/mapped_arrays.hpp"
-#include "voxdag/mesh/mesh_memory.hpp"
-#include "voxdag/mesh/vertex_table.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
+#include "voxdag/mesh/vertex_table.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,8 +1,9 @@
 #pragma once
 /// The vertices and triangles of a mesh, in files of the work folder that all ranks see.
 ///
-/// The mesh file is read in chunks (formats/readers/mesh_chunks.hpp). A task is a run of chunks; the ranks
-/// take one after the other. Formats that cannot be read in chunks make one task, for rank 0.
+/// The mesh file is read in chunks (formats/readers/mesh_chunks.hpp). A task is a run of chunks;
+/// the ranks take one after the other. Formats that cannot be read in chunks make one task, for
+/// rank 0.
 ///
 ///   mesh/counts-T      ChunkCounts of each chunk of task T; nothing if rank 0 must read the mesh
 ///   mesh/vertices-T    Vec3f of each vertex
@@ -17,8 +18,8 @@
 #include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/box.hpp"
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/mesh_chunks.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

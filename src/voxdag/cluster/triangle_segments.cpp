@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voxdag/builders/voxelize/cell_finder.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
-#include "voxdag/builders/voxelize/cell_finder.hpp"
 
 namespace voxdag {
 namespace {

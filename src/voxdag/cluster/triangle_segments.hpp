@@ -13,12 +13,12 @@
 #include <span>
 #include <vector>
 
+#include "voxdag/builders/voxelize/cell_range.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/cluster/shared_mesh.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/progress.hpp"
-#include "voxdag/builders/voxelize/cell_range.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -6,11 +6,11 @@
 
 #include "voxdag/cluster/shared_file.hpp"
 #include "voxdag/core/bits.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/core/io/checksum.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
-#include "voxdag/core/io/checksum.hpp"
 
 namespace voxdag {
 namespace {

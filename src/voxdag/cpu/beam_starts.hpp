@@ -2,8 +2,8 @@
 /// Finds where the primary rays of a picture may start, by packets of beams.
 #include <vector>
 
-#include "voxdag/cpu/packets/beam_packet.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/cpu/packets/beam_packet.hpp"
 #include "voxdag/render/primary_beams.hpp"
 
 namespace voxdag {

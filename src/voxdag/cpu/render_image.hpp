@@ -1,7 +1,7 @@
 #pragma once
 /// Renders a picture of voxels on the CPU.
-#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/view_source.hpp"
 

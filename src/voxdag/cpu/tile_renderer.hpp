@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/cpu/beam_starts.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cpu/beam_starts.hpp"
 #include "voxdag/render/count_steps.hpp"
 #include "voxdag/render/esvo_view_samples.hpp"
 #include "voxdag/render/render_tile.hpp"

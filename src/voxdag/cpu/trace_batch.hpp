@@ -3,8 +3,8 @@
 #include <span>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cpu/cpu_scene.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
 

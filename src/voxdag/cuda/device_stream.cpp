@@ -4,9 +4,9 @@
 #include <numeric>
 #include <span>
 
+#include "voxdag/cpu/stream/streamed_tiles.hpp"
 #include "voxdag/cuda/partial_picture.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
-#include "voxdag/cpu/stream/streamed_tiles.hpp"
 
 namespace voxdag {
 namespace {

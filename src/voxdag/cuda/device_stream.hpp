@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/cuda/device_blocks.hpp"
 #include "voxdag/cpu/stream/streamed_image.hpp"
+#include "voxdag/cuda/device_blocks.hpp"
 
 namespace voxdag {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/cuda/device_blocks.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cuda/device_blocks.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/tile.hpp"
 

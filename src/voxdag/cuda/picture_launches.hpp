@@ -2,10 +2,10 @@
 /// The launches of a picture's kernels.
 #include <algorithm>
 
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
 #include "voxdag/cuda/render_pixel.hpp"
 #include "voxdag/cuda/stream.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -2,10 +2,10 @@
 
 #include <cassert>
 
+#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/cuda/device_frame.hpp"
 #include "voxdag/cuda/picture_launches.hpp"
 #include "voxdag/cuda/render_kernels.hpp"
-#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/render/source_view_samples.hpp"
 
 namespace voxdag {

@@ -1,7 +1,7 @@
 #pragma once
 /// Renders a picture of voxels on a CUDA device.
-#include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/render/render_options.hpp"
 #include "voxdag/render/view_source.hpp"
 

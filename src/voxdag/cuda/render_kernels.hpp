@@ -5,10 +5,10 @@
 #include "voxdag/cuda/device_voxels.hpp"
 #include "voxdag/cuda/launch_plan.hpp"
 #include "voxdag/cuda/resume_pixel.hpp"
-#include "voxdag/stored/esvo/partial_esvo.hpp"
 #include "voxdag/render/post_filter.hpp"
 #include "voxdag/render/render_setup.hpp"
 #include "voxdag/render/view_sample.hpp"
+#include "voxdag/stored/esvo/partial_esvo.hpp"
 
 namespace voxdag {
 

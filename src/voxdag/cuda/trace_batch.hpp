@@ -4,8 +4,8 @@
 #include <span>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/cuda/device_scene.hpp"
 #include "voxdag/trace/hit.hpp"
 #include "voxdag/trace/ray.hpp"
 

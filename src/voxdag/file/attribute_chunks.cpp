@@ -20,7 +20,7 @@ Header read_header(std::span<const std::byte> bytes) {
   Header header;
   if (bytes.size() < sizeof header)
     fail_at("", "has " + std::to_string(bytes.size()) + " bytes, but its header needs " +
-         std::to_string(sizeof header));
+                    std::to_string(sizeof header));
   if (bytes.size() % 8 != 0) fail_at("", "length in bytes is not a multiple of 8");
   std::memcpy(&header, bytes.data(), sizeof header);
   return header;
@@ -37,7 +37,7 @@ CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag)
   check_zeros(header.reserved, header.padding);
   if (header.finest_level > static_cast<std::uint32_t>(dag.levels))
     fail_at("", "its finest level, " + std::to_string(header.finest_level) +
-         ", is finer than the voxels, level " + std::to_string(dag.levels));
+                    ", is finer than the voxels, level " + std::to_string(dag.levels));
   CellIndexView index;
   index.words = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
   index.finest_level = static_cast<std::uint8_t>(header.finest_level);
@@ -52,7 +52,7 @@ CellIndexView read_index(std::span<const std::byte> bytes, const SvdagView& dag)
   index.begin[kMaxLevels] = words;
   if (words != (bytes.size() - sizeof header) / 8)
     fail_at("", "has " + std::to_string((bytes.size() - sizeof header) / 8) +
-         " words, but its header needs " + std::to_string(words));
+                    " words, but its header needs " + std::to_string(words));
   validate_cell_index(dag, index);
   return index;
 }
@@ -65,7 +65,7 @@ void read_tables(std::span<const std::byte> bytes, const Header& header, std::ui
   check_zeros(header.reserved, header.padding);
   if (header.values != cells)
     fail_at("", "has " + std::to_string(header.values) + " values, but the DAG has " +
-         std::to_string(cells) + " numbered cells");
+                    std::to_string(cells) + " numbered cells");
   view.values = header.values;
   view.word_count = header.words;
   // The difference cannot overflow, but the sum of both counts could.
@@ -73,7 +73,7 @@ void read_tables(std::span<const std::byte> bytes, const Header& header, std::ui
   const std::uint64_t table_words = view.group_count() + (view.page_count() + 3) / 4;
   if (header.words > words || table_words != words - header.words)
     fail_at("", "has " + std::to_string(words) + " words, but its tables need " +
-         std::to_string(table_words) + " and its pages " + std::to_string(header.words));
+                    std::to_string(table_words) + " and its pages " + std::to_string(header.words));
   const auto* const first = reinterpret_cast<const std::uint64_t*>(bytes.data() + sizeof header);
   view.groups = first;
   view.words = first + view.group_count();

@@ -1,11 +1,11 @@
 #include "voxdag/file/compact_file.hpp"
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 
 namespace voxdag {

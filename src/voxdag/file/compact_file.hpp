@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/core/io/file_copy.hpp"
-#include "voxdag/stored/compact/compact_svdag.hpp"
+#include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/compact/compact_svdag.hpp"
 
 namespace voxdag {
 

@@ -1,8 +1,8 @@
 #include "voxdag/file/esvo_file.hpp"
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/core/with_file_name.hpp"
 
 namespace voxdag {
 

@@ -2,8 +2,8 @@
 /// Reads an ESVO file.
 #include <filesystem>
 
-#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/core/io/file_copy.hpp"
+#include "voxdag/file/esvo_parse.hpp"
 
 namespace voxdag {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/file/esvo_metadata.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/checksum.hpp"
+#include "voxdag/file/esvo_metadata.hpp"
 #include "voxdag/stored/esvo/esvo_directory.hpp"
 
 namespace voxdag {

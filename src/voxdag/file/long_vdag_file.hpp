@@ -2,8 +2,8 @@
 /// Reads a DAG with long pointers from a .vdag file.
 #include <filesystem>
 
-#include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/file/vdag_parse.hpp"
 
 namespace voxdag {
 

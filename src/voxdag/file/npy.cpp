@@ -11,8 +11,8 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/with_file_name.hpp"
 #include "voxdag/core/io/open_input.hpp"
+#include "voxdag/core/with_file_name.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/file/vdag_format.hpp"
 #include "voxdag/core/io/checksum.hpp"
+#include "voxdag/file/vdag_format.hpp"
 
 namespace voxdag {
 

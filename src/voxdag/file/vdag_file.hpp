@@ -2,8 +2,8 @@
 /// Reads a DAG from a .vdag file.
 #include <filesystem>
 
-#include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/core/io/file_copy.hpp"
+#include "voxdag/file/vdag_parse.hpp"
 
 namespace voxdag {
 

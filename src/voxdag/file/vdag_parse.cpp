@@ -6,10 +6,10 @@
 #include <iterator>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/checksum.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/core/io/checksum.hpp"
 #include "voxdag/stored/svdag/validate_svdag.hpp"
 
 namespace voxdag {
@@ -30,15 +30,15 @@ VdagHeader read_header(std::span<const std::byte> file) {
   // The version is checked first: the meaning of the rest depends on it.
   if (header.version > kVdagVersion)
     fail_at("header", "version " + std::to_string(header.version) +
-                       " is newer than this program's version " + std::to_string(kVdagVersion));
+                          " is newer than this program's version " + std::to_string(kVdagVersion));
   if (header.version != kVdagVersion)
     fail_at("header", "version " + std::to_string(header.version) + " does not exist");
   if (header.file_bytes > file.size())
     fail_at(ErrorPlace::byte(file.size()),
-         "truncated: the header says " + std::to_string(header.file_bytes) + " bytes");
+            "truncated: the header says " + std::to_string(header.file_bytes) + " bytes");
   if (header.file_bytes < file.size())
     fail_at(ErrorPlace::byte(header.file_bytes),
-         "has " + std::to_string(file.size() - header.file_bytes) + " trailing bytes");
+            "has " + std::to_string(file.size() - header.file_bytes) + " trailing bytes");
   if (header.chunk_count > kVdagMostChunks ||
       header.chunk_count > (file.size() - sizeof header) / sizeof(VdagChunkEntry))
     fail_at("header", std::to_string(header.chunk_count) + " chunks do not fit into the file");
@@ -50,7 +50,8 @@ void check_header_checksum(std::span<const std::byte> file, std::size_t table_en
   std::vector<std::byte> copy(file.begin(),
                               std::next(file.begin(), static_cast<std::ptrdiff_t>(table_end)));
   std::memset(copy.data() + offsetof(VdagHeader, checksum), 0, sizeof expected);
-  if (xxh3_64(copy) != expected) fail_at("header", "checksum of the header and chunk table is wrong");
+  if (xxh3_64(copy) != expected)
+    fail_at("header", "checksum of the header and chunk table is wrong");
   for (std::size_t i = offsetof(VdagHeader, reserved); i < sizeof(VdagHeader); ++i)
     if (file[i] != std::byte{0}) fail_at(ErrorPlace::byte(i), "reserved byte is not zero");
 }
@@ -67,7 +68,7 @@ VdagChunk read_entry(std::span<const std::byte> file, const VdagChunkEntry& entr
   if ((entry.flags & ~kVdagChunkRequired) != 0) fail_at(place, "unknown flags");
   if (entry.offset != expected_offset)
     fail_at(place, "starts at byte " + std::to_string(entry.offset) + ", expected byte " +
-                    std::to_string(expected_offset));
+                       std::to_string(expected_offset));
   // `expected_offset` is at most file.size(), which is below 2^63, so aligning cannot overflow.
   if (entry.length > file.size() - expected_offset ||
       vdag_align(entry.length) > file.size() - expected_offset)
@@ -133,7 +134,7 @@ std::string_view metadata_chunk_text(const std::vector<VdagChunk>& chunks) {
   const std::span<const std::byte> bytes = chunk_bytes(chunks, kChunkMeta, 1);
   if (bytes.size() > kVdagMostMetadataBytes)
     fail_at(chunk_place(kChunkMeta),
-         "is longer than " + std::to_string(kVdagMostMetadataBytes) + " bytes");
+            "is longer than " + std::to_string(kVdagMostMetadataBytes) + " bytes");
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -150,12 +151,12 @@ Dag read_dag(const std::vector<VdagChunk>& chunks, int levels, std::uint32_t nod
   const auto leaf_blocks = chunk_values<std::uint64_t>(chunks, kChunkLeafBlocks);
   if (table.size() != static_cast<std::size_t>(levels - 1))
     fail_at(chunk_place(kChunkLevels), "has " + std::to_string(table.size()) +
-                                        " values, but a grid of " + std::to_string(levels) +
-                                        " levels needs " + std::to_string(levels - 1));
+                                           " values, but a grid of " + std::to_string(levels) +
+                                           " levels needs " + std::to_string(levels - 1));
   if (table.back() != nodes.size())
     fail_at(chunk_place(node_chunk), "has " + std::to_string(nodes.size()) +
-                                      " words, but the level table says " +
-                                      std::to_string(table.back()));
+                                         " words, but the level table says " +
+                                         std::to_string(table.back()));
   Dag view;
   view.levels = levels;
   view.nodes = nodes.data();
@@ -182,8 +183,8 @@ void check_dag(const Dag& view, void (*check)(const Dag&), std::uint32_t node_ch
 SvdagView read_vdag_svdag(const std::vector<VdagChunk>& chunks, int levels) {
   if (has_chunk(chunks, kChunkLongNodes))
     fail_at("",
-         "has long pointers (more than 2^32 node words), but a plain DAG is needed: voxdag crop "
-         "and voxdag coarsen make one");
+            "has long pointers (more than 2^32 node words), but a plain DAG is needed: voxdag crop "
+            "and voxdag coarsen make one");
   return read_dag<SvdagView>(chunks, levels, kChunkNodes);
 }
 

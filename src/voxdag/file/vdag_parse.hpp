@@ -10,8 +10,8 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
-#include "voxdag/stored/svdag/long_svdag.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/svdag/long_svdag.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/output_chunk.hpp"
 #include "voxdag/file/vdag_bytes.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/file/verify_vdag.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 
 namespace voxdag {

@@ -4,8 +4,8 @@
 
 #include "voxdag/file/attribute_form.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
-#include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/file_copy.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/file/wire_chunks.hpp"
-#include "voxdag/core/io/file_copy.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/stored/svdag/validate_svdag.hpp"
 

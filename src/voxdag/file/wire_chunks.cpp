@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 namespace {
@@ -40,15 +40,15 @@ WireParts read_parts(std::span<const std::byte> bytes) {
   WireParts parts;
   if (bytes.size() < sizeof parts.header || bytes.size() % 8 != 0)
     fail_at("", "has " + std::to_string(bytes.size()) +
-         " bytes: fewer than its header, or no multiple of 8");
+                    " bytes: fewer than its header, or no multiple of 8");
   std::memcpy(&parts.header, bytes.data(), sizeof parts.header);
   const WireHeader& header = parts.header;
   if (header.reserved != 0 || std::any_of(std::begin(header.padding), std::end(header.padding),
                                           [](std::uint64_t word) { return word != 0; }))
     fail_at("", "reserved bytes of the header are not zero");
   if (header.words > kMostWireExpansion * bytes.size() / 8)
-    fail_at("", "expands to " + std::to_string(header.words) + " words, more than allowed for its " +
-         std::to_string(bytes.size()) + " bytes");
+    fail_at("", "expands to " + std::to_string(header.words) +
+                    " words, more than allowed for its " + std::to_string(bytes.size()) + " bytes");
   parts.pages.values = header.values;
   parts.pages.word_count = header.words;
   // A page takes at least a byte. So this bounds the tables, too.
@@ -62,7 +62,8 @@ WireParts read_parts(std::span<const std::byte> bytes) {
     fail_at("", "has " + std::to_string(bytes.size()) + " bytes, but its header needs others");
   const std::byte* const table = bytes.data() + sizeof header;
   parts.segments = {reinterpret_cast<const wire::WireSegment*>(table), segments};
-  parts.coded = bytes.subspan(sizeof header + segments * sizeof(wire::WireSegment), header.coded_bytes);
+  parts.coded =
+      bytes.subspan(sizeof header + segments * sizeof(wire::WireSegment), header.coded_bytes);
   const std::size_t padding = (8 - header.coded_bytes % 8) % 8;
   for (std::size_t i = bytes.size() - padding; i < bytes.size(); ++i)
     if (bytes[i] != std::byte{0}) fail_at("", "padding is not zero");
@@ -79,7 +80,8 @@ void decode(std::uint32_t id, const WireParts& parts, const wire::PagesTarget& t
   if (parameter > 3)
     fail_at("", "unknown precision " + std::to_string(parameter) + ": 0 to 3 are allowed");
   wire::decode_wire_values(parts.segments, parts.coded, EndPrecision{static_cast<int>(parameter)},
-                     id == kChunkColors ? wire::ValueKind::kColor : wire::ValueKind::kNormal, target);
+                           id == kChunkColors ? wire::ValueKind::kColor : wire::ValueKind::kNormal,
+                           target);
 }
 
 /// Sets `memory` to the bytes of the chunk `id` that the parts stand for. Returns them.
@@ -113,7 +115,7 @@ void each_wire_chunk(Chunks& chunks, const Work& work) {
       try {
         if (has_chunk(chunks, kind.expanded))
           fail_at("", "stands for the chunk " + vdag_chunk_name(kind.expanded) +
-               ", which the file also has");
+                          ", which the file also has");
         work(chunk, kind);
       } catch (const Error& error) {
         throw error.within(ErrorPlace::chunk(vdag_chunk_name(kind.wire)));

@@ -1,10 +1,10 @@
 #include "voxdag/image/decode.hpp"
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/image/image_limits.hpp"
 #include "voxdag/image/jpeg.hpp"
 #include "voxdag/image/png.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/image/image_limits.hpp"
 #include "voxdag/image/png_silence.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

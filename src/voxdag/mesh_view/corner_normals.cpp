@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include "voxdag/mesh/vertex_table.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/mesh/vertex_table.hpp"
 #include "voxdag/render/camera.hpp"
 
 namespace voxdag {

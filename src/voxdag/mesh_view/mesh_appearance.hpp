@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/mesh_view/packed_normal.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
+#include "voxdag/mesh_view/packed_normal.hpp"
 
 namespace voxdag {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Checks whether a mesh and voxels belong together.
 #include "voxdag/core/grid.hpp"
-#include "voxdag/stored/svdag/voxel_set.hpp"
 #include "voxdag/mesh/mesh.hpp"
+#include "voxdag/stored/svdag/voxel_set.hpp"
 
 namespace voxdag {
 

@@ -3,12 +3,12 @@
 #include <type_traits>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/render/camera.hpp"
 #include "voxdag/render/light.hpp"
 #include "voxdag/render/sample_tables.hpp"
 #include "voxdag/render/sky.hpp"
 #include "voxdag/render/specular.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/trace/ray_section.hpp"
 
 namespace voxdag {

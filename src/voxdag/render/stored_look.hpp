@@ -1,7 +1,7 @@
 #pragma once
 /// The stored colours and normals of cubes.
-#include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/render/view_sample.hpp"
+#include "voxdag/stored/attributes/look.hpp"
 
 namespace voxdag {
 

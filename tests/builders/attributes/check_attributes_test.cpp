@@ -6,8 +6,8 @@
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
-#include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/stored/attributes/encode_material_ids.hpp"
 
 namespace voxdag {
 namespace {

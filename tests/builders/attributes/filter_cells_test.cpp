@@ -11,11 +11,11 @@
 #include "support/clipped_polygon.hpp"
 #include "support/memory_limit.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
-#include "voxdag/core/srgb.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/srgb.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/look.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 namespace {

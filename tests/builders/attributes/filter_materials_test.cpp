@@ -10,11 +10,11 @@
 #include "support/clipped_polygon.hpp"
 #include "support/memory_limit.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
-#include "voxdag/stored/attributes/material_colors.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
-#include "voxdag/stored/attributes/build_cell_index.hpp"
-#include "voxdag/stored/attributes/validate_material_ids.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/material_colors.hpp"
+#include "voxdag/stored/attributes/validate_material_ids.hpp"
 
 namespace voxdag {
 namespace {

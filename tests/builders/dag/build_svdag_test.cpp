@@ -9,9 +9,9 @@
 
 #include "support/brute_svdag.hpp"
 #include "support/random_triangles.hpp"
+#include "voxdag/builders/voxelize/overlap.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/stored/svdag/validate_svdag.hpp"
-#include "voxdag/builders/voxelize/overlap.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/check_cover.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
-#include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
 namespace {

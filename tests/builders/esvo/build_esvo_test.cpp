@@ -8,9 +8,9 @@
 #include "support/displaced_crate.hpp"
 #include "support/grid_mesh.hpp"
 #include "support/random_triangles.hpp"
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/esvo/build/check_esvo.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/stored/svdag/for_each_voxel.hpp"
 
 namespace voxdag {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "support/triangle_distance.hpp"
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/builders/esvo/build/check_esvo.hpp"
 #include "voxdag/builders/pieces/triangle_source.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {

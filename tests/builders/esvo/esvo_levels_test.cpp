@@ -10,9 +10,9 @@
 
 #include "support/temp_dir.hpp"
 #include "support/test_png.hpp"
+#include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/srgb.hpp"
-#include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/stored/esvo/stored_values.hpp"
 
 namespace voxdag {

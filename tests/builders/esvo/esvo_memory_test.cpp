@@ -7,8 +7,8 @@
 
 #include "support/displaced_crate.hpp"
 #include "support/grid_mesh.hpp"
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 namespace {

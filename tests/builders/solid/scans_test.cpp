@@ -10,10 +10,10 @@
 #include "bodies.hpp"
 #include "voxdag/algebra/combine.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
+#include "voxdag/builders/solid/fill_solid.hpp"
+#include "voxdag/formats/readers/read_mesh.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/stored/svdag/svdag_lookup.hpp"
-#include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/builders/solid/fill_solid.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,13 +10,13 @@
 #include "support/error_of.hpp"
 #include "support/voxel_sets.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
-#include "voxdag/stored/svdag/svdag_lookup.hpp"
 #include "voxdag/builders/solid/fill_solid.hpp"
 #include "voxdag/builders/solid/winding/arc_tangent.hpp"
 #include "voxdag/builders/solid/winding/boundary_caps.hpp"
 #include "voxdag/builders/solid/winding/edge_tree.hpp"
 #include "voxdag/builders/solid/winding/winding_tree.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
+#include "voxdag/stored/svdag/svdag_lookup.hpp"
 
 namespace voxdag {
 namespace {

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "support/random_triangles.hpp"
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/voxelize/cell_classify.hpp"
 #include "voxdag/builders/voxelize/overlap.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "support/picture_checks.hpp"
 #include "support/wavy_file.hpp"
-#include "voxdag/render/coarse_cells.hpp"
 #include "voxdag/cpu/stream/paged_cells.hpp"
+#include "voxdag/render/coarse_cells.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,8 +6,8 @@
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "support/vdag_bytes.hpp"
-#include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
 #include "voxdag/file/model/scene_model.hpp"
+#include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
 
 namespace voxdag {
 namespace {

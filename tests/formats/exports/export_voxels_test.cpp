@@ -6,8 +6,8 @@
 #include "support/error_of.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/exports/count_voxels.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/formats/exports/count_voxels.hpp"
 
 namespace voxdag {
 namespace {

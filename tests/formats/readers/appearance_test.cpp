@@ -7,8 +7,8 @@
 
 #include "formats/readers/appearance_files.hpp"
 #include "formats/readers/mesh_text.hpp"
-#include "voxdag/image/color.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/image/color.hpp"
 
 namespace voxdag {
 namespace {

@@ -8,8 +8,8 @@
 #include "support/file_size_limit.hpp"
 #include "support/grid_mesh.hpp"
 #include "support/temp_dir.hpp"
-#include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
 
 namespace voxdag {
 namespace {

@@ -15,8 +15,8 @@
 #include <optional>
 
 #include "support/temp_dir.hpp"
-#include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
 
 namespace {
 std::atomic<std::size_t> live{0}, peak{0};

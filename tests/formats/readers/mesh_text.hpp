@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

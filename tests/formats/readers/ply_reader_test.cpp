@@ -105,7 +105,8 @@ TEST(PlyReader, EveryScalarTypeHasItsTwoNames) {
     EXPECT_EQ(read_text(read_ply, text).triangles.size(), 2u) << type;
   }
   for (const std::string type : {"float", "float32", "double", "float64"})
-    EXPECT_EQ(read_text(read_ply, replaced(kPlySquare, "float x", type + " x")).vertices[1].x, 1.0f);
+    EXPECT_EQ(read_text(read_ply, replaced(kPlySquare, "float x", type + " x")).vertices[1].x,
+              1.0f);
 }
 
 TEST(PlyReader, HeaderFaultsNameTheLine) {

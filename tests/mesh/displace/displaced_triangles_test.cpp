@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "support/displaced_crate.hpp"
-#include "voxdag/core/error.hpp"
 #include "voxdag/builders/esvo/build/build_esvo.hpp"
 #include "voxdag/builders/esvo/build/check_esvo.hpp"
+#include "voxdag/core/error.hpp"
 #include "voxdag/stored/esvo/validate_esvo.hpp"
 
 namespace voxdag {

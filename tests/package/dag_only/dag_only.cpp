@@ -2,8 +2,8 @@
 #include <cstdio>
 
 #include "voxdag/builders/dag/build_svdag.hpp"
-#include "voxdag/stored/svdag/svdag_counts.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/stored/svdag/svdag_counts.hpp"
 
 int main() {
   voxdag::Mesh cube;

@@ -12,8 +12,8 @@
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/stored/attributes/fit_block.hpp"
-#include "voxdag/stored/attributes/value_encoder.hpp"
 #include "voxdag/stored/attributes/validate_value_pages.hpp"
+#include "voxdag/stored/attributes/value_encoder.hpp"
 
 namespace voxdag {
 namespace {
@@ -75,7 +75,8 @@ TEST(EncodePage, EveryValueKeepsTheBound) {
         const ValuePages pages = encode(set.values, make_value_metric(weights, bound));
         ASSERT_NO_THROW(validate_value_pages(pages.view()));
         for (std::size_t i = 0; i < set.values.size(); ++i)
-          ASSERT_LE(squared_error(read_value(pages.view(), i), set.values[i], weights), bound + 1e-9)
+          ASSERT_LE(squared_error(read_value(pages.view(), i), set.values[i], weights),
+                    bound + 1e-9)
               << set.name << ", bound " << bound << ", value " << i;
       }
 }

@@ -7,11 +7,11 @@
 #include "support/brute_svdag.hpp"
 #include "support/compact_walk.hpp"
 #include "support/random_bits.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/stored/compact/compact_bytes.hpp"
 #include "voxdag/stored/compact/compact_parts.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 
 namespace voxdag {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/algebra/query/nearest_voxel.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 

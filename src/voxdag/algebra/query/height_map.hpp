@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

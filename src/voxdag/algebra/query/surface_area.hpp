@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

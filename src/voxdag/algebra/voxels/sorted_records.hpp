@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "voxdag/algebra/voxels/run_file.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
-#include "voxdag/algebra/voxels/run_file.hpp"
 
 namespace voxdag {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "voxdag/core/error.hpp"
 #include "voxdag/algebra/voxels/morton_builder.hpp"
+#include "voxdag/core/error.hpp"
 
 namespace voxdag {
 

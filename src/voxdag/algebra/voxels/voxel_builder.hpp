@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <span>
 
+#include "voxdag/algebra/voxels/sorted_records.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/algebra/voxels/sorted_records.hpp"
 
 namespace voxdag {
 

@@ -4,8 +4,8 @@
 #include <bit>
 #include <span>
 
-#include "voxdag/stored/attributes/numbered_cell.hpp"
 #include "voxdag/builders/pieces/load_pieces.hpp"
+#include "voxdag/stored/attributes/numbered_cell.hpp"
 
 namespace voxdag {
 

@@ -11,16 +11,16 @@
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/builders/attributes/cell_filter.hpp"
 #include "voxdag/builders/attributes/material_cells.hpp"
-#include "voxdag/core/morton.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/builders/pieces/duplicate_surfaces.hpp"
 #include "voxdag/builders/pieces/split_triangles.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::uint64_t kMostSubtree = 1 << 16;  ///< Cells in the subtree of a cell to compare.
-constexpr std::uint64_t kCellSamplesAtOnce = 1 << 18;   ///< Samples.
+constexpr std::uint64_t kCellSamplesAtOnce = 1 << 18;  ///< Samples.
 
 /// Returns the error of a colour, 0 to 1.
 double color_error(Value8 stored, const std::uint8_t (&exact)[3]) {

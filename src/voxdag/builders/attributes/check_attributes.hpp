@@ -1,10 +1,10 @@
 #pragma once
 /// Compares stored attributes of a DAG's cells with the surface of the mesh.
 #include "voxdag/core/grid.hpp"
-#include "voxdag/stored/attributes/stored_attributes.hpp"
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
+#include "voxdag/stored/attributes/stored_attributes.hpp"
 
 namespace voxdag {
 

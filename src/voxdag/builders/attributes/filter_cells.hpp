@@ -2,9 +2,9 @@
 /// Filters the colours and normals of a mesh over the cells of its DAG.
 ///
 /// A cell of the finest level m gets the mean over the surface in it, as a leaf of an ESVO does
-/// (builders/pieces/surface_sum.hpp). A cell above gets the mean of its children, weighted by area. The DAG
-/// also has voxels where the alpha test removes the surface, because its shape ignores alpha. A
-/// cell without visible surface gets the value of the nearest cell above it that has some.
+/// (builders/pieces/surface_sum.hpp). A cell above gets the mean of its children, weighted by area.
+/// The DAG also has voxels where the alpha test removes the surface, because its shape ignores
+/// alpha. A cell without visible surface gets the value of the nearest cell above it that has some.
 ///
 /// filter_cells() first lists the upper cells breadth first, down to the tasks: cells with at most
 /// 65,536 cells in their subtrees and few triangles. Threads then filter tasks in parallel. Memory
@@ -12,10 +12,10 @@
 #include "voxdag/builders/attributes/cell_value_sink.hpp"
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/attributes/cell_index.hpp"
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
+#include "voxdag/stored/attributes/cell_index.hpp"
 
 namespace voxdag {
 

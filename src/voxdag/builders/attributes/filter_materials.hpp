@@ -2,10 +2,10 @@
 /// Finds the materials of all cells of a DAG: each has the material with the largest area in it.
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/stored/attributes/cell_index.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
-#include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

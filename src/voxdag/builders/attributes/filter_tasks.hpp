@@ -4,8 +4,8 @@
 
 #include "voxdag/builders/attributes/cell_task.hpp"
 #include "voxdag/builders/attributes/top_cells.hpp"
-#include "voxdag/core/parallel/ordered_pipeline.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"
+#include "voxdag/core/parallel/ordered_pipeline.hpp"
 
 namespace voxdag {
 

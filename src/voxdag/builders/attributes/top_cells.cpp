@@ -4,8 +4,8 @@
 #include <bit>
 
 #include "voxdag/builders/attributes/cell_task.hpp"
-#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/builders/pieces/split_triangles.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/stored/attributes/numbered_cell.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/pieces/child_triangles.hpp"
 #include "voxdag/builders/pieces/surface_sum.hpp"
 #include "voxdag/builders/pieces/triangle_source.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/attributes/numbered_cell.hpp"
 
 namespace voxdag {
 

@@ -8,12 +8,12 @@
 #include <memory>
 #include <vector>
 
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/dag/build_methods.hpp"
 #include "voxdag/builders/dag/canonical_order.hpp"
 #include "voxdag/builders/dag/join_cells.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
+#include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/subvolume_bins.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// Builds the DAG of a part of a grid.
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -9,8 +9,8 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -14,11 +14,11 @@
 #include <array>
 #include <cstdint>
 
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/dag/node_store.hpp"
 #include "voxdag/builders/dag/pending_node.hpp"
 #include "voxdag/builders/voxelize/block_bits.hpp"
 #include "voxdag/builders/voxelize/cell_triangle-inl.hpp"
+#include "voxdag/core/morton.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {

@@ -7,10 +7,10 @@
 #include <random>
 #include <vector>
 
-#include "voxdag/stored/svdag/svdag_lookup.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/builders/voxelize/overlap.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/svdag_lookup.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "voxdag/core/grid.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/builders/dag/node_store.hpp"
 #include "voxdag/builders/dag/page_array.hpp"
 #include "voxdag/builders/dag/pending_node.hpp"
 #include "voxdag/builders/dag/plane_memo.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 

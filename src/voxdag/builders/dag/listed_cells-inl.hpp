@@ -13,8 +13,8 @@
 
 #include "voxdag/builders/dag/slab_cell-inl.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/builders/voxelize/cell_classify.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace voxdag {

@@ -20,9 +20,9 @@
 #include <utility>
 #include <vector>
 
+#include "voxdag/builders/dag/page_array.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/builders/dag/page_array.hpp"
 
 namespace voxdag {
 

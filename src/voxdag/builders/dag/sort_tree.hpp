@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/core/page_vector.hpp"
 #include "voxdag/builders/dag/node_store.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 

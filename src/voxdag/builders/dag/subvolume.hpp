@@ -4,12 +4,12 @@
 #include <span>
 #include <utility>
 
-#include "voxdag/core/page_vector.hpp"
 #include "voxdag/builders/dag/dag_sink.hpp"
 #include "voxdag/builders/dag/tree_sink.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/builders/voxelize/triangle_setup.hpp"
+#include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

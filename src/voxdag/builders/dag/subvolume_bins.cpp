@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/builders/voxelize/cell_finder.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <span>
 
-#include "voxdag/core/page_vector.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

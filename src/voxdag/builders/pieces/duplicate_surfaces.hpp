@@ -1,8 +1,8 @@
 #pragma once
 /// Finds triangles that repeat others with their appearance.
+#include "voxdag/core/parallel/find_duplicates.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/find_duplicates.hpp"
 
 namespace voxdag {
 

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/builders/pieces/cell.hpp"
 #include "voxdag/builders/pieces/child_triangles.hpp"
 #include "voxdag/builders/voxelize/cell_classify.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "voxdag/builders/voxelize/cell_classify.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
-#include "voxdag/builders/voxelize/cell_classify.hpp"
 
 namespace voxdag {
 namespace {

@@ -9,9 +9,9 @@
 /// does not depend on the order of the triangles or on a sliver.
 #include <cmath>
 
-#include "voxdag/core/vec.hpp"
 #include "voxdag/builders/pieces/principal_axis.hpp"
 #include "voxdag/builders/pieces/voxel_value.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <span>
 
-#include "voxdag/core/vec2.hpp"
 #include "voxdag/builders/pieces/contour_direction.hpp"
 #include "voxdag/builders/pieces/surface_polygon.hpp"
-#include "voxdag/mesh/surface/surface_shading.hpp"
 #include "voxdag/builders/voxelize/triangle_setup.hpp"
+#include "voxdag/core/vec2.hpp"
+#include "voxdag/mesh/surface/surface_shading.hpp"
 
 namespace voxdag {
 

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/grid.hpp"
-#include "voxdag/mesh/displace/displaced_triangles.hpp"
 #include "voxdag/core/parallel/find_duplicates.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/mesh/displace/displaced_triangles.hpp"
 
 namespace voxdag {
 

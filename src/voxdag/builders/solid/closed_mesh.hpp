@@ -2,9 +2,9 @@
 /// Whether a mesh is closed.
 #include <cstdint>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/progress.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

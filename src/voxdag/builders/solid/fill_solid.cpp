@@ -9,13 +9,13 @@
 #include "voxdag/algebra/components.hpp"
 #include "voxdag/algebra/empty_regions.hpp"
 #include "voxdag/algebra/rewrite.hpp"
-#include "voxdag/core/error.hpp"
-#include "voxdag/core/morton.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/algebra/voxels/voxel_builder.hpp"
 #include "voxdag/builders/solid/closed_mesh.hpp"
 #include "voxdag/builders/solid/parity.hpp"
 #include "voxdag/builders/solid/winding/winding_sheets.hpp"
-#include "voxdag/algebra/voxels/voxel_builder.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -2,11 +2,11 @@
 /// Fills the inside of meshes.
 #include <cstdint>
 
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <utility>
 
-#include "voxdag/core/page_vector.hpp"
-#include "voxdag/core/vec_order.hpp"
-#include "voxdag/core/parallel/polled_sort.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/parallel/polled_sort.hpp"
+#include "voxdag/core/vec_order.hpp"
 
 namespace voxdag {
 

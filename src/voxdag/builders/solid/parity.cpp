@@ -5,9 +5,9 @@
 #include <atomic>
 #include <cstdint>
 
+#include "voxdag/builders/solid/ray_bins.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
-#include "voxdag/builders/solid/ray_bins.hpp"
 
 namespace voxdag {
 namespace {

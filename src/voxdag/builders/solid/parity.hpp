@@ -2,8 +2,8 @@
 /// Whether places are inside a closed mesh, in exact integers.
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

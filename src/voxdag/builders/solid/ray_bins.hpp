@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 

@@ -3,11 +3,11 @@
 #include <bit>
 #include <cstdint>
 
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/voxelize/cell_classify.hpp"
 #include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/builders/voxelize/triangle_setup.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 

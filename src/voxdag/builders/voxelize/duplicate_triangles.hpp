@@ -1,7 +1,7 @@
 #pragma once
 /// Finds triangles that cover what another triangle covers.
-#include "voxdag/core/parallel/find_duplicates.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/parallel/find_duplicates.hpp"
 
 namespace voxdag {
 

@@ -9,8 +9,8 @@
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/mesh/mesh_bounds.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
 
 namespace voxdag {
 

@@ -1,7 +1,7 @@
 #include "voxdag/builders/voxelize/grid_request.hpp"
 
-#include "voxdag/mesh/mesh_bounds.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/mesh/mesh_bounds.hpp"
 
 namespace voxdag {
 

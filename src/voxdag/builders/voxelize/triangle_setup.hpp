@@ -18,10 +18,10 @@
 #include <cstdint>
 #include <numeric>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/host_device.hpp"
 #include "voxdag/core/int128.hpp"
 #include "voxdag/core/vec.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "voxdag/core/thread_sanitizer.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/core/thread_sanitizer.hpp"
 
 namespace voxdag {
 

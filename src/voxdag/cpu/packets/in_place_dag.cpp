@@ -4,9 +4,9 @@
 #include <cassert>
 #include <limits>
 
+#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/compact/compact_errors.hpp"
 #include "voxdag/stored/compact/compact_top.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,9 +10,9 @@
 #include <memory>
 #include <vector>
 
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/cpu/packets/unit_cache.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

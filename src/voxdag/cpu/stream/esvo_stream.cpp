@@ -9,9 +9,9 @@
 #include <cstring>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/core/io/checksum.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/file/esvo_parse.hpp"
 #include "voxdag/stored/esvo/validate_esvo.hpp"
 
 namespace voxdag {

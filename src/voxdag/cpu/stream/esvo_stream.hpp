@@ -5,9 +5,9 @@
 /// in a block are relative, so blocks can be moved: this makes the "dynamic memory management
 /// necessary for out-of-core rendering" easy.
 ///
-/// While a block is not loaded, the descriptor that leads to it is cut (stored/esvo/partial_esvo.hpp).
-/// So the octree is complete at any time, but coarser where blocks are missing: its leaves there
-/// contain all voxels of the missing blocks.
+/// While a block is not loaded, the descriptor that leads to it is cut
+/// (stored/esvo/partial_esvo.hpp). So the octree is complete at any time, but coarser where blocks
+/// are missing: its leaves there contain all voxels of the missing blocks.
 #include <cstdint>
 #include <filesystem>
 #include <map>

@@ -5,9 +5,9 @@
 #include <atomic>
 
 #include "voxdag/cpu/packets/packet_caster.hpp"
-#include "voxdag/cpu/tile_renderer.hpp"
 #include "voxdag/cpu/stream/paged_caster.hpp"
 #include "voxdag/cpu/stream/streamed_tiles.hpp"
+#include "voxdag/cpu/tile_renderer.hpp"
 
 namespace voxdag {
 namespace {

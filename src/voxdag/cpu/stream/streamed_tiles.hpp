@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "voxdag/cpu/stream/streamed_image.hpp"
 #include "voxdag/render/render_plan.hpp"
 #include "voxdag/render/tile.hpp"
-#include "voxdag/cpu/stream/streamed_image.hpp"
 
 namespace voxdag {
 

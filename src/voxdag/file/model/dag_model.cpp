@@ -2,16 +2,16 @@
 
 #include <utility>
 
-#include "voxdag/stored/attributes/material_colors.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/with_file_name.hpp"
+#include "voxdag/file/model/no_materials.hpp"
+#include "voxdag/file/model/written_by.hpp"
 #include "voxdag/file/vdag_writer.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
+#include "voxdag/stored/attributes/material_colors.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
-#include "voxdag/file/model/no_materials.hpp"
-#include "voxdag/file/model/written_by.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <variant>
 
-#include "voxdag/stored/attributes/dag_attributes.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_file.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/attributes/dag_attributes.hpp"
 
 namespace voxdag {
 

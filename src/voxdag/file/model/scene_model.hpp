@@ -4,9 +4,9 @@
 #include <variant>
 
 #include "voxdag/file/esvo_file.hpp"
+#include "voxdag/file/model/dag_model.hpp"
 #include "voxdag/stored/attributes/look.hpp"
 #include "voxdag/stored/svdag/voxel_set.hpp"
-#include "voxdag/file/model/dag_model.hpp"
 
 namespace voxdag {
 

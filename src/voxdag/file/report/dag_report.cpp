@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/printable.hpp"
-#include "voxdag/stored/compact/compact_parts.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/stored/compact/compact_parts.hpp"
 
 namespace voxdag {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "voxdag/file/vdag_metadata.hpp"
-#include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/exports/export_common.hpp"
-#include "voxdag/file/npy.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/file/npy.hpp"
+#include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace voxdag {

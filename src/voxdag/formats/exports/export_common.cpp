@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/exports/count_voxels.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/resolved_output.hpp"
+#include "voxdag/formats/exports/count_voxels.hpp"
 
 namespace voxdag {
 

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace voxdag {

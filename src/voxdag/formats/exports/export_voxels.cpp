@@ -72,18 +72,18 @@ struct ExportFormat {
 
 /// ".spc.npy" comes before ".npy": the first ending that matches counts.
 constexpr ExportFormat kExportFormats[] = {{".spc.npy", dag_file<export_spc>, false},
-                               {".npy", npy, true},
-                               {".raw", one_file<export_raw>, false},
-                               {".ply", ply, true},
-                               {".glb", one_file<export_glb>, true},
-                               {".obj", one_file<export_obj>, true},
-                               {".stl", one_file<export_stl>, false},
-                               {".vox", vox, true},
-                               {".binvox", one_file<export_binvox>, false},
-                               {".schem", one_file<export_schem>, true},
-                               {".voxel.json", dag_file<export_playcanvas>, false},
-                               {".vdb", one_file<export_vdb>, true},
-                               {".nvdb", one_file<export_vdb>, true}};
+                                           {".npy", npy, true},
+                                           {".raw", one_file<export_raw>, false},
+                                           {".ply", ply, true},
+                                           {".glb", one_file<export_glb>, true},
+                                           {".obj", one_file<export_obj>, true},
+                                           {".stl", one_file<export_stl>, false},
+                                           {".vox", vox, true},
+                                           {".binvox", one_file<export_binvox>, false},
+                                           {".schem", one_file<export_schem>, true},
+                                           {".voxel.json", dag_file<export_playcanvas>, false},
+                                           {".vdb", one_file<export_vdb>, true},
+                                           {".nvdb", one_file<export_vdb>, true}};
 
 /// Returns the format of a file, or null.
 const ExportFormat* format_of(const std::filesystem::path& path) {

@@ -2,8 +2,8 @@
 /// Builds models from files of voxels and points.
 #include <string>
 
-#include "voxdag/formats/imports/import_voxels.hpp"
 #include "voxdag/file/model/dag_model.hpp"
+#include "voxdag/formats/imports/import_voxels.hpp"
 
 namespace voxdag {
 

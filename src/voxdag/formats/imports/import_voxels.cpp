@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "voxdag/core/error.hpp"
-#include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/algebra/voxels/voxel_builder.hpp"
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
 
 namespace voxdag {
 namespace {

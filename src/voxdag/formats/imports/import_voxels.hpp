@@ -5,9 +5,9 @@
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/core/box.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

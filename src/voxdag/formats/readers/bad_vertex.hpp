@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "voxdag/mesh/polygon.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/polygon.hpp"
 
 namespace voxdag {
 

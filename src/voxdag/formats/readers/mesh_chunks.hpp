@@ -12,9 +12,9 @@
 #include <optional>
 #include <span>
 
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

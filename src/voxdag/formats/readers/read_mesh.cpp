@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <new>
 
-#include "voxdag/mesh/mesh_memory.hpp"
 #include "voxdag/formats/readers/assimp/assimp_reader.hpp"
 #include "voxdag/formats/readers/gltf/gltf_reader.hpp"
 #include "voxdag/formats/readers/obj/obj_reader.hpp"
@@ -11,6 +10,7 @@
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
 #include "voxdag/formats/readers/text_scan.hpp"
+#include "voxdag/mesh/mesh_memory.hpp"
 
 namespace voxdag {
 namespace {

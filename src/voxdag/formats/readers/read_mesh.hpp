@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/read_options.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

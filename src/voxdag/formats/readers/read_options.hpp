@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/io/mapped_arrays.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {

@@ -16,10 +16,10 @@
 #include <limits>
 #include <vector>
 
-#include "voxdag/mesh/mesh.hpp"
-#include "voxdag/mesh/vertex_table.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/mesh/vertex_table.hpp"
 
 namespace voxdag {
 

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/formats/scenes/math.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag::scenes {
 

@@ -3,8 +3,8 @@
 /// SceneInfo. `progress` may be null; if it is cancelled, a generator throws Cancelled.
 #include <cstdint>
 
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/scenes/scenes.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag::scenes {
 

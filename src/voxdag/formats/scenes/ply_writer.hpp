@@ -2,8 +2,8 @@
 /// Writes meshes as PLY files.
 #include <filesystem>
 
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

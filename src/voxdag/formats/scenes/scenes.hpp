@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "voxdag/core/vec2.hpp"
-#include "voxdag/mesh/displace/displacement.hpp"
 #include "voxdag/mesh/appearance.hpp"
+#include "voxdag/mesh/displace/displacement.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {

@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "voxdag/mesh/displace/displaced_point.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/mesh/displace/displaced_point.hpp"
 
 namespace voxdag {
 namespace {

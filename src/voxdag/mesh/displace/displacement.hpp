@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/image/texture.hpp"
 #include "voxdag/mesh/appearance.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

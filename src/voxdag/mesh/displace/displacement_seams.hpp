@@ -5,8 +5,8 @@
 #include <span>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/mesh/displace/displaced_mesh.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/displace/displaced_mesh.hpp"
 
 namespace voxdag {
 

@@ -4,8 +4,8 @@
 #include <compare>
 #include <map>
 
-#include "voxdag/image/decode.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/image/decode.hpp"
 
 namespace voxdag {
 namespace {

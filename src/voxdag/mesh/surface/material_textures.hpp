@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/image/texture.hpp"
 #include "voxdag/mesh/appearance.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/core/vec2.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

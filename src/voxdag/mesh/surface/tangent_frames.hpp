@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -2,10 +2,10 @@
 /// Films: the frames along a camera path, rendered and written.
 #include <vector>
 
+#include "voxdag/core/parallel/work_queue.hpp"
 #include "voxdag/render/film/film_exposure.hpp"
 #include "voxdag/render/film/frame_timings.hpp"
 #include "voxdag/render/film/picture_pass.hpp"
-#include "voxdag/core/parallel/work_queue.hpp"
 
 namespace voxdag {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/render/film/camera_path.hpp"
 #include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/core/parallel/work_queue.hpp"
+#include "voxdag/render/film/camera_path.hpp"
 #include "voxdag/render/render_options.hpp"
 
 namespace voxdag {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/vec.hpp"
 #include "voxdag/core/io/open_input.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 

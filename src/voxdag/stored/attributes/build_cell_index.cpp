@@ -102,7 +102,7 @@ CellIndex build_cell_index(const SvdagView& dag, int finest_level, MemoryBudget*
 void validate_cell_index(const SvdagView& dag, const CellIndexView& index) {
   if (index.finest_level > dag.levels)
     fail_at("", "its finest level, " + std::to_string(index.finest_level) +
-                 ", is finer than the voxels, level " + std::to_string(dag.levels));
+                    ", is finer than the voxels, level " + std::to_string(dag.levels));
   std::uint64_t words = 0;
   for (int level = 0; level < kMaxLevels; ++level) {
     const bool has_slots = !dag.is_empty() && has_cell_sums(dag, level, index.finest_level);
@@ -115,14 +115,14 @@ void validate_cell_index(const SvdagView& dag, const CellIndexView& index) {
   }
   if (index.word_count() != words)
     fail_at("", "has " + std::to_string(index.word_count()) +
-                 " words, but the widths of its slots need " + std::to_string(words));
+                    " words, but the widths of its slots need " + std::to_string(words));
   for (int level = dag.levels - 3; level >= 0; --level) {
     const int width = index.width[level];
     if (width == 0) continue;
     const int needed = needed_width(dag, index, level);
     if (needed != width)
       fail_at(ErrorPlace::level(level), "has slots of " + std::to_string(width) +
-                                         " bits, but the DAG needs " + std::to_string(needed));
+                                            " bits, but the DAG needs " + std::to_string(needed));
     for_each_sum(dag, index, level, [&](std::uint64_t word, std::uint64_t sum) {
       const std::uint64_t stored = cell_sum(dag, index, level, word);
       if (stored != sum)
@@ -138,7 +138,7 @@ void validate_cell_index(const SvdagView& dag, const CellIndexView& index) {
   const std::uint64_t cells = count_cells(dag, index);
   if (cells != index.cells)
     fail_at("", "is for " + std::to_string(index.cells) + " cells, but the DAG has " +
-                 std::to_string(cells));
+                    std::to_string(cells));
 }
 
 }  // namespace voxdag

@@ -4,11 +4,11 @@
 #include <bit>
 #include <optional>
 
+#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/encode_material_ids.hpp"
 #include "voxdag/stored/attributes/numbered_cell.hpp"
 #include "voxdag/stored/attributes/page_reader.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -14,5 +14,4 @@ ValueMetric make_normal_metric(double degrees) {
   return make_value_metric({1, 1, 1}, std::max(distance - kRounding, 0.0) / std::numbers::sqrt3);
 }
 
-
 }  // namespace voxdag

@@ -1,7 +1,7 @@
 #pragma once
 /// The colours and normals of voxels, from an ESVO or from the attributes of a DAG.
-#include "voxdag/stored/esvo/esvo_lookup.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
+#include "voxdag/stored/esvo/esvo_lookup.hpp"
 #include "voxdag/stored/esvo/stored_values.hpp"
 
 namespace voxdag {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "voxdag/stored/attributes/dag_attributes.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/attributes/dag_attributes.hpp"
 
 namespace voxdag {
 

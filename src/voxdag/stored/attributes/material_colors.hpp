@@ -1,8 +1,8 @@
 #pragma once
 /// Shows material ids as colours.
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/attributes/material_ids.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

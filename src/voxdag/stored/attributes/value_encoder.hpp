@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "voxdag/stored/attributes/encode_page.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/stored/attributes/encode_page.hpp"
 
 namespace voxdag {
 

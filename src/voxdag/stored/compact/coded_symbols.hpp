@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/stored/compact/symbol_batch.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/stored/compact/symbol_batch.hpp"
 
 namespace voxdag {
 

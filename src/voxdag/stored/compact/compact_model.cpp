@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/compact/train_tree.hpp"
 #include "voxdag/stored/compact/unit_symbols.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

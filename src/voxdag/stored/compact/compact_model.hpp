@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "voxdag/stored/compact/coded_symbols.hpp"
-#include "voxdag/stored/compact/numbered_nodes.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
+#include "voxdag/stored/compact/numbered_nodes.hpp"
 
 namespace voxdag {
 

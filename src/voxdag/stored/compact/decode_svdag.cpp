@@ -2,10 +2,10 @@
 #include <array>
 #include <limits>
 
-#include "voxdag/stored/compact/encode_svdag.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/compact/compact_errors.hpp"
 #include "voxdag/stored/compact/compact_top.hpp"
-#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/compact/encode_svdag.hpp"
 
 namespace voxdag {
 namespace {

@@ -2,9 +2,9 @@
 /// Converts a DAG between the paper's layout and the compact form
 /// (stored/compact/compact_svdag.hpp).
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

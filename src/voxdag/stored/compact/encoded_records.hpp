@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/compact/bit_stream.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/compact/bit_stream.hpp"
 
 namespace voxdag {
 

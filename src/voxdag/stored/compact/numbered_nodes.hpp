@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/stored/svdag/svdag.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/stored/compact/context_tree.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/compact/context_tree.hpp"
 
 namespace voxdag {
 

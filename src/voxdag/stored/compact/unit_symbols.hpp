@@ -7,8 +7,8 @@
 #include <bit>
 #include <cstdint>
 
-#include "voxdag/stored/compact/numbered_nodes.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
+#include "voxdag/stored/compact/numbered_nodes.hpp"
 #include "voxdag/stored/compact/unit_cells.hpp"
 
 namespace voxdag {

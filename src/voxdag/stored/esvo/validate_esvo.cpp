@@ -35,7 +35,8 @@ EsvoBlockInfo check_info(std::span<const std::uint64_t> slots) {
   if (!fits(info.contour_begin, (std::uint64_t{info.contour_count} + 1) / 2))
     fail_at("", "its contours extend past its end");
   if (info.attachment_count > EsvoBlockInfo::kMaxAttachments)
-    fail_at("", "it has more than " + std::to_string(EsvoBlockInfo::kMaxAttachments) + " attachments");
+    fail_at("",
+            "it has more than " + std::to_string(EsvoBlockInfo::kMaxAttachments) + " attachments");
   for (std::uint32_t i = 0; i < info.attachment_count; ++i) {
     const EsvoAttachment& attachment = info.attachments[i];
     const std::uint32_t expected = slots_per_pair(attachment.kind);
@@ -174,7 +175,8 @@ EsvoCounts validate_esvo(const EsvoView& view, std::span<const EsvoBlockEntry> d
   for (std::size_t i = 0; i < directory.size(); ++i) {
     const EsvoBlockEntry& block = directory[i];
     if (block.begin != end || block.slots > view.slot_count - end || block.slots == 0)
-      fail_at(ErrorPlace::block(i), "its place in the directory does not follow the previous block");
+      fail_at(ErrorPlace::block(i),
+              "its place in the directory does not follow the previous block");
     if (block.reserved != 0) fail_at(ErrorPlace::block(i), "reserved bytes are not zero");
     end += block.slots;
   }

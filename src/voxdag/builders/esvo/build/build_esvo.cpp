@@ -8,10 +8,10 @@
 #include "voxdag/builders/esvo/build/open_edges.hpp"
 #include "voxdag/builders/esvo/build/subtree_builder.hpp"
 #include "voxdag/builders/esvo/build/top_cells.hpp"
-#include "voxdag/core/parallel/ordered_pipeline.hpp"
 #include "voxdag/builders/pieces/duplicate_surfaces.hpp"
 #include "voxdag/builders/pieces/load_pieces.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"
+#include "voxdag/core/parallel/ordered_pipeline.hpp"
 
 namespace voxdag {
 namespace {

@@ -14,13 +14,13 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/core/grid.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/mesh/displace/displaced_triangles.hpp"
 #include "voxdag/builders/esvo/build/esvo_settings.hpp"
 #include "voxdag/builders/esvo/encode/pack_blocks.hpp"
-#include "voxdag/mesh/mesh.hpp"
+#include "voxdag/core/grid.hpp"
+#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/mesh/displace/displaced_triangles.hpp"
+#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/mesh/surface/surface_shading.hpp"
 
 namespace voxdag {

@@ -3,10 +3,10 @@
 #include <optional>
 #include <span>
 
-#include "voxdag/core/memory_budget.hpp"
 #include "voxdag/builders/esvo/build/decide_cell.hpp"
 #include "voxdag/builders/esvo/encode/esvo_tree.hpp"
 #include "voxdag/builders/pieces/surface_sum.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 

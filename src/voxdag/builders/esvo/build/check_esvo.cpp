@@ -6,9 +6,9 @@
 #include <mutex>
 #include <vector>
 
+#include "voxdag/builders/pieces/triangle_source.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
-#include "voxdag/builders/pieces/triangle_source.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "voxdag/mesh/displace/displaced_triangles.hpp"
-#include "voxdag/stored/esvo/esvo.hpp"
-#include "voxdag/mesh/surface/surface_shading.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
+#include "voxdag/mesh/displace/displaced_triangles.hpp"
+#include "voxdag/mesh/surface/surface_shading.hpp"
+#include "voxdag/stored/esvo/esvo.hpp"
 
 namespace voxdag {
 

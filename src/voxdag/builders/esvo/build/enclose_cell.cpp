@@ -5,8 +5,8 @@
 #include <mutex>
 #include <vector>
 
-#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/builders/pieces/surface_triangle.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/find_duplicates.hpp"
 #include "voxdag/core/parallel/progress.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -6,13 +6,13 @@
 #include <atomic>
 #include <cmath>
 
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/esvo/build/cell_scratch.hpp"
 #include "voxdag/builders/esvo/build/enclose_cell.hpp"
-#include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/builders/pieces/load_pieces.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"
 #include "voxdag/builders/pieces/split_triangles.hpp"
+#include "voxdag/core/morton.hpp"
+#include "voxdag/core/parallel/parallel_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "voxdag/builders/esvo/build/built_voxel.hpp"
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/pieces/child_triangles.hpp"
 #include "voxdag/builders/pieces/triangle_source.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

@@ -10,8 +10,8 @@
 #include <array>
 #include <cmath>
 
-#include "voxdag/core/lanes.hpp"
 #include "voxdag/builders/pieces/principal_axis.hpp"
+#include "voxdag/core/lanes.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,9 +10,9 @@
 #include <array>
 #include <cmath>
 
-#include "voxdag/core/bits.hpp"
 #include "voxdag/builders/esvo/encode/normal_fit.hpp"
 #include "voxdag/builders/pieces/principal_axis.hpp"
+#include "voxdag/core/bits.hpp"
 
 namespace voxdag {
 namespace {

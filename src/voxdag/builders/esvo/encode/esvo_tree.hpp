@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "voxdag/builders/pieces/voxel_value.hpp"
 #include "voxdag/core/bits.hpp"
 #include "voxdag/stored/esvo/contour.hpp"
-#include "voxdag/builders/pieces/voxel_value.hpp"
 
 namespace voxdag {
 

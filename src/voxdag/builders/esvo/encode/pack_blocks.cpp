@@ -4,10 +4,10 @@
 #include <cassert>
 #include <cstring>
 
-#include "voxdag/core/error.hpp"
-#include "voxdag/core/morton.hpp"
 #include "voxdag/builders/esvo/encode/contour_pool.hpp"
 #include "voxdag/builders/esvo/encode/encode_pair.hpp"
+#include "voxdag/core/error.hpp"
+#include "voxdag/core/morton.hpp"
 
 namespace voxdag {
 namespace {

@@ -9,11 +9,11 @@
 #include <optional>
 #include <span>
 
-#include "voxdag/core/interval.hpp"
 #include "voxdag/builders/esvo/shape/convex_polyhedron.hpp"
 #include "voxdag/builders/esvo/shape/near_surface.hpp"
-#include "voxdag/stored/esvo/contour.hpp"
 #include "voxdag/builders/pieces/contour_direction.hpp"
+#include "voxdag/core/interval.hpp"
+#include "voxdag/stored/esvo/contour.hpp"
 
 namespace voxdag {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <span>
 
-#include "voxdag/core/vec_order.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
+#include "voxdag/core/vec_order.hpp"
 
 namespace voxdag {
 namespace {

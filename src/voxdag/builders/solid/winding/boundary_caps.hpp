@@ -1,7 +1,7 @@
 #pragma once
 /// Surfaces that close the holes of a mesh.
-#include "voxdag/core/page_vector.hpp"
 #include "voxdag/builders/solid/winding/boundary_edges.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/builders/solid/mesh_edges.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

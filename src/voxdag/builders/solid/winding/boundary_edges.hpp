@@ -2,9 +2,9 @@
 /// The boundary of a mesh: edges at which its surface ends, or changes its side.
 #include <cstdint>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/progress.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

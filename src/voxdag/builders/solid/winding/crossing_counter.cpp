@@ -2,8 +2,8 @@
 
 #include <atomic>
 
-#include "voxdag/core/vec_order.hpp"
 #include "voxdag/builders/solid/winding/winding_point.hpp"
+#include "voxdag/core/vec_order.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/builders/solid/ray_bins.hpp"
+#include "voxdag/core/parallel/progress.hpp"
 
 namespace voxdag {
 

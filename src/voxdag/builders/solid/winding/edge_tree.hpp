@@ -1,7 +1,7 @@
 #pragma once
 /// How fast a winding number can change, from the boundary of the surface.
-#include "voxdag/core/page_vector.hpp"
 #include "voxdag/builders/solid/winding/boundary_edges.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/builders/solid/winding/boundary_caps.hpp"
 #include "voxdag/builders/solid/winding/crossing_counter.hpp"
 #include "voxdag/builders/solid/winding/winding_point.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "voxdag/core/morton.hpp"
-#include "voxdag/stored/svdag/svdag_lookup.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/stored/svdag/svdag_lookup.hpp"
 
 namespace voxdag {
 

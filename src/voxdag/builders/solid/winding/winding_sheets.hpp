@@ -1,8 +1,8 @@
 #pragma once
 /// The voxels at which the inside of a mesh with holes ends without a surface.
+#include "voxdag/builders/solid/winding/winding_field.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/builders/solid/winding/winding_field.hpp"
 
 namespace voxdag {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "voxdag/core/parallel/polled_for.hpp"
-#include "voxdag/core/parallel/polled_sort.hpp"
 #include "voxdag/builders/solid/winding/arc_tangent.hpp"
 #include "voxdag/builders/solid/winding/morton_order.hpp"
 #include "voxdag/builders/solid/winding/winding_point.hpp"
+#include "voxdag/core/parallel/polled_for.hpp"
+#include "voxdag/core/parallel/polled_sort.hpp"
 
 namespace voxdag {
 namespace {

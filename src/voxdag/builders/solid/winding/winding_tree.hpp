@@ -6,9 +6,9 @@
 /// Unlike there, a bound on the rest decides how far is far enough, so results have known errors.
 #include <cstdint>
 
+#include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/progress.hpp"
-#include "voxdag/builders/voxelize/grid_mapping.hpp"
 
 namespace voxdag {
 

@@ -2,12 +2,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
-#include "voxdag/formats/exports/json_of.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
 #include "voxdag/formats/exports/faces/exported_rectangles.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/formats/exports/json_of.hpp"
 
 namespace voxdag {
 namespace {

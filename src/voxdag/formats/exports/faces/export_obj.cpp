@@ -2,10 +2,10 @@
 #include <cmath>
 #include <string>
 
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
 #include "voxdag/formats/exports/faces/exported_rectangles.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,10 +3,10 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/faces/export_faces.hpp"
 #include "voxdag/formats/exports/faces/exported_rectangles.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/formats/exports/bit_planes.hpp"
 #include "voxdag/formats/exports/coordinates.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 
 namespace voxdag {
 namespace {

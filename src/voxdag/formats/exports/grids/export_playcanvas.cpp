@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/morton.hpp"
-#include "voxdag/formats/exports/json_of.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/full_nodes.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
+#include "voxdag/formats/exports/json_of.hpp"
 
 namespace voxdag {
 namespace {

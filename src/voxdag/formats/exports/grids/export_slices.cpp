@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/temporary_folder.hpp"
 #include "voxdag/formats/exports/bit_planes.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/image/png_rows.hpp"
-#include "voxdag/core/io/temporary_folder.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace voxdag {

@@ -3,8 +3,8 @@
 #include <array>
 #include <string>
 
-#include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/load_module.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/grids/vdb_export_module.hpp"
-#include "voxdag/core/io/load_module.hpp"
 
 namespace voxdag {
 

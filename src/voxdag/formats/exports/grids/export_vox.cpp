@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int32_t kModelSide = 256, kSectionSide = 2000, kHeight = 1000;
 constexpr std::uint64_t kMaxVoxVoxels = 500'000'000;  ///< Sizes in the file are signed 32-bit.
-constexpr std::size_t kMostSections = 500;          ///< All files are open at the same time.
+constexpr std::size_t kMostSections = 500;            ///< All files are open at the same time.
 constexpr int kMostColors = 255;
 constexpr Value8 kGrey{200, 198, 195};
 

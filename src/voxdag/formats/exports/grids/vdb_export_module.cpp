@@ -18,12 +18,12 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/core/srgb.hpp"
 #include "voxdag/formats/exports/export_common.hpp"
 #include "voxdag/formats/exports/full_nodes.hpp"
-#include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/stored/attributes/look_reader.hpp"
 
 namespace voxdag {

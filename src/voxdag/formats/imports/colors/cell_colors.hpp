@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/stored/attributes/value_encoder.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
+#include "voxdag/stored/attributes/value_encoder.hpp"
 
 namespace voxdag {
 
 /// Takes the colours of voxels in Morton order, and gives the encoder those of all cells by their
-/// numbers (stored/attributes/cell_index.hpp). A voxel has the mean of its colours, and a cell that of its
-/// voxels, in linear light.
+/// numbers (stored/attributes/cell_index.hpp). A voxel has the mean of its colours, and a cell that
+/// of its voxels, in linear light.
 class CellColors {
  public:
   /// A grid of 2^levels voxels a side. Refers to the encoder, which must expect all its cells.

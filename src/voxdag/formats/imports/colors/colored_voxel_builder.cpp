@@ -1,9 +1,9 @@
 #include "voxdag/formats/imports/colors/colored_voxel_builder.hpp"
 
-#include "voxdag/formats/imports/colors/cell_colors.hpp"
-#include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/algebra/voxels/morton_builder.hpp"
 #include "voxdag/algebra/voxels/voxel_builder.hpp"
+#include "voxdag/formats/imports/colors/cell_colors.hpp"
+#include "voxdag/stored/attributes/build_cell_index.hpp"
 
 namespace voxdag {
 

@@ -2,10 +2,10 @@
 /// Builds a DAG with colours from voxels in any order.
 #include <filesystem>
 
+#include "voxdag/algebra/voxels/sorted_records.hpp"
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
-#include "voxdag/algebra/voxels/sorted_records.hpp"
 
 namespace voxdag {
 

@@ -23,7 +23,7 @@ class PcdHeaderParser {
     for (bool is_last = false; !is_last;) {
       if (rest_.empty())
         fail(bytes_.size() > kMaxPcdHeaderBytes ? "the header has no line DATA in its first MiB"
-                                              : "the file ends before the line DATA");
+                                                : "the file ends before the line DATA");
       ++line_;
       std::string_view text = next_line(rest_, '\n');
       const std::string_view keyword = next_token(text);

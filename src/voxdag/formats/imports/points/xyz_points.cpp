@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/formats/imports/batched_voxels.hpp"
 
 namespace voxdag {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/formats/imports/volumes/dense_volume.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/formats/imports/volumes/dense_volume.hpp"
 
 namespace voxdag {
 

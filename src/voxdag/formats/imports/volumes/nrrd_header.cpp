@@ -83,7 +83,8 @@ std::vector<std::string_view> words_of(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = at;
     // "(1, 0, 0)" is one word.
-    for (bool is_inside = false; end < text.size() && (is_inside || !is_nrrd_space(text[end])); ++end)
+    for (bool is_inside = false; end < text.size() && (is_inside || !is_nrrd_space(text[end]));
+         ++end)
       is_inside = text[end] == '(' || (is_inside && text[end] != ')');
     if (end > at) words.push_back(text.substr(at, end - at));
     at = end + 1;
@@ -98,7 +99,8 @@ struct Field {
 
 class NrrdHeaderParser {
  public:
-  NrrdHeaderParser(const std::filesystem::path& path, std::string_view text) : path_(path), text_(text) {}
+  NrrdHeaderParser(const std::filesystem::path& path, std::string_view text)
+      : path_(path), text_(text) {}
 
   NrrdHeader parse() {
     read_fields();

@@ -5,12 +5,12 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/image/image_limits.hpp"
-#include "voxdag/image/png.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/dense_volume.hpp"
 #include "voxdag/formats/imports/volumes/value_test.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
+#include "voxdag/image/image_limits.hpp"
+#include "voxdag/image/png.hpp"
 
 namespace voxdag {
 namespace {

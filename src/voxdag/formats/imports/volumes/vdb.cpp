@@ -3,8 +3,8 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/imports/volumes/vdb_module.hpp"
 #include "voxdag/core/io/load_module.hpp"
+#include "voxdag/formats/imports/volumes/vdb_module.hpp"
 
 namespace voxdag {
 std::unique_ptr<VoxelSource> open_vdb(const std::filesystem::path& path,

@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/open_input.hpp"
 #include "voxdag/core/printable.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/volume_grid.hpp"
-#include "voxdag/core/io/open_input.hpp"
 
 namespace voxdag {
 namespace {

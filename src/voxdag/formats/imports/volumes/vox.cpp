@@ -5,10 +5,10 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/volumes/vox_file.hpp"
 #include "voxdag/formats/imports/volumes/vox_scene.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// Reads other mesh formats through the Open Asset Import Library, if voxdag was built with it.
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

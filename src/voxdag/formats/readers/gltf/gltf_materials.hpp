@@ -1,8 +1,8 @@
 #pragma once
 /// The materials of a glTF asset.
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/gltf/gltf_file.hpp"
 #include "voxdag/formats/readers/warnings.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

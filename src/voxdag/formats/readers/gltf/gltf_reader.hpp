@@ -1,7 +1,7 @@
 #pragma once
 /// glTF 2.0, as JSON text (.gltf) or binary (.glb).
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/image/color.hpp"
 #include "voxdag/formats/readers/name_table.hpp"
 #include "voxdag/formats/readers/obj/mtl_map.hpp"
 #include "voxdag/formats/readers/obj/obj_lines.hpp"
+#include "voxdag/image/color.hpp"
 
 namespace voxdag {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/formats/readers/named_files.hpp"
 #include "voxdag/formats/readers/warnings.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include "voxdag/image/color.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/image/color.hpp"
 
 namespace voxdag {
 namespace {

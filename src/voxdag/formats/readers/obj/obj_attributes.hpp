@@ -5,10 +5,10 @@
 #include <limits>
 #include <string_view>
 
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/face_cutter.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/formats/readers/obj/obj_chunk.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/formats/readers/name_table.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

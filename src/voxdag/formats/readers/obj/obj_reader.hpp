@@ -1,7 +1,7 @@
 #pragma once
 /// Wavefront OBJ.
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// OFF, the Object File Format of Geomview, as text.
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

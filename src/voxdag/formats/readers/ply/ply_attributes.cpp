@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "voxdag/image/color.hpp"
 #include "voxdag/core/parallel/parallel_for.hpp"
 #include "voxdag/formats/readers/named_files.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
+#include "voxdag/image/color.hpp"
 
 namespace voxdag {
 namespace {

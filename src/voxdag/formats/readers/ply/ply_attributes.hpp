@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/mesh/appearance.hpp"
 #include "voxdag/formats/readers/face_cutter.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
+#include "voxdag/mesh/appearance.hpp"
 
 namespace voxdag {
 

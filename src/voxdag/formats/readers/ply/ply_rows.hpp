@@ -3,10 +3,10 @@
 #include <array>
 #include <string>
 
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/bad_vertex.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "voxdag/mesh/vertex_table.hpp"
 #include "voxdag/formats/readers/stl/stl_binary.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
+#include "voxdag/mesh/vertex_table.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// STL, binary and ascii.
-#include "voxdag/mesh/mesh.hpp"
 #include "voxdag/formats/readers/mesh_source.hpp"
+#include "voxdag/mesh/mesh.hpp"
 
 namespace voxdag {
 
