@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BASES = [ROOT / base for base in ("", "src/voxdag", "src", "apps", "apps/viewer", "apps/viewer/page", "apps/voxdag", "lab", "docs")]
 
 FILE = r"`((?:[\w-]+/)+[\w.-]+\.(?:hpp|cpp|cu|py|sh|mjs|js|glsl|txt|cmake|md))`"
-FOLDER = r"`((?:src/voxdag|apps|bench|cmake|docs|examples|python|scripts|tests)/[\w/-]*)`"
+FOLDER = r"`((?:src/voxdag|apps|lab|cmake|docs|examples|python|scripts|tests)/[\w/-]*)`"
 PLACEHOLDER = r"\b(NAME|FAMILY|PART)"
 
 
