@@ -3,6 +3,7 @@
 
     docs/generate.py cli VOXDAG    cli.md and cli/: from the help texts of the program VOXDAG
     docs/generate.py api           the list of headers in api.md: from cmake/public_headers.txt
+    docs/generate.py house         images/house.svg, the picture in design.md: from src/voxdag/rooms.txt
 
 With --check it writes nothing, and fails if a page differs from what it would write.
 """
@@ -257,9 +258,46 @@ def api_page():
     return {"api.md": text}
 
 
+def house_picture():
+    """Draws the rooms of the library: each stands above the rooms that it may include, to which lines lead."""
+    uses = {}
+    for line in (DOCS.parent / "src/voxdag/rooms.txt").read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            room, others = line.split("|")[0].split(":")
+            uses[room] = others.split()
+    floor = {}
+    for room, others in uses.items():  # A room stands below all rooms that it uses.
+        floor[room] = 1 + max((floor[other] for other in others), default=-1)
+    width, height, box = 760, 90, (108, 40)
+    top = max(floor.values())
+    place = {}
+    for level in range(top + 1):
+        rooms = [room for room in uses if floor[room] == level]
+        for i, room in enumerate(rooms):
+            # Every second floor is shifted, so that lines pass between rooms.
+            shift = 0.5 if len(rooms) == 1 and 0 < level < top else (i + 0.5) / len(rooms)
+            place[room] = (width * (shift + (0.06 if level % 2 else -0.03)), 40 + (top - level) * height)
+    lines, boxes = [], []
+    for room, others in uses.items():
+        x, y = place[room]
+        # A line to a room that another of its rooms also uses would say nothing new.
+        seen = {far for other in others for far in uses[other]}
+        for other in others:
+            if other not in seen:
+                lines.append(f'<line x1="{x:.0f}" y1="{y + box[1] / 2:.0f}" x2="{place[other][0]:.0f}" y2="{place[other][1] - box[1] / 2:.0f}"/>')
+        boxes.append(f'<rect x="{x - box[0] / 2:.0f}" y="{y - box[1] / 2:.0f}" width="{box[0]}" height="{box[1]}" rx="8"/>'
+                     f'<text x="{x:.0f}" y="{y + 5:.0f}">{room}</text>')
+    style = ("rect{fill:#e8eef7;stroke:#4a6a9a}text{font:15px sans-serif;text-anchor:middle;fill:#1b2a41}"
+             "line{stroke:#8a9bb5;stroke-width:1.5}.paper{fill:#fff;stroke:none}")
+    total = 40 + top * height + 40
+    return {"images/house.svg": "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-30 0 {width + 80} {total}" width="{width + 80}" height="{total}">',
+        f"<style>{style}</style>", f'<rect class="paper" x="-30" width="{width + 80}" height="{total}"/>', *lines, *boxes, "</svg>", ""])}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("cli", "api"))
+    parser.add_argument("what", choices=("cli", "api", "house"))
     parser.add_argument("program", nargs="?", help="the program whose help texts are read")
     parser.add_argument("--check", action="store_true", help="write nothing; fail if a page differs")
     arguments = parser.parse_args()
@@ -267,8 +305,10 @@ def main():
         if not arguments.program:
             parser.error("cli needs the program")
         pages = cli_pages(os.path.abspath(arguments.program))
-    else:
+    elif arguments.what == "api":
         pages = api_page()
+    else:
+        pages = house_picture()
     differing = 0
     for name, text in sorted(pages.items()):
         path = DOCS / name
