@@ -73,6 +73,7 @@ TEST(Docs, EveryCommandShownHasTheOptionsShown) {
       seen.insert(command[1]);
       // The options of `voxdag bench build` belong to its second word.
       const bool nested = command[1] == "bench";
+      if (nested && !has_lab()) continue;
       std::string& help = helps[command[1] + (nested ? " " + command[2] : "")];
       if (help.empty())
         help = run_voxdag(nested ? std::vector{command[1], command[2], std::string("--help")}

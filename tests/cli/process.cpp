@@ -158,6 +158,11 @@ ProcessResult run_voxdag(std::vector<std::string> arguments, const std::string& 
   return Process(voxdag_command(std::move(arguments)), stdout_path).wait();
 }
 
+bool has_lab() {
+  return std::filesystem::exists(std::filesystem::path(VOXDAG_PROGRAM).parent_path() /
+                                 "voxdag-lab");
+}
+
 void expect_failure(const ProcessResult& result, int status, const std::string& text) {
   EXPECT_EQ(result.status, status);
   EXPECT_EQ(result.out, "");

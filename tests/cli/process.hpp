@@ -49,6 +49,9 @@ ProcessResult run_voxdag(std::vector<std::string> arguments, const std::string& 
 /// Returns the command for Process.
 std::vector<std::string> voxdag_command(std::vector<std::string> arguments);
 
+/// Returns whether this build has voxdag-lab, which `voxdag bench` runs: extended tests build it.
+bool has_lab();
+
 /// Expects a failure that is reported correctly: nothing on stdout, one line on stderr that begins
 /// with "voxdag: " and contains `text`, and the exit status.
 void expect_failure(const ProcessResult& result, int status, const std::string& text);

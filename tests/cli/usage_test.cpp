@@ -6,9 +6,9 @@ namespace voxdag::cli {
 namespace {
 
 const std::vector<std::string> kCommands = {
-    "build",  "convert", "info",       "verify",  "view", "render",     "trace",  "export",
-    "scene",  "bench",   "completion", "combine", "diff", "components", "crop",   "shift",
-    "mirror", "rotate",  "dilate",     "erode",   "fill", "query",      "import", "coarsen"};
+    "build",  "convert",    "info",    "verify", "view",       "render", "trace",  "export",
+    "scene",  "completion", "combine", "diff",   "components", "crop",   "shift",  "mirror",
+    "rotate", "dilate",     "erode",   "fill",   "query",      "import", "coarsen"};
 
 TEST(Usage, VersionIsOneLine) {
   const ProcessResult result = run_voxdag({"--version"});
@@ -21,6 +21,7 @@ TEST(Usage, HelpNamesEveryCommand) {
   EXPECT_EQ(result.status, 0);
   for (const std::string& command : kCommands)
     EXPECT_NE(result.out.find("\n  " + command + " "), std::string::npos) << command;
+  EXPECT_NE(result.out.find("\n  bench "), std::string::npos);
 }
 
 TEST(Usage, HelpListsCommandsByFamily) {
@@ -36,6 +37,22 @@ TEST(Usage, HelpOfEveryCommandHasAnExample) {
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.err, "");
     EXPECT_NE(result.out.find("Example:\n  voxdag " + command), std::string::npos) << result.out;
+  }
+}
+
+TEST(Usage, BenchRunsTheLabOrSaysHowToBuildIt) {
+  if (!has_lab()) {
+    expect_failure(run_voxdag({"bench", "trace"}), 1, "--target voxdag_lab");
+    return;
+  }
+  EXPECT_NE(run_voxdag({"bench", "--help"}).out.find("\n  trace "), std::string::npos);
+  for (const std::string command :
+       {"build", "trace", "esvo", "compact", "compact-rays", "attributes", "papers", "untrusted"}) {
+    const ProcessResult result = run_voxdag({"bench", command, "--help"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.out.find("Example:\n  voxdag bench " + command), std::string::npos)
+        << result.out;
+    expect_failure(run_voxdag({"bench", command, "--frobnicate"}), 2, command + " --help");
   }
 }
 

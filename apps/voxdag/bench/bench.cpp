@@ -34,7 +34,7 @@ namespace {
 
 void add_bench_command(const Command& program, Session& session) {
   const Command bench =
-      program.add("bench", "Benchmark builds and rays, also against other programs (voxdag-lab)",
+      program.add("bench", "Benchmark builds and rays, also against other programs",
                   "voxdag bench build sponza.obj -r 2048,4096,8192");
   bench.pass_on([&session](std::vector<std::string> arguments) {
     session.work = [arguments = std::move(arguments)] { run_lab(arguments); };

@@ -141,7 +141,7 @@ TEST_F(Vdb, OtherFilesAreRefused) {
 #else
 
 TEST_F(Vdb, FilesAreRefusedWithoutOpenVdb) {
-  EXPECT_TRUE(has(error_of_bytes("v.vdb", ""), "which voxdag was built without"));
+  EXPECT_TRUE(has(error_of_bytes("v.vdb", ""), "is built where OpenVDB is installed"));
 }
 
 #endif
