@@ -5,9 +5,6 @@
 #include "voxdag/cuda/memory.hpp"
 
 namespace voxdag {
-namespace {
-
-constexpr const char* kWhat = "the colours and normals";
 
 /// Owns values in the device's memory.
 struct DevicePages {
@@ -15,13 +12,17 @@ struct DevicePages {
   DeviceBuffer<std::uint16_t> pages;
 };
 
+namespace {
+
+constexpr const char* kColorMemory = "the colours and normals";
+
 /// Copies values to the device, and makes `view` refer to the copies.
 DevicePages upload_pages(ValuePagesView& view) {
   DevicePages pages;
   if (view.is_empty()) return pages;
-  pages.groups = upload(std::span(view.groups, view.group_count()), kWhat);
-  pages.words = upload(std::span(view.words, view.word_count), kWhat);
-  pages.pages = upload(std::span(view.pages, view.page_count()), kWhat);
+  pages.groups = upload(std::span(view.groups, view.group_count()), kColorMemory);
+  pages.words = upload(std::span(view.words, view.word_count), kColorMemory);
+  pages.pages = upload(std::span(view.pages, view.page_count()), kColorMemory);
   view.groups = pages.groups.data();
   view.words = pages.words.data();
   view.pages = pages.pages.data();
@@ -43,12 +44,14 @@ DeviceAttributes::DeviceAttributes(const DeviceScene& scene, const DagAttributes
   assert(scene.host().dag() != nullptr);
   scene.make_current();
   require_device_memory(
-      attributes.index.bytes() + attributes.colors.bytes() + attributes.normals.bytes(), kWhat);
+      attributes.index.bytes() + attributes.colors.bytes() + attributes.normals.bytes(),
+      kColorMemory);
   const auto memory = std::make_shared<Memory>(scene);
   ColoredDagView& view = memory->view;
   view.dag = scene.view().paper;
   view.attributes = attributes;
-  memory->sums = upload(std::span(attributes.index.words, attributes.index.word_count()), kWhat);
+  memory->sums =
+      upload(std::span(attributes.index.words, attributes.index.word_count()), kColorMemory);
   view.attributes.index.words = memory->sums.data();
   memory->colors = upload_pages(view.attributes.colors);
   memory->normals = upload_pages(view.attributes.normals);

@@ -8,7 +8,7 @@
 namespace voxdag {
 namespace {
 
-constexpr const char* kWhat = "the memory for blocks";
+constexpr const char* kBlockMemory = "the memory for blocks";
 
 }  // namespace
 
@@ -25,10 +25,11 @@ DeviceBlocks::DeviceBlocks(const CudaDevice& device, std::uint64_t slots, std::s
   assert(slots % kEsvoPageSlots == 0);
   memory_->device = device;
   make_current();
-  require_device_memory(slots * 8 + slots / 8 + blocks, kWhat);
-  memory_->slots = make_device_buffer<std::uint64_t>(slots, kWhat);
-  memory_->cut = make_device_buffer<std::uint32_t>(slots / 32, kWhat);
-  memory_->wanted = upload(std::span<const std::uint8_t>(std::vector<std::uint8_t>(blocks)), kWhat);
+  require_device_memory(slots * 8 + slots / 8 + blocks, kBlockMemory);
+  memory_->slots = make_device_buffer<std::uint64_t>(slots, kBlockMemory);
+  memory_->cut = make_device_buffer<std::uint32_t>(slots / 32, kBlockMemory);
+  memory_->wanted =
+      upload(std::span<const std::uint8_t>(std::vector<std::uint8_t>(blocks)), kBlockMemory);
 }
 
 const CudaDevice& DeviceBlocks::device() const { return memory_->device; }

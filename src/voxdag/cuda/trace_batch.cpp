@@ -13,9 +13,11 @@ namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;
 
+}  // namespace
+
 /// A block of rays. It is being copied to the device, traced, or its hits are being copied back.
-struct Block {
-  Block()
+struct RayBlock {
+  RayBlock()
       : rays(make_pinned_buffer<Ray>(kBlock, "rays")),
         hits(make_pinned_buffer<Hit>(kBlock, "hits")),
         device_rays(make_device_buffer<Ray>(kBlock, "rays")),
@@ -29,12 +31,10 @@ struct Block {
   CudaStream stream;                 // last, so that it is destroyed before the memory that it uses
 };
 
-}  // namespace
-
 struct CudaTracer::State {
   State(const DeviceScene& dag_in, const Grid& grid_in) : dag(dag_in), grid(grid_in) {}
 
-  void send(Block& block, std::span<const Ray> rays) const {
+  void send(RayBlock& block, std::span<const Ray> rays) const {
     std::copy(rays.begin(), rays.end(), block.rays.data());
     const cudaStream_t stream = block.stream.get();
     check_cuda(cudaMemcpyAsync(block.device_rays.data(), block.rays.data(), rays.size_bytes(),
@@ -47,7 +47,7 @@ struct CudaTracer::State {
                "copying hits from the device");
   }
 
-  static void receive(Block& block, std::span<Hit> hits) {
+  static void receive(RayBlock& block, std::span<Hit> hits) {
     block.stream.wait("casting rays");
     std::copy_n(block.hits.data(), block.count, hits.data() + block.begin);
     block.count = 0;
@@ -55,7 +55,7 @@ struct CudaTracer::State {
 
   DeviceScene dag;
   Grid grid;
-  std::array<Block, 2> blocks;
+  std::array<RayBlock, 2> blocks;
 };
 
 CudaTracer::CudaTracer(const DeviceScene& dag, const Grid& grid) {
@@ -68,15 +68,15 @@ void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Progress*
   assert(rays.size() == hits.size());
   state_->dag.make_current();
   std::size_t turn = 0;
-  const auto next = [&]() -> Block& { return state_->blocks[turn++ % state_->blocks.size()]; };
-  for (Block& block : state_->blocks) {
+  const auto next = [&]() -> RayBlock& { return state_->blocks[turn++ % state_->blocks.size()]; };
+  for (RayBlock& block : state_->blocks) {
     // A cancelled call may have left work in the stream.
     block.stream.wait("casting rays");
     block.count = 0;
   }
   for (std::size_t begin = 0; begin < rays.size(); begin += kBlock) {
     if (progress != nullptr) progress->throw_if_cancelled();
-    Block& block = next();
+    RayBlock& block = next();
     if (block.count > 0) state_->receive(block, hits);
     block.begin = begin;
     block.count = std::min(kBlock, rays.size() - begin);
@@ -86,7 +86,7 @@ void CudaTracer::trace(std::span<const Ray> rays, std::span<Hit> hits, Progress*
                        begin);
   }
   for (std::size_t i = 0; i < state_->blocks.size(); ++i)
-    if (Block& block = next(); block.count > 0) state_->receive(block, hits);
+    if (RayBlock& block = next(); block.count > 0) state_->receive(block, hits);
 }
 
 }  // namespace voxdag
