@@ -64,13 +64,13 @@ std::optional<WorkFile> WorkFile::open(const std::filesystem::path& path, std::u
       header.key != key || header.bytes != all.size() - sizeof header)
     return std::nullopt;
   if (check == Check::kHeader) return file;
-  constexpr std::size_t kStep = std::size_t{16} << 20;
+  constexpr std::size_t kBytesPerStep = std::size_t{16} << 20;
   Xxh3Stream checksum;
   const std::span<const std::byte> contents = file.bytes();
-  for (std::size_t at = 0; at < contents.size(); at += kStep) {
+  for (std::size_t at = 0; at < contents.size(); at += kBytesPerStep) {
     if (progress != nullptr) progress->throw_if_cancelled();
-    checksum.add(contents.subspan(at, std::min(kStep, contents.size() - at)));
-    if (contents.size() > kStep) file.release(at + kStep);
+    checksum.add(contents.subspan(at, std::min(kBytesPerStep, contents.size() - at)));
+    if (contents.size() > kBytesPerStep) file.release(at + kBytesPerStep);
   }
   if (checksum.digest() != header.checksum) return std::nullopt;
   return file;

@@ -12,7 +12,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::uint64_t kMostBytes = 0xFFFFFFFF;
+constexpr std::uint64_t kMaxGlbBytes = 0xFFFFFFFF;
 constexpr std::uint64_t kIndexBytes = 6 * sizeof(std::uint32_t);  ///< The indices of a rectangle.
 
 struct ColoredCorner {
@@ -146,7 +146,7 @@ void export_glb(const std::filesystem::path& path, const VoxelSet& voxels, const
   const std::string document = plan.document();
   const std::uint64_t data = plan.data_bytes();
   const std::uint64_t bytes = 12 + 8 + document.size() + (data > 0 ? 8 + data : 0);
-  if (bytes > kMostBytes)
+  if (bytes > kMaxGlbBytes)
     refuse_export(path, std::to_string(plan.extent.count) + " rectangles take " +
                             std::to_string(bytes) +
                             " bytes, more than the 4294967295 of a GLB file");
