@@ -73,8 +73,8 @@ class ColoredScene {
     const ValuePages pages = encode_pages(colors_, bound, errors, progress_);
     result.seconds = watch.lap();
     result.bytes = pages.view().bytes();
-    const WireValues wire = encode_wire_values(pages.view(), ValueKind::kColor);
-    result.wire_bytes = wire.bytes.size() + wire.segments.size() * sizeof(WireSegment);
+    const wire::WireValues coded = wire::encode_wire_values(pages.view(), wire::ValueKind::kColor);
+    result.wire_bytes = coded.bytes.size() + coded.segments.size() * sizeof(wire::WireSegment);
     result.psnr_db = psnr_of(errors, colors_.size());
     result.ms_ssim = pictures_->similarities({index_, pages.view(), {}, {}}, progress_);
     return result;

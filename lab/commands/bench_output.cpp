@@ -13,15 +13,15 @@ std::vector<OutputFile> BenchOutput::files() const {
 }
 
 void BenchOutput::check_distinct(const Session& session) const {
-  voxdag::check_distinct(files(), session);
+  cli::check_distinct(files(), session);
 }
 
 void BenchOutput::check_writable(const Progress& progress) const {
-  if (!json_file.empty()) voxdag::check_writable(json_file);
+  if (!json_file.empty()) cli::check_writable(json_file);
   bool has_plots = false;
   for (const std::string& file : plot_files) {
     if (file.empty()) continue;
-    voxdag::check_writable(file);
+    cli::check_writable(file);
     has_plots = true;
   }
   if (has_plots && !can_draw_charts(progress))

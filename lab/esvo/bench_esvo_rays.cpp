@@ -138,7 +138,7 @@ class ViewCasts {
 
   /// Measures all casts of `count` rays each. Agreement is with the first cast that was added.
   AllSums measure(std::size_t count, int repeat) const {
-    const std::vector<Measured> measured = voxdag::measure(runners_, count, repeat);
+    const std::vector<Measured> measured = lab::measure(runners_, count, repeat);
     AllSums best;
     best.fill({HUGE_VAL, 0, 0, 0});
     for (std::size_t i = 0; i < measured.size(); ++i) {

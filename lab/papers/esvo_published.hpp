@@ -8,7 +8,7 @@
 
 #include "lab/papers/paper_scenes.hpp"
 
-namespace voxdag::published {
+namespace voxdag::lab::published {
 
 inline constexpr std::string_view kEsvoSource =
     "Laine and Karras 2010, Tables 1 and 2 (builds: Core2 Quad Q9300, 4 cores; rays: Quadro FX "
@@ -104,4 +104,4 @@ inline double esvo_voxels_per_core_second(const EsvoScene* scene, int levels) {
          (esvo_of_levels(scene->seconds, levels) * kCores);
 }
 
-}  // namespace voxdag::published
+}  // namespace voxdag::lab::published

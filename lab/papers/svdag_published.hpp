@@ -11,7 +11,7 @@
 
 #include "lab/papers/paper_scenes.hpp"
 
-namespace voxdag::published {
+namespace voxdag::lab::published {
 
 inline constexpr std::string_view kSource =
     "Kämpe et al. 2013, Table 1 (Core i7-3930K of 2011, 6 cores)";
@@ -132,4 +132,4 @@ inline double at_levels(const std::array<double, 6>& values, int levels) {
   return column < 0 || column >= 6 ? kNoFigure : values[static_cast<std::size_t>(column)];
 }
 
-}  // namespace voxdag::published
+}  // namespace voxdag::lab::published

@@ -121,7 +121,7 @@ void add_commands(Section& section, const std::vector<SceneSeries>& all) {
       if (!run.result.failure.empty()) {
         section.parts.emplace_back(
             Paragraph{fmt::format("{} at {}: {}.", series.scene.scene->name,
-                                  resolution_text(run.levels), run.result.failure)});
+                                  short_resolution(run.levels), run.result.failure)});
         break;  // the finer ones have the same reason
       }
 }

@@ -15,7 +15,7 @@ class ResolutionTable {
     table_.caption = std::move(caption);
     table_.header = {"scene", ""};
     table_.text_columns = 2;
-    for (const int level : levels_) table_.header.push_back(resolution_text(level));
+    for (const int level : levels_) table_.header.push_back(short_resolution(level));
   }
 
   /// Adds a row with a cell for each resolution: text(levels).

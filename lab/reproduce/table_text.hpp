@@ -27,7 +27,7 @@ inline std::string number_text(double value) {
 inline std::string count_text(double count) { return human_count(count); }
 
 /// Returns "512³", "4K³".
-inline std::string resolution_text(int levels) {
+inline std::string short_resolution(int levels) {
   return levels < 10 ? fmt::format("{}³", 1 << levels) : fmt::format("{}K³", 1 << (levels - 10));
 }
 

@@ -8,15 +8,15 @@
 #include "voxdag/mesh_view/embree_scene.hpp"
 
 namespace voxdag::lab {
+/// A value with the alignment that RTCRayHit16 and RTCRay16 need.
+template <class T>
+struct alignas(64) AlignedPacket {
+  T value;
+};
+
 namespace {
 
 constexpr std::size_t kPacket = 16;
-
-/// A value with the alignment that RTCRayHit16 and RTCRay16 need.
-template <class T>
-struct alignas(64) Aligned {
-  T value;
-};
 
 RTCIntersectContext context(bool is_coherent) {
   RTCIntersectContext result;
@@ -118,7 +118,7 @@ class EmbreeRival::Scene {
  private:
   EmbreeScene embree_;
   std::vector<RTCRay> singles_;
-  std::vector<Aligned<RTCRay16>> packets_;
+  std::vector<AlignedPacket<RTCRay16>> packets_;
 };
 
 EmbreeRival::EmbreeRival(Mesh mesh)

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -102,9 +102,9 @@ std::vector<UntrustedCase> untrusted_image_cases() {
   const std::vector<std::string> build{"build",  "triangle.obj", "-r",       "256", "-o",
                                        "x.esvo", "--quiet",      "--memory", "100M"};
   return {
-      {"PNG: 16,384² pixels in 33 KB", write_one_bit_png, {}, build, 100 * kMiB},
-      {"PNG: 3 GiB of zeros", write_sparse_png, {}, build, 100 * kMiB},
-      {"JPEG: 190 scans", write_scan_jpeg, {}, build, 100 * kMiB},
+      {"PNG: 16,384² pixels in 33 KB", write_one_bit_png, {}, build, 100 * kMebibyte},
+      {"PNG: 3 GiB of zeros", write_sparse_png, {}, build, 100 * kMebibyte},
+      {"JPEG: 190 scans", write_scan_jpeg, {}, build, 100 * kMebibyte},
   };
 }
 

@@ -3,11 +3,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "colored_waves.hpp"
-#include "process.hpp"
+#include "cli/colored_waves.hpp"
+#include "cli/process.hpp"
 #include "support/temp_dir.hpp"
 
 namespace voxdag::lab {
+using namespace cli;
 namespace {
 
 using Json = nlohmann::json;

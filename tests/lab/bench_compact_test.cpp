@@ -1,8 +1,9 @@
 #include <nlohmann/json.hpp>
 
-#include "sponge.hpp"
+#include "cli/sponge.hpp"
 
 namespace voxdag::lab {
+using namespace cli;
 namespace {
 
 using Json = nlohmann::json;

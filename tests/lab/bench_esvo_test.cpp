@@ -1,9 +1,10 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "sponge.hpp"
+#include "cli/sponge.hpp"
 
 namespace voxdag::lab {
+using namespace cli;
 namespace {
 
 using Json = nlohmann::json;

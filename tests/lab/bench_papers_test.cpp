@@ -8,10 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "process.hpp"
+#include "cli/process.hpp"
 #include "support/temp_dir.hpp"
 
 namespace voxdag::lab {
+using namespace cli;
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,10 +6,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "process.hpp"
+#include "cli/process.hpp"
 #include "support/temp_dir.hpp"
 
 namespace voxdag::lab {
+using namespace cli;
 namespace {
 
 using Json = nlohmann::json;

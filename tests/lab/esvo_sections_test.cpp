@@ -7,19 +7,20 @@
 namespace voxdag::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Returns what `bench esvo` prints for rays of one size.
-Json rays_of(int width, int height, double triangles, double cubes, double contours, double beams) {
+OrderedJson rays_of(int width, int height, double triangles, double cubes, double contours,
+                    double beams) {
   const auto rate = [](double mrays) {
-    return Json{{"mrays_per_s", mrays}, {"cpu_mrays_per_s", nullptr}};
+    return OrderedJson{{"mrays_per_s", mrays}, {"cpu_mrays_per_s", nullptr}};
   };
   return {{"width", width},          {"height", height},           {"ray_count", 1'000'000},
           {"picture_seconds", 0.05}, {"filter_seconds", 0.002},    {"triangles", rate(triangles)},
           {"cubes", rate(cubes)},    {"contours", rate(contours)}, {"contours_beams", rate(beams)}};
 }
 
-SeriesRun run_at(int levels, Json json) {
+SeriesRun run_at(int levels, OrderedJson json) {
   SeriesRun run;
   run.levels = levels;
   run.result.json = std::move(json);

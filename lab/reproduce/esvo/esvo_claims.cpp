@@ -31,7 +31,7 @@ Values per_size(const std::vector<EsvoSceneRuns>& scenes, const Read& read) {
           const double value = read(run.result, size);
           if (!std::isnan(value))
             values.push_back({fmt::format("{} at {}, {} × {}", runs.scene.scene->name,
-                                          resolution_text(run.levels), size.width, size.height),
+                                          short_resolution(run.levels), size.width, size.height),
                               run.levels, value});
         }
       });
@@ -58,7 +58,7 @@ Values densities(const std::vector<EsvoSceneRuns>& scenes) {
   for_each_finest(
       scenes, &EsvoSceneRuns::builds, [&](const EsvoSceneRuns& runs, const SeriesRun& run) {
         values.push_back(
-            {fmt::format("{} at {}", runs.scene.scene->name, resolution_text(run.levels)),
+            {fmt::format("{} at {}", runs.scene.scene->name, short_resolution(run.levels)),
              run.levels, bytes_per_voxel(run.result)});
       });
   return values;
@@ -72,7 +72,7 @@ Values saved_levels(const std::vector<EsvoSceneRuns>& scenes) {
     const std::vector<SilhouetteRow> rows = silhouettes_of(runs);
     if (rows.size() < 2 || !runs.scene.match.has_figures()) continue;
     values.push_back(
-        {fmt::format("{} at {}", runs.scene.scene->name, resolution_text(rows.front().levels)),
+        {fmt::format("{} at {}", runs.scene.scene->name, short_resolution(rows.front().levels)),
          rows.front().levels, levels_saved(rows, rows.front()).levels});
   }
   return values;

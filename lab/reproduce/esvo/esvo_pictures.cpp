@@ -137,8 +137,8 @@ Section figure4_section(const EsvoPictures& pictures) {
       "off."});
   for (const CubesAndContours& both : pictures.contours)
     add_row(section, {both.cubes, both.contours},
-            {fmt::format("Cubes at {}.", resolution_text(both.levels)),
-             fmt::format("Contours at {} (the command's).", resolution_text(both.levels))});
+            {fmt::format("Cubes at {}.", short_resolution(both.levels)),
+             fmt::format("Contours at {} (the command's).", short_resolution(both.levels))});
   return section;
 }
 

@@ -35,10 +35,10 @@ void add_density(Table& table, const EsvoSceneRuns& runs) {
   const published::EsvoScene* paper = published_of(runs.scene);
   const bool is_there = finest != nullptr;
   table.rows.push_back(
-      {runs.scene.title(), is_there ? resolution_text(finest->levels) : "–",
+      {runs.scene.title(), is_there ? short_resolution(finest->levels) : "–",
        is_there ? count_text(finest->result.json.at("voxels").get<double>()) : "–",
        is_there ? fmt::format("{:.2f}", bytes_per_voxel(finest->result)) : "–",
-       paper == nullptr ? "–" : resolution_text(published::esvo_levels_of_rates(*paper)),
+       paper == nullptr ? "–" : short_resolution(published::esvo_levels_of_rates(*paper)),
        paper == nullptr ? "–" : fmt::format("{:.2f}", paper->bytes_per_voxel)});
 }
 

@@ -38,7 +38,7 @@ void add_rows(Table& rates, Table& costs, const EsvoSceneRuns& runs, const Serie
   const published::EsvoScene* paper = published::esvo_scene(runs.scene.match);
   for (const ImageSize size : sizes_of(run.result)) {
     const std::string size_text = fmt::format("{} × {}", size.width, size.height);
-    std::vector<std::string> row{runs.scene.title(), resolution_text(run.levels), size_text};
+    std::vector<std::string> row{runs.scene.title(), short_resolution(run.levels), size_text};
     const auto published = published::esvo_mrays(paper, run.levels, size.width, size.height);
     for (std::size_t form = 0; form < published::kEsvoRates; ++form)
       row.push_back(rate_text(esvo_rate(run.result, size, kEsvoForms[form]), published[form]));
@@ -47,7 +47,7 @@ void add_rows(Table& rates, Table& costs, const EsvoSceneRuns& runs, const Serie
     const double casts = measured.at("ray_count").get<double>() * 1e-6 /
                          esvo_rate(run.result, size, EsvoForm::kContoursBeams);
     const double filter = filter_seconds(measured);
-    costs.rows.push_back({runs.scene.title(), resolution_text(run.levels), size_text,
+    costs.rows.push_back({runs.scene.title(), short_resolution(run.levels), size_text,
                           seconds_text(casts), seconds_text(measured.at("picture_seconds")),
                           seconds_text(filter), number_text(casts / filter)});
   }

@@ -24,7 +24,7 @@ Section silhouettes_section(const std::vector<EsvoSceneRuns>& scenes) {
     const std::vector<SilhouetteRow> rows = silhouettes_of(runs);
     for (const SilhouetteRow& row : rows) {
       const LevelsSaved saved = levels_saved(rows, row);
-      table.rows.push_back({runs.scene.title(), resolution_text(row.levels),
+      table.rows.push_back({runs.scene.title(), short_resolution(row.levels),
                             number_text(1e6 * row.cubes), number_text(1e6 * row.contours),
                             saved_text(saved)});
     }

@@ -111,7 +111,7 @@ void add_chart(Section& section, const char* file, const std::string& caption, b
 
 std::string where(const Flight& flight, const FlightRun& run) {
   return fmt::format("{} ({}) at {}", flight.scene.scene->name, flight.scene.state(),
-                     resolution_text(run.levels));
+                     short_resolution(run.levels));
 }
 
 Section figure6(const Flight& flight, bool is_drawn) {

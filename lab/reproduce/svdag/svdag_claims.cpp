@@ -30,7 +30,7 @@ std::vector<ClaimValue> ratios(const std::vector<SvdagSceneBuilds>& scenes, Seri
     const double ratio =
         value_at(scene.*series_a, levels, a) / value_at(scene.*series_b, levels, b);
     if (!std::isnan(ratio))
-      values.push_back({fmt::format("{} at {}", scene.scene.scene->name, resolution_text(levels)),
+      values.push_back({fmt::format("{} at {}", scene.scene.scene->name, short_resolution(levels)),
                         levels, ratio});
   });
   return values;
@@ -77,7 +77,7 @@ std::vector<ClaimValue> reduction_growth(const std::vector<SvdagSceneBuilds>& sc
                      to = value_at(scene.by_paper, levels + 1, reduction_seconds);
         if (levels >= kFirstWithSubvolumes && !std::isnan(from) && !std::isnan(to))
           growth.push_back({fmt::format("{}, {} to {}", scene.scene.scene->name,
-                                        resolution_text(levels), resolution_text(levels + 1)),
+                                        short_resolution(levels), short_resolution(levels + 1)),
                             levels, to / from});
       });
   return growth;

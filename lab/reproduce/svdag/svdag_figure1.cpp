@@ -79,7 +79,7 @@ Section figure1_section(const SvdagFigure1& figure) {
   if (figure.build.failure.empty()) {
     const Json& json = figure.build.json;
     const auto bytes = [&](const char* kind) { return json.at("bytes").at(kind).get<double>(); };
-    add("resolution", resolution_text(figure.rays.levels), resolution_text(paper.levels));
+    add("resolution", short_resolution(figure.rays.levels), short_resolution(paper.levels));
     add("voxels", count_text(json.at("voxels")), count_text(paper.voxels));
     add("DAG (MB)", number_text(bytes("svdag_paper") / (1 << 20)),
         number_text(paper.dag_megabytes));

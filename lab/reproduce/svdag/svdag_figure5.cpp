@@ -35,7 +35,7 @@ ChartPanel panel_of(const SvdagSceneBuilds& builds) {
     if (!build.result.failure.empty()) continue;
     highest = &build.result.json;
     ChartLine dag = line_of(highest->at("dag_nodes_per_level"));
-    dag.label = "DAG " + resolution_text(build.levels);
+    dag.label = "DAG " + short_resolution(build.levels);
     dag.color = static_cast<int>(panel.lines.size());
     dag.markers = true;
     panel.lines.push_back(std::move(dag));

@@ -63,7 +63,7 @@ void add_density(Table& table, const SvdagSceneBuilds& builds) {
   std::vector<std::string> row{builds.scene.title(), "–", "–", "–", "–", "–", "–", "–"};
   if (highest != builds.dags.rend()) {
     const nlohmann::ordered_json& json = highest->result.json;
-    row[1] = resolution_text(highest->levels);
+    row[1] = short_resolution(highest->levels);
     row[2] = human_count(json.at("voxels").get<double>());
     row[3] = fmt::format("{:.2f}", json.at("bits_per_voxel").at("svdag_paper").get<double>());
     row[4] = fmt::format("{:.2f}", json.at("bits_per_voxel").at("svo_pointerless").get<double>());
