@@ -62,7 +62,7 @@ class Bench {
         plan_.threads > 0 ? plan_.threads : static_cast<int>(std::thread::hardware_concurrency());
     run.load_before = load_average();
     const ScratchFolder folder;
-    std::vector<std::string> command{this_program(),
+    std::vector<std::string> command{voxdag_program(),
                                      "build",
                                      mesh.path,
                                      "-r",

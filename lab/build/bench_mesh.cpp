@@ -38,7 +38,11 @@ std::uint64_t warm_up(const fs::path& path) {
 
 }  // namespace
 
-std::string this_program() { return fs::read_symlink("/proc/self/exe"); }
+std::string voxdag_program() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "voxdag";
+  if (!fs::exists(program)) throw Error(program.string(), "", "voxdag-lab needs voxdag beside it");
+  return program;
+}
 
 bool is_procedural(const std::string& mesh) {
   const std::string name = split_scene(mesh)[0];
@@ -57,7 +61,7 @@ PreparedMesh prepare_mesh(const std::string& mesh, const fs::path& folder, Progr
     prepared.path = folder / (mesh + ".ply");
     prepared.identity.name = name;
     prepared.identity.is_procedural = true;
-    std::vector<std::string> command{this_program(), "scene", name, "-o", prepared.path};
+    std::vector<std::string> command{voxdag_program(), "scene", name, "-o", prepared.path};
     if (!size.empty()) command.insert(command.end(), {"--size", size});
     const ChildResult made = run_child(command, folder, 0, progress);
     if (made.status != 0) throw Error(mesh, "", failure_of(made, 0));

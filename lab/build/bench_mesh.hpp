@@ -10,7 +10,7 @@
 namespace voxdag::lab {
 
 /// Returns the path of this program, for child processes.
-std::string this_program();
+std::string voxdag_program();
 
 /// Returns whether `mesh` is the name of a procedural scene, NAME or NAME:SIZE, and not a file.
 bool is_procedural(const std::string& mesh);

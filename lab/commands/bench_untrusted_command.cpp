@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "lab/build/bench_mesh.hpp"
 #include "lab/commands/bench_output.hpp"
 #include "lab/commands/commands.hpp"
 #include "lab/report/bench_machine.hpp"
@@ -37,7 +38,7 @@ void add_bench_untrusted_command(const Command& bench_command, Session& session)
     session.work = [arguments, &session] {
       arguments->output.check_writable(session.progress);
       UntrustedPlan plan = arguments->plan;
-      if (plan.program.empty()) plan.program = "/proc/self/exe";
+      if (plan.program.empty()) plan.program = voxdag_program();
       plan.program = std::filesystem::canonical(plan.program).string();
       const nlohmann::ordered_json machine = machine_json();
       const std::vector<UntrustedRun> runs = bench_untrusted(plan, session.progress);

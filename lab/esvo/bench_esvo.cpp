@@ -74,7 +74,7 @@ class Bench {
     run.with_contours = with_contours;
     run.load_before = load_average();
     run.file = folder_.path() / fmt::format("{}.esvo", steps_);
-    std::vector<std::string> command{this_program(),
+    std::vector<std::string> command{voxdag_program(),
                                      "build",
                                      mesh.path,
                                      "-r",

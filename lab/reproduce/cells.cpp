@@ -149,7 +149,7 @@ CellResult CellStore::run(const Cell& cell) {
 }
 
 CellResult CellStore::measure(const Cell& cell) {
-  std::vector<std::string> command{this_program()};
+  std::vector<std::string> command{voxdag_program()};
   command.insert(command.end(), cell.arguments.begin(), cell.arguments.end());
   const ChildResult child = run_child(command, directory_, cell.seconds_limit, progress_);
   CellResult result;

@@ -26,7 +26,7 @@ PapersDevice find_device(const DeviceChoice& choice, const std::filesystem::path
   if (choice.kind == DeviceChoice::Kind::kCpu) return {};
   const std::string option = option_of(choice);
   const ChildResult child =
-      run_child({this_program(), "bench", "esvo", "device=sponge:2", "-r", "8", "--size", "8x8",
+      run_child({voxdag_program(), "bench", "esvo", "device=sponge:2", "-r", "8", "--size", "8x8",
                  "--views", "1", "--repeat", "1", "--no-silhouettes", "--json", "--device", option},
                 scratch, 0, progress);
   const std::string failure = failure_of(child, 0);

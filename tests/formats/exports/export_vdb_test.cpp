@@ -12,7 +12,8 @@
 namespace voxdag {
 namespace {
 
-[[maybe_unused]] std::set<VoxelKey> read_vdb_back(const std::filesystem::path& path, Vec3i moved_by) {
+[[maybe_unused]] std::set<VoxelKey> read_vdb_back(const std::filesystem::path& path,
+                                                  Vec3i moved_by) {
   std::set<VoxelKey> voxels;
   open_voxel_source(path)->visit_all([&](const VoxelBatch& batch) {
     for (const Vec3d place : batch.places) {
