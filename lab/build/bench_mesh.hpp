@@ -9,7 +9,7 @@
 
 namespace voxdag::lab {
 
-/// Returns the path of this program, for child processes.
+/// Returns the path of voxdag, which child processes run. Throws Error unless it lies beside this program.
 std::string voxdag_program();
 
 /// Returns whether `mesh` is the name of a procedural scene, NAME or NAME:SIZE, and not a file.
