@@ -57,7 +57,7 @@ build() {
     "${configure[@]}" >"$build-configure.log" 2>&1 ||
       { cat "$build-configure.log" >&2; exit 1; }
   fi
-  local targets=(voxdag_app cuda_tests stream_cuda_tests)
+  local targets=(voxdag_app voxdag_lab cuda_tests)
   # This target exists only if OpenVDB and NanoVDB are installed.
   if ninja -C "$build" -t query voxdag_rival_nanovdb_trace >/dev/null 2>&1; then
     targets+=(voxdag_rival_nanovdb_trace)
@@ -80,11 +80,10 @@ if [ -n "$pack" ]; then
   content=build/cuda-pack/content
   rm -rf $content
   mkdir -p $content/lib
-  programs=($content/voxdag $content/cuda_tests $content/stream_cuda_tests)
-  cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/tests/cuda/cuda_tests \
-    build/cuda-pack/tests/stream_cuda/stream_cuda_tests $content
-  if [ -x build/cuda-pack/bench/rival_nanovdb_trace ]; then
-    cp build/cuda-pack/bench/rival_nanovdb_trace $content
+  programs=($content/voxdag $content/voxdag-lab $content/cuda_tests)
+  cp build/cuda-pack/apps/voxdag/voxdag build/cuda-pack/apps/voxdag/voxdag-lab build/cuda-pack/tests/cuda_tests $content
+  if [ -x build/cuda-pack/lab/rival_nanovdb_trace ]; then
+    cp build/cuda-pack/lab/rival_nanovdb_trace $content
     programs+=($content/rival_nanovdb_trace)
   fi
   strip "${programs[@]}"
@@ -116,14 +115,13 @@ if [ -n "$packed" ]; then
   rm -rf $work
   mkdir -p $work
   tar -C $work -xzf "$packed"
-  program=$work/voxdag tests=$work/cuda_tests stream_tests=$work/stream_cuda_tests
+  program=$work/voxdag tests=$work/cuda_tests
   nanovdb=$work/rival_nanovdb_trace
   libraries=$PWD/$work/lib
 else
   build $work -DCMAKE_CUDA_ARCHITECTURES="${capability/./}-real"
-  program=$work/apps/voxdag/voxdag tests=$work/tests/cuda/cuda_tests
-  stream_tests=$work/tests/stream_cuda/stream_cuda_tests libraries=
-  nanovdb=$work/bench/rival_nanovdb_trace
+  program=$work/apps/voxdag/voxdag tests=$work/tests/cuda_tests libraries=
+  nanovdb=$work/lab/rival_nanovdb_trace
 fi
 [ -z "${LD_LIBRARY_PATH-}" ] || libraries=${libraries:+$libraries:}$LD_LIBRARY_PATH
 ours() { within env LD_LIBRARY_PATH="$libraries" "$@"; }
@@ -135,12 +133,9 @@ attempt() { "$@" || { echo "gpu-check: FAILED: $*" >&2; failures=$((failures + 1
 
 echo "== tests"
 attempt ours $tests --gtest_brief=1
-attempt ours $stream_tests --gtest_brief=1
 if [ $sanitize = yes ]; then
   attempt ours compute-sanitizer --error-exitcode 1 $tests --gtest_brief=1 \
-    --gtest_filter='CudaTimedCasts.*:CudaTrace.Stops*:CudaRender.Filters*:CudaRender.AnEmpty*'
-  attempt ours compute-sanitizer --error-exitcode 1 $stream_tests --gtest_brief=1 \
-    --gtest_filter='CudaStreaming.IsThePicture*'
+    --gtest_filter='CudaTimedCasts.*:CudaTrace.Stops*:CudaRender.Filters*:CudaRender.AnEmpty*:CudaStreaming.IsThePicture*'
 fi
 scene=$work/courtyard
 voxdag scene courtyard -o $scene.ply

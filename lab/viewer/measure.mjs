@@ -1,7 +1,7 @@
 /**
  * Measures the viewer in headless Chromium, whose graphics card is software.
  *
- *   VOXDAG=build/release/apps/voxdag/voxdag node bench/viewer/measure.mjs FILE.vdag... -o result.json
+ *   VOXDAG=build/release/apps/voxdag/voxdag node lab/viewer/measure.mjs FILE.vdag... -o result.json
  *
  * For each file: the times to the first picture and to the picture of all levels at several
  * bandwidths; the steps and milliseconds of the view rays of a picture of 1280 x 720, and those of a
