@@ -21,7 +21,7 @@ using DeviceBytes = voxdag::DeviceBuffer<std::uint8_t>;
 
 /// Returns the grid in the memory of the device.
 DeviceBytes make_device_mask(const voxdag::SvdagView& dag) {
-  const auto mask = nanovdb::openToNanoVDB(*voxdag::openvdb_mask_of(dag));
+  const auto mask = nanovdb::openToNanoVDB(*voxdag::lab::openvdb_mask_of(dag));
   return voxdag::upload<std::uint8_t>({mask.data(), mask.size()}, "the NanoVDB grid");
 }
 
@@ -42,17 +42,17 @@ double cast_all(const DeviceBytes& mask, const voxdag::Grid& grid,
   for (const voxdag::Ray& ray : rays) index_rays.push_back(to_index_space(grid, ray));
   const auto device_rays = voxdag::upload<NanoVdbRay>(index_rays, "rays");
   const auto device_hits = voxdag::make_device_buffer<std::uint8_t>(rays.size(), "hits");
-  const double seconds = voxdag::warm_seconds([&] {
+  const double seconds = voxdag::lab::warm_seconds([&] {
     return voxdag::seconds_of("casting rays", [&](cudaStream_t stream) {
-      voxdag::launch_nanovdb_hits(mask.data(), device_rays.data(), device_hits.data(),
-                                  static_cast<std::uint32_t>(rays.size()), stream);
+      voxdag::lab::launch_nanovdb_hits(mask.data(), device_rays.data(), device_hits.data(),
+                                       static_cast<std::uint32_t>(rays.size()), stream);
     });
   });
   voxdag::copy_to_host(hits.data(), device_hits.data(), hits.size());
   return seconds;
 }
 
-voxdag::TraceProgram make_program(const voxdag::VdagFile& file, int /*threads*/) {
+voxdag::lab::TraceProgram make_program(const voxdag::VdagFile& file, int /*threads*/) {
   voxdag::choose_cuda_device();  // fails with its reason if there is none
   openvdb::initialize();
   const auto mask = std::make_shared<DeviceBytes>(make_device_mask(file.view()));
@@ -65,5 +65,5 @@ voxdag::TraceProgram make_program(const voxdag::VdagFile& file, int /*threads*/)
 }  // namespace
 
 int main(int argc, char** argv) {
-  return voxdag::run_trace_program(argc, argv, "rival_nanovdb_trace", make_program);
+  return voxdag::lab::run_trace_program(argc, argv, "rival_nanovdb_trace", make_program);
 }

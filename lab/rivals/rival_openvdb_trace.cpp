@@ -72,11 +72,11 @@ double cast_all(const openvdb::MaskGrid& mask, const voxdag::Grid& grid,
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-voxdag::TraceProgram make_program(const voxdag::VdagFile& file, int threads) {
+voxdag::lab::TraceProgram make_program(const voxdag::VdagFile& file, int threads) {
   openvdb::initialize();
   const auto limit = std::make_shared<tbb::global_control>(
       tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  const openvdb::MaskGrid::Ptr mask = voxdag::openvdb_mask_of(file.view());
+  const openvdb::MaskGrid::Ptr mask = voxdag::lab::openvdb_mask_of(file.view());
   return {
       [limit, grid = file.grid(), mask](std::span<const voxdag::Ray> rays, std::span<char> hits) {
         return cast_all(*mask, grid, rays, hits);
@@ -87,5 +87,5 @@ voxdag::TraceProgram make_program(const voxdag::VdagFile& file, int threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return voxdag::run_trace_program(argc, argv, "rival_openvdb_trace", make_program);
+  return voxdag::lab::run_trace_program(argc, argv, "rival_openvdb_trace", make_program);
 }
