@@ -26,7 +26,7 @@ DeviceBytes make_device_mask(const voxdag::SvdagView& dag) {
 }
 
 NanoVdbRay to_index_space(const voxdag::Grid& grid, const voxdag::Ray& ray) {
-  const auto [eye, way] = voxdag::to_voxels(grid, ray);
+  const auto [eye, way] = voxdag::lab::to_voxels(grid, ray);
   const auto narrow = [](double x) { return static_cast<float>(x); };
   return {{narrow(eye.x), narrow(eye.y), narrow(eye.z)},
           {narrow(way.x), narrow(way.y), narrow(way.z)},

@@ -44,7 +44,7 @@ class FirstActiveVoxel {
 };
 
 VdbRay to_index_space(const voxdag::Grid& grid, const voxdag::Ray& ray) {
-  const auto [eye, way] = voxdag::to_voxels(grid, ray);
+  const auto [eye, way] = voxdag::lab::to_voxels(grid, ray);
   return {{eye.x, eye.y, eye.z}, {way.x, way.y, way.z}, double{ray.t_min}, double{ray.t_max}};
 }
 
