@@ -53,6 +53,12 @@ bool names_long_nodes(const OpenInput& input, const std::filesystem::path& path,
                      [](const VdagChunkEntry& entry) { return entry.id == kChunkLongNodes; });
 }
 
+/// Throws Error if the file is no container. Reads only its chunk table.
+void check_chunk_table(const OpenInput& input, const std::filesystem::path& path) {
+  const MappedFile mapping(input, path, MappedFile::Access::kRandom);
+  with_file_name(path.string(), [&] { read_vdag_chunks(mapping.bytes()); });
+}
+
 }  // namespace
 
 VdagKind kind_of(const std::vector<VdagChunk>& chunks) {
@@ -80,7 +86,12 @@ VdagContainer::VdagContainer(const std::filesystem::path& path, MemoryBudget* me
   } else if (names_long_nodes(input, path, header)) {
     bytes_ = owner->mapping.emplace(input, path, MappedFile::Access::kSequential).bytes();
   } else {
-    owner->memory = MemoryReservation(memory, *input.size);
+    try {
+      owner->memory = MemoryReservation(memory, *input.size);
+    } catch (const OverMemory&) {
+      check_chunk_table(input, path);  // More memory would not help with a damaged file.
+      throw;
+    }
     bytes_ = owner->copy.emplace(input, path).bytes();
   }
   owner_ = owner;

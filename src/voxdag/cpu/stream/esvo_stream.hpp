@@ -38,7 +38,7 @@ struct EsvoStreamCounts {
 class EsvoStream {
  public:
   /// Reads the directory and loads the root's block. `memory` limits the bytes of the loaded
-  /// blocks. Throws Error if any block with its ancestors needs more.
+  /// blocks. Throws Error if any block with its ancestors needs more, and for a DAG.
   EsvoStream(const std::filesystem::path& path, std::uint64_t memory);
   EsvoStream(const EsvoStream&) = delete;
   EsvoStream& operator=(const EsvoStream&) = delete;
