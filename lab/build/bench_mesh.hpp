@@ -9,7 +9,8 @@
 
 namespace voxdag::lab {
 
-/// Returns the path of voxdag, which child processes run. Throws Error unless it lies beside this program.
+/// Returns the path of voxdag, which child processes run. Throws Error unless it lies beside this
+/// program.
 std::string voxdag_program();
 
 /// Returns whether `mesh` is the name of a procedural scene, NAME or NAME:SIZE, and not a file.
