@@ -11,11 +11,8 @@
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/core/with_file_name.hpp"
-#include "voxdag/file/compact_file.hpp"
-#include "voxdag/file/scene_file.hpp"
+#include "voxdag/file/model/scene_model.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
-#include "voxdag/stored/compact/encode_svdag.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag::lab {
@@ -51,16 +48,8 @@ class Bench {
     return run;
   }
 
-  void measure_compact_file(const std::string& path) {
-    const CompactFile file(path);
-    const Svdag dag =
-        with_file_name(path, [&] { return decode_svdag(file.view(), nullptr, &progress_); });
-    measure(dag.view(), add_run(name_of(file.metadata(), path), dag.levels));
-  }
-
   void measure_file(const std::string& path) {
-    if (is_compact_file(path)) return measure_compact_file(path);
-    const SceneFile file(path);
+    const SceneModel file(path, &progress_);
     const VoxelSet voxels = file.voxels();
     if (voxels.dag() == nullptr) throw Error(path, "", "is not a DAG");
     measure(*voxels.dag(), add_run(name_of(file.metadata(), path), voxels.levels()));

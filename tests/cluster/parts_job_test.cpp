@@ -154,7 +154,7 @@ TEST(PartsJob, ADagOfTooManyWordsGetsLongPointers) {
   job.most_plain_words = 1000;  // instead of some 2^32
   build_in_parts(job, kProgram, ranks(), unlimited, nullptr);
   if (ranks().rank() != 0) return;
-  ASSERT_TRUE(has_long_pointers(job.output));
+  ASSERT_EQ(vdag_kind(job.output), VdagKind::kLong);
   EXPECT_TRUE(verify_vdag(job.output).passed());
   const LongVdagFile file(job.output);
   const VdagFile plain(folder / "plain.vdag");

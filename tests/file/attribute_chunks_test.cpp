@@ -168,13 +168,13 @@ TEST(AttributeChunks, TheWireFormIsNamedAndHasTheSameContents) {
   const TempDir dir;
   write_text(dir / "wire.vdag", wire);
   write_text(dir / "pages.vdag", pages);
-  const WireBytes sizes = wire_bytes_of(dir / "wire.vdag");
+  const WireBytes sizes = wire_bytes_of(VdagContainer(dir / "wire.vdag"));
   EXPECT_EQ(sizes.colors, entry_of(wire, 5).length);
   EXPECT_EQ(sizes.normals, entry_of(wire, 6).length);
   EXPECT_EQ(sizes.materials, entry_of(wire, 7).length);
   EXPECT_EQ(sizes.expanded,
             entry_of(pages, 5).length + entry_of(pages, 6).length + entry_of(pages, 7).length);
-  EXPECT_EQ(wire_bytes_of(dir / "pages.vdag").expanded, 0u);
+  EXPECT_EQ(wire_bytes_of(VdagContainer(dir / "pages.vdag")).expanded, 0u);
 }
 
 TEST(AttributeChunks, AWireChunkThatExpandsTooFarIsRefused) {

@@ -8,7 +8,7 @@
 #include "support/number_colors.hpp"
 #include "support/vdag_bytes.hpp"
 #include "voxdag/core/error.hpp"
-#include "voxdag/file/scene_file.hpp"
+#include "voxdag/file/vdag_file.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
 
@@ -69,7 +69,7 @@ TEST(CompactFile, GivesBackWhatWasWritten) {
       EXPECT_EQ(decode_svdag(file.view()), dag);
       EXPECT_EQ(file.metadata(), metadata);
       EXPECT_EQ(file.file_bytes(), std::filesystem::file_size(dir / "a.vdag"));
-      EXPECT_TRUE(is_compact_file(dir / "a.vdag"));
+      EXPECT_EQ(vdag_kind(dir / "a.vdag"), VdagKind::kCompact);
     }
 }
 
@@ -131,7 +131,7 @@ TEST(CompactFile, IsNotReadAsAPlainDag) {
           ": holds a compact DAG, but one in the plain form is needed: voxdag convert --plain");
   const Svdag dag = brute_svdag(4, {});
   write_vdag(dir / "b.vdag", dag.view(), example_metadata(dag.view()));
-  EXPECT_FALSE(is_compact_file(dir / "b.vdag"));
+  EXPECT_EQ(vdag_kind(dir / "b.vdag"), VdagKind::kPlain);
   EXPECT_EQ(error_of([&] { CompactFile(dir / "b.vdag"); }),
             (dir / "b.vdag").string() + ": does not hold a compact DAG");
 }

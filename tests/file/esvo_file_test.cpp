@@ -43,7 +43,7 @@ TEST(EsvoFile, HoldsWhatWasWritten) {
     entry.checksum = 0;
     EXPECT_EQ(entry, esvo.packed.blocks[i]);
   }
-  EXPECT_TRUE(is_esvo_file(dir / "a.esvo"));
+  EXPECT_EQ(vdag_kind(dir / "a.esvo"), VdagKind::kEsvo);
   EXPECT_TRUE(verify_vdag(dir / "a.esvo").passed());
   EXPECT_EQ(dir.count(), 1) << "no temporary file is left";
 }
@@ -62,7 +62,7 @@ TEST(EsvoFile, DagsAndEsvosAreDistinguished) {
   write_esvo(dir / "a.esvo", packed_esvo(3, 64, 5));
   EXPECT_THROW(VdagFile(dir / "a.esvo"), Error);
   write_text(dir / "b.vdag", vdag_file_bytes(brute_svdag(4, {{0, 0, 0}})));
-  EXPECT_FALSE(is_esvo_file(dir / "b.vdag"));
+  EXPECT_EQ(vdag_kind(dir / "b.vdag"), VdagKind::kPlain);
   EXPECT_THROW(EsvoFile(dir / "b.vdag"), Error);
 }
 

@@ -20,7 +20,7 @@ class LongVdagFileTest : public testing::Test {
 
 TEST_F(LongVdagFileTest, IsReadAndVerified) {
   write_text(path_, bytes_);
-  EXPECT_TRUE(has_long_pointers(path_));
+  EXPECT_EQ(vdag_kind(path_), VdagKind::kLong);
   const LongVdagFile file(path_);
   EXPECT_EQ(count_svdag(file.view()), count_svdag(dag_.view()));
   EXPECT_EQ(file.metadata().counts, count_svdag(dag_.view()));
@@ -38,9 +38,11 @@ TEST_F(LongVdagFileTest, ReadersOfThePlainFormNameTheWayOut) {
 
 TEST_F(LongVdagFileTest, OtherFilesHaveNoLongPointers) {
   write_text(path_, vdag_file_bytes(dag_));
-  EXPECT_FALSE(has_long_pointers(path_));
+  EXPECT_EQ(vdag_kind(path_), VdagKind::kPlain);
+  EXPECT_TRUE(VdagContainer(path_).is(VdagKind::kPlain));
   write_text(path_, "");
-  EXPECT_FALSE(has_long_pointers(path_));
+  EXPECT_THROW(vdag_kind(path_), Error);
+  EXPECT_FALSE(VdagContainer(path_).is(VdagKind::kLong));
 }
 
 TEST_F(LongVdagFileTest, AnyFlippedBitAndAnyTruncationIsRefused) {

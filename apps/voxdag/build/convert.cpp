@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
@@ -48,12 +49,13 @@ DagReduction reduction_of(const ConvertArguments& arguments, int levels, const s
 DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
                     MemoryBudget& memory, Session& session) {
   const std::string& path = session.subject;
-  if (!has_long_pointers(path)) {
-    DagModel file(path, &session.progress, &memory);
+  VdagContainer opened(path, &memory);
+  if (opened.kind() != VdagKind::kLong) {
+    DagModel file(std::move(opened), &session.progress, &memory);
     reduction = reduction_of(arguments, file.grid().levels, path);
     return file;
   }
-  const LongVdagFile file(path);
+  const LongVdagFile file(std::move(opened));
   reduction = reduction_of(arguments, file.view().levels, path);
   const int levels = std::min(reduction.levels.value_or(kMaxLevels), file.view().levels);
   if (reduction.levels == levels) reduction.levels.reset();

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/output_files.hpp"
@@ -49,8 +50,9 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
       check_writable(arguments->output);
       MemoryBudget memory = command_budget(arguments->memory_limit);
       const EditContext context{session.subject, &memory, &session.progress};
-      if (long_edit && has_long_pointers(session.subject)) {
-        const LongVdagFile file(session.subject);
+      VdagContainer opened(session.subject, &memory);
+      if (long_edit && opened.kind() == VdagKind::kLong) {
+        const LongVdagFile file(std::move(opened));
         Svdag dag = long_edit(file.view(), context);
         write_edited(
             *arguments,
@@ -58,7 +60,7 @@ void add_edit(const Command& command, Session& session, const Edit& edit,
             arguments->compact, memory, session);
         return;
       }
-      const DagModel file(session.subject, &session.progress, &memory);
+      const DagModel file(std::move(opened), &session.progress, &memory);
       refuse_attributes(file, session.subject, *arguments);
       Grid grid = file.grid();
       Svdag dag = edit(file.view(), grid, context);

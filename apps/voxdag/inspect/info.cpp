@@ -17,39 +17,41 @@
 namespace voxdag::cli {
 namespace {
 
-void esvo_info(const std::string& path, bool json) {
-  const EsvoFile file(path);
+void esvo_info(const VdagContainer& opened, bool json) {
+  const EsvoFile file(opened);
   const EsvoReport report = report_of(file.contents(), file.file_bytes());
   if (json)
     fmt::print("{}", json_text(esvo_json(report)));
   else
-    fmt::print("{}: {}, written by {}\n{}\n{}", path, human_bytes(report.file_bytes),
-               printable(report.metadata.program), esvo_table(report), esvo_level_table(report));
+    fmt::print("{}: {}, written by {}\n{}\n{}", opened.path().string(),
+               human_bytes(report.file_bytes), printable(report.metadata.program),
+               esvo_table(report), esvo_level_table(report));
 }
 
 /// Decodes a compact DAG, so that the report has the bytes of both forms.
-DagReport dag_report(const std::string& path, Progress& progress) {
-  if (has_long_pointers(path)) {
-    const LongVdagFile file(path);
+DagReport dag_report(const VdagContainer& opened, Progress& progress) {
+  if (opened.kind() == VdagKind::kLong) {
+    const LongVdagFile file(opened);
     return report_of(file.view(), file.metadata(), file.file_bytes());
   }
-  const DagModel file(path, &progress);
+  const DagModel file(opened, &progress);
   DagReport report = report_of(file.view(), file.metadata(), file.file_bytes());
   report.attributes = sizes_of(file.attributes());
-  const WireBytes wire = wire_bytes_of(path);
+  const WireBytes wire = wire_bytes_of(opened);
   report.attributes.is_wire = wire.expanded > 0;
   if (wire.colors > 0) report.attributes.color_bytes = wire.colors;
   if (wire.normals > 0) report.attributes.normal_bytes = wire.normals;
   if (wire.materials > 0) report.attributes.material_bytes = wire.materials;
   if (!file.is_compact()) return report;
-  const CompactFile compact(path);
+  const CompactFile compact(opened);
   report.compact = bytes_of(compact.view(), compact.head_bytes());
   return report;
 }
 
 void info(const std::string& path, bool json, Progress& progress) {
-  if (is_esvo_file(path)) return esvo_info(path, json);
-  const DagReport report = dag_report(path, progress);
+  const VdagContainer opened(path);
+  if (opened.kind() == VdagKind::kEsvo) return esvo_info(opened, json);
+  const DagReport report = dag_report(opened, progress);
   if (json) {
     fmt::print("{}", json_text(dag_json(report)));
     return;

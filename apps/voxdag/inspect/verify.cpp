@@ -167,10 +167,11 @@ std::vector<VerifyCheck> solid_checks(const VerifyArguments& arguments, const Da
 }
 
 /// Compares the voxels and the attributes of a DAG with the mesh.
-std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, Session& session) {
+std::vector<VerifyCheck> dag_checks(const VerifyArguments& arguments, const VdagContainer& opened,
+                                    Session& session) {
   if (!arguments.displace.texture.empty())
     throw Error(session.subject, "", "--displace is for ESVOs only, but this file is a DAG");
-  const DagModel file(session.subject, &session.progress);
+  const DagModel file(opened, &session.progress);
   MeshWithAppearance source;
   if (file.attributes().has_colors() || file.attributes().has_normals())
     source = read_mesh_file_with_appearance(arguments.mesh, arguments.access, session);
@@ -221,8 +222,9 @@ std::optional<DisplaceArguments> displacement_of(const EsvoFile& file,
 }
 
 /// Checks that the octree contains random points of the mesh.
-VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) {
-  const EsvoFile file(session.subject);
+VerifyCheck enclosure_check(const VerifyArguments& arguments, const VdagContainer& opened,
+                            Session& session) {
+  const EsvoFile file(opened);
   const std::optional<DisplaceArguments> displace = displacement_of(file, arguments.displace);
   if (!displace)
     return {"enclosure", Result::kSkipped,
@@ -257,28 +259,20 @@ VerifyCheck enclosure_check(const VerifyArguments& arguments, Session& session) 
   return check;
 }
 
-std::vector<VerifyCheck> mesh_checks(const VerifyArguments& arguments, Session& session) {
-  if (is_esvo_file(session.subject)) return {enclosure_check(arguments, session)};
-  return dag_checks(arguments, session);
-}
-
-/// Returns whether the file is a compact DAG; false for a file that is damaged.
-bool holds_compact(const std::string& path) {
-  try {
-    return is_compact_file(path);
-  } catch (const Error&) {
-    return false;
-  }
+std::vector<VerifyCheck> mesh_checks(const VerifyArguments& arguments, const VdagContainer& opened,
+                                     Session& session) {
+  if (opened.kind() == VdagKind::kEsvo) return {enclosure_check(arguments, opened, session)};
+  return dag_checks(arguments, opened, session);
 }
 
 void verify(const VerifyArguments& arguments, Session& session) {
-  VerifyReport report = holds_compact(session.subject)
-                            ? verify_compact(session.subject, session.progress)
-                            : verify_vdag(session.subject);
+  const VdagContainer opened(session.subject);
+  VerifyReport report = opened.is(VdagKind::kCompact) ? verify_compact(opened, session.progress)
+                                                      : verify_vdag(opened);
   session.progress.throw_if_cancelled();
   if (!arguments.mesh.empty()) {
     if (report.passed())
-      for (VerifyCheck& check : mesh_checks(arguments, session))
+      for (VerifyCheck& check : mesh_checks(arguments, opened, session))
         report.checks.push_back(std::move(check));
     else
       report.checks.push_back(

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "voxdag/core/io/file_copy.hpp"
 #include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/vdag_format.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
@@ -28,8 +27,7 @@ void check_bytes(const Svdag& dag, const CompactContents& file, Progress& progre
 
 }  // namespace
 
-VerifyReport verify_compact(const std::filesystem::path& path, Progress& progress) {
-  const FileCopy file(path);
+VerifyReport verify_compact(const VdagContainer& file, Progress& progress) {
   VerifyReport report;
   CompactContents contents;
   Svdag dag;

@@ -1,7 +1,5 @@
 #pragma once
 /// The checks of a compact DAG.
-#include <filesystem>
-
 #include "voxdag/core/parallel/progress.hpp"
 #include "voxdag/file/verify_vdag.hpp"
 
@@ -15,7 +13,7 @@ namespace voxdag::cli {
 ///   canonical   encoding that DAG again gives the same bytes
 ///   counts      the metadata has the counts of the DAG
 ///   attributes  attributes are valid, and the metadata describes them; passes if the file has none
-/// Throws Error only if the file cannot be read, and Cancelled.
-VerifyReport verify_compact(const std::filesystem::path& path, Progress& progress);
+/// Throws Cancelled.
+VerifyReport verify_compact(const VdagContainer& file, Progress& progress);
 
 }  // namespace voxdag::cli

@@ -61,8 +61,6 @@ void render(RenderArguments& arguments, Session& session) {
   if (is_first)
     for (const PicturePass& pass : all_passes(arguments)) check_writable(frame_name(pass.path, 0));
   if (arguments.stream_memory == 0) return render_loaded(arguments, session);
-  if (!is_esvo_file(session.subject))
-    throw Error(session.subject, "", "--memory is for ESVOs only, but this file is a DAG");
   render_streamed(arguments, session);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -88,9 +89,10 @@ std::string trace_scene(const TraceArguments& arguments, Session& session) {
 
 /// Opens the file in the compact form. Throws Error if it has another form.
 CompactFile compact_file(const std::string& path) {
-  if (!is_compact_file(path))
+  VdagContainer opened(path);
+  if (opened.kind() != VdagKind::kCompact)
     throw Error(path, "", "does not have the compact form, which --in-place needs");
-  CompactFile file(path);
+  CompactFile file(std::move(opened));
   if (file.view().levels < 4)
     throw Error(path, "", "has a grid of fewer than 16³ voxels, too few for --in-place");
   return file;

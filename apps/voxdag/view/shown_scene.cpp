@@ -2,16 +2,18 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/process_memory.hpp"
-#include "voxdag/file/compact_file.hpp"
 #include "voxdag/file/report/human.hpp"
+#include "voxdag/file/vdag_container.hpp"
 
 namespace voxdag::cli {
 namespace {
 
-void refuse_esvo(const std::string& path) {
-  if (is_esvo_file(path))
+void refuse_esvo(VdagKind kind, const std::string& path) {
+  if (kind == VdagKind::kEsvo)
     throw Error(path, "",
                 "is an ESVO, which the viewer cannot show: build a DAG with colours from its mesh, "
                 "voxdag build MESH --color -o scene.vdag");
@@ -21,8 +23,9 @@ void refuse_esvo(const std::string& path) {
 
 ShownScene ShownScene::open(const std::string& path, const ShownSceneArguments& arguments,
                             Session& session) {
-  refuse_esvo(path);
-  if (is_compact_file(path)) {
+  const VdagKind kind = vdag_kind(path);
+  refuse_esvo(kind, path);
+  if (kind == VdagKind::kCompact) {
     ShownScene scene = read(path, arguments, AttributeForm::kPages, session);
     session.bar.clear();
     if (!session.quiet)
@@ -37,11 +40,13 @@ ShownScene ShownScene::open(const std::string& path, const ShownSceneArguments& 
 
 ShownScene ShownScene::read(const std::string& path, const ShownSceneArguments& arguments,
                             AttributeForm form, Session& session) {
-  refuse_esvo(path);
   ShownScene scene;
   // make_unique() would need to move the budget, which cannot be moved.
   scene.memory_.reset(new MemoryBudget(command_budget(arguments.memory_limit)));
-  scene.file_ = std::make_unique<DagModel>(path, &session.progress, scene.memory_.get());
+  VdagContainer opened(path, scene.memory_.get());
+  refuse_esvo(opened.kind(), path);
+  scene.file_ =
+      std::make_unique<DagModel>(std::move(opened), &session.progress, scene.memory_.get());
   scene.dag_ = std::make_unique<ReducedDag>(*scene.file_, path, arguments.reduction,
                                             scene.memory_.get(), &session.progress);
   const DagAttributesView& attributes = scene.dag_->attributes();

@@ -1,7 +1,8 @@
 #include "voxdag/file/compact_file.hpp"
 
+#include <utility>
+
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
@@ -9,10 +10,6 @@
 #include "voxdag/stored/compact/compact_bytes.hpp"
 
 namespace voxdag {
-
-bool is_compact(const std::vector<VdagChunk>& chunks) {
-  return has_chunk(chunks, kChunkCompactStream);
-}
 
 CompactSvdagView CompactContents::view() const {
   CompactSvdagView view = head.view();
@@ -33,7 +30,8 @@ DagAttributesView CompactContents::attributes(const CellIndexView& index,
 CompactContents parse_compact(std::span<const std::byte> file) {
   CompactContents contents;
   contents.chunks = read_vdag_chunks(file);
-  if (!is_compact(contents.chunks)) throw Error("", "", "does not hold a compact DAG");
+  if (!has_chunk(contents.chunks, kChunkCompactStream))
+    throw Error("", "", "does not hold a compact DAG");
   check_vdag_checksums(contents.chunks);
   contents.metadata = read_vdag_metadata(contents.chunks);
   const auto stream = chunk_values<std::uint32_t>(contents.chunks, kChunkCompactStream);
@@ -55,14 +53,8 @@ CompactContents parse_compact(std::span<const std::byte> file) {
   return contents;
 }
 
-CompactFile::CompactFile(const std::filesystem::path& path) : file_(path) {
-  contents_ = with_file_name(path.string(), [&] { return parse_compact(file_.bytes()); });
-}
-
-bool is_compact_file(const std::filesystem::path& path) {
-  const MappedFile mapping(path, MappedFile::Access::kRandom);
-  return with_file_name(path.string(),
-                        [&] { return is_compact(read_vdag_chunks(mapping.bytes())); });
+CompactFile::CompactFile(VdagContainer file) : file_(std::move(file)) {
+  contents_ = with_file_name(file_.path().string(), [&] { return parse_compact(file_.bytes()); });
 }
 
 }  // namespace voxdag

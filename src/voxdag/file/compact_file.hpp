@@ -4,15 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/io/file_copy.hpp"
-#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/file/vdag_container.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
 
 namespace voxdag {
-
-/// Returns whether these are the chunks of a compact DAG.
-bool is_compact(const std::vector<VdagChunk>& chunks);
 
 struct CompactContents {
   std::vector<VdagChunk> chunks;
@@ -38,12 +34,14 @@ struct CompactContents {
 CompactContents parse_compact(std::span<const std::byte> file);
 
 /// Reads the file into memory and checks its checksums and its head. Views stay valid when the
-/// object is moved, and when other programs change the file (see FileCopy).
+/// object is moved, and when other programs change the file (see VdagContainer).
 class CompactFile {
  public:
   /// Reads the file. Throws Error(path, place, reason) for a file that cannot be read or fails a
   /// check.
-  explicit CompactFile(const std::filesystem::path& path);
+  explicit CompactFile(const std::filesystem::path& path) : CompactFile(VdagContainer(path)) {}
+  /// Shares the bytes of an open file.
+  explicit CompactFile(VdagContainer file);
 
   CompactSvdagView view() const { return contents_.view(); }
   const VdagMetadata& metadata() const { return contents_.metadata; }
@@ -53,12 +51,8 @@ class CompactFile {
   std::uint64_t file_bytes() const { return file_.bytes().size(); }
 
  private:
-  FileCopy file_;
+  VdagContainer file_;
   CompactContents contents_;
 };
-
-/// Returns whether the file is a compact DAG, and false for other .vdag and .esvo files. Reads only
-/// its chunk table. Throws Error(path, place, reason) for a file that is none of them.
-bool is_compact_file(const std::filesystem::path& path);
 
 }  // namespace voxdag

@@ -8,8 +8,6 @@
 
 namespace voxdag {
 
-bool is_esvo(const std::vector<VdagChunk>& chunks) { return has_chunk(chunks, kChunkEsvo); }
-
 EsvoMetadata read_esvo_metadata(const std::vector<VdagChunk>& chunks) {
   return read_metadata_chunk(chunks, parse_esvo_metadata);
 }

@@ -11,9 +11,6 @@
 
 namespace voxdag {
 
-/// Returns whether these are the chunks of an ESVO file: whether one of them is the chunk ESVO.
-bool is_esvo(const std::vector<VdagChunk>& chunks);
-
 struct EsvoContents {
   std::vector<VdagChunk> chunks;
   EsvoMetadata metadata;

@@ -2,14 +2,9 @@
 /// Reads a DAG with long pointers from a .vdag file.
 #include <filesystem>
 
-#include "voxdag/core/io/mapped_file.hpp"
-#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/file/vdag_container.hpp"
 
 namespace voxdag {
-
-/// Returns whether a file is a .vdag file with long pointers (chunk NODX). Returns false for other
-/// files, and for files that are malformed. Throws Error if it cannot be read.
-bool has_long_pointers(const std::filesystem::path& path);
 
 /// A mapped file: the DAG can be larger than memory. Checks every chunk, and that the DAG is safe
 /// to walk. The view stays valid when the object is moved. No other process may change the file
@@ -17,14 +12,16 @@ bool has_long_pointers(const std::filesystem::path& path);
 class LongVdagFile {
  public:
   /// Maps the file. Throws Error(path, place, reason).
-  explicit LongVdagFile(const std::filesystem::path& path);
+  explicit LongVdagFile(const std::filesystem::path& path) : LongVdagFile(VdagContainer(path)) {}
+  /// Shares the bytes of an open file.
+  explicit LongVdagFile(VdagContainer file);
 
   const LongSvdagView& view() const { return view_; }
   const VdagMetadata& metadata() const { return metadata_; }
   std::uint64_t file_bytes() const { return file_.bytes().size(); }
 
  private:
-  MappedFile file_;
+  VdagContainer file_;
   VdagMetadata metadata_;
   LongSvdagView view_;
 };

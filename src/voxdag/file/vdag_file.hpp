@@ -2,19 +2,20 @@
 /// Reads a DAG from a .vdag file.
 #include <filesystem>
 
-#include "voxdag/core/io/file_copy.hpp"
-#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/file/vdag_container.hpp"
 
 namespace voxdag {
 
 /// Reads the file into memory, checks every chunk, and checks that the DAG is safe to walk. Does
 /// not check canonical order, minimality and the counts; verify_vdag() does. Views stay valid when
-/// the object is moved, and when other programs change the file (see FileCopy).
+/// the object is moved, and when other programs change the file (see VdagContainer).
 class VdagFile {
  public:
   /// Reads the file. Throws Error(path, place, reason) for a file that cannot be read or fails a
   /// check.
-  explicit VdagFile(const std::filesystem::path& path);
+  explicit VdagFile(const std::filesystem::path& path) : VdagFile(VdagContainer(path)) {}
+  /// Shares the bytes of an open file.
+  explicit VdagFile(VdagContainer file);
 
   const SvdagView& view() const { return contents_.view; }
   const DagAttributesView& attributes() const { return contents_.attributes; }
@@ -24,7 +25,7 @@ class VdagFile {
   std::uint64_t file_bytes() const { return file_.bytes().size(); }
 
  private:
-  FileCopy file_;
+  VdagContainer file_;
   VdagContents contents_;
 };
 

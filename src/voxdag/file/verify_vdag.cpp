@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/io/file_copy.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/esvo_parse.hpp"
-#include "voxdag/file/long_vdag_file.hpp"
 #include "voxdag/file/vdag_parse.hpp"
 #include "voxdag/file/wire_chunks.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
@@ -106,15 +104,6 @@ VerifyReport verify_long(std::span<const std::byte> file) {
   return report;
 }
 
-/// Returns whether the file holds an ESVO; false for files that are not containers.
-bool holds_esvo(std::span<const std::byte> file) {
-  try {
-    return is_esvo(read_vdag_chunks(file));
-  } catch (const Error&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 bool VerifyReport::passed() const {
@@ -123,12 +112,12 @@ bool VerifyReport::passed() const {
 }
 
 VerifyReport verify_vdag(const std::filesystem::path& path) {
-  if (has_long_pointers(path)) {
-    const MappedFile file(path, MappedFile::Access::kSequential);
-    return verify_long(file.bytes());
-  }
-  const FileCopy file(path);
-  if (holds_esvo(file.bytes())) return verify_esvo(file.bytes());
+  return verify_vdag(VdagContainer(path));
+}
+
+VerifyReport verify_vdag(const VdagContainer& file) {
+  if (file.is(VdagKind::kLong)) return verify_long(file.bytes());
+  if (file.is(VdagKind::kEsvo)) return verify_esvo(file.bytes());
   VerifyReport report;
   VdagContents contents;
   enum : std::size_t { kContainer, kChecksums, kMetadata, kStructure };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "voxdag/core/error.hpp"
+#include "voxdag/file/vdag_container.hpp"
 #include "voxdag/file/vdag_metadata.hpp"
 #include "voxdag/stored/attributes/stored_attributes.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
@@ -68,5 +69,6 @@ void compare_attributes(const AttributesMetadata& stated, const DagAttributesVie
 ///                    passes if the file has none
 /// Throws Error only if the file cannot be read.
 VerifyReport verify_vdag(const std::filesystem::path& path);
+VerifyReport verify_vdag(const VdagContainer& file);
 
 }  // namespace voxdag

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/core/with_file_name.hpp"
 #include "voxdag/file/attribute_chunks.hpp"
 #include "voxdag/file/vdag_format.hpp"
@@ -169,11 +168,10 @@ void expand_wire_chunks(std::vector<VdagChunk>& chunks, ExpandedChunks& memory) 
   });
 }
 
-WireBytes wire_bytes_of(const std::filesystem::path& path) {
-  const MappedFile mapping(path, MappedFile::Access::kRandom);
+WireBytes wire_bytes_of(const VdagContainer& file) {
   WireBytes bytes;
-  with_file_name(path.string(), [&] {
-    const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
+  with_file_name(file.path().string(), [&] {
+    const std::vector<VdagChunk> chunks = file.chunks();
     each_wire_chunk(chunks, [&](const VdagChunk& chunk, const WireKind& kind) {
       bytes.*kind.bytes = chunk.bytes.size();
       bytes.expanded += 8 * read_parts(chunk.bytes).expanded_words();

@@ -4,11 +4,10 @@
 ///   0    WireHeader       64 bytes
 ///   64   wire::WireSegment[]    of the number of pages
 ///        the coded bytes, zeros up to a multiple of 8
-#include <filesystem>
 #include <vector>
 
 #include "voxdag/file/output_chunk.hpp"
-#include "voxdag/file/vdag_parse.hpp"
+#include "voxdag/file/vdag_container.hpp"
 #include "voxdag/stored/wire/wire_values.hpp"
 
 namespace voxdag {
@@ -62,6 +61,6 @@ struct WireBytes {
 };
 
 /// Reads their headers only. Throws Error(path, place, reason).
-WireBytes wire_bytes_of(const std::filesystem::path& path);
+WireBytes wire_bytes_of(const VdagContainer& file);
 
 }  // namespace voxdag

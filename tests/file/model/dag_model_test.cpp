@@ -59,6 +59,38 @@ TEST(DagModel, CountsItsMemory) {
   EXPECT_THROW(colored_model(dir, &little), OverMemory);
 }
 
+TEST(DagModel, CountsTheBytesOfItsFileOnce) {
+  const TempDir dir;
+  const DagModel model = colored_model(dir);
+  for (const bool is_compact : {false, true}) {
+    model.save(dir / "a.vdag", is_compact);
+    MemoryBudget memory;
+    VdagContainer file(dir / "a.vdag", &memory);
+    const std::uint64_t file_bytes = file.bytes().size();
+    EXPECT_EQ(memory.used(), file_bytes);
+    {
+      const DagModel read(file, nullptr, &memory);
+      const std::uint64_t decoded = is_compact ? read.view().bytes() : 0;
+      EXPECT_GE(memory.used(), file_bytes + decoded);
+      EXPECT_LT(memory.used(), 2 * file_bytes + decoded);
+    }
+    EXPECT_EQ(memory.used(), file_bytes);
+    { const DagModel read(std::move(file), nullptr, &memory); }
+    EXPECT_EQ(memory.used(), 0u);
+  }
+}
+
+TEST(DagModel, ADamagedFileIsNamedThoughItIsLargerThanTheLimit) {
+  const TempDir dir;
+  colored_model(dir).save(dir / "a.vdag", false);
+  MemoryBudget little(1000);
+  EXPECT_THROW(DagModel(dir / "a.vdag", nullptr, &little), OverMemory);
+  write_text(dir / "a.vdag", read_text(dir / "a.vdag").substr(0, 2000));
+  EXPECT_NE(error_of([&] { DagModel(dir / "a.vdag", nullptr, &little); }).find("truncated"),
+            std::string::npos);
+  EXPECT_EQ(little.used(), 0u);
+}
+
 TEST(SceneModel, AnEsvoOrADagIsOpened) {
   const TempDir dir;
   colored_model(dir).save(dir / "a.vdag", false);

@@ -5,6 +5,7 @@
 #include "formats/readers/mesh_text.hpp"
 #include "support/error_of.hpp"
 #include "support/mesh_files.hpp"
+#include "support/open_count.hpp"
 #include "support/temp_dir.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
 
@@ -51,6 +52,17 @@ class MeshChunksTest : public testing::Test {
 
   TempDir folder_;
 };
+
+TEST_F(MeshChunksTest, AFileIsOpenedOnce) {
+  // If it were opened again, another program could have emptied it since its size was checked.
+  std::string stl(84 + 50, '\0');
+  stl[80] = 1;
+  for (const auto& path : {write("a.obj", random_obj(10, "\n")), write("a.stl", stl)}) {
+    OpenCount count(path);
+    EXPECT_NE(open_mesh_chunks(path, {}), nullptr);
+    EXPECT_EQ(count.take(), 1) << path;
+  }
+}
 
 TEST_F(MeshChunksTest, AnObjIsTheMeshOfReadMesh) {
   for (const char* line_end : {"\n", "\r\n", "\r"}) {

@@ -17,6 +17,8 @@ class FileCopy {
   /// Copies the file to memory. Throws the errors of open_input, std::bad_alloc, and
   /// Error(path, place, reason) if the file cannot be read or is truncated during the read.
   explicit FileCopy(const std::filesystem::path& path, SizeLimit limit = {});
+  /// Copies a file that open_input() has opened, from its first byte. `path` is for errors.
+  FileCopy(const OpenInput& input, const std::filesystem::path& path);
 
   /// Returns the bytes, aligned to at least 64; none for an empty file.
   std::span<const std::byte> bytes() const { return {bytes_.get(), size_}; }

@@ -27,8 +27,10 @@ int advice(MappedFile::Access access) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path, Access access, SizeLimit limit) {
-  const OpenInput input = open_input(path, InputKind::kRegularFile, limit);
+MappedFile::MappedFile(const std::filesystem::path& path, Access access, SizeLimit limit)
+    : MappedFile(open_input(path, InputKind::kRegularFile, limit), path, access) {}
+
+MappedFile::MappedFile(const OpenInput& input, const std::filesystem::path& path, Access access) {
   const auto size = static_cast<std::size_t>(*input.size);
   if (size == 0) return;
   void* const address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, input.descriptor.get(), 0);

@@ -26,6 +26,8 @@ class MappedFile {
   /// Maps the file. Throws the errors of open_input, and "cannot map: ...".
   explicit MappedFile(const std::filesystem::path& path, Access access = Access::kSoon,
                       SizeLimit limit = {});
+  /// Maps a file that open_input() has opened; the caller may close it. `path` is for errors.
+  MappedFile(const OpenInput& input, const std::filesystem::path& path, Access access);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&& other) noexcept;
   ~MappedFile();

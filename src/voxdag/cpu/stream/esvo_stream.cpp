@@ -1,6 +1,5 @@
 #include "voxdag/cpu/stream/esvo_stream.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "voxdag/core/io/checksum.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/file/esvo_parse.hpp"
+#include "voxdag/file/vdag_container.hpp"
 #include "voxdag/stored/esvo/validate_esvo.hpp"
 
 namespace voxdag {
@@ -20,12 +20,15 @@ void EsvoStream::fail(ErrorPlace place, const std::string& reason) const {
   throw Error(path_.string(), std::move(place), reason);
 }
 
-EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) : path_(path) {
+EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory)
+    : path_(path), file_(open_input(path)) {
   {
     // The mapping ends with this scope, before any walk, and its blocks are never read.
-    const MappedFile mapping(path, MappedFile::Access::kRandom);
+    const MappedFile mapping(file_, path, MappedFile::Access::kRandom);
     try {
       const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
+      if (kind_of(chunks) != VdagKind::kEsvo)
+        throw Error("", "", "--memory is for ESVOs only, but this file is a DAG");
       check_vdag_checksums(chunks_but_blocks(chunks));
       metadata_ = read_esvo_metadata(chunks);
       const auto directory = read_esvo_directory(chunks);
@@ -35,8 +38,6 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
       throw error.in_file(path_.string());
     }
   }
-  file_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file_ < 0) fail("", std::strerror(errno));
   std::uint64_t end = 0;
   for (std::size_t i = 0; i < directory_.size(); ++i) {
     if (directory_[i].begin != end || directory_[i].slots == 0 ||
@@ -66,13 +67,9 @@ EsvoStream::EsvoStream(const std::filesystem::path& path, std::uint64_t memory) 
     fail("root", "is not the first descriptor of its block");
 }
 
-EsvoStream::~EsvoStream() {
-  if (file_ >= 0) close(file_);
-}
-
 void EsvoStream::read(std::uint64_t offset, void* data, std::size_t bytes) const {
   for (std::size_t done = 0; done < bytes;) {
-    const ssize_t got = pread(file_, static_cast<char*>(data) + done, bytes - done,
+    const ssize_t got = pread(file_.descriptor.get(), static_cast<char*>(data) + done, bytes - done,
                               static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(ErrorPlace::byte(offset + done), std::strerror(errno));

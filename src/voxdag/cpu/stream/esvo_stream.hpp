@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "voxdag/core/error_place.hpp"
+#include "voxdag/core/io/open_input.hpp"
 #include "voxdag/file/esvo_metadata.hpp"
 #include "voxdag/stored/esvo/esvo.hpp"
 #include "voxdag/stored/esvo/esvo_directory.hpp"
@@ -37,9 +38,8 @@ struct EsvoStreamCounts {
 class EsvoStream {
  public:
   /// Reads the directory and loads the root's block. `memory` limits the bytes of the loaded
-  /// blocks. Throws Error if any block with its ancestors needs more.
+  /// blocks. Throws Error if any block with its ancestors needs more, and for a DAG.
   EsvoStream(const std::filesystem::path& path, std::uint64_t memory);
-  ~EsvoStream();
   EsvoStream(const EsvoStream&) = delete;
   EsvoStream& operator=(const EsvoStream&) = delete;
 
@@ -101,7 +101,7 @@ class EsvoStream {
   void mark(std::uint64_t slot, bool is_cut);
 
   std::filesystem::path path_;
-  int file_ = -1;
+  OpenInput file_;
   std::uint64_t slots_offset_ = 0;  ///< Byte of the ESVO chunk in the file.
   EsvoMetadata metadata_;
   std::vector<EsvoBlockEntry> directory_;

@@ -14,24 +14,12 @@
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
 namespace voxdag {
-namespace {
 
-/// Returns the bytes that a .vdag file takes in memory before it is decoded.
-std::uint64_t bytes_in_memory(const std::filesystem::path& path) {
-  std::error_code unknown;  // Reading the file will tell the reason.
-  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
-  return (unknown ? 0 : static_cast<std::uint64_t>(bytes)) + wire_bytes_of(path).expanded;
-}
-
-}  // namespace
-
-DagModel::Decoded DagModel::decode(const std::filesystem::path& path, Progress* progress,
+DagModel::Decoded DagModel::decode(CompactFile file, const std::string& path, Progress* progress,
                                    MemoryBudget* memory) {
   Decoded decoded;
-  const MemoryReservation file_bytes(memory, bytes_in_memory(path));
-  CompactFile file(path);
   const CompactContents& contents = file.contents();
-  with_file_name(path.string(), [&] {
+  with_file_name(path, [&] {
     decoded.dag = decode_svdag(file.view(), memory, progress);
     if (contents.has_attributes()) {
       const MemoryReservation dag_bytes(memory, decoded.view().bytes());
@@ -40,28 +28,29 @@ DagModel::Decoded DagModel::decode(const std::filesystem::path& path, Progress* 
       decoded.stored = contents.attributes(decoded.index.view(), decoded.expanded);
     }
   });
-  decoded.file = std::move(file);
+  if (contents.has_attributes()) decoded.file = std::move(file);
   return decoded;
 }
 
-DagModel::DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory)
-    : dag_(Decoded()) {
-  if (is_compact_file(path)) {
-    Decoded decoded = decode(path, progress, memory);
-    metadata_ = decoded.file->metadata();
-    file_bytes_ = decoded.file->file_bytes();
-    const bool is_kept = decoded.file->contents().has_attributes();
-    if (!is_kept) decoded.file.reset();
-    memory_ = MemoryReservation(memory, decoded.view().bytes() + decoded.index.view().bytes() +
-                                            (is_kept ? bytes_in_memory(path) : 0));
-    dag_ = std::move(decoded);
-  } else {
-    memory_ = MemoryReservation(memory, bytes_in_memory(path));
-    VdagFile file(path);
-    metadata_ = file.metadata();
-    file_bytes_ = file.file_bytes();
-    dag_ = std::move(file);
+DagModel::DagModel(VdagContainer file, Progress* progress, MemoryBudget* memory)
+    : dag_(Decoded()), file_bytes_(file.bytes().size()) {
+  const bool is_compact = file.kind() == VdagKind::kCompact;
+  const std::uint64_t expanded_bytes = wire_bytes_of(file).expanded;
+  memory_ = MemoryReservation(memory, expanded_bytes);
+  if (!is_compact) {
+    VdagFile plain(std::move(file));
+    metadata_ = plain.metadata();
+    dag_ = std::move(plain);
+    return;
   }
+  const std::string path = file.path().string();
+  CompactFile compact(std::move(file));
+  metadata_ = compact.metadata();
+  Decoded decoded = decode(std::move(compact), path, progress, memory);
+  memory_ = {};
+  memory_ = MemoryReservation(
+      memory, decoded.view().bytes() + decoded.index.view().bytes() + expanded_bytes);
+  dag_ = std::move(decoded);
 }
 
 DagModel::DagModel(Svdag dag, DagAttributes attributes, VdagMetadata metadata, MemoryBudget* memory)

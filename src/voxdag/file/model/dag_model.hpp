@@ -18,7 +18,10 @@ class DagModel {
  public:
   /// Reads the file; decodes it if it has the compact form. `memory`, which may be null, counts
   /// what it holds. Throws Error(path, place, reason), OverMemory and Cancelled.
-  DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr);
+  DagModel(const std::filesystem::path& path, Progress* progress, MemoryBudget* memory = nullptr)
+      : DagModel(VdagContainer(path, memory), progress, memory) {}
+  /// Reads an open file in the same way. `memory` does not count the bytes of `file` again.
+  DagModel(VdagContainer file, Progress* progress, MemoryBudget* memory = nullptr);
 
   /// Holds a DAG and the attributes of its cells, which may be empty. metadata.grid.levels must
   /// equal dag.levels. Sets metadata.counts and metadata.program. `memory`, which may be null,
@@ -61,7 +64,7 @@ class DagModel {
     SvdagView view() const { return dag.view(); }
     DagAttributesView attributes() const { return stored.view(); }
   };
-  static Decoded decode(const std::filesystem::path& path, Progress* progress,
+  static Decoded decode(CompactFile file, const std::string& path, Progress* progress,
                         MemoryBudget* memory);
 
   std::variant<VdagFile, Decoded, Made> dag_;

@@ -1,19 +1,21 @@
 #include "voxdag/file/model/scene_model.hpp"
 
+#include <utility>
+
 #include "voxdag/file/model/no_materials.hpp"
 
 namespace voxdag {
 namespace {
 
-std::variant<DagModel, EsvoFile> open(const std::filesystem::path& path, Progress* progress) {
-  if (is_esvo_file(path)) return EsvoFile(path);
-  return DagModel(path, progress);
+std::variant<DagModel, EsvoFile> open(VdagContainer file, Progress* progress) {
+  if (file.kind() == VdagKind::kEsvo) return EsvoFile(std::move(file));
+  return DagModel(std::move(file), progress);
 }
 
 }  // namespace
 
-SceneModel::SceneModel(const std::filesystem::path& path, Progress* progress)
-    : scene_(open(path, progress)) {}
+SceneModel::SceneModel(VdagContainer file, Progress* progress)
+    : scene_(open(std::move(file), progress)) {}
 
 VoxelSet SceneModel::voxels() const {
   return std::visit([](const auto& file) { return VoxelSet(file.view()); }, scene_);

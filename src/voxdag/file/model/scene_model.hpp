@@ -14,7 +14,9 @@ namespace voxdag {
 class SceneModel {
  public:
   /// Reads a DAG like DagModel, or an ESVO.
-  SceneModel(const std::filesystem::path& path, Progress* progress);
+  SceneModel(const std::filesystem::path& path, Progress* progress)
+      : SceneModel(VdagContainer(path), progress) {}
+  SceneModel(VdagContainer file, Progress* progress);
 
   VoxelSet voxels() const;
   /// Returns the DAG with its attributes; empty for an ESVO and a file without attributes.

@@ -1,5 +1,7 @@
 #include "voxdag/formats/readers/mesh_chunks.hpp"
 
+#include <utility>
+
 #include "voxdag/formats/readers/obj/obj_mesh_chunks.hpp"
 #include "voxdag/formats/readers/ply/ply_mesh_chunks.hpp"
 #include "voxdag/formats/readers/read_mesh.hpp"
@@ -7,20 +9,21 @@
 
 namespace voxdag {
 
-MeshChunks::MeshChunks(const std::filesystem::path& path, const ReadOptions& options)
-    : file_(path, MappedFile::Access::kSequential),
+MeshChunks::MeshChunks(MappedFile file, const std::filesystem::path& path,
+                       const ReadOptions& options)
+    : file_(std::move(file)),
       source_{file_.text(), path.string(), path.parent_path(), &file_, options} {}
 
 std::unique_ptr<MeshChunks> open_mesh_chunks(const std::filesystem::path& path,
                                              const ReadOptions& options, std::size_t chunk_bytes) {
-  const MappedFile file(path, MappedFile::Access::kRandom);
+  MappedFile file(path, MappedFile::Access::kSequential);
   switch (detect_mesh_format(file.text(), path.extension().string())) {
     case MeshFormat::kObj:
-      return open_obj_chunks(path, options, chunk_bytes);
+      return open_obj_chunks(std::move(file), path, options, chunk_bytes);
     case MeshFormat::kPly:
-      return open_ply_chunks(path, options, chunk_bytes);
+      return open_ply_chunks(std::move(file), path, options, chunk_bytes);
     case MeshFormat::kStl:
-      return open_stl_chunks(path, options, chunk_bytes);
+      return open_stl_chunks(std::move(file), path, options, chunk_bytes);
     default:
       return nullptr;
   }

@@ -38,7 +38,8 @@ struct AllVertices {
 /// throw Error with the line or byte at fault, OverMemory and Cancelled.
 class MeshChunks {
  public:
-  MeshChunks(const std::filesystem::path& path, const ReadOptions& options);
+  /// Reads the mapped bytes of the file at `path`.
+  MeshChunks(MappedFile file, const std::filesystem::path& path, const ReadOptions& options);
   virtual ~MeshChunks() = default;
   MeshChunks(const MeshChunks&) = delete;
   MeshChunks& operator=(const MeshChunks&) = delete;

@@ -1,6 +1,7 @@
 #include "voxdag/formats/readers/obj/obj_mesh_chunks.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "voxdag/formats/readers/bad_vertex.hpp"
 #include "voxdag/formats/readers/face_cutter.hpp"
@@ -12,9 +13,9 @@ namespace {
 
 class ObjMeshChunks final : public MeshChunks {
  public:
-  ObjMeshChunks(const std::filesystem::path& path, const ReadOptions& options,
+  ObjMeshChunks(MappedFile file, const std::filesystem::path& path, const ReadOptions& options,
                 std::size_t chunk_bytes)
-      : MeshChunks(path, options),
+      : MeshChunks(std::move(file), path, options),
         chunk_bytes_(chunk_bytes),
         line_end_(line_end_of(source().bytes)),
         text_(without_byte_order_mark(source().bytes)) {}
@@ -148,9 +149,9 @@ class ObjMeshChunks final : public MeshChunks {
 
 }  // namespace
 
-std::unique_ptr<MeshChunks> open_obj_chunks(const std::filesystem::path& path,
+std::unique_ptr<MeshChunks> open_obj_chunks(MappedFile file, const std::filesystem::path& path,
                                             const ReadOptions& options, std::size_t chunk_bytes) {
-  return std::make_unique<ObjMeshChunks>(path, options, chunk_bytes);
+  return std::make_unique<ObjMeshChunks>(std::move(file), path, options, chunk_bytes);
 }
 
 }  // namespace voxdag

@@ -1,6 +1,7 @@
 #include "voxdag/formats/readers/ply/ply_mesh_chunks.hpp"
 
 #include <bit>
+#include <utility>
 
 #include "voxdag/formats/readers/ply/ply_layout.hpp"
 #include "voxdag/formats/readers/ply/ply_rows.hpp"
@@ -11,9 +12,9 @@ namespace {
 /// Each chunk has its share of the vertices and its share of the faces.
 class PlyMeshChunks final : public MeshChunks {
  public:
-  PlyMeshChunks(const std::filesystem::path& path, const ReadOptions& options,
+  PlyMeshChunks(MappedFile file, const std::filesystem::path& path, const ReadOptions& options,
                 std::size_t chunk_bytes)
-      : MeshChunks(path, options),
+      : MeshChunks(std::move(file), path, options),
         header_(parse_ply_header(source())),
         fields_(header_),
         swap_((header_.format == PlyFormat::kBigEndian) !=
@@ -161,9 +162,9 @@ class PlyMeshChunks final : public MeshChunks {
 
 }  // namespace
 
-std::unique_ptr<MeshChunks> open_ply_chunks(const std::filesystem::path& path,
+std::unique_ptr<MeshChunks> open_ply_chunks(MappedFile file, const std::filesystem::path& path,
                                             const ReadOptions& options, std::size_t chunk_bytes) {
-  auto chunks = std::make_unique<PlyMeshChunks>(path, options, chunk_bytes);
+  auto chunks = std::make_unique<PlyMeshChunks>(std::move(file), path, options, chunk_bytes);
   if (!chunks->is_readable()) return nullptr;
   return chunks;
 }

@@ -1,6 +1,7 @@
 #include "voxdag/formats/readers/stl/stl_mesh_chunks.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "voxdag/formats/readers/stl/stl_binary.hpp"
 #include "voxdag/formats/readers/stl/stl_reader.hpp"
@@ -12,9 +13,9 @@ namespace {
 /// Welds the corners of each chunk.
 class StlMeshChunks final : public MeshChunks {
  public:
-  StlMeshChunks(const std::filesystem::path& path, const ReadOptions& options,
+  StlMeshChunks(MappedFile file, const std::filesystem::path& path, const ReadOptions& options,
                 std::size_t chunk_bytes)
-      : MeshChunks(path, options),
+      : MeshChunks(std::move(file), path, options),
         facets_(stl_facet_count(source().bytes)),
         chunks_(facets_ * kStlFacetBytes / chunk_bytes + 1) {}
 
@@ -70,15 +71,12 @@ class StlMeshChunks final : public MeshChunks {
 
 }  // namespace
 
-std::unique_ptr<MeshChunks> open_stl_chunks(const std::filesystem::path& path,
+std::unique_ptr<MeshChunks> open_stl_chunks(MappedFile file, const std::filesystem::path& path,
                                             const ReadOptions& options, std::size_t chunk_bytes) {
-  {
-    const MappedFile file(path, MappedFile::Access::kRandom);
-    if (!is_exact_binary_stl(file.text())) return nullptr;
-    const std::uint64_t facets = stl_facet_count(file.text());
-    if (facets == 0 || facets > kMostStlFacets) return nullptr;
-  }
-  return std::make_unique<StlMeshChunks>(path, options, chunk_bytes);
+  if (!is_exact_binary_stl(file.text())) return nullptr;
+  const std::uint64_t facets = stl_facet_count(file.text());
+  if (facets == 0 || facets > kMostStlFacets) return nullptr;
+  return std::make_unique<StlMeshChunks>(std::move(file), path, options, chunk_bytes);
 }
 
 }  // namespace voxdag

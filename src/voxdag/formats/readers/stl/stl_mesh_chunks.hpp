@@ -5,7 +5,7 @@
 namespace voxdag {
 
 /// Returns null if read_mesh() must read the file. Throws as open_mesh_chunks() does.
-std::unique_ptr<MeshChunks> open_stl_chunks(const std::filesystem::path& path,
+std::unique_ptr<MeshChunks> open_stl_chunks(MappedFile file, const std::filesystem::path& path,
                                             const ReadOptions& options, std::size_t chunk_bytes);
 
 }  // namespace voxdag
