@@ -158,10 +158,7 @@ ProcessResult run_voxdag(std::vector<std::string> arguments, const std::string& 
   return Process(voxdag_command(std::move(arguments)), stdout_path).wait();
 }
 
-bool has_lab() {
-  return std::filesystem::exists(std::filesystem::path(VOXDAG_PROGRAM).parent_path() /
-                                 "voxdag-lab");
-}
+bool has_lab() { return VOXDAG_HAS_LAB; }
 
 void expect_failure(const ProcessResult& result, int status, const std::string& text) {
   EXPECT_EQ(result.status, status);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "process.hpp"
 
 namespace voxdag::cli {
@@ -42,6 +44,9 @@ TEST(Usage, HelpOfEveryCommandHasAnExample) {
 
 TEST(Usage, BenchRunsTheLabOrSaysHowToBuildIt) {
   if (!has_lab()) {
+    // One that was built on demand may still lie beside the program.
+    if (std::filesystem::exists(std::filesystem::path(VOXDAG_PROGRAM).parent_path() / "voxdag-lab"))
+      GTEST_SKIP() << "built without voxdag-lab, which is there all the same";
     expect_failure(run_voxdag({"bench", "trace"}), 1, "--target voxdag_lab");
     return;
   }
