@@ -18,7 +18,7 @@ namespace voxdag {
 namespace {
 
 /// A small file may stand for many voxels.
-constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMaxVoxels = std::uint64_t{1} << 20;
 struct Enough {};
 
 /// A file in memory that has a path.
@@ -70,7 +70,7 @@ void read_all(std::uint8_t choice, const std::string& path) {
   source->visit_all([&](const VoxelBatch& batch) {
     check(*source, batch);
     voxels += batch.places.size();
-    if (voxels > kMostVoxels) throw Enough();
+    if (voxels > kMaxVoxels) throw Enough();
   });
 }
 

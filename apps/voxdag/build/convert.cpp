@@ -59,7 +59,7 @@ DagModel read_input(const ConvertArguments& arguments, DagReduction& reduction,
   reduction = reduction_of(arguments, file.view().levels, path);
   const int levels = std::min(reduction.levels.value_or(kMaxLevels), file.view().levels);
   if (reduction.levels == levels) reduction.levels.reset();
-  if (levels == file.view().levels && file.view().node_words() > kMostPlainWords)
+  if (levels == file.view().levels && file.view().node_words() > kMaxPlainWords)
     throw Error(path, "",
                 "has too many nodes for 32-bit pointers: give fewer levels (voxdag coarsen), or a "
                 "window (voxdag crop)");

@@ -33,7 +33,7 @@ namespace {
 using Result = VerifyCheck::Result;
 
 /// The maximum of --samples: hours of work on any machine.
-constexpr std::int64_t kMostSamples = 1'000'000'000;
+constexpr std::int64_t kMaxSamples = 1'000'000'000;
 
 struct VerifyArguments {
   std::string mesh;
@@ -309,7 +309,7 @@ void add_verify_command(const Command& program, Session& session) {
       command.text("--mesh", arguments->mesh, "MESH",
                    "Compare voxels and attributes with this mesh, in random cells or points");
   command
-      .number("--samples", arguments->samples, NumberRange::whole(0, kMostSamples), "N",
+      .number("--samples", arguments->samples, NumberRange::whole(0, kMaxSamples), "N",
               "With --mesh: number of random cells or points")
       .needs(mesh);
   command

@@ -162,7 +162,7 @@ class NodeOrder {
       at = nodes.bytes().data();
       for (std::uint64_t number = 0; number < first.size(); ++number) {
         const auto size = static_cast<std::size_t>(record_bytes(at, is_leaf));
-        std::byte message[sizeof(FirstReference) + kMostRecordBytes];
+        std::byte message[sizeof(FirstReference) + kMaxRecordBytes];
         const FirstReference head{number, first[number], copies[number], box};
         std::memcpy(message, &head, sizeof head);
         std::memcpy(message + sizeof head, at, size);
@@ -237,7 +237,7 @@ class NodeOrder {
   /// Writes the words of a level.
   void write_words(int level, const LevelRuns& runs, const LevelRuns& below,
                    const std::string& placed) {
-    if (below.first_place.back() > kMostLongWords)
+    if (below.first_place.back() > kMaxLongWords)
       throw Error(
           "the DAG is too large: one level has more words than 35-bit pointers can address");
     for_each_own([&](std::uint32_t box) {

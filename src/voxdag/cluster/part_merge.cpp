@@ -137,7 +137,7 @@ class LevelMerge {
     const auto cells = file.values<TopCell>();
     for (std::size_t i = 0; i < cells.size();) {
       Question question{kTop, 0, cells[i].code >> 3};
-      std::byte record[kMostRecordBytes];
+      std::byte record[kMaxRecordBytes];
       int ids = 0;
       unsigned mask = 0;
       for (; i < cells.size() && cells[i].code >> 3 == question.place; ++i) {
@@ -152,7 +152,7 @@ class LevelMerge {
   /// Sends a question to the owner of the node.
   void send(const Question& question, std::span<const std::byte> record,
             Mailboxes::Sender& sender) {
-    std::byte message[sizeof question + kMostRecordBytes];
+    std::byte message[sizeof question + kMaxRecordBytes];
     std::memcpy(message, &question, sizeof question);
     std::memcpy(message + sizeof question, record.data(), record.size());
     sender.send(owner(xxh3_64(record)), {message, sizeof question + record.size()});
@@ -160,7 +160,7 @@ class LevelMerge {
 
   void ask_piece(Question question, const PartFile& part, const SvdagView& dag,
                  std::span<const std::uint64_t> children, Mailboxes::Sender& sender) {
-    std::byte record[kMostRecordBytes];
+    std::byte record[kMaxRecordBytes];
     if (is_leaf_) {
       for (std::uint64_t i = 0; i < dag.leaf_block_count; ++i) {
         poll_seldom(job_.progress, i);
@@ -212,7 +212,7 @@ class LevelMerge {
             bytes.subspan(at, static_cast<std::size_t>(record_bytes(bytes.data() + at, is_leaf_)));
         at += record.size();
         const std::uint64_t number = nodes.find_or_add(record, xxh3_64(record));
-        if (number >= kMostIds / job_.mailboxes)
+        if (number >= kMaxIds / job_.mailboxes)
           throw Error("the DAG is too large: one level has more than 2^40 nodes");
         const Answer answer{question.part, question.piece, question.place,
                             number * job_.mailboxes + box};

@@ -32,7 +32,7 @@ struct MergeJob {
   MemoryBudget& budget;
   Progress* progress;  ///< May be null.
   /// The plain layout of nodes holds so many words; more need long pointers.
-  std::uint64_t most_plain_words = kMostPlainWords;
+  std::uint64_t most_plain_words = kMaxPlainWords;
 };
 
 /// The nodes of merged levels. Ids are those of node_record.hpp.

@@ -36,7 +36,7 @@ struct PartsJob {
   /// Bytes of the mesh file that a thread reads at once. All runs of a job need the same number.
   std::size_t chunk_bytes = kChunkBytes;
   /// A DAG with more node words gets long pointers (stored/svdag/long_svdag.hpp). For tests.
-  std::uint64_t most_plain_words = kMostPlainWords;
+  std::uint64_t most_plain_words = kMaxPlainWords;
 };
 
 enum class PartsStep { kTriangles, kParts, kMerge, kNumber, kWrite };

@@ -19,7 +19,7 @@ namespace voxdag {
 namespace {
 
 /// The least number of chunks in a task; about the most tasks of a mesh.
-constexpr std::uint64_t kLeastChunks = 64, kMostTasks = 1024;
+constexpr std::uint64_t kMinChunks = 64, kMaxTasks = 1024;
 
 /// The pages of the mesh are dropped from memory after so many triangles.
 constexpr std::uint64_t kReleaseTriangles = std::uint64_t{1} << 20;
@@ -43,7 +43,7 @@ SharedMesh::SharedMesh(Ranks& ranks, const WorkFolder& folder, const std::filesy
   ranks.barrier();
   if (ranks.rank() != 0) chunks_ = open_mesh_chunks(path, reading_, chunk_bytes);
   if (chunks_) {
-    chunks_per_task_ = std::max(kLeastChunks, chunks_->count() / kMostTasks);
+    chunks_per_task_ = std::max(kMinChunks, chunks_->count() / kMaxTasks);
     tasks_ = (chunks_->count() + chunks_per_task_ - 1) / chunks_per_task_;
     count_chunks();
   }
@@ -87,9 +87,9 @@ void SharedMesh::count_chunks() {
       starts_.push_back(
           {starts_.back().vertices + counts.vertices, starts_.back().triangles + counts.triangles});
   }
-  constexpr std::uint64_t kMostVertices = 0xFFFFFFFE;
+  constexpr std::uint64_t kMaxVertices = 0xFFFFFFFE;
   const bool is_readable = starts_.size() == chunks_->count() + 1 && starts_.back().triangles > 0 &&
-                           starts_.back().vertices <= kMostVertices;
+                           starts_.back().vertices <= kMaxVertices;
   if (is_readable) return;
   chunks_.reset();
   tasks_ = 1;

@@ -57,14 +57,14 @@ class TileRenderer {
   static constexpr int kMaxTileSize = 32;
   /// Beams to lights run one at a time, shadow rays in packets. With fewer rays than this for each
   /// beam, the beams cost more than they save (`bench trace --light-sizes` measures it).
-  static constexpr int kLeastRaysPerLightBeam = 64;
+  static constexpr int kMinRaysPerLightBeam = 64;
 
   /// If `source` is null, surface points come from the voxels.
   TileRenderer(const Nodes& nodes, const Caster& caster, const RenderSetup& setup, bool beams,
                const ViewSource* source)
       : nodes_(nodes), caster_(caster), setup_(setup), source_(source) {
     setup_.settings.beams =
-        setup.settings.beams && setup.settings.light_samples >= kLeastRaysPerLightBeam;
+        setup.settings.beams && setup.settings.light_samples >= kMinRaysPerLightBeam;
     if (!beams || source != nullptr) return;
     find_beam_starts(nodes_, setup_, beam_starts_);
     setup_.beam_starts = beam_starts_.data();

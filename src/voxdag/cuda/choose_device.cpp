@@ -17,13 +17,12 @@ CudaDevice choose_cuda_device(int index) {
     throw Error("no CUDA device " + std::to_string(index) + ": the driver lists " +
                 std::to_string(found.devices.size()) + ", numbered from 0");
   for (const CudaDevice& device : found.devices)
-    if ((index < 0 || device.index == index) &&
-        device.compute_capability >= kLeastComputeCapability)
+    if ((index < 0 || device.index == index) && device.compute_capability >= kMinComputeCapability)
       return device;
   const CudaDevice& device = found.devices[static_cast<std::size_t>(index < 0 ? 0 : index)];
   throw Error("no CUDA device: " + device.name + " has compute capability " +
               capability_text(device.compute_capability) + ", but voxdag needs " +
-              capability_text(kLeastComputeCapability) + " or later");
+              capability_text(kMinComputeCapability) + " or later");
 }
 
 }  // namespace voxdag

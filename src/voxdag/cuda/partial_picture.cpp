@@ -98,7 +98,7 @@ std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t>
   std::vector<std::uint8_t> missed(tiles.size());
   copy_to_device(state.tiles.data(), tiles.data(), tiles.size_bytes());
   copy_to_device(state.missed.data(), missed.data(), missed.size());
-  LaunchPlan plan = plan_launches(setup, static_cast<std::uint32_t>(tiles.size()), kMostBlocks,
+  LaunchPlan plan = plan_launches(setup, static_cast<std::uint32_t>(tiles.size()), kMaxBlocks,
                                   setup.settings.samples_per_pixel);
   const CudaEvent begin, end;
   while (const auto range = plan.next()) {
@@ -121,8 +121,8 @@ std::vector<std::uint32_t> PartialPicture::render(std::span<const std::uint32_t>
 }
 
 std::uint32_t PartialPicture::most_resumed() const {
-  constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
-  const std::uint64_t tiles = kMostBytes / state_->log_bytes_per_tile();
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;
+  const std::uint64_t tiles = kMaxBytes / state_->log_bytes_per_tile();
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(tiles, 1, state_->tile_count));
 }
 

@@ -10,7 +10,7 @@
 namespace voxdag {
 
 /// Block numbers have 32 bits, launches 31.
-inline constexpr std::uint32_t kMostBlocks = 1u << 30;
+inline constexpr std::uint32_t kMaxBlocks = 1u << 30;
 
 /// Returns the plan of the launches for all samples of `blocks` blocks of pixels.
 inline LaunchPlan plan_launches(const RenderSetup& setup, std::uint32_t blocks,

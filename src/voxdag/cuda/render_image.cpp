@@ -37,7 +37,7 @@ void render_pixels(const DeviceVoxels& dag, const DeviceFrame& frame, Progress* 
   const RenderSetup& setup = frame.setup();
   const bool has_source = source != nullptr;
   LaunchPlan plan = plan_launches(setup, block_count(setup.camera.width, setup.camera.height),
-                                  has_source ? kSourceBlocks : kMostBlocks,
+                                  has_source ? kSourceBlocks : kMaxBlocks,
                                   has_source ? 1 : setup.settings.samples_per_pixel);
   SourceSamples samples[2];
   for (SourceSamples& part : samples) {

@@ -8,7 +8,7 @@ namespace voxdag {
 
 /// Returns the most casts of one sample of a pixel, without beams to lights.
 VOXDAG_HD inline std::uint32_t most_casts(const RenderSetup& setup) {
-  int casts = 1 + kMostStartCasts + setup.settings.occlusion_samples;
+  int casts = 1 + kMaxStartCasts + setup.settings.occlusion_samples;
   for (int i = 0; i < setup.light_count; ++i)
     casts += setup.lights[i].is_extended() ? setup.settings.light_samples : 1;
   return static_cast<std::uint32_t>(casts);

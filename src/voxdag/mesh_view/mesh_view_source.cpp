@@ -40,9 +40,9 @@ Vec2f to_float(Vec2d v) { return {static_cast<float>(v.x), static_cast<float>(v.
 
 /// Returns the unit vector closest to `normal` that does not face away from the viewer.
 Vec3f turned_to(Vec3f normal, Vec3f view) {
-  constexpr float kLeastCosine = 0.02f;
+  constexpr float kMinCosine = 0.02f;
   const float cosine = dot(normal, view);
-  return cosine >= kLeastCosine ? normal : normalized(normal + view * (kLeastCosine - cosine));
+  return cosine >= kMinCosine ? normal : normalized(normal + view * (kMinCosine - cosine));
 }
 
 }  // namespace

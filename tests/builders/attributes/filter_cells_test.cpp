@@ -234,7 +234,7 @@ TEST(BuildAttributes, NormalsAreWithinTheirBound) {
   AttributeOptions options;
   options.normals = true;
   options.finest_level = 6;
-  for (const double degrees : {kLeastNormalBound, 2.0, 10.0}) {
+  for (const double degrees : {kMinNormalBound, 2.0, 10.0}) {
     options.normal_bound_degrees = degrees;
     const DagAttributes attributes =
         build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);

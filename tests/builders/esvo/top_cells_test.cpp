@@ -65,7 +65,7 @@ TEST(TopCells, CellsWithTooManyTrianglesToLoadGetTheSameContours) {
           cell.decision.contour ? cell.decision.contour->bits : 0;
     return result;
   };
-  const auto loaded = contours(kMostLoaded);
+  const auto loaded = contours(kMaxLoaded);
   for (const std::size_t most_loaded : {40, 300}) {
     const auto streamed = contours(most_loaded);
     int with_contour = 0;

@@ -91,7 +91,7 @@ TEST(CompactSvdag, HasTheSameBitsForAnyNumberOfThreads) {
 
 TEST(CompactSvdag, FewerTablesGiveTheSameVoxels) {
   const Svdag dag = brute_svdag(8, repeated_plane(8));
-  for (const int tables : {1, 16, kMostTables})
+  for (const int tables : {1, 16, kMaxTables})
     EXPECT_EQ(decode_svdag(encode_svdag(dag.view(), {.tables = tables}).view()), dag);
 }
 

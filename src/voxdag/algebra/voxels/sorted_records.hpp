@@ -31,7 +31,7 @@ class SortedRecords {
   /// OverMemory.
   SortedRecords(std::size_t capacity, std::filesystem::path folder, MemoryBudget* memory,
                 Progress* progress)
-      : capacity_(std::max(capacity, kLeastCapacity)),
+      : capacity_(std::max(capacity, kMinCapacity)),
         folder_(std::move(folder)),
         memory_(memory),
         progress_(progress),
@@ -58,7 +58,7 @@ class SortedRecords {
   };
   class RunReader;
 
-  static constexpr std::size_t kLeastCapacity = 1024;
+  static constexpr std::size_t kMinCapacity = 1024;
 
   void sort_in_memory() {
     if (is_sorted_) return;

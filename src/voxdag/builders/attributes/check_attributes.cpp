@@ -19,7 +19,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::uint64_t kMostSubtree = 1 << 16;  ///< Cells in the subtree of a cell to compare.
+constexpr std::uint64_t kMaxSubtree = 1 << 16;  ///< Cells in the subtree of a cell to compare.
 constexpr std::uint64_t kCellSamplesAtOnce = 1 << 18;  ///< Samples.
 
 /// Returns the error of a colour, 0 to 1.
@@ -159,7 +159,7 @@ class SampleWalk {
   CellErrors visit(VisitedCell& at, std::vector<VisitedCell>& below) {
     CellErrors errors;
     if (at.samples.front() == at.cell.number) {
-      if (cells_in(dag_, index_, at.cell) <= kMostSubtree)
+      if (cells_in(dag_, index_, at.cell) <= kMaxSubtree)
         errors = comparers_.local().compare({at.cell, at.place, at.triangles});
       at.samples = at.samples.subspan(1);
     }

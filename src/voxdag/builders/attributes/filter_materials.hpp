@@ -10,7 +10,7 @@
 namespace voxdag {
 
 /// Returns the materials of the cells that `index` numbers. `dag` is the DAG of the mesh in `grid`;
-/// the mesh has at most kMostMaterials materials, and one for each triangle. If areas are
+/// the mesh has at most kMaxMaterials materials, and one for each triangle. If areas are
 /// equal, the smallest id counts. Transparency is ignored, as in the shape. The
 /// ids depend on mesh, grid and level alone, not on the number of threads. Counts its memory in
 /// `memory` until it returns; null: no limit. Throws OverMemory and Cancelled.

@@ -13,7 +13,7 @@ namespace {
 /// The most cells in the subtree of a task.
 constexpr std::uint64_t kTaskCells = 1 << 16;
 /// The most triangles of a task. Leaf blocks and finest cells are tasks with any number.
-constexpr std::size_t kTaskTriangles = TaskPieces::kMostLoaded;
+constexpr std::size_t kTaskTriangles = TaskPieces::kMaxLoaded;
 
 }  // namespace
 

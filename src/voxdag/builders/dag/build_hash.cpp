@@ -20,14 +20,14 @@ namespace voxdag {
 namespace {
 
 /// 8 MiB for each thread, less if memory is short.
-constexpr int kMostLog2MemoSets = 16, kLeastLog2MemoSets = 10;
+constexpr int kMaxLog2MemoSets = 16, kMinLog2MemoSets = 10;
 
 using Stores = std::vector<std::unique_ptr<NodeStore>>;
 
 /// Lets the plane memos of all threads take a quarter of the memory that is left.
 int log2_memo_sets(const MemoryBudget& budget, std::size_t threads) {
-  int log2_sets = kMostLog2MemoSets;
-  while (log2_sets > kLeastLog2MemoSets && DagSink::bytes(log2_sets) * threads > budget.left() / 4)
+  int log2_sets = kMaxLog2MemoSets;
+  while (log2_sets > kMinLog2MemoSets && DagSink::bytes(log2_sets) * threads > budget.left() / 4)
     --log2_sets;
   return log2_sets;
 }

@@ -114,7 +114,7 @@ NodeId NodeStore::intern(const std::uint32_t* words, int count, std::uint64_t ha
 void NodeStore::take_run(Run& run) {
   const std::lock_guard guard(runs_mutex_);
   const int chunk = chunk_of(end_);
-  const int bits = std::min(kFirstChunkBits + chunk - kRunsBits, kMostRunBits);
+  const int bits = std::min(kFirstChunkBits + chunk - kRunsBits, kMaxRunBits);
   const std::uint32_t words = 1u << bits;
   // The last id plus one must fit in a slot.
   if (end_ > kNoNode - words)

@@ -94,8 +94,8 @@ class NodeStore {
 
  private:
   // Chunk i has kFirstChunk << i words, so that small levels take little and addresses stay fixed.
-  // It is divided into eight runs, or into runs of 2^kMostRunBits words.
-  static constexpr int kFirstChunkBits = 9, kRunsBits = 3, kMostRunBits = 17;
+  // It is divided into eight runs, or into runs of 2^kMaxRunBits words.
+  static constexpr int kFirstChunkBits = 9, kRunsBits = 3, kMaxRunBits = 17;
   static constexpr int kChunks = 32 - kFirstChunkBits + 1;
   static constexpr int kShardBits = 4, kShards = 1 << kShardBits;
 

@@ -31,7 +31,7 @@ class StreamedCells {
   /// Returns the cell of 2^log2_size voxels a side at `at`, from `count` triangles on the stack
   /// from `first` on.
   Cell cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    if (count <= kMostSetups) return listed_cell(at, log2_size, first, count);
+    if (count <= kMaxSetups) return listed_cell(at, log2_size, first, count);
     if (log2_size == 2) {
       std::uint64_t mask = 0;
       for_each_setup(first, count, [&](std::uint32_t, const TriangleSetup& t) {
@@ -51,7 +51,7 @@ class StreamedCells {
 
  private:
   /// 4 MiB of setups.
-  static constexpr std::size_t kMostSetups = std::size_t{1} << 14;
+  static constexpr std::size_t kMaxSetups = std::size_t{1} << 14;
 
   /// The positions of the children's lists on the stack.
   struct Lists {

@@ -58,7 +58,7 @@ InPlaceDag::InPlaceDag(const CompactSvdagView& compact, std::size_t cached_units
   const std::vector<CellBox> unit_boxes = boxes_of_units(compact, top.units, progress);
   top_->units.reserve(top.units.size());
   for (const CompactRange range : top.units) {
-    if (range.end - range.begin > kMostLength || range.begin >> (64 - kLengthBits) != 0)
+    if (range.end - range.begin > kMaxLength || range.begin >> (64 - kLengthBits) != 0)
       fail_broken_stream();
     top_->units.push_back(range.begin << kLengthBits | (range.end - range.begin));
   }

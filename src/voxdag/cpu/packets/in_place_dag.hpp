@@ -39,7 +39,7 @@ class InPlaceDag {
   /// Returns the bits of a unit.
   CompactRange unit(std::uint32_t number) const {
     const std::uint64_t packed = top_->units[number];
-    return {packed >> kLengthBits, (packed >> kLengthBits) + (packed & kMostLength)};
+    return {packed >> kLengthBits, (packed >> kLengthBits) + (packed & kMaxLength)};
   }
   /// Returns the cache of the calling thread.
   UnitCache& cache() const { return top_->caches.local(); }
@@ -53,7 +53,7 @@ class InPlaceDag {
 
  private:
   static constexpr int kLengthBits = 24;
-  static constexpr std::uint64_t kMostLength = (std::uint64_t{1} << kLengthBits) - 1;
+  static constexpr std::uint64_t kMaxLength = (std::uint64_t{1} << kLengthBits) - 1;
 
   struct Top {
     explicit Top(std::size_t cached_units) : caches([=] { return UnitCache(cached_units); }) {}

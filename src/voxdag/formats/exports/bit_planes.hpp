@@ -129,7 +129,7 @@ void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t most_bytes, c
 /// of rows; `row` counts from 0. Holds 48 MiB at most.
 template <class Fn>
 void for_each_row(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, const Fn& fn) {
-  constexpr std::uint64_t kMostBytes = std::uint64_t{48} << 20;
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{48} << 20;
   const auto rows_of = [&](const Box3i& part) {
     for_each_plane(voxels, part, axes, [&](std::int32_t k, const BitPlane& plane, const BitPlane*) {
       const std::int32_t first = part.lo[axes.row] - box.lo[axes.row];
@@ -137,13 +137,13 @@ void for_each_row(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, cons
     });
   };
   bool fits = false;
-  for_each_band(box, axes, kMostBytes, [&](const Box3i& band) { fits |= band == box; });
+  for_each_band(box, axes, kMaxBytes, [&](const Box3i& band) { fits |= band == box; });
   if (fits) return rows_of(box);
   for (std::int32_t k = box.lo[axes.plane]; k < box.hi[axes.plane]; ++k) {
     Box3i plane = box;
     plane.lo[axes.plane] = k;
     plane.hi[axes.plane] = k + 1;
-    for_each_band(plane, axes, kMostBytes, rows_of);
+    for_each_band(plane, axes, kMaxBytes, rows_of);
   }
 }
 

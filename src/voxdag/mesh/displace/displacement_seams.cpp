@@ -83,7 +83,7 @@ void DisplacementSeams::add_group(const DisplacedMesh& mesh, std::span<const Cor
                                   const Agree& agree) {
   StoredGroup group{static_cast<std::uint32_t>(members_.size()), 0, false};
   for (const CornerIndex corner : all) {
-    group.is_pinned |= !mesh.is_displaced(corner / 3) || group.count > kMostMembers;
+    group.is_pinned |= !mesh.is_displaced(corner / 3) || group.count > kMaxMembers;
     // A pinned group needs only its first member.
     if (group.is_pinned && group.count > 0) break;
     bool is_known = false;

@@ -18,7 +18,7 @@ class DisplacementSeams {
     /// One corner or edge for each distinct displacement; at least one.
     std::span<const CornerIndex> members;
     bool is_pinned;  ///< It does not move: a triangle without displacement has it too, or its
-                     ///< displacements are more than kMostMembers.
+                     ///< displacements are more than kMaxMembers.
 
     /// Returns whether triangles disagree on how the group moves.
     bool is_seam() const { return members.size() > 1 || is_pinned; }
@@ -26,7 +26,7 @@ class DisplacementSeams {
 
   /// A corner or edge with more distinct displacements is pinned: comparing and averaging them
   /// would take quadratic time.
-  static constexpr std::uint32_t kMostMembers = 64;
+  static constexpr std::uint32_t kMaxMembers = 64;
 
   DisplacementSeams() = default;
   /// Finds the seams of the mesh. Throws Cancelled and OverMemory.

@@ -22,9 +22,9 @@ double milliseconds_since(Clock::time_point start) {
 
 std::vector<double> frame_times(const CameraPath& path, double frames_per_second) {
   const double count = std::floor((path.end() - path.start()) * frames_per_second + 1e-6) + 1;
-  if (!(count <= kMostFrames))
+  if (!(count <= kMaxFrames))
     throw Error(fmt::format("the film would have {:.0f} frames; at most {:.0f} are allowed", count,
-                            kMostFrames));
+                            kMaxFrames));
   std::vector<double> times;
   times.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < static_cast<int>(count); ++i)

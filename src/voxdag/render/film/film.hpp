@@ -9,18 +9,18 @@
 
 namespace voxdag {
 
-inline constexpr double kMostFramesPerSecond = 1000;
-inline constexpr double kMostFrames = 1e6;
+inline constexpr double kMaxFramesPerSecond = 1000;
+inline constexpr double kMaxFrames = 1e6;
 
 struct Film {
   CameraPath path;
-  double frames_per_second = 30;    ///< At most kMostFramesPerSecond.
+  double frames_per_second = 30;    ///< At most kMaxFramesPerSecond.
   RenderOptions options;            ///< Options of each frame; the path sets the view.
   std::vector<PicturePass> passes;  ///< Passes written for each frame, to numbered files.
 };
 
 /// Returns the times of the frames, from the path's first key to its last one, in seconds. Throws
-/// Error if there would be more than kMostFrames.
+/// Error if there would be more than kMaxFrames.
 std::vector<double> frame_times(const CameraPath& path, double frames_per_second);
 
 /// Estimates the time to render the film, in seconds. Renders a thumbnail of the first frame,

@@ -9,7 +9,7 @@ namespace voxdag {
 /// values do not change.
 struct CoarsenBounds {
   double color_bound = 0;
-  double normal_bound_degrees = 0;  ///< Below kLeastNormalBound, normals do not change.
+  double normal_bound_degrees = 0;  ///< Below kMinNormalBound, normals do not change.
 };
 
 /// Returns the attributes of `coarse`, the DAG that coarsen() made of `fine`. Each cell keeps its

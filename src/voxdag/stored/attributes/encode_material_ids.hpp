@@ -10,7 +10,7 @@ namespace voxdag {
 /// Packs ids that come in the order of the cells' numbers.
 class MaterialEncoder {
  public:
-  /// Ids are less than `materials`, 1 to kMostMaterials. Counts the packed ids in `memory`; null:
+  /// Ids are less than `materials`, 1 to kMaxMaterials. Counts the packed ids in `memory`; null:
   /// no limit.
   explicit MaterialEncoder(std::uint32_t materials, MemoryBudget* memory = nullptr);
 

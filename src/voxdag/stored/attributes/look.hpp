@@ -46,13 +46,13 @@ VOXDAG_HD inline bool find_number(const ColoredDagView& colored, Vec3i cell, int
          find_cell_number(colored.dag, colored.attributes.index, cell, level, number);
 }
 
-/// Returns the material of the cell of find_number(); kMostMaterials if there is none. `colored`
+/// Returns the material of the cell of find_number(); kMaxMaterials if there is none. `colored`
 /// must have materials.
 VOXDAG_HD inline std::uint32_t material_at(const ColoredDagView& colored, Vec3i cell, int level) {
   std::uint64_t number = 0;
   return find_number(colored, cell, level, number)
              ? read_material(colored.attributes.materials, number)
-             : kMostMaterials;
+             : kMaxMaterials;
 }
 
 /// Returns the colour and the normal that a DAG stores for the cell of find_number().

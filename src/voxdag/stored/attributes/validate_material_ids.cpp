@@ -43,10 +43,10 @@ std::uint64_t page_end(const MaterialIdsView& view, std::uint64_t page, std::uin
 }  // namespace
 
 void validate_material_ids(const MaterialIdsView& view) {
-  if (view.materials < 1 || view.materials > kMostMaterials)
+  if (view.materials < 1 || view.materials > kMaxMaterials)
     throw Error("", "",
                 "has " + std::to_string(view.materials) + " materials: 1 to " +
-                    std::to_string(kMostMaterials) + " are allowed");
+                    std::to_string(kMaxMaterials) + " are allowed");
   validate_cell_pages(view, [&](std::uint64_t page, std::uint64_t at, std::uint64_t values) {
     return page_end(view, page, at, values);
   });

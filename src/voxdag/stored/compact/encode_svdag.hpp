@@ -10,7 +10,7 @@ namespace voxdag {
 
 struct CompactOptions {
   /// The largest number of frequency tables for the masks of cells; fewer for other symbols. More
-  /// tables take fewer bytes, and rays take longer. 1 to kMostTables.
+  /// tables take fewer bytes, and rays take longer. 1 to kMaxTables.
   int tables = 2048;
   MemoryBudget* memory = nullptr;  ///< Counts and limits the work's memory. Null: no limit.
 };

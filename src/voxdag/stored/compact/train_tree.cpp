@@ -59,7 +59,7 @@ std::uint64_t n_log_n(std::uint64_t n) {
 constexpr std::int64_t bits(std::int64_t n) { return n << kFraction; }
 /// The cost of a symbol in a table of frequencies, and of a table and its node, as measured.
 constexpr std::int64_t kSymbolCost = bits(6), kTableCost = bits(60);
-constexpr std::size_t kLeastSamples = 32;
+constexpr std::size_t kMinSamples = 32;
 
 struct Leaf {
   std::uint32_t node = 0;  ///< Its index among the growing nodes.
@@ -131,7 +131,7 @@ class TreeGrower {
 
   /// Finds the feature that saves the most bits. O(samples * features that are set).
   void find_split(Leaf& leaf, Counts& counts) const {
-    if (leaf.end - leaf.begin < kLeastSamples) return;
+    if (leaf.end - leaf.begin < kMinSamples) return;
     Histogram all{};
     for (std::size_t i = leaf.begin; i != leaf.end; ++i) ++all[samples_[i].symbol];
     std::array<std::uint32_t, 256> present;

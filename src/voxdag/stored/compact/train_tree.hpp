@@ -22,7 +22,7 @@ struct ContextSample {
 
 struct TreeLimits {
   int features = 64;         ///< Only the lowest features are used.
-  int tables = kMostTables;  ///< The largest number of leaves.
+  int tables = kMaxTables;   ///< The largest number of leaves.
   std::uint64_t weight = 1;  ///< The number of symbols that a sample stands for.
 };
 

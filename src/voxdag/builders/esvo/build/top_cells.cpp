@@ -21,7 +21,7 @@ namespace {
 constexpr double kTaskWeight = 1 << 16;
 
 /// The log2 side, in voxels, of the smallest cells that are still divided into tasks.
-constexpr int kLeastLog2 = 2;
+constexpr int kMinLog2 = 2;
 
 /// The log2 side, in voxels, of the cells in which displaced triangles are tessellated.
 constexpr int kDisplacedTaskLog2 = 4;
@@ -71,7 +71,7 @@ class TopCellFinder {
     cell.is_displaced =
         std::any_of(cell.triangles.begin(), cell.triangles.end(),
                     [this](std::uint32_t triangle) { return source_.is_displaced(triangle); });
-    const bool is_heavy = cell.triangles.size() > most_loaded_ && log2_size(cell) > kLeastLog2;
+    const bool is_heavy = cell.triangles.size() > most_loaded_ && log2_size(cell) > kMinLog2;
     if (cell.is_displaced || is_heavy)
       decide_unloaded(cell, children);
     else
@@ -112,7 +112,7 @@ class TopCellFinder {
                                              cells_[cell.parent].decision.is_near, cell.shape, sum);
     }
     cell.is_task =
-        cell.decision.is_leaf || log2_size(cell) <= kLeastLog2 || cell.weight < kTaskWeight;
+        cell.decision.is_leaf || log2_size(cell) <= kMinLog2 || cell.weight < kTaskWeight;
     if (!cell.is_task) pieces.list_children(children);
     scratch.pieces.finish();
   }

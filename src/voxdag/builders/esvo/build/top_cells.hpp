@@ -30,7 +30,7 @@ struct TopCell {
 using TopCells = CountedVector<TopCell>;
 
 /// The largest number of triangles that are loaded to decide a cell.
-inline constexpr std::size_t kMostLoaded = 1 << 14;
+inline constexpr std::size_t kMaxLoaded = 1 << 14;
 
 /// Decides the cells down to tasks, parents before children. The first cell is the root, which is
 /// never a leaf. Small cells with displaced triangles are tasks; larger ones get contours around
@@ -40,7 +40,7 @@ inline constexpr std::size_t kMostLoaded = 1 << 14;
 /// null: no limit. Throws Cancelled and OverMemory.
 TopCells find_top_cells(const TriangleSource& source, const EsvoSettings& settings,
                         const SurfaceShading* shading, Progress* progress,
-                        MemoryBudget* memory = nullptr, std::size_t most_loaded = kMostLoaded);
+                        MemoryBudget* memory = nullptr, std::size_t most_loaded = kMaxLoaded);
 
 /// Returns the tasks in Morton order.
 std::vector<std::size_t> task_order(const TopCells& cells);

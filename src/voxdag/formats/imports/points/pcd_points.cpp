@@ -178,7 +178,7 @@ class PcdPoints : public VoxelSource {
           header_.body + 4, "compressed data of " + std::to_string(unpacked) + " bytes are not " +
                                 std::to_string(header_.points) + " points of " +
                                 std::to_string(header_.point_bytes) + " bytes");
-    if (unpacked > LzfStream::kMostRatio * packed)
+    if (unpacked > LzfStream::kMaxRatio * packed)
       throw source_.error_at_byte(header_.body, std::to_string(packed) +
                                                     " compressed bytes cannot hold " +
                                                     std::to_string(unpacked) + " bytes");

@@ -8,11 +8,11 @@
 namespace voxdag {
 namespace {
 
-constexpr int kMostDepth = 1000;
-constexpr std::size_t kMostInstances = std::size_t{1} << 20;
+constexpr int kMaxDepth = 1000;
+constexpr std::size_t kMaxInstances = std::size_t{1} << 20;
 /// Nodes that a walk visits. A graph in which nodes have several parents can have more paths than
 /// there is time for.
-constexpr std::uint64_t kMostVisits = std::uint64_t{1} << 22;
+constexpr std::uint64_t kMaxVisits = std::uint64_t{1} << 22;
 
 Vec3l rotated(const VoxRotation& rotation, Vec3i v) {
   Vec3l result;
@@ -51,9 +51,9 @@ class Walk {
 
   /// `placement` is the product of the transforms above.
   void visit(const VoxNode& node, VoxInstance placement, int depth) {
-    if (depth > kMostDepth)
+    if (depth > kMaxDepth)
       fail(node, "the scene is deeper than 1000 nodes, or has a node inside itself");
-    if (++visits_ > kMostVisits) fail(node, "the scene repeats its groups more than 4194304 times");
+    if (++visits_ > kMaxVisits) fail(node, "the scene repeats its groups more than 4194304 times");
     if (node.is_hidden || file_.hidden_layers.contains(node.layer)) return;
     if (node.kind == VoxNode::Kind::kShape) {
       add(node, placement);
@@ -84,7 +84,7 @@ class Walk {
     const std::int32_t model = node.children[0];
     if (model < 0 || static_cast<std::size_t>(model) >= file_.models.size())
       fail(node, "there is no model " + std::to_string(model));
-    if (instances_.size() == kMostInstances) fail(node, "the scene has more than 1048576 models");
+    if (instances_.size() == kMaxInstances) fail(node, "the scene has more than 1048576 models");
     placement.model = static_cast<std::uint32_t>(model);
     instances_.push_back(placement);
   }

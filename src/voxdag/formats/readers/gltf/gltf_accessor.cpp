@@ -94,10 +94,10 @@ GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
   const bool has_view = value["bufferView"].exists();
   if (!has_view && !value["sparse"].exists())
     throw value.error("the accessor has neither a buffer view nor sparse values");
-  constexpr std::size_t kMostZeros = std::size_t{1} << 24;
-  if (!has_view && count_ > kMostZeros)
+  constexpr std::size_t kMaxZeros = std::size_t{1} << 24;
+  if (!has_view && count_ > kMaxZeros)
     throw value.error(std::to_string(count_) + " elements without a buffer view: at most " +
-                      std::to_string(kMostZeros) + " are read");
+                      std::to_string(kMaxZeros) + " are read");
   if (has_view) {
     const std::size_t bytes = static_cast<std::size_t>(components_) * component_bytes_;
     const Elements dense = find_elements(file, value, count_, bytes, components_ > 1);

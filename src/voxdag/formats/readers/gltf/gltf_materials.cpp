@@ -135,9 +135,9 @@ class MaterialReader {
       // Images may share a buffer view, but a small file must not ask for many copies of a large
       // one.
       copied_bytes_ += bytes.size();
-      if (copied_bytes_ / kMostCopies > file_.buffer_bytes())
+      if (copied_bytes_ / kMaxCopies > file_.buffer_bytes())
         throw image.error("the images in buffer views have " + std::to_string(copied_bytes_) +
-                          " bytes, more than " + std::to_string(kMostCopies) +
+                          " bytes, more than " + std::to_string(kMaxCopies) +
                           " times the bytes of all buffers");
       set_bytes(bytes, out);
     }
@@ -186,7 +186,7 @@ class MaterialReader {
     return use;
   }
 
-  static constexpr std::uint64_t kMostCopies = 4;  ///< Limit on copies, in sizes of all buffers.
+  static constexpr std::uint64_t kMaxCopies = 4;  ///< Limit on copies, in sizes of all buffers.
 
   const GltfFile& file_;
   Appearance& appearance_;

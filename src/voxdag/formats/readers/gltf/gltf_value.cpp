@@ -25,7 +25,7 @@ GltfValue GltfValue::operator[](const char* key) const {
   if (found != JsonDocument::kAbsent) {
     member.node_ = found;
   } else {
-    assert(absent_count_ < kMostAbsent);
+    assert(absent_count_ < kMaxAbsent);
     member.absent_[member.absent_count_++] = key;
   }
   return member;

@@ -22,8 +22,8 @@ class OffReader {
   Mesh read() {
     try {
       std::string_view line = read_header();
-      read_vertices(count(line, "vertices", kLeastVertexBytes));
-      const std::size_t faces = count(line, "faces", kLeastFaceBytes);
+      read_vertices(count(line, "vertices", kMinVertexBytes));
+      const std::size_t faces = count(line, "faces", kMinFaceBytes);
       const std::size_t triangles = count_triangles(faces);
       memory_.resize(memory_.bytes() + source_.options.counted(triangles * sizeof(Triangle)));
       mesh_.triangles.resize(triangles);
@@ -37,7 +37,7 @@ class OffReader {
   }
 
  private:
-  static constexpr std::size_t kLeastVertexBytes = 6, kLeastFaceBytes = 2;
+  static constexpr std::size_t kMinVertexBytes = 6, kMinFaceBytes = 2;
 
   /// Returns the next line that is not blank, without its comment.
   std::string_view next_row() {

@@ -11,7 +11,7 @@
 namespace voxdag {
 
 inline constexpr std::size_t kStlHeaderBytes = 84, kStlFacetBytes = 50;
-inline constexpr std::size_t kMostStlFacets = 0xFFFFFFFF / 3;
+inline constexpr std::size_t kMaxStlFacets = 0xFFFFFFFF / 3;
 
 inline std::uint32_t load_stl_word(const char* p) {
   std::uint32_t word = 0;

@@ -75,7 +75,7 @@ std::unique_ptr<MeshChunks> open_stl_chunks(MappedFile file, const std::filesyst
                                             const ReadOptions& options, std::size_t chunk_bytes) {
   if (!is_exact_binary_stl(file.text())) return nullptr;
   const std::uint64_t facets = stl_facet_count(file.text());
-  if (facets == 0 || facets > kMostStlFacets) return nullptr;
+  if (facets == 0 || facets > kMaxStlFacets) return nullptr;
   return std::make_unique<StlMeshChunks>(std::move(file), path, options, chunk_bytes);
 }
 

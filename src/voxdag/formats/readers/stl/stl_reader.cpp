@@ -36,7 +36,7 @@ Mesh weld_facets(const MeshSource& source, const std::vector<std::string_view>& 
   const SoupSize size = measure_soup(source, parts, line_end, visit);
   const std::size_t facets = size.first_triangles.back();
   if (facets == 0) throw source.error("STL without facets: there is no surface to read");
-  if (facets > kMostStlFacets) throw source.error("the mesh has more than 1,431,655,765 facets");
+  if (facets > kMaxStlFacets) throw source.error("the mesh has more than 1,431,655,765 facets");
   return weld(source, parts, line_end, visit, size);
 }
 
