@@ -60,7 +60,7 @@ DagPointer build_mesh(const MeshWithAppearance& source, const GridRequest& grid,
   metadata.build = settings_of(grid);
   if (solid) add_solid_settings({*solid}, metadata.build);
   Svdag dag = build_svdag(mesh, metadata.grid, {}, &progress).dag;
-  if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, nullptr, &progress);
+  if (solid) dag = fill_solid(dag.view(), mesh, metadata.grid, {*solid}, &progress);
   DagAttributes attributes;
   if (colors) {
     const SurfaceShading shading(mesh, source.appearance, nullptr, &progress);
@@ -130,7 +130,7 @@ DagPointer build_file(const std::filesystem::path& path, std::optional<std::int6
   const std::optional<SolidRule> rule = rule_of(solid);
   if (rule && colors) throw py::value_error("a solid has no colours inside: leave out colors");
   return run_work([&](Progress& progress) {
-    const ReadOptions options{.progress = &progress};
+    const ReadOptions options{.work = &progress};
     MeshWithAppearance source;
     if (colors)
       source = read_mesh_with_appearance(path, options);

@@ -124,7 +124,7 @@ py::array_t<float> distance_field(const Dag& dag, const std::optional<Window>& w
 
 py::dict surface(const Dag& dag) {
   const VoxelSurface found =
-      run_work([&](Progress& progress) { return surface_of(dag.view(), nullptr, &progress); });
+      run_work([&](Progress& progress) { return surface_of(dag.view(), &progress); });
   const double unit = dag.grid().voxel_size;
   py::dict result;
   result["faces"] = py::make_tuple(found.faces[0], found.faces[1], found.faces[2]);

@@ -10,14 +10,14 @@
 namespace voxdag {
 
 std::uint64_t export_single_page(const std::filesystem::path& path, const SceneBytes& scene,
-                                 Progress* progress) {
+                                 Work work) {
   const SinglePage page = make_single_page(page_files());
   AtomicFile file(path);
   file.write(page.before);
   Gzip gzip;
   Base64 encoder;
   const auto write = [&](std::string_view compressed) { file.write(encoder.add(compressed)); };
-  for_each_piece(scene, progress, [&](auto piece) { gzip.add(piece, write); });
+  for_each_piece(scene, work, [&](auto piece) { gzip.add(piece, write); });
   gzip.finish(write);
   file.write(encoder.finish());
   file.write(page.after);

@@ -37,15 +37,15 @@ void check_replaceable(const fs::path& folder) {
   if (error) fail(folder, "cannot read", error);
 }
 
-void write_scene(const fs::path& path, const SceneBytes& scene, Progress* progress) {
+void write_scene(const fs::path& path, const SceneBytes& scene, Work work) {
   AtomicFile file(path);
-  for_each_piece(scene, progress, [&](std::span<const std::byte> piece) { file.write(piece); });
+  for_each_piece(scene, work, [&](std::span<const std::byte> piece) { file.write(piece); });
   file.commit();
 }
 
 }  // namespace
 
-std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Progress* progress) {
+std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work work) {
   const fs::path target = folder.has_filename() ? folder : folder.parent_path();
   std::error_code error;
   const fs::file_status status = fs::symlink_status(target, error);
@@ -62,7 +62,7 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Progr
     write_whole_file(path, file.bytes);
     bytes += file.bytes.size();
   }
-  write_scene(site.path() / kSceneName, scene, progress);
+  write_scene(site.path() / kSceneName, scene, work);
   site.take_name();
   return bytes;
 }

@@ -23,11 +23,11 @@ namespace {
 class AlignedFiles {
  public:
   AlignedFiles(const std::string& first, const std::string& second, const EditArguments& arguments,
-               MemoryBudget& memory, Session& session)
-      : first_(first, &session.progress, &memory), second_(second, &session.progress, &memory) {
+               Work work)
+      : first_(first, work), second_(second, work) {
     refuse_attributes(first_, first, arguments);
     refuse_attributes(second_, second, arguments);
-    with_file_name(second, [&] { models_.emplace(first_, second_, &memory, &session.progress); });
+    with_file_name(second, [&] { models_.emplace(first_, second_, work); });
   }
   AlignedFiles(const AlignedFiles&) = delete;
   AlignedFiles& operator=(const AlignedFiles&) = delete;
@@ -49,7 +49,8 @@ struct CombineArguments {
 void run_combine(const CombineArguments& arguments, Session& session) {
   check_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  const AlignedFiles files(session.subject, arguments.second, arguments.edit, memory, session);
+  const AlignedFiles files(session.subject, arguments.second, arguments.edit,
+                           {&memory, &session.progress});
   const SetOperation operation = arguments.is_union          ? SetOperation::kUnion
                                  : arguments.is_intersection ? SetOperation::kIntersection
                                  : arguments.is_difference   ? SetOperation::kDifference
@@ -73,7 +74,8 @@ void run_diff(const DiffArguments& arguments, Session& session) {
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
   EditArguments voxels_only = arguments.edit;
   voxels_only.drop_attributes = true;
-  const AlignedFiles files(session.subject, arguments.second, voxels_only, memory, session);
+  const AlignedFiles files(session.subject, arguments.second, voxels_only,
+                           {&memory, &session.progress});
   const auto count = [&](SetOperation operation) {
     return count_svdag(files.models().combine(operation).view()).voxels;
   };

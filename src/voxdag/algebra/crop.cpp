@@ -102,12 +102,12 @@ class CropRule {
 
 }  // namespace
 
-Svdag crop(const SvdagView& dag, const Box3i& box, MemoryBudget* memory, Progress* progress) {
-  return rewrite(CropRule(SourceDag(dag), box), dag.levels, memory, progress);
+Svdag crop(const SvdagView& dag, const Box3i& box, Work work) {
+  return rewrite(CropRule(SourceDag(dag), box), dag.levels, work);
 }
 
-Svdag crop(const LongSvdagView& dag, const Box3i& box, MemoryBudget* memory, Progress* progress) {
-  return rewrite(CropRule(LongSourceDag(dag), box), dag.levels, memory, progress);
+Svdag crop(const LongSvdagView& dag, const Box3i& box, Work work) {
+  return rewrite(CropRule(LongSourceDag(dag), box), dag.levels, work);
 }
 
 }  // namespace voxdag

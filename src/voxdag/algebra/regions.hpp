@@ -15,6 +15,7 @@
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 #include "voxdag/algebra/unique_items.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -25,10 +26,8 @@ enum class RegionKind { kVoxels, kEmpty };
 /// kNoCell stands for a cell without voxels.
 class Regions {
  public:
-  /// `dag` must be valid and outlive this object. Throws OverMemory and Cancelled; `memory` and
-  /// `progress` may be null.
-  Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, MemoryBudget* memory,
-          Progress* progress);
+  /// `dag` must be valid and outlive this object. Throws OverMemory and Cancelled.
+  Regions(const SvdagView& dag, RegionKind kind, Neighbours neighbours, Work work);
 
   struct Counts {
     std::uint32_t open = 0, closed = 0;
@@ -98,8 +97,7 @@ class Regions {
   int levels_;
   RegionKind kind_;
   Neighbours neighbours_;
-  MemoryBudget* memory_;
-  Progress* progress_;
+  Work work_;
   /// The number of the node that begins at a word, for each level above the leaf blocks.
   std::vector<CountedVector<std::uint32_t>> numbers_;
   std::vector<std::uint64_t> level_begin_;

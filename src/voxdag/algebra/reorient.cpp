@@ -71,9 +71,8 @@ Orientation then(const Orientation& first, const Orientation& second) {
   return both;
 }
 
-Svdag reorient(const SvdagView& dag, const Orientation& orientation, MemoryBudget* memory,
-               Progress* progress) {
-  return rewrite(ReorientRule(dag, orientation), dag.levels, memory, progress);
+Svdag reorient(const SvdagView& dag, const Orientation& orientation, Work work) {
+  return rewrite(ReorientRule(dag, orientation), dag.levels, work);
 }
 
 }  // namespace voxdag

@@ -103,10 +103,9 @@ class ShiftRule {
 
 }  // namespace
 
-Svdag shift(const SvdagView& dag, Vec3i offset, int levels, MemoryBudget* memory,
-            Progress* progress) {
+Svdag shift(const SvdagView& dag, Vec3i offset, int levels, Work work) {
   assert(levels >= kMinLevels && levels <= kMaxLevels);
-  return rewrite(ShiftRule(dag, offset, levels), levels, memory, progress);
+  return rewrite(ShiftRule(dag, offset, levels), levels, work);
 }
 
 }  // namespace voxdag

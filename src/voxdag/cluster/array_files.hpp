@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxdag/cluster/work_folder.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -15,10 +16,9 @@ template <class T>
 class ArrayFiles {
  public:
   /// Opens `count` files. Throws Error if one is missing, and Cancelled.
-  ArrayFiles(const WorkFolder& folder, const std::string& name, std::uint64_t count,
-             const Progress* progress) {
+  ArrayFiles(const WorkFolder& folder, const std::string& name, std::uint64_t count, Work work) {
     for (std::uint64_t i = 0; i < count; ++i) {
-      files_.push_back(folder.open_seen(numbered_name(name, i), progress));
+      files_.push_back(folder.open_seen(numbered_name(name, i), work));
       firsts_.push_back(firsts_.back() + files_.back().values<T>().size());
     }
   }

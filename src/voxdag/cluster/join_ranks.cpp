@@ -39,7 +39,7 @@ int launched_count() {
 
 }  // namespace
 
-std::unique_ptr<Ranks> join_ranks(const Progress* progress, const RankOptions& options) {
+std::unique_ptr<Ranks> join_ranks(Work work, const RankOptions& options) {
   assert(options.message_bytes >= 1 && options.message_bytes <= std::uint64_t{1} << 30);
   if (!is_launched()) {
     // srun without PMI, which is its default.
@@ -56,7 +56,7 @@ std::unique_ptr<Ranks> join_ranks(const Progress* progress, const RankOptions& o
         "mpirun or srun started this process, but the module for MPI cannot be loaded. Build "
         "voxdag where MPI is installed (Debian: libopenmpi-dev): " +
         reason);
-  std::unique_ptr<Ranks> ranks(module->join(progress, options));
+  std::unique_ptr<Ranks> ranks(module->join(work, options));
   const int launched = launched_count();
   if (launched != 0 && ranks->count() != launched)
     throw Error("the launcher started " + std::to_string(launched) +

@@ -18,6 +18,7 @@
 #include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/core/box.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/readers/mesh_chunks.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
@@ -64,7 +65,7 @@ class SharedMesh {
   Ranks& ranks_;
   const WorkFolder& folder_;
   std::filesystem::path path_;
-  Progress* progress_;
+  Work work_;
   Progress quiet_;
   ReadOptions reading_;                 ///< The caller's options, with quiet_ as the progress.
   std::unique_ptr<MeshChunks> chunks_;  ///< Null if rank 0 reads the mesh alone.

@@ -126,8 +126,7 @@ TEST(FilterMaterials, AMemoryLimitIsKeptOrRefused) {
   options.materials = true;
   options.finest_level = 7;
   expect_limit_is_kept_or_refused([&](MemoryBudget& budget) {
-    options.memory = &budget;
-    build_attributes(scene.mesh, scene.grid, dag.view(), nullptr, options);
+    build_attributes(scene.mesh, scene.grid, dag.view(), nullptr, options, &budget);
   });
 }
 

@@ -28,9 +28,9 @@ class Counted {
 };
 
 template <class Make, class Use>
-void run(std::size_t count, Progress* progress, const Make& make, const Use& use) {
+void run(std::size_t count, Work work, const Make& make, const Use& use) {
   tbb::task_arena arena(4);
-  arena.execute([&] { ordered_pipeline(count, 8, progress, make, use); });
+  arena.execute([&] { ordered_pipeline(count, 8, work, make, use); });
 }
 
 TEST(OrderedPipeline, UsesEveryResultInOrder) {

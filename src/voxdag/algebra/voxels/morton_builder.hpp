@@ -13,7 +13,7 @@ namespace voxdag {
 /// Joins voxels to a DAG node by node. It holds the DAG and the unfinished nodes of one path.
 class MortonBuilder {
  public:
-  /// A grid of 2^levels voxels a side. `memory` may be null.
+  /// A grid of 2^levels voxels a side.
   MortonBuilder(int levels, MemoryBudget* memory);
 
   /// Adds the voxel of a Morton code. Codes do not descend. Throws Error if the DAG outgrows 32-bit

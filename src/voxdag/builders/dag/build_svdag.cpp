@@ -24,7 +24,7 @@ void check_memory(const BuildInput& input) {
   // The finer estimate is this many levels coarser than the build, and takes about a hundredth of
   // its time.
   constexpr int kSteps = 4;
-  const MemoryBudget& budget = input.budget;
+  const MemoryBudget& budget = *input.work.memory;
   if (budget.limit() == 0 || area_bound(input.mesh, input.grid) < budget.left() / 2) return;
   const auto needed = estimate_memory(input, kSteps);
   if (!needed || *needed / 2 > budget.left()) throw OverMemory("");
@@ -34,26 +34,28 @@ Svdag build(const BuildInput& input, BuildReport& report) {
   StageBytes bytes;
   return input.method == BuildMethod::kHashConsed
              ? number_nodes(voxelize_hash_consed(input, report, bytes), input.grid.levels,
-                            input.budget, input.progress, report)
+                            input.work, report)
              : merge_and_number(voxelize_by_sorting(input, report, bytes), input, report);
 }
 
 }  // namespace
 
-BuildResult build_svdag(const Mesh& mesh, const Grid& grid, const BuildOptions& options,
-                        Progress* progress) {
+BuildResult build_svdag(const Mesh& mesh, const Grid& grid, BuildMethod method, Work work) {
   MemoryBudget unlimited;
-  MemoryBudget& budget = options.memory != nullptr ? *options.memory : unlimited;
-  const int bin_level = options.method == BuildMethod::kHashConsed
+  const bool is_limited = work.memory != nullptr;
+  if (!is_limited) work.memory = &unlimited;
+  const MemoryBudget& budget = *work.memory;
+  const int bin_level = method == BuildMethod::kHashConsed
                             ? hash_bin_level(grid.levels, mesh.triangles.size())
                             : sort_bin_level(grid.levels);
-  const BuildInput input{mesh, grid, options.method, bin_level, budget, progress};
+  const BuildInput input{mesh, grid, method, bin_level, work};
   const std::uint64_t held = budget.base() + budget.used();
   BuildResult result;
   try {
     check_memory(input);
     result.dag = build(input, result.report);
-    result.memory = MemoryReservation(&budget, result.dag.view().bytes());
+    MemoryReservation dag_bytes(work.memory, result.dag.view().bytes());
+    if (is_limited) result.memory = std::move(dag_bytes);
   } catch (const OverMemory&) {
     result = {};
     if (const auto needed = estimate_memory(input, 2))

@@ -28,8 +28,10 @@ StageBytes measure(const BuildInput& input, int levels) {
 std::optional<std::uint64_t> estimate_memory(const BuildInput& input, int steps) {
   const int levels = input.grid.levels;
   const int fine = std::max(kMinLevels, levels - steps), coarse = std::max(kMinLevels, fine - 1);
-  MemoryBudget budget(input.budget.left() == ~std::uint64_t{0} ? 0 : input.budget.left());
-  BuildInput probe{input.mesh, input.grid, input.method, input.bin_level, budget, input.progress};
+  const std::uint64_t left = input.work.memory->left();
+  MemoryBudget budget(left == ~std::uint64_t{0} ? 0 : left);
+  BuildInput probe{
+      input.mesh, input.grid, input.method, input.bin_level, {&budget, input.work.progress}};
   try {
     const StageBytes a = measure(probe, coarse), b = measure(probe, fine);
     const auto extrapolate = [&](double at_coarse, double at_fine) {

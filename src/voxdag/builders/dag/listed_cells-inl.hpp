@@ -87,7 +87,7 @@ class ListedCells {
 
   /// Goes down two levels: each triangle's 4³ grandchildren are one mask.
   Cell cell_by_64(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    poll(context_.progress);
+    context_.work.poll();
     const std::size_t classified = context_.classified.size();
     std::uint64_t any = 0;
     for (std::size_t i = first; i < first + count; ++i) {
@@ -148,7 +148,7 @@ class ListedCells {
           return {{}, slab_cell(sink_, context_.levels, t.plane, slab_lo_at(t, at), log2_size).id};
       }
     }
-    if (log2_size >= 6) poll(context_.progress);
+    if (log2_size >= 6) context_.work.poll();
     const std::int32_t half = std::int32_t{1} << (log2_size - 1);
     const ChildConditions conditions = classify_children(t, item.conditions, at, half);
     Children<Sink> children(sink_, context_.levels, log2_size - 1);

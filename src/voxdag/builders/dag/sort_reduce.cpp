@@ -12,34 +12,33 @@ using Indirections = PageVector<std::uint32_t>;
 
 /// Sorts `nodes` and removes duplicates. Returns the new index of every old index.
 template <class Key>
-Indirections sort_and_compact(PageVector<Key>& nodes, bool parallel, SortTimes& times,
-                              MemoryBudget& budget, const Progress* progress) {
+Indirections sort_and_compact(PageVector<Key>& nodes, bool parallel, SortTimes& times, Work work) {
   struct Entry {
     Key key;
     std::uint32_t index;
   };
-  PageVector<Entry> entries(&budget);
+  PageVector<Entry> entries(work.memory);
   entries.resize(nodes.size());
   for (std::uint32_t i = 0; i < entries.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     entries[i] = {nodes[i], i};
   }
   const auto by_key = [](const Entry& a, const Entry& b) { return a.key < b.key; };
   StopWatch watch;
   if (parallel)
-    polled_sort(entries.begin(), entries.end(), progress, by_key);
+    polled_sort(entries.begin(), entries.end(), work, by_key);
   else
     std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
-      poll(progress);
+      work.poll();
       return by_key(a, b);
     });
   times.sort += watch.lap();
 
-  Indirections indirections(&budget);
+  Indirections indirections(work.memory);
   indirections.resize(nodes.size());
   std::size_t unique = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     const Entry& entry = entries[i];
     if (unique == 0 || nodes[unique - 1] != entry.key) nodes[unique++] = entry.key;
     indirections[entry.index] = static_cast<std::uint32_t>(unique - 1);
@@ -49,10 +48,9 @@ Indirections sort_and_compact(PageVector<Key>& nodes, bool parallel, SortTimes& 
   return indirections;
 }
 
-void rewrite_pointers(PageVector<SortNode>& parents, const Indirections& indirections,
-                      const Progress* progress) {
+void rewrite_pointers(PageVector<SortNode>& parents, const Indirections& indirections, Work work) {
   for (std::size_t i = 0; i < parents.size(); ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     for (std::uint32_t& pointer : parents[i])
       if (pointer != kNoNode) pointer = indirections[pointer];
   }
@@ -61,17 +59,15 @@ void rewrite_pointers(PageVector<SortNode>& parents, const Indirections& indirec
 }  // namespace
 
 void reduce_by_sorting(SortTree& tree, bool merge_roots, bool parallel, SortTimes& times,
-                       MemoryBudget& budget, const Progress* progress) {
+                       Work work) {
   StopWatch watch;
   if (!tree.levels.empty() || merge_roots) {
-    const Indirections indirections =
-        sort_and_compact(tree.leaf_blocks, parallel, times, budget, progress);
-    if (!tree.levels.empty()) rewrite_pointers(tree.levels.back(), indirections, progress);
+    const Indirections indirections = sort_and_compact(tree.leaf_blocks, parallel, times, work);
+    if (!tree.levels.empty()) rewrite_pointers(tree.levels.back(), indirections, work);
   }
   for (std::size_t level = tree.levels.size(); level-- > (merge_roots ? 0 : 1);) {
-    const Indirections indirections =
-        sort_and_compact(tree.levels[level], parallel, times, budget, progress);
-    if (level > 0) rewrite_pointers(tree.levels[level - 1], indirections, progress);
+    const Indirections indirections = sort_and_compact(tree.levels[level], parallel, times, work);
+    if (level > 0) rewrite_pointers(tree.levels[level - 1], indirections, work);
   }
   times.reduce += watch.lap();
 }

@@ -6,7 +6,7 @@
 /// compacts the sorted list to its unique nodes, records in a table of indirections where each node
 /// went, and rewrites the pointers of the level above.
 #include "voxdag/builders/dag/sort_tree.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -17,9 +17,9 @@ struct SortTimes {
 };
 
 /// Merges all equal nodes, level by level. The nodes of level 0 are merged only if `merge_roots` is
-/// set; otherwise the roots keep their indices. `parallel`: sort on all threads. `progress` may be
-/// null. Throws OverMemory and Cancelled; the tree is then unusable.
+/// set; otherwise the roots keep their indices. `parallel`: sort on all threads. Throws OverMemory
+/// and Cancelled; the tree is then unusable.
 void reduce_by_sorting(SortTree& tree, bool merge_roots, bool parallel, SortTimes& times,
-                       MemoryBudget& budget, const Progress* progress);
+                       Work work);
 
 }  // namespace voxdag

@@ -46,10 +46,8 @@ class TriangleCorners {
 
 }  // namespace
 
-IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, MemoryBudget* budget,
-                                  Progress* progress) {
-  return find_duplicates(mesh.triangle_count(), TriangleCorners(mesh), budget, progress,
-                         "quantize");
+IndexSet find_duplicate_triangles(const QuantizedMesh& mesh, Work work) {
+  return find_duplicates(mesh.triangle_count(), TriangleCorners(mesh), work, "quantize");
 }
 
 }  // namespace voxdag

@@ -143,14 +143,13 @@ std::optional<Vec3i> quantize(const Grid& grid, Vec3d world) {
   return q;
 }
 
-QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget,
-                             Progress* progress)
+QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, Work work)
     : mesh_(&mesh),
-      vertices_(mesh.vertices.size(), CountedAllocator<Vec3i>(budget)),
-      clipped_(CountedAllocator<QuantizedTriangle>(budget)),
-      clipped_source_(CountedAllocator<std::uint32_t>(budget)) {
+      vertices_(mesh.vertices.size(), CountedAllocator<Vec3i>(work.memory)),
+      clipped_(CountedAllocator<QuantizedTriangle>(work.memory)),
+      clipped_source_(CountedAllocator<std::uint32_t>(work.memory)) {
   std::atomic<bool> any_out_of_range{false};
-  polled_for(vertices_.size(), 4096, progress, "quantize", [&](std::size_t i) {
+  polled_for(vertices_.size(), 4096, work, "quantize", [&](std::size_t i) {
     vertices_[i] = quantize(grid, static_cast<Vec3d>(mesh.vertices[i]))
                        .value_or(Vec3i{kOutOfRange, kOutOfRange, kOutOfRange});
     if (vertices_[i].x == kOutOfRange) any_out_of_range.store(true, std::memory_order_relaxed);
@@ -159,7 +158,7 @@ QuantizedMesh::QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* b
   const std::size_t count = mesh.triangles.size();
   std::vector<QuantizedTriangle> pieces;
   for (std::size_t i = 0; i < count; ++i) {
-    poll_seldom(progress, i);
+    work.poll_seldom(i);
     if (in_range(i)) continue;
     const Triangle& t = mesh.triangles[i];
     pieces.clear();

@@ -9,7 +9,7 @@
 
 #include "voxdag/core/grid.hpp"
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/mesh/mesh_bounds.hpp"
 
 namespace voxdag {
@@ -54,10 +54,9 @@ void quantize_triangle(const Grid& grid, const Vec3<Vec3d>& corners,
 class QuantizedMesh {
  public:
   /// Clips triangles with a vertex beyond ±kMaxUnits to that box, in double precision; each gives
-  /// up to 7 triangles. Such triangles exist only if the grid does not fit the mesh. `budget`
-  /// counts the memory and `progress` is polled; both may be null. Throws OverMemory and Cancelled.
-  QuantizedMesh(const Mesh& mesh, const Grid& grid, MemoryBudget* budget = nullptr,
-                Progress* progress = nullptr);
+  /// up to 7 triangles. Such triangles exist only if the grid does not fit the mesh. Throws
+  /// OverMemory and Cancelled.
+  QuantizedMesh(const Mesh& mesh, const Grid& grid, Work work = {});
   /// Takes triangles that are on the grid's integers already. There is no mesh behind them, so
   /// source() has no meaning.
   explicit QuantizedMesh(CountedVector<QuantizedTriangle> triangles);

@@ -5,9 +5,7 @@
 namespace voxdag {
 namespace {
 
-Ranks* join_in_module(const Progress* progress, const RankOptions& options) {
-  return new MpiRanks(progress, options);
-}
+Ranks* join_in_module(Work work, const RankOptions& options) { return new MpiRanks(work, options); }
 
 }  // namespace
 }  // namespace voxdag

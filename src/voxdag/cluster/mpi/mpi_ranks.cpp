@@ -24,10 +24,10 @@ void for_each_message(std::byte* bytes, std::size_t count, std::size_t most,
 
 }  // namespace
 
-MpiRanks::MpiRanks(const Progress* progress, const RankOptions& options)
+MpiRanks::MpiRanks(Work work, const RankOptions& options)
     : message_bytes_(options.message_bytes),
       exceptions_(std::uncaught_exceptions()),
-      session_(progress),
+      session_(work),
       counters_(session_, kCounters + 1) {}
 
 MpiRanks::~MpiRanks() {

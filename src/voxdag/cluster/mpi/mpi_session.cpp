@@ -11,7 +11,7 @@
 
 namespace voxdag {
 
-MpiSession::MpiSession(const Progress* progress) : progress_(progress) {
+MpiSession::MpiSession(Work work) : work_(work) {
   int has_begun = 0;
   MPI_Initialized(&has_begun);
   if (has_begun != 0) throw Error("MPI: this process has joined its job already");
@@ -114,7 +114,7 @@ void MpiSession::fail(const char* what, int code) {
 }
 
 void MpiSession::check_cancelled() {
-  if (progress_ == nullptr || !progress_->cancelled()) return;
+  if (!work_.cancelled()) return;
   stop();
   throw Cancelled();
 }

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "voxdag/cluster/mpi/turn_lock.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -20,7 +20,7 @@ namespace voxdag {
 class MpiSession {
  public:
   /// Begins MPI. Throws Error if this process began it before, or if MPI's thread level is lower.
-  explicit MpiSession(const Progress* progress);
+  explicit MpiSession(Work work);
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
@@ -77,8 +77,7 @@ class MpiSession {
   [[noreturn]] static void throw_stopped();
   [[noreturn]] void fail(const char* what, int code);
   void check_cancelled();
-
-  const Progress* progress_;
+  Work work_;
   TurnLock lock_;
   bool is_stopped_ = false;
   MPI_Comm comm_ = MPI_COMM_NULL;

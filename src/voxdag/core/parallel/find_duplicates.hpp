@@ -50,22 +50,21 @@ class IndexSet {
 /// `items.hash(i)` returns 64 bits that are equal for equal items, or std::nullopt if item i counts
 /// as equal to none; `items.are_equal(a, b)` compares two items. Both are called by several threads
 /// at once. The result does not depend on the number of threads. Time is linear in the items if the
-/// hashes are good. Takes 12 bytes for each item while it works and 1/8 byte after. Polls
-/// `progress`, which may be null, and reports to it as `stage`. Throws OverMemory and Cancelled.
+/// hashes are good. Takes 12 bytes for each item while it works and 1/8 byte after. Counts it in
+/// `work`, polls and reports as `stage`. Throws OverMemory and Cancelled.
 //
 // The table is shared by all threads and uses open addressing with linear probing. A slot holds
 // 32 bits of the hash, of which the lowest is set, and the lowest index seen so far of its item. Of
 // two equal items the one with the higher index is marked, so the marks do not depend on the order.
 template <class Items>
-IndexSet find_duplicates(std::size_t count, const Items& items, MemoryBudget* budget,
-                         Progress* progress, std::string_view stage) {
+IndexSet find_duplicates(std::size_t count, const Items& items, Work work, std::string_view stage) {
   constexpr std::size_t kGrain = 4096;
-  IndexSet duplicates(count, budget);
+  IndexSet duplicates(count, work.memory);
   duplicates.allocate();
-  PageVector<std::uint64_t> slots(budget);
+  PageVector<std::uint64_t> slots(work.memory);
   slots.resize(count + count / 2 + 1);
   std::atomic<bool> any{false};
-  polled_for(count, kGrain, progress, stage, [&](std::size_t i) {
+  polled_for(count, kGrain, work, stage, [&](std::size_t i) {
     const std::optional<std::uint64_t> hash = items.hash(i);
     if (!hash) return;
     const std::uint64_t tag = *hash << 32 | std::uint64_t{1} << 32;

@@ -13,7 +13,7 @@ inline constexpr const char* kBadVertex = "vertex is not finite and a face uses 
 /// Returns the index of the first vertex that a triangle uses and that is not finite. Throws
 /// Cancelled.
 inline std::optional<std::size_t> find_bad_vertex(const MeshSource& source, const Mesh& mesh) {
-  CancelPoll poll(source.options.progress);
+  CancelPoll poll(source.work());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     poll.step();
     if ((t + 1) % 65536 == 0) source.count_work(65536 * sizeof(Triangle));

@@ -17,12 +17,10 @@ class FaceCutter {
  public:
   explicit FaceCutter(const MeshSource& source)
       : source_(source),
-        memory_(source.options.memory),
+        memory_(source.work().memory),
         old_fan_(memory_),
         corners_(memory_),
-        poll_([progress = source.options.progress] {
-          if (progress != nullptr) progress->throw_if_cancelled();
-        }) {}
+        poll_([work = source.work()] { work.poll(); }) {}
 
   /// Cuts the polygon with the given fan, as cut_polygon() does. Throws Error with the file's name
   /// if the polygon would cost too much, OverMemory and Cancelled.

@@ -68,7 +68,7 @@ class MeshChunks {
   /// Runs work() on a part of the file, makes errors of its faults, and drops the part's pages.
   template <class Work>
   void read(std::string_view part, char line_end, const Work& work) const {
-    if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
+    source_.work().poll();
     try {
       work();
     } catch (const Fault& fault) {

@@ -39,7 +39,7 @@ SoupSize measure_soup(const MeshSource& source, const std::vector<std::string_vi
   const std::uint64_t one_in =
       std::max<std::uint64_t>(16, std::bit_floor(source.bytes.size() >> 26));
   SoupSize size{std::vector<std::size_t>(parts.size() + 1), 0};
-  MemoryBudget* const memory = source.options.memory;
+  MemoryBudget* const memory = source.work().memory;
   std::vector<CountedVector<Vec3f>> samples(parts.size(), CountedVector<Vec3f>(memory));
   for_each_chunk(source, parts, line_end, "scan", [&](std::size_t part) {
     VertexTable sample;
@@ -79,7 +79,7 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
   const std::size_t slots =
       64 + std::min(size.vertices * 8 / 5, (triangles + size.vertices) / 5 * 4);
   const std::uint64_t triangle_bytes = triangles * sizeof(Triangle);
-  MemoryReservation memory(options.memory,
+  MemoryReservation memory(options.work.memory,
                            options.counted(triangle_bytes + size.vertices * sizeof(Vec3f) +
                                            slots * sizeof(std::uint32_t)));
   mesh.triangles.resize(triangles);
@@ -95,7 +95,7 @@ Mesh weld(const MeshSource& source, const std::vector<std::string_view>& parts, 
     };
     // Each corner may need a vertex and a slot in the part's table; both arrays may double.
     const MemoryReservation scratch(
-        options.memory,
+        options.work.memory,
         3 * (starts[last] - starts[first]) * (2 * sizeof(Vec3f) + 5 * sizeof(std::uint32_t)));
     std::vector<StoredVector<Vec3f>> vertices(last - first);
     for_each_chunk(source, {at(first), at(last)}, line_end, "weld", [&](std::size_t i) {

@@ -19,7 +19,7 @@ std::uint32_t Builder::vertex(Vec3d local) {
 }
 
 void Builder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  if (progress_ != nullptr) progress_->throw_if_cancelled();
+  work_.poll();
   const Vec3d p = static_cast<Vec3d>(mesh_.vertices[a]);
   const Vec3d n =
       cross(static_cast<Vec3d>(mesh_.vertices[b]) - p, static_cast<Vec3d>(mesh_.vertices[c]) - p);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/scenes/math.hpp"
 #include "voxdag/mesh/mesh.hpp"
 
@@ -19,8 +19,8 @@ using Profile = std::vector<Point2>;
 
 class Builder {
  public:
-  /// If `progress` (may be null) is cancelled, triangle() throws Cancelled.
-  explicit Builder(const Progress* progress = nullptr) : progress_(progress) {}
+  /// If `work` is cancelled, triangle() throws Cancelled.
+  explicit Builder(Work work = {}) : work_(work) {}
 
   /// Sets the material of the next triangles, by name; adds a new name to the mesh.
   void material(std::string_view name);
@@ -100,7 +100,7 @@ class Builder {
   Mesh take() { return std::move(mesh_); }
 
  private:
-  const Progress* progress_;
+  Work work_;
   Mesh mesh_;
   Frame frame_;
   std::uint32_t material_ = 0;

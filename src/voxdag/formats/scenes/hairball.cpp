@@ -43,9 +43,9 @@ std::vector<Vec3d> hair_path(Random& random) {
 
 }  // namespace
 
-Mesh make_hairball(double size, std::uint32_t seed, const Progress* progress) {
+Mesh make_hairball(double size, std::uint32_t seed, Work work) {
   const int hairs = static_cast<int>(size);
-  Builder builder(progress);
+  Builder builder(work);
   builder.material("hair");
   std::vector<double> radii(kRings + 2, kRadius);
   radii.front() = radii.back() = 0;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/core/vec.hpp"
 #include "voxdag/mesh/appearance.hpp"
 #include "voxdag/mesh/mesh.hpp"
@@ -30,7 +30,7 @@ class TangentTable {
   /// Cancelled and OverMemory.
   TangentTable(const Mesh& mesh, const Appearance& appearance,
                const std::function<const UvTransform*(std::size_t triangle)>& uv_transform,
-               Progress* progress = nullptr, MemoryBudget* memory = nullptr);
+               Work work = {});
 
   CornerTangents operator[](std::size_t triangle) const {
     if (places_.empty() || places_[triangle] == kNone) return {};

@@ -30,6 +30,6 @@ double estimate_seconds(const Film& film, const PictureRenderer& render);
 /// Renders and writes all frames, which are the items of `queue`. All its processes return the
 /// timings of all frames. Throws Error if a file cannot be written, and Cancelled.
 std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& render,
-                                     WorkQueue& queue, Progress& progress);
+                                     WorkQueue& queue, Work work);
 
 }  // namespace voxdag

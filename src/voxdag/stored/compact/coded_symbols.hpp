@@ -36,7 +36,7 @@ class CodedSymbols {
   };
 
   /// Makes the parts for `nodes` nodes with about `words` words, if these take at most a quarter of
-  /// what is left of the budget. `budget` may be null.
+  /// what is left of the budget. Without a budget, makes them.
   void begin(std::uint64_t nodes, std::uint64_t words, MemoryBudget* budget) {
     if (budget != nullptr &&
         words * 4 > (budget->limit() - std::min(budget->limit(), budget->used())) / 4)

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/compact/coded_symbols.hpp"
 #include "voxdag/stored/compact/compact_svdag.hpp"
 #include "voxdag/stored/compact/numbered_nodes.hpp"
@@ -16,8 +17,8 @@ using CompactTrees = std::array<ContextTree, kCompactSymbols>;
 /// half of it those of leaf masks, and an eighth those of other symbols. If the budget has room,
 /// `coded` gets the symbols of all units, then those of all shared bricks, then those of the nodes
 /// above the units. Throws OverMemory and Cancelled.
-CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, MemoryBudget* budget,
-                          Progress* progress, CodedSymbols& coded);
+CompactTrees choose_trees(const NumberedNodes& nodes, int most_tables, Work work,
+                          CodedSymbols& coded);
 
 /// Counts the symbols of one context tree by table.
 class SymbolCounts {

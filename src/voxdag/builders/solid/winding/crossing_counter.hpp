@@ -14,7 +14,7 @@ namespace voxdag {
 class CrossingCounter {
  public:
   /// There must be voxels, which must outlive this object. Counts 8 bytes for each in `memory`.
-  /// Throws OverMemory; `memory` may be null.
+  /// Throws OverMemory.
   CrossingCounter(std::span<const Vec3i> voxels, MemoryBudget* memory);
 
   /// Adds `times` the crossings of the triangle. Thread-safe.

@@ -23,9 +23,9 @@ constexpr double kFinest = 1e-9;
 
 /// Calls add(i) for all i below `count` on many threads.
 template <class Add>
-void add_all(std::size_t count, Progress* progress, const Add& add) {
+void add_all(std::size_t count, Work work, const Add& add) {
   constexpr std::size_t kChunk = 1024;
-  polled_for((count + kChunk - 1) / kChunk, 1, progress, "inside", [&](std::size_t chunk) {
+  polled_for((count + kChunk - 1) / kChunk, 1, work, "inside", [&](std::size_t chunk) {
     for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) add(i);
   });
 }
@@ -33,22 +33,20 @@ void add_all(std::size_t count, Progress* progress, const Add& add) {
 }  // namespace
 
 WindingField::WindingField(const QuantizedMesh& mesh, CountedVector<BoundaryEdge> boundary,
-                           double threshold, MemoryBudget* memory, Progress* progress)
+                           double threshold, Work work)
     : mesh_(mesh),
-      edges_(boundary, memory, progress),
-      caps_(cap_boundary(std::move(boundary), memory, progress), memory, progress),
+      edges_(boundary, work),
+      caps_(cap_boundary(std::move(boundary), work), work),
       threshold_(threshold) {}
 
-std::vector<bool> WindingField::are_inside(std::span<const Vec3i> voxels, MemoryBudget* memory,
-                                           Progress* progress) const {
+std::vector<bool> WindingField::are_inside(std::span<const Vec3i> voxels, Work work) const {
   if (voxels.empty()) return {};
-  CrossingCounter closed(voxels, memory);
-  add_all(mesh_.triangle_count(), progress,
-          [&](std::size_t i) { closed.add(mesh_.triangle(i), 1); });
+  CrossingCounter closed(voxels, work.memory);
+  add_all(mesh_.triangle_count(), work, [&](std::size_t i) { closed.add(mesh_.triangle(i), 1); });
   const PageVector<QuantizedTriangle>& caps = caps_.triangles();
-  add_all(caps.size(), progress, [&](std::size_t i) { closed.add(caps[i], -1); });
-  CountedVector<std::uint8_t> inside(voxels.size(), 0, memory);
-  add_all(voxels.size(), progress, [&](std::size_t i) {
+  add_all(caps.size(), work, [&](std::size_t i) { closed.add(caps[i], -1); });
+  CountedVector<std::uint8_t> inside(voxels.size(), 0, work.memory);
+  add_all(voxels.size(), work, [&](std::size_t i) {
     inside[i] = is_inside(winding_point(voxels[i], 0), closed.crossings(i)) ? 1 : 0;
   });
   return {inside.begin(), inside.end()};

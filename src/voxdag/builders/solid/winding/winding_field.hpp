@@ -12,6 +12,7 @@
 
 #include "voxdag/builders/solid/winding/edge_tree.hpp"
 #include "voxdag/builders/solid/winding/winding_tree.hpp"
+#include "voxdag/core/parallel/work.hpp"
 
 namespace voxdag {
 
@@ -19,17 +20,14 @@ class WindingField {
  public:
   /// A voxel is inside if the absolute winding number at its centre is at least `threshold`, which
   /// is positive. All triangles of the mesh, which must outlive this object, must be in range.
-  /// Throws OverMemory and Cancelled; `memory` and `progress` may be null.
-  WindingField(const QuantizedMesh& mesh, double threshold, MemoryBudget* memory,
-               Progress* progress)
-      : WindingField(mesh, find_boundary_edges(mesh, memory, progress), threshold, memory,
-                     progress) {}
+  /// Throws OverMemory and Cancelled.
+  WindingField(const QuantizedMesh& mesh, double threshold, Work work)
+      : WindingField(mesh, find_boundary_edges(mesh, work), threshold, work) {}
 
   /// Returns whether each voxel is inside; no triangle may meet these voxels. Voxels whose winding
   /// number is within 1e-8 of the threshold may be on either side. Time grows with the triangles,
   /// and with the voxels that lie behind each of them along x. Throws OverMemory and Cancelled.
-  std::vector<bool> are_inside(std::span<const Vec3i> voxels, MemoryBudget* memory,
-                               Progress* progress) const;
+  std::vector<bool> are_inside(std::span<const Vec3i> voxels, Work work) const;
 
   /// Returns whether two voxels in a cell of 2^log2_side voxels a side that are connected through
   /// voxels that no triangle meets can be on different sides. `cell` is its place, in cells.
@@ -37,7 +35,7 @@ class WindingField {
 
  private:
   WindingField(const QuantizedMesh& mesh, CountedVector<BoundaryEdge> boundary, double threshold,
-               MemoryBudget* memory, Progress* progress);
+               Work work);
 
   bool is_inside(Vec3d point, std::int32_t of_closed) const;
 

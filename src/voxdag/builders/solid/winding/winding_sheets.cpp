@@ -9,23 +9,23 @@
 namespace voxdag {
 
 PageVector<std::uint64_t> find_sheets(const WindingField& field, const SvdagView& cover,
-                                      MemoryBudget* memory, Progress* progress) {
+                                      Work work) {
   constexpr std::size_t kChunk = 256;
   // The cells of a level in which the inside may end, in Morton order.
-  PageVector<std::uint64_t> cells(memory);
+  PageVector<std::uint64_t> cells(work.memory);
   cells.push_back(0);
   for (int level = 0; level <= cover.levels; ++level) {
     const int log2_side = cover.levels - level;
-    PageVector<std::uint8_t> may_differ(memory);
+    PageVector<std::uint8_t> may_differ(work.memory);
     may_differ.resize(cells.size());
-    polled_for((cells.size() + kChunk - 1) / kChunk, 1, progress, "holes", [&](std::size_t chunk) {
+    polled_for((cells.size() + kChunk - 1) / kChunk, 1, work, "holes", [&](std::size_t chunk) {
       for (std::size_t i = chunk * kChunk; i < std::min(cells.size(), (chunk + 1) * kChunk); ++i) {
         const Vec3i cell = morton_decode(cells[i]);
         const bool is_set = log2_side == 0 && svdag_contains(cover, cell, cover.levels);
         may_differ[i] = !is_set && field.may_differ(cell, log2_side) ? 1 : 0;
       }
     });
-    PageVector<std::uint64_t> next(memory);
+    PageVector<std::uint64_t> next(work.memory);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (may_differ[i] == 0) continue;
       if (log2_side == 0) next.push_back(cells[i]);

@@ -8,9 +8,8 @@
 namespace voxdag {
 
 ColoredVoxelBuilder::ColoredVoxelBuilder(int levels, std::size_t most_colors,
-                                         const std::filesystem::path& folder, MemoryBudget* memory,
-                                         Progress* progress)
-    : levels_(levels), memory_(memory), colors_(most_colors, folder, memory, progress) {}
+                                         const std::filesystem::path& folder, Work work)
+    : levels_(levels), memory_(work.memory), colors_(most_colors, folder, work) {}
 
 void ColoredVoxelBuilder::add(Vec3i voxel, Rgb8 color) {
   colors_.add({code_in_grid(voxel, levels_),

@@ -125,7 +125,7 @@ class PlyPoints : public VoxelSource {
 
   void parse_vertex(std::string_view row, BatchedVoxels& points) const {
     const char* const start = row.data();
-    CancelPoll poll(nullptr);
+    CancelPoll poll({});
     Values values{};
     for (std::size_t p = 0; p < vertex().properties.size(); ++p)
       take_ply_property(row, vertex().properties[p], poll, [&](std::string_view token) {

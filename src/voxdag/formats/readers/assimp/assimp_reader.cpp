@@ -124,7 +124,7 @@ Mesh read_with_assimp(const MeshSource& source, const std::string& extension) {
                          "safe for untrusted files");
     keep_safe_importers(importer);
   }
-  const MemoryReservation import_memory(source.options.memory,
+  const MemoryReservation import_memory(source.work().memory,
                                         kAssimpBytesPerFileByte * source.bytes.size());
   importer.SetIOHandler(
       std::make_unique<AllowedFiles>(source).release());  // The importer deletes it.
@@ -140,7 +140,7 @@ Mesh read_with_assimp(const MeshSource& source, const std::string& extension) {
     faces += scene->mMeshes[i]->mNumFaces;
   }
   const MemoryReservation mesh_memory(
-      source.options.memory,
+      source.work().memory,
       source.options.counted(vertices * sizeof(Vec3f) +
                              faces * (sizeof(Triangle) + sizeof(std::uint32_t))));
   Mesh mesh = empty_mesh(source.options.arrays);

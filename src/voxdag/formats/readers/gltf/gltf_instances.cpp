@@ -8,7 +8,7 @@ namespace {
 /// Returns the root nodes of the shown scene.
 CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
   const GltfItems& nodes = file.array(GltfArray::kNodes);
-  CountedVector<std::uint64_t> roots(file.source().options.memory);
+  CountedVector<std::uint64_t> roots(file.source().work().memory);
   const GltfValue default_scene = file.root()["scene"];
   if (default_scene.exists() || !file.array(GltfArray::kScenes).empty()) {
     const GltfValue scene = file.item(GltfArray::kScenes, default_scene.whole(0), default_scene);
@@ -16,7 +16,7 @@ CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
     return roots;
   }
   CountedVector<char> is_child(nodes.size(), 0, CountedAllocator<char>(roots.get_allocator()));
-  CancelPoll poll(file.source().options.progress);
+  CancelPoll poll(file.source().work());
   for (const GltfValue node : nodes) {
     poll.step();
     for (const GltfValue child : node["children"].items()) {
@@ -33,7 +33,7 @@ CountedVector<std::uint64_t> find_roots(const GltfFile& file) {
 }  // namespace
 
 CountedVector<GltfInstance> find_gltf_instances(const GltfFile& file) {
-  MemoryBudget* const memory = file.source().options.memory;
+  MemoryBudget* const memory = file.source().work().memory;
   CountedVector<GltfInstance> instances(memory);
   const GltfItems& nodes = file.array(GltfArray::kNodes);
   const GltfItems& meshes = file.array(GltfArray::kMeshes);
@@ -45,7 +45,7 @@ CountedVector<GltfInstance> find_gltf_instances(const GltfFile& file) {
   CountedVector<std::pair<std::uint64_t, GltfTransform>> stack(memory);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
   CountedVector<char> seen(nodes.size(), 0, CountedAllocator<char>(memory));
-  CancelPoll poll(file.source().options.progress);
+  CancelPoll poll(file.source().work());
   while (!stack.empty()) {
     poll.step();
     const auto [index, parent] = stack.back();

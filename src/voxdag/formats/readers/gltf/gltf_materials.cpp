@@ -66,8 +66,8 @@ class MaterialReader {
       : file_(file),
         appearance_(appearance),
         warnings_(warnings),
-        memory_(file.source().options.memory, 0),
-        poll_(file.source().options.progress) {}
+        memory_(file.source().work().memory, 0),
+        poll_(file.source().work()) {}
 
   void read(const Mesh& mesh) {
     const GltfItems& materials = file_.array(GltfArray::kMaterials);
@@ -125,8 +125,7 @@ class MaterialReader {
     std::string unescaped;
     const std::string_view uri = image["uri"].text_view(unescaped);
     if (uri.starts_with("data:")) {
-      const auto decoded =
-          decode_data_uri(uri, file_.source().options.memory, file_.source().options.progress);
+      const auto decoded = decode_data_uri(uri, file_.source().work());
       if (!decoded) throw image.error("malformed data URI");
       set_bytes(decoded->bytes, out);
     } else if (uri.empty()) {

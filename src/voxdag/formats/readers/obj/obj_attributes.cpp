@@ -34,12 +34,12 @@ std::uint32_t resolve(std::string_view reference, std::size_t seen, std::size_t 
 ObjAttributes::ObjAttributes(const MeshSource& source, const ObjCounts& totals, bool has_colors)
     : source_(source),
       totals_(totals),
-      uvs_(source.options.memory),
-      normals_(source.options.memory),
-      colors_(source.options.memory),
-      uv_references_(source.options.memory),
-      normal_references_(source.options.memory),
-      results_(source.options.memory, 0) {
+      uvs_(source.work().memory),
+      normals_(source.work().memory),
+      colors_(source.work().memory),
+      uv_references_(source.work().memory),
+      normal_references_(source.work().memory),
+      results_(source.work().memory, 0) {
   if (std::max(totals.uvs, totals.normals) >= ObjReferences::kNone)
     throw source.error("the mesh has more than 4,294,967,294 texture coordinates or normals");
   uvs_.resize(totals.uvs);
@@ -107,8 +107,8 @@ void ObjAttributes::look_up(CountedVector<std::uint32_t>& references, CountedVec
   parallel_for(references.size(), 65536, [&](std::size_t i) {
     if (references[i] != ObjReferences::kNone) result[i] = values[references[i]];
   });
-  references = CountedVector<std::uint32_t>(source_.options.memory);
-  values = CountedVector<T>(source_.options.memory);
+  references = CountedVector<std::uint32_t>(source_.work().memory);
+  values = CountedVector<T>(source_.work().memory);
 }
 
 void ObjAttributes::finish(const Mesh& mesh, Appearance& appearance) {

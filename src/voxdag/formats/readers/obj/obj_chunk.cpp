@@ -18,9 +18,9 @@ std::size_t count_fan_triangles(std::string_view corners, CancelPoll& poll) {
 }
 
 ObjChunk::ObjChunk(const MeshSource& source, std::string_view text, char line_end)
-    : materials(source.options.memory), libraries(source.options.memory) {
-  CancelPoll poll(source.options.progress);
-  for_each_line(text, line_end, source.options.memory, [&](std::string_view line, const char*) {
+    : materials(source.work().memory), libraries(source.work().memory) {
+  CancelPoll poll(source.work());
+  for_each_line(text, line_end, source.work().memory, [&](std::string_view line, const char*) {
     switch (take_keyword(line)) {
       case ObjStatement::kVertex:
         ++counts.vertices;

@@ -48,7 +48,7 @@ class ObjMeshChunks final : public MeshChunks {
     FaceReader faces(source(), vertices, triangles);
     read(text, line_end_, [&] {
       std::uint64_t seen = vertices.before;
-      for_each_line(text, line_end_, source().options.memory,
+      for_each_line(text, line_end_, source().work().memory,
                     [&](std::string_view line, const char* position) {
                       const ObjStatement statement = take_keyword(line);
                       if (statement == ObjStatement::kVertex) ++seen;
@@ -76,9 +76,9 @@ class ObjMeshChunks final : public MeshChunks {
         : vertices_(vertices),
           triangles_(triangles),
           cutter_(source),
-          poll_(source.options.progress),
-          corners_(source.options.memory),
-          positions_(source.options.memory) {}
+          poll_(source.work()),
+          corners_(source.work().memory),
+          positions_(source.work().memory) {}
 
     void read(std::string_view line, const char* position, std::uint64_t seen) {
       corners_.clear();
@@ -135,7 +135,7 @@ class ObjMeshChunks final : public MeshChunks {
   void for_each_statement(std::uint64_t chunk, ObjStatement wanted, const Body& body) const {
     const std::string_view text = this->text(chunk);
     read(text, line_end_, [&] {
-      for_each_line(text, line_end_, source().options.memory,
+      for_each_line(text, line_end_, source().work().memory,
                     [&](std::string_view line, const char* position) {
                       if (take_keyword(line) == wanted) body(line, position);
                     });

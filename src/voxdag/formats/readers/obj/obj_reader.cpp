@@ -43,9 +43,9 @@ class ObjReader {
         has_appearance_(parts == ReadParts::kMeshAndAppearance),
         line_end_(line_end_of(source.bytes)),
         texts_(split_lines(without_byte_order_mark(source.bytes), line_end_)),
-        memory_(source.options.memory, 0),
-        material_ids_(source.options.memory),
-        libraries_(source.options.memory),
+        memory_(source.work().memory, 0),
+        material_ids_(source.work().memory),
+        libraries_(source.work().memory),
         mesh_(empty_mesh(source.options.arrays)) {}
 
   MeshWithAppearance read() {
@@ -78,7 +78,7 @@ class ObjReader {
     std::uint32_t material = kNoMaterial;
     bool has_colors = false;
     for (std::optional<ObjChunk>& chunk : counted) {
-      PlacedChunk& placed = chunks_.emplace_back(source_.options.memory);
+      PlacedChunk& placed = chunks_.emplace_back(source_.work().memory);
       placed.first = totals_;
       placed.triangles = chunk->counts.triangles;
       totals_ += chunk->counts;
@@ -126,8 +126,8 @@ class ObjReader {
     PlacedChunk& chunk = chunks_[i];
     ObjCounts seen = chunk.first;  // Counts of everything before the line.
     std::uint32_t material = chunk.material;
-    CancelPoll poll(source_.options.progress);
-    for_each_line(texts_[i], line_end_, source_.options.memory,
+    CancelPoll poll(source_.work());
+    for_each_line(texts_[i], line_end_, source_.work().memory,
                   [&](std::string_view line, const char* position) {
                     switch (take_keyword(line)) {
                       case ObjStatement::kVertex: {
@@ -199,7 +199,7 @@ class ObjReader {
   }
 
   void cut_faces(const PlacedChunk& chunk) {
-    if (source_.options.progress != nullptr) source_.options.progress->throw_if_cancelled();
+    source_.work().poll();
     FaceCutter cutter(source_);
     const auto& is_same_face = chunk.is_same_face;
     const auto triangles = std::span(mesh_.triangles).subspan(chunk.first.triangles);
@@ -232,7 +232,7 @@ class ObjReader {
     while (chunks_[i].first.vertices > index) --i;
     const char* found = nullptr;
     std::size_t vertex = chunks_[i].first.vertices;
-    for_each_line(texts_[i], line_end_, source_.options.memory,
+    for_each_line(texts_[i], line_end_, source_.work().memory,
                   [&](std::string_view line, const char* position) {
                     if (take_keyword(line) == ObjStatement::kVertex && vertex++ == index)
                       found = position;

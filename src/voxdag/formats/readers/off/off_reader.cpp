@@ -13,8 +13,8 @@ class OffReader {
   explicit OffReader(const MeshSource& source)
       : source_(source),
         line_end_(line_end_of(source.bytes)),
-        poll_(source.options.progress),
-        memory_(source.options.memory, 0),
+        poll_(source.work()),
+        memory_(source.work().memory, 0),
         cutter_(source),
         rest_(without_byte_order_mark(source.bytes)),
         mesh_(empty_mesh(source.options.arrays)) {}

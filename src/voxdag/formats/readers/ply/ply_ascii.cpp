@@ -62,8 +62,8 @@ class AsciiReader {
     Chunk(const MeshSource& source, std::size_t i, std::size_t first_triangle)
         : index(i),
           triangle(first_triangle),
-          poll(source.options.progress),
-          values(source.options.memory),
+          poll(source.work()),
+          values(source.work().memory),
           cutter(source) {}
 
     std::size_t index;

@@ -54,10 +54,10 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
                              const PlyFields& fields)
     : source_(source),
       header_(header),
-      vertex_colors_(source.options.memory),
-      vertex_normals_(source.options.memory),
-      vertex_uvs_(source.options.memory),
-      memory_(source.options.memory, 0) {
+      vertex_colors_(source.work().memory),
+      vertex_normals_(source.work().memory),
+      vertex_uvs_(source.work().memory),
+      memory_(source.work().memory, 0) {
   vertex_.slots.assign(fields.vertex.properties.size(), -1);
   face_.slots.assign(fields.face.properties.size(), -1);
   find_color(fields.vertex, vertex_);

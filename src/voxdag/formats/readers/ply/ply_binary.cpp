@@ -164,7 +164,7 @@ class BinaryReader {
       const Block& block = vertices_.blocks[i];
       const char* p = block.bytes.data();
       const char* const end = p + block.bytes.size();
-      PlyRowValues values(source_.options.memory);
+      PlyRowValues values(source_.work().memory);
       for (std::size_t row = 0; row < block.rows; ++row) {
         Vec3f& vertex = mesh_.vertices[block.first_row + row];
         p = layout.walk(p, end, swap_, [&](std::size_t run, const char* fixed, std::size_t items) {
@@ -195,9 +195,9 @@ class BinaryReader {
       const char* p = faces_.parts[i].data();
       const char* const end = p + faces_.parts[i].size();
       std::size_t triangle = faces_.blocks[i].first_triangle;
-      PlyRowValues values(source_.options.memory);
+      PlyRowValues values(source_.work().memory);
       FaceCutter cutter(source_);
-      CancelPoll poll(source_.options.progress);
+      CancelPoll poll(source_.work());
       for (std::size_t row = 0; row < faces_.blocks[i].rows; ++row) {
         const std::size_t first_triangle = triangle;
         const char* const row_start = p;

@@ -29,8 +29,8 @@ std::optional<PlyType> parse_type(std::string_view name) {
 class PlyHeaderParser {
  public:
   explicit PlyHeaderParser(const MeshSource& source) : source_(source), rest_(source.bytes) {
-    header_.materials = CountedVector<std::string_view>(source.options.memory);
-    header_.textures = CountedVector<std::string_view>(source.options.memory);
+    header_.materials = CountedVector<std::string_view>(source.work().memory);
+    header_.textures = CountedVector<std::string_view>(source.work().memory);
   }
 
   PlyHeader parse(PlyUse use) {
@@ -117,7 +117,7 @@ class PlyHeaderParser {
       if (known.name == name) fail("element " + in_quotes(name) + " is declared twice");
     property_names_.clear();
     header_.elements.push_back({name, static_cast<std::uint64_t>(count),
-                                CountedVector<PlyProperty>(source_.options.memory)});
+                                CountedVector<PlyProperty>(source_.work().memory)});
   }
 
   void parse_property(std::string_view text) {
@@ -194,7 +194,7 @@ class PlyHeaderParser {
   const MeshSource& source_;
   std::string_view rest_;
   std::size_t line_ = 0;
-  CancelPoll poll_{source_.options.progress};
+  CancelPoll poll_{source_.work()};
   std::set<std::string_view> property_names_;  ///< Names in the last element.
   PlyHeader header_;
 };

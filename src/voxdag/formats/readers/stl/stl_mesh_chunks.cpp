@@ -62,7 +62,7 @@ class StlMeshChunks final : public MeshChunks {
     const std::string_view facets = source().bytes.substr(kStlHeaderBytes + first * kStlFacetBytes,
                                                           (last - first) * kStlFacetBytes);
     // The caller's table: each corner may need a vertex and a slot; both arrays may double.
-    const MemoryReservation table(source().options.memory, 3 * (last - first) * 44);
+    const MemoryReservation table(source().work().memory, 3 * (last - first) * 44);
     read(facets, kNoLines, [&] { parse_stl_binary(facets, body); });
   }
 
