@@ -14,8 +14,8 @@ struct RankOptions {
 };
 
 /// Joins the job of `mpirun` or `srun` if one of them started this process (their environment
-/// variables say so). Otherwise returns one rank alone. Call it once per process. What
-/// `work` refers to must outlive the result.
+/// variables say so). Otherwise returns one rank alone. Call it once per process. What `work`
+/// refers to must outlive the result.
 ///
 /// Programs do not link MPI. This function loads the module voxdag_mpi.so, which does. Throws Error
 /// if the module or MPI's library is missing, if this process has joined before, or if the

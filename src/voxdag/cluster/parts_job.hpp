@@ -55,8 +55,8 @@ struct PartsReport {
   std::uint64_t node_bytes = 0, leaf_bytes = 0;  ///< Of the DAG in the paper's layout.
 };
 
-/// Runs the job, and removes all but the log from the work folder. Collective. The budget of
-/// `work` limits the memory of this rank; mapped files do not count. Throws Error, OverMemory and
+/// Runs the job, and removes all but the log from the work folder. Collective. The budget of `work`
+/// limits the memory of this rank; mapped files do not count. Throws Error, OverMemory and
 /// Cancelled; the work folder then holds what is done, and the same call goes on with it.
 PartsReport build_in_parts(const PartsJob& job, const std::string& program, Ranks& ranks,
                            Work work);

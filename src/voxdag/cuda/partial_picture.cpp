@@ -21,7 +21,7 @@ struct PartialPicture::State {
       : blocks(blocks_in),
         frame(plan, options.beams, options.filter),
         has_beams(options.beams),
-        progress(work_in),
+        work(work_in),
         tile_count(block_count(options.width, options.height)),
         tiles(make_device_buffer<std::uint32_t>(tile_count, kTiles)),
         missed(make_device_buffer<std::uint8_t>(tile_count, kTiles)),

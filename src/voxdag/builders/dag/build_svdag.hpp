@@ -47,8 +47,7 @@ struct BuildResult {
 /// Runs on the current TBB arena. The result depends on mesh and grid alone: not on threads, method
 /// or machine. Throws OverMemory, with an estimate of the memory that the build needs, if the limit
 /// is too small; it does so before the work if the limit is clearly too small. Throws Error if the
-/// DAG outgrows 32-bit pointers, and Cancelled. The build does not count the mesh; its owner
-/// does.
+/// DAG outgrows 32-bit pointers, and Cancelled. The build does not count the mesh; its owner does.
 BuildResult build_svdag(const Mesh& mesh, const Grid& grid,
                         BuildMethod method = BuildMethod::kHashConsed, Work work = {});
 

@@ -20,8 +20,8 @@ namespace voxdag {
 ///   void prefetch(level, id)                 starts loading both; ids may be any numbers
 ///   void release(level)                      frees a level that is not needed any more
 ///   std::uint64_t node_words(), leaf_blocks()  return upper bounds for what is reachable
-/// The children of level l-1 are ids of level l. `root` is of level 0. `work` counts the
-/// new DAG until the call returns. Throws Error if the DAG outgrows 32-bit pointers, OverMemory and
+/// The children of level l-1 are ids of level l. `root` is of level 0. `work` counts the new DAG
+/// until the call returns. Throws Error if the DAG outgrows 32-bit pointers, OverMemory and
 /// Cancelled.
 template <class Source>
 Svdag canonical_order(Source& source, int levels, std::uint32_t root, Work work) {

@@ -14,8 +14,8 @@ namespace voxdag {
 
 /// Calls use(make(i)) for every i in [0, count): `make` on many threads at the same time, `use` in
 /// the order of i and never twice at the same time. At most `most_waiting` results exist at a time.
-/// If `make` or `use` throws, the results that wait are destroyed and the exception leaves.
-/// Throws Cancelled.
+/// If `make` or `use` throws, the results that wait are destroyed and the exception leaves. Throws
+/// Cancelled.
 ///
 /// This function owns the results itself: tbb::parallel_pipeline leaks its tokens if a filter
 /// throws.

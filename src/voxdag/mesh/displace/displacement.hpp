@@ -24,8 +24,8 @@ struct Displacement {
 
 /// Loads the displacement maps of the materials and returns a displacement for each material.
 /// Leaves out a map that cannot be read, or that moves points by more than 2^kMaxLevels times the
-/// mesh's longest side; `warnings` gets a line about it. `work` counts the heights and must outlive
-/// them. Throws Cancelled and OverMemory.
+/// mesh's longest side; `warnings` gets a line about it. `work` counts the heights as long as they
+/// live. Throws Cancelled and OverMemory.
 std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance& appearance,
                                              std::vector<std::string>& warnings, Work work = {});
 

@@ -9,8 +9,7 @@
 
 namespace voxdag {
 
-/// Returns a relative URI as the path of a file: resolves "%20" and the like. Throws
-/// Cancelled.
+/// Returns a relative URI as the path of a file: resolves "%20" and the like. Throws Cancelled.
 std::string decode_percent(std::string_view uri, Work work = {});
 
 /// The bytes of a `data:` URI.
@@ -19,8 +18,7 @@ struct DecodedUri {
   std::string bytes;
 };
 
-/// Decodes a `data:` URI. Returns nothing if it is malformed. Throws
-/// OverMemory and Cancelled.
+/// Decodes a `data:` URI. Returns nothing if it is malformed. Throws OverMemory and Cancelled.
 std::optional<DecodedUri> decode_data_uri(std::string_view uri, Work work);
 
 }  // namespace voxdag
