@@ -18,9 +18,9 @@
 ///   block(key)                    returns the voxels of a cell of level L-2, as a leaf block
 #include <array>
 
-#include "voxdag/algebra/unique_items.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 
@@ -65,7 +65,7 @@ class Rewriter {
 
   /// Returns the different keys of the children, and notes which child has which.
   CountedVector<Key> find_keys_below(int level, const CountedVector<Key>& keys) {
-    UniqueKeys<kWords> below(memory_);
+    UniqueCells<Key> below(memory_);
     CountedVector<std::uint32_t>& links = links_.emplace_back(memory_);
     for (std::size_t i = 0; i < keys.size(); ++i) {
       poll_seldom(progress_, i);
