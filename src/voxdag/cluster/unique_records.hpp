@@ -6,6 +6,7 @@
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/number_table.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 

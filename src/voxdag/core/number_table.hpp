@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "voxdag/core/int128.hpp"
-#include "voxdag/core/page_vector.hpp"
+#include "voxdag/core/memory_budget.hpp"
 
 namespace voxdag {
 
@@ -76,7 +76,7 @@ struct NumberSlots {
 class NumberTable {
  public:
   /// Makes an empty table. A null budget counts nothing.
-  explicit NumberTable(MemoryBudget* memory) : memory_(memory), slots_(memory) {}
+  explicit NumberTable(MemoryBudget* memory) : slots_(memory) {}
 
   /// Returns the number of the item with this hash for which is_equal(number) is true. If there is
   /// none, returns add(), which stores the item and returns its number. Throws OverMemory.
@@ -94,19 +94,20 @@ class NumberTable {
   }
 
  private:
-  static NumberSlots view(PageVector<std::uint64_t>& slots) { return {slots.data(), slots.size()}; }
+  static NumberSlots view(CountedVector<std::uint64_t>& slots) {
+    return {slots.data(), slots.size()};
+  }
 
   void grow() {
-    constexpr std::size_t kFirst = 512;  // a page
-    PageVector<std::uint64_t> larger(memory_);
-    larger.resize(std::max(kFirst, 2 * slots_.size()));
+    constexpr std::size_t kFirst = 64;
+    CountedVector<std::uint64_t> larger(std::max(kFirst, 2 * slots_.size()), 0,
+                                        slots_.get_allocator());
     view(larger).add_all(view(slots_));
     slots_.swap(larger);
   }
 
-  MemoryBudget* memory_;
   std::uint64_t count_ = 0;
-  PageVector<std::uint64_t> slots_;
+  CountedVector<std::uint64_t> slots_;
 };
 
 }  // namespace voxdag

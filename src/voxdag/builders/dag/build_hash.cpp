@@ -13,6 +13,7 @@
 #include "voxdag/builders/dag/join_cells.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
+#include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
@@ -142,6 +143,21 @@ Svdag number_nodes(HashConsedNodes nodes, int levels, MemoryBudget& budget, Prog
   dag = canonical_order(source, levels, nodes.root, &budget, progress);
   report.canonical_seconds = watch.lap();
   return dag;
+}
+
+Svdag build_range(CountedVector<QuantizedTriangle> triangles, int levels, const CellRange& range,
+                  MemoryBudget* memory, Progress* progress) {
+  MemoryBudget unlimited;
+  MemoryBudget& budget = memory != nullptr ? *memory : unlimited;
+  const int bin_level = std::max(hash_bin_level(levels, triangles.size()), range.level);
+  BuildReport report;
+  StageBytes bytes;
+  QuantizedMesh mesh(std::move(triangles));
+  const IndexSet duplicates = find_duplicate_triangles(mesh, &budget, progress);
+  SubvolumeBins bins = bin_triangles(mesh, levels, bin_level, range, duplicates, budget, progress);
+  const BinnedMesh binned{std::move(mesh), std::move(bins), 0};
+  return number_nodes(voxelize_binned(binned, levels, budget, progress, report, bytes), levels,
+                      budget, progress, report);
 }
 
 }  // namespace voxdag

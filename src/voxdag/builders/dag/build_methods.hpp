@@ -7,8 +7,11 @@
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/subvolume_bins.hpp"
+#include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
+#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 
@@ -69,6 +72,14 @@ HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, MemoryBudg
 /// Cancelled; `progress` may be null.
 Svdag number_nodes(HashConsedNodes nodes, int levels, MemoryBudget& budget, Progress* progress,
                    BuildReport& report);
+
+/// Returns the minimal DAG, in canonical order, of those voxels that lie in `range` and meet a
+/// triangle. It is a DAG of the whole grid of 2^levels voxels a side, without voxels elsewhere.
+/// `range` is of level `levels` - 2 or coarser. `triangles` are used up. `memory` counts the work,
+/// and not the result; it and `progress` may be null. Runs on the current TBB arena. Throws
+/// OverMemory, Error if the DAG outgrows 32-bit pointers, and Cancelled.
+Svdag build_range(CountedVector<QuantizedTriangle> triangles, int levels, const CellRange& range,
+                  MemoryBudget* memory = nullptr, Progress* progress = nullptr);
 
 /// Returns the level whose cells are the sub-volumes of kSort and kPaper.
 int sort_bin_level(int levels);

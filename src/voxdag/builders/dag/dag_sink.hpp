@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "voxdag/builders/dag/node_store.hpp"
-#include "voxdag/builders/dag/pending_node.hpp"
 #include "voxdag/builders/dag/plane_memo.hpp"
 #include "voxdag/core/memory_budget.hpp"
 

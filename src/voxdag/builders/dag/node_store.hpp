@@ -20,11 +20,19 @@
 #include <vector>
 
 #include "voxdag/core/number_table.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 
 using NodeId = std::uint32_t;
 inline constexpr NodeId kNoNode = 0xFFFFFFFFu;
+
+/// The words of a node that has no id yet. An empty cell has count 0.
+struct PendingNode {
+  std::uint32_t words[9];
+  int count = 0;
+  std::uint64_t hash;
+};
 
 class NodeStore {
  public:

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "voxdag/core/number_table.hpp"
+#include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
