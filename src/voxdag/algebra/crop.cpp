@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/long_source_dag.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 

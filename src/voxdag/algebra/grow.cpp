@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {

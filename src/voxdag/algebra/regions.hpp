@@ -8,14 +8,15 @@
 ///
 /// Which regions of two cells side by side touch follows from the two nodes alone, and is found by
 /// recursion over their children, once for each different pair.
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "voxdag/algebra/grow.hpp"
 #include "voxdag/algebra/source_dag.hpp"
-#include "voxdag/algebra/unique_items.hpp"
 #include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 
@@ -69,7 +70,7 @@ class Regions {
   /// The pairs of nodes of a level whose touching regions are known.
   struct Pairs {
     explicit Pairs(MemoryBudget* memory) : keys(memory), lists(memory), touches(memory) {}
-    UniqueKeys<3> keys;
+    UniqueCells<std::array<std::uint32_t, 3>> keys;
     CountedVector<List> lists;
     CountedVector<Touch> touches;
   };

@@ -1,6 +1,5 @@
 #include "voxdag/algebra/reorient.hpp"
 
-#include "voxdag/algebra/leaf_coordinates.hpp"
 #include "voxdag/algebra/source_dag.hpp"
 
 namespace voxdag {

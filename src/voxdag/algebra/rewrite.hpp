@@ -18,9 +18,9 @@
 ///   block(key)                    returns the voxels of a cell of level L-2, as a leaf block
 #include <array>
 
-#include "voxdag/algebra/unique_items.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 
@@ -64,7 +64,7 @@ class Rewriter {
 
   /// Returns the different keys of the children, and notes which child has which.
   CountedVector<Key> find_keys_below(int level, const CountedVector<Key>& keys) {
-    UniqueKeys<kWords> below(work_.memory);
+    UniqueCells<Key> below(work_.memory);
     CountedVector<std::uint32_t>& links = links_.emplace_back(work_.memory);
     for (std::size_t i = 0; i < keys.size(); ++i) {
       work_.poll_seldom(i);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "voxdag/algebra/combine.hpp"
-#include "voxdag/builders/dag/build_range.hpp"
+#include "voxdag/builders/dag/build_methods.hpp"
 #include "voxdag/cluster/part_file.hpp"
 
 namespace voxdag {

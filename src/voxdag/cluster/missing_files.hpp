@@ -4,12 +4,20 @@
 #include <functional>
 #include <string>
 
-#include "voxdag/cluster/job_counters.hpp"
 #include "voxdag/cluster/ranks.hpp"
 #include "voxdag/cluster/work_folder.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
 namespace voxdag {
+
+/// The shared counters (Ranks::next) from which the steps of a job take their tasks.
+enum JobCounter : int {
+  kMeshCountsCounter,
+  kMeshVerticesCounter,
+  kMeshTrianglesCounter,
+  kSegmentCounter,
+  kPartCounter
+};
 
 /// The numbered files of one step.
 struct StepFiles {

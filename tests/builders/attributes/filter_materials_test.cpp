@@ -14,7 +14,7 @@
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/stored/attributes/build_cell_index.hpp"
 #include "voxdag/stored/attributes/material_colors.hpp"
-#include "voxdag/stored/attributes/validate_material_ids.hpp"
+#include "voxdag/stored/attributes/validate_pages.hpp"
 
 namespace voxdag {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxdag/algebra/unique_items.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "voxdag/builders/attributes/cell_task.hpp"
-#include "voxdag/builders/pieces/sum_pieces.hpp"
+#include "voxdag/builders/pieces/surface_sum.hpp"
 
 namespace voxdag {
 

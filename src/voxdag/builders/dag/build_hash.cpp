@@ -13,6 +13,7 @@
 #include "voxdag/builders/dag/join_cells.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
+#include "voxdag/builders/voxelize/duplicate_triangles.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"
 
@@ -140,6 +141,20 @@ Svdag number_nodes(HashConsedNodes nodes, int levels, Work work, BuildReport& re
   dag = canonical_order(source, levels, nodes.root, work);
   report.canonical_seconds = watch.lap();
   return dag;
+}
+
+Svdag build_range(CountedVector<QuantizedTriangle> triangles, int levels, const CellRange& range,
+                  Work work) {
+  MemoryBudget unlimited;
+  if (work.memory == nullptr) work.memory = &unlimited;
+  const int bin_level = std::max(hash_bin_level(levels, triangles.size()), range.level);
+  BuildReport report;
+  StageBytes bytes;
+  QuantizedMesh mesh(std::move(triangles));
+  const IndexSet duplicates = find_duplicate_triangles(mesh, work);
+  SubvolumeBins bins = bin_triangles(mesh, levels, bin_level, range, duplicates, work);
+  const BinnedMesh binned{std::move(mesh), std::move(bins), 0};
+  return number_nodes(voxelize_binned(binned, levels, work, report, bytes), levels, work, report);
 }
 
 }  // namespace voxdag

@@ -7,9 +7,11 @@
 #include "voxdag/builders/dag/build_svdag.hpp"
 #include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/subvolume_bins.hpp"
+#include "voxdag/builders/voxelize/cell_range.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/memory_budget.hpp"
 #include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 
@@ -68,6 +70,14 @@ HashConsedNodes voxelize_binned(const BinnedMesh& binned, int levels, Work work,
 /// Converts the nodes to the canonical DAG of 2^levels voxels a side. Throws Error, OverMemory and
 /// Cancelled.
 Svdag number_nodes(HashConsedNodes nodes, int levels, Work work, BuildReport& report);
+
+/// Returns the minimal DAG, in canonical order, of those voxels that lie in `range` and meet a
+/// triangle. It is a DAG of the whole grid of 2^levels voxels a side, without voxels elsewhere.
+/// `range` is of level `levels` - 2 or coarser. `triangles` are used up. `work` counts the memory
+/// of the build, and not the result. Runs on the current TBB arena. Throws OverMemory, Error if the
+/// DAG outgrows 32-bit pointers, and Cancelled.
+Svdag build_range(CountedVector<QuantizedTriangle> triangles, int levels, const CellRange& range,
+                  Work work = {});
 
 /// Returns the level whose cells are the sub-volumes of kSort and kPaper.
 int sort_bin_level(int levels);

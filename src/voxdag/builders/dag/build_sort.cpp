@@ -11,7 +11,7 @@
 #include "voxdag/builders/dag/build_methods.hpp"
 #include "voxdag/builders/dag/canonical_order.hpp"
 #include "voxdag/builders/dag/join_cells.hpp"
-#include "voxdag/builders/dag/sort_reduce.hpp"
+#include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/dag/stop_watch.hpp"
 #include "voxdag/builders/dag/subvolume.hpp"
 #include "voxdag/core/bits.hpp"

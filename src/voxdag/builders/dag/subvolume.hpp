@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "voxdag/builders/dag/dag_sink.hpp"
-#include "voxdag/builders/dag/tree_sink.hpp"
+#include "voxdag/builders/dag/sort_tree.hpp"
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/builders/voxelize/triangle_setup.hpp"
 #include "voxdag/core/page_vector.hpp"

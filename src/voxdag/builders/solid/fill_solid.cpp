@@ -12,7 +12,7 @@
 #include "voxdag/algebra/voxels/voxel_builder.hpp"
 #include "voxdag/builders/solid/closed_mesh.hpp"
 #include "voxdag/builders/solid/parity.hpp"
-#include "voxdag/builders/solid/winding/winding_sheets.hpp"
+#include "voxdag/builders/solid/winding/winding_field.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/morton.hpp"
 #include "voxdag/core/parallel/polled_for.hpp"

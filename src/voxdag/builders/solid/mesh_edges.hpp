@@ -7,7 +7,7 @@
 #include "voxdag/builders/voxelize/grid_mapping.hpp"
 #include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
-#include "voxdag/core/vec_order.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 

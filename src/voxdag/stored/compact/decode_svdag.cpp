@@ -6,53 +6,12 @@
 #include "voxdag/stored/compact/compact_errors.hpp"
 #include "voxdag/stored/compact/compact_top.hpp"
 #include "voxdag/stored/compact/encode_svdag.hpp"
+#include "voxdag/stored/svdag/unique_cells.hpp"
 
 namespace voxdag {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-/// Numbers the different leaf blocks in the order in which they are first met.
-class LeafBlocks {
- public:
-  explicit LeafBlocks(MemoryBudget* budget) : slots_(1 << 12, kNone, budget), blocks_(budget) {}
-
-  std::uint32_t number(std::uint64_t block) {
-    for (std::size_t slot = hash(block) & (slots_.size() - 1);;
-         slot = (slot + 1) & (slots_.size() - 1)) {
-      if (slots_[slot] == kNone) {
-        if (blocks_.size() == kNone)
-          throw Error("the DAG has more leaf blocks than 32-bit pointers can address");
-        const auto number = static_cast<std::uint32_t>(blocks_.size());
-        slots_[slot] = number;
-        blocks_.push_back(block);
-        if (blocks_.size() * 2 > slots_.size()) grow();
-        return number;
-      }
-      if (blocks_[slots_[slot]] == block) return slots_[slot];
-    }
-  }
-  const CountedVector<std::uint64_t>& blocks() const { return blocks_; }
-
- private:
-  static std::size_t hash(std::uint64_t x) {
-    x *= 0x9E3779B97F4A7C15ull;
-    x = (x ^ x >> 32) * 0xD6E8FEB86659FD93ull;
-    return static_cast<std::size_t>(x ^ x >> 32);
-  }
-  void grow() {
-    CountedVector<std::uint32_t> wider(slots_.size() * 2, kNone, slots_.get_allocator());
-    for (std::uint32_t n = 0; n < blocks_.size(); ++n) {
-      std::size_t slot = hash(blocks_[n]) & (wider.size() - 1);
-      while (wider[slot] != kNone) slot = (slot + 1) & (wider.size() - 1);
-      wider[slot] = n;
-    }
-    slots_.swap(wider);
-  }
-
-  CountedVector<std::uint32_t> slots_;
-  CountedVector<std::uint64_t> blocks_;
-};
 
 /// Expands the nodes above the units, then reads the units in parallel and appends them in their
 /// order, which is the canonical one.
@@ -148,7 +107,7 @@ class Decoder {
     const std::size_t place = append_mask(levels_ - 3, mask);
     std::uint32_t* word = words_[at(levels_ - 3)].data() + place;
     for (const std::uint64_t leaf : leaves)
-      if (leaf != 0) *++word = leaf_blocks_.number(leaf);
+      if (leaf != 0) *++word = leaf_blocks_.add(leaf);
     return static_cast<std::uint32_t>(place);
   }
 
@@ -160,7 +119,7 @@ class Decoder {
     std::uint64_t total = 0;
     for (int level = missing; level <= levels_ - 3; ++level) total += words_[at(level)].size();
     if (total > kNone - 256) fail_too_large();
-    const MemoryReservation memory(work_.memory, total * 4 + leaf_blocks_.blocks().size() * 8);
+    const MemoryReservation memory(work_.memory, total * 4 + leaf_blocks_.cells().size() * 8);
     dag.nodes.reserve(total);
     for (int level = missing; level <= levels_ - 3; ++level) {
       CountedVector<std::uint32_t>& words = words_[at(level)];
@@ -180,7 +139,7 @@ class Decoder {
     }
     for (int level = std::max(dag.levels - 2, 0); level <= kMaxLevels; ++level)
       dag.level_begin[at(level)] = dag.nodes.size();
-    dag.leaf_blocks.assign(leaf_blocks_.blocks().begin(), leaf_blocks_.blocks().end());
+    dag.leaf_blocks.assign(leaf_blocks_.cells().begin(), leaf_blocks_.cells().end());
     return dag;
   }
 
@@ -198,7 +157,7 @@ class Decoder {
   std::vector<std::uint32_t> unit_places_;
   std::vector<Brick> bricks_;  ///< The shared ones.
   MemoryReservation bricks_memory_;
-  LeafBlocks leaf_blocks_;
+  UniqueCells<std::uint64_t> leaf_blocks_;
 };
 
 }  // namespace

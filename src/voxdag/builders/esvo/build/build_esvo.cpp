@@ -4,7 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include "voxdag/builders/esvo/build/block_assembler.hpp"
-#include "voxdag/builders/esvo/build/cell_scratch.hpp"
+#include "voxdag/builders/esvo/build/decide_cell.hpp"
 #include "voxdag/builders/esvo/build/open_edges.hpp"
 #include "voxdag/builders/esvo/build/subtree_builder.hpp"
 #include "voxdag/builders/esvo/build/top_cells.hpp"

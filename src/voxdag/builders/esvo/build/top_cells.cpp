@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "voxdag/builders/esvo/build/cell_scratch.hpp"
+#include "voxdag/builders/esvo/build/decide_cell.hpp"
 #include "voxdag/builders/esvo/build/enclose_cell.hpp"
 #include "voxdag/builders/pieces/load_pieces.hpp"
 #include "voxdag/builders/pieces/memory_gate.hpp"

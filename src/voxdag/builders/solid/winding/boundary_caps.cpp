@@ -5,7 +5,7 @@
 
 #include "voxdag/core/parallel/polled_for.hpp"
 #include "voxdag/core/parallel/polled_sort.hpp"
-#include "voxdag/core/vec_order.hpp"
+#include "voxdag/core/vec.hpp"
 
 namespace voxdag {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
-/// The generalised winding number of a mesh at voxels.
+/// The generalised winding number of a mesh at voxels, and the voxels at which the inside of a mesh
+/// with holes ends without a surface.
 ///
 /// Source: Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside Segmentation using
 /// Generalized Winding Numbers", SIGGRAPH 2013. It tells how often the surface winds around a
@@ -12,7 +13,9 @@
 
 #include "voxdag/builders/solid/winding/edge_tree.hpp"
 #include "voxdag/builders/solid/winding/winding_tree.hpp"
+#include "voxdag/core/page_vector.hpp"
 #include "voxdag/core/parallel/work.hpp"
+#include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
 
@@ -44,5 +47,11 @@ class WindingField {
   WindingTree caps_;
   double threshold_;
 };
+
+/// Returns the Morton codes, in ascending order, of voxels that are not in `cover`, such that all
+/// voxels of a connected set of the other voxels that are not in `cover` are inside, or none is.
+/// They form sheets over the holes: time and memory grow with the sheets and the boundary. `cover`
+/// must be the DAG of the mesh. Throws OverMemory and Cancelled.
+PageVector<std::uint64_t> find_sheets(const WindingField& field, const SvdagView& cover, Work work);
 
 }  // namespace voxdag

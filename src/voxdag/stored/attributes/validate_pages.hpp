@@ -1,5 +1,6 @@
 #pragma once
-/// Checks compressed values from an untrusted file.
+/// Checks compressed values and packed materials from an untrusted file.
+#include "voxdag/stored/attributes/material_ids.hpp"
 #include "voxdag/stored/attributes/value_pages.hpp"
 
 namespace voxdag {
@@ -9,5 +10,10 @@ namespace voxdag {
 /// Then read_value() is safe for every number. The arrays of `view` must be as long as it says.
 /// Linear time. The place of an error is "page 17".
 void validate_value_pages(const ValuePagesView& view);
+
+/// Throws Error unless `view` is what MaterialEncoder makes of some ids. Then read_material() is
+/// safe for every number. The arrays of `view` must be as long as it says. Linear time. The place
+/// of an error is "page 17".
+void validate_material_ids(const MaterialIdsView& view);
 
 }  // namespace voxdag

@@ -1,4 +1,4 @@
-#include "voxdag/builders/dag/sort_reduce.hpp"
+#include "voxdag/builders/dag/sort_tree.hpp"
 
 #include <algorithm>
 
