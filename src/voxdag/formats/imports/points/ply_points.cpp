@@ -1,7 +1,6 @@
 #include "voxdag/formats/imports/points/ply_points.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <string>
 
 #include "voxdag/formats/imports/batched_voxels.hpp"
@@ -69,8 +68,7 @@ class PlyPoints : public VoxelSource {
   }
 
   void visit_binary(BatchedVoxels& points) const {
-    const bool swap =
-        (header_.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big);
+    const bool swap = header_.swaps_bytes();
     const char* p = source_.bytes.data() + header_.body;
     const char* const end = source_.bytes.data() + source_.bytes.size();
     PassedPages pages(file_, p);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "voxdag/core/parallel/parallel_for.hpp"
+#include "voxdag/core/printable.hpp"
 #include "voxdag/formats/readers/named_files.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
 #include "voxdag/image/color.hpp"
@@ -111,20 +112,18 @@ void PlyAttributes::take_vertex(std::size_t index, const PlyRowValues& row) {
   if (vertex_.has_uvs) vertex_uvs_[index] = to_uv(row.scalars[Slot::kU], row.scalars[Slot::kV]);
 }
 
-void PlyAttributes::take_face(std::size_t first, std::size_t count, const PlyRowValues& row,
-                              const FaceCutter& cutter) {
-  if (face_.color_components > 0) {
-    const Rgba16 color = color_of(face_, row);
-    for (std::size_t i = 3 * first; i < 3 * (first + count); ++i) appearance_.colors[i] = color;
+Rgba16 PlyAttributes::face_color(const PlyRowValues& row) const {
+  return face_.color_components > 0 ? color_of(face_, row) : Rgba16{};
+}
+
+void PlyAttributes::take_triangle(std::size_t index, const Triangle& corners, Rgba16 face_color,
+                                  std::span<const float> texcoord) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (face_.color_components > 0) appearance_.colors[3 * index + c] = face_color;
+    if (!texcoord.empty())
+      appearance_.uvs[3 * index + c] =
+          to_uv(texcoord[2 * corners[c]], texcoord[2 * corners[c] + 1]);
   }
-  if (face_.texcoord < 0 || row.texcoord.size() != 2 * (count + 2)) return;
-  const auto uvs = std::span(appearance_.uvs).subspan(3 * first, 3 * count);
-  for (std::size_t t = 0; t < count; ++t)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t corner = c == 0 ? 0 : t + c;
-      uvs[3 * t + c] = to_uv(row.texcoord[2 * corner], row.texcoord[2 * corner + 1]);
-    }
-  cutter.move_attributes(uvs);
 }
 
 Appearance PlyAttributes::finish(const Mesh& mesh, std::vector<std::string>& warnings) {

@@ -38,26 +38,9 @@ class PlyHeaderParser {
     find_line_end();
     std::string_view magic = line();
     if (next_token(magic) != "ply") fail("not a PLY file: it does not start with 'ply'");
-    bool has_format = false;
-    for (;;) {
-      if (rest_.empty()) fail("the file ends before 'end_header'");
-      std::string_view text = line();
-      const std::string_view keyword = next_token(text);
-      if (keyword == "end_header") break;
-      if (keyword == "comment")
-        parse_comment(text);
-      else if (keyword == "format")
-        has_format = (parse_format(text), true);
-      else if (keyword == "element")
-        parse_element(text);
-      else if (keyword == "property")
-        parse_property(text);
-      else if (keyword != "obj_info" && !keyword.empty() && !header_.elements.empty())
-        // Before the first element an unknown line is harmless: old Blender writes "Created by
-        // ...".
-        fail("unknown PLY header keyword " + in_quotes(keyword));
+    while (parse_line(line_or_fail())) {
     }
-    if (!has_format) fail("PLY header without a 'format' line");
+    if (!has_format_) fail("PLY header without a 'format' line");
     header_.body = source_.bytes.size() - rest_.size();
     check_elements();
     check_vertices();
@@ -83,6 +66,29 @@ class PlyHeaderParser {
     return next_line(rest_, header_.line_end);
   }
 
+  std::string_view line_or_fail() {
+    if (rest_.empty()) fail("the file ends before 'end_header'");
+    return line();
+  }
+
+  /// Returns false for the last line of the header.
+  bool parse_line(std::string_view text) {
+    const std::string_view keyword = next_token(text);
+    if (keyword == "end_header") return false;
+    if (keyword == "comment")
+      parse_comment(text);
+    else if (keyword == "format")
+      parse_format(text);
+    else if (keyword == "element")
+      parse_element(text);
+    else if (keyword == "property")
+      parse_property(text);
+    else if (keyword != "obj_info" && !keyword.empty() && !header_.elements.empty())
+      // Lines before the first element may be anything: old versions of Blender write "Created by".
+      fail("unknown PLY header keyword " + in_quotes(keyword));
+    return true;
+  }
+
   void parse_comment(std::string_view text) {
     std::int64_t number = 0;
     const std::string_view keyword = next_token(text);
@@ -93,6 +99,7 @@ class PlyHeaderParser {
   }
 
   void parse_format(std::string_view text) {
+    has_format_ = true;
     const std::string_view name = next_token(text), version = next_token(text);
     if (name == "ascii")
       header_.format = PlyFormat::kAscii;
@@ -194,6 +201,7 @@ class PlyHeaderParser {
   const MeshSource& source_;
   std::string_view rest_;
   std::size_t line_ = 0;
+  bool has_format_ = false;
   CancelPoll poll_{source_.options.progress};
   std::set<std::string_view> property_names_;  ///< Names in the last element.
   PlyHeader header_;
