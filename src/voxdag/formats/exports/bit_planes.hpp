@@ -109,14 +109,19 @@ void for_each_plane(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, co
   }
 }
 
-/// Calls fn(part) for the parts of a box whose planes for_each_plane() can hold in `most_bytes`:
+/// Returns how many rows of a plane for_each_plane() can hold in `max_bytes`, at least 1.
+inline std::int32_t rows_in(std::uint64_t max_bytes, const Box3i& box, PlaneAxes axes) {
+  const std::uint64_t columns = box.hi[axes.column] - box.lo[axes.column];
+  const std::uint64_t row_bytes = 6 * (((columns + 63) / 64) * 8 + 1);
+  return static_cast<std::int32_t>(
+      std::clamp<std::uint64_t>(max_bytes / row_bytes, 1, std::uint64_t{1} << 30));
+}
+
+/// Calls fn(part) for the parts of a box whose planes for_each_plane() can hold in `max_bytes`:
 /// bands of rows, ascending, the whole box if it fits.
 template <class Fn>
-void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t most_bytes, const Fn& fn) {
-  const auto columns = static_cast<std::uint64_t>(box.hi[axes.column] - box.lo[axes.column]);
-  const std::uint64_t row_bytes = 6 * (((columns + 63) / 64) * 8 + 1);
-  const auto rows = static_cast<std::int32_t>(
-      std::clamp<std::uint64_t>(most_bytes / row_bytes, 1, std::uint64_t{1} << 30));
+void for_each_band(const Box3i& box, PlaneAxes axes, std::uint64_t max_bytes, const Fn& fn) {
+  const std::int32_t rows = rows_in(max_bytes, box, axes);
   for (std::int32_t begin = box.lo[axes.row]; begin < box.hi[axes.row]; begin += rows) {
     Box3i part = box;
     part.lo[axes.row] = begin;
@@ -136,9 +141,8 @@ void for_each_row(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, cons
       for (std::int32_t row = 0; row < plane.rows(); ++row) fn(k, first + row, plane.row(row));
     });
   };
-  bool fits = false;
-  for_each_band(box, axes, kMaxBytes, [&](const Box3i& band) { fits |= band == box; });
-  if (fits) return rows_of(box);
+  // One sweep over the box is fastest. If it does not fit, each plane is swept in bands.
+  if (box.hi[axes.row] - box.lo[axes.row] <= rows_in(kMaxBytes, box, axes)) return rows_of(box);
   for (std::int32_t k = box.lo[axes.plane]; k < box.hi[axes.plane]; ++k) {
     Box3i plane = box;
     plane.lo[axes.plane] = k;
