@@ -11,7 +11,6 @@
 #include "viewer/gzip/gzip.hpp"
 #include "viewer/server/entity_tags.hpp"
 #include "viewer/server/multipart_body.hpp"
-#include "viewer/server/scene_ranges.hpp"
 #include "viewer/server/server_address.hpp"
 
 namespace voxdag {

@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/pcd_points.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/lzf_stream.hpp"
 #include "voxdag/formats/imports/points/pcd_header.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 
 namespace voxdag {

@@ -1,10 +1,9 @@
-#include "voxdag/formats/imports/points/ply_points.hpp"
-
 #include <algorithm>
 #include <string>
 
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/formats/readers/ply/ply_layout.hpp"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <optional>
 
-#include "voxdag/formats/readers/bad_vertex.hpp"
+#include "voxdag/formats/readers/face_writer.hpp"
 #include "voxdag/formats/readers/obj/obj_attributes.hpp"
 #include "voxdag/formats/readers/obj/obj_materials.hpp"
 #include "voxdag/formats/readers/obj/obj_passes.hpp"

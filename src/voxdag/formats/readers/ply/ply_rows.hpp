@@ -3,7 +3,6 @@
 #include <array>
 #include <span>
 
-#include "voxdag/formats/readers/bad_vertex.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 #include "voxdag/formats/readers/face_writer.hpp"
 #include "voxdag/formats/readers/ply/ply_attributes.hpp"
