@@ -19,7 +19,7 @@ CudaDevice choose_cuda_device(int index) {
   for (const CudaDevice& device : found.devices)
     if ((index < 0 || device.index == index) && device.compute_capability >= kMinComputeCapability)
       return device;
-  const CudaDevice& device = found.devices[static_cast<std::size_t>(index < 0 ? 0 : index)];
+  const CudaDevice& device = found.devices[index < 0 ? 0 : index];
   throw Error("no CUDA device: " + device.name + " has compute capability " +
               capability_text(device.compute_capability) + ", but voxdag needs " +
               capability_text(kMinComputeCapability) + " or later");

@@ -179,8 +179,7 @@ std::string placement_table(const Grid& grid, const VdagSource& source) {
       "  {:<14}{}, {}\n"
       "  {:<14}{}³ voxels of {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
       is_mesh ? "mesh" : "source", printable(source.name), items, "grid",
-      with_commas(static_cast<std::uint64_t>(grid.resolution())), grid.voxel_size, lo.x, lo.y, lo.z,
-      hi.x, hi.y, hi.z);
+      with_commas(grid.resolution()), grid.voxel_size, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
 }
 
 std::string dag_table(const DagReport& report) {

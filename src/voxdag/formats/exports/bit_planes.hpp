@@ -30,12 +30,12 @@ class BitPlane {
   std::size_t words_per_row() const { return words_per_row_; }
 
   /// Returns whether a row may have bits: false only if it has none.
-  bool has_bits(std::int32_t row) const { return has_bits_[static_cast<std::size_t>(row)] != 0; }
+  bool has_bits(std::int32_t row) const { return has_bits_[row] != 0; }
   std::span<const std::uint64_t> row(std::int32_t row) const {
     return {words_.data() + static_cast<std::size_t>(row) * words_per_row_, words_per_row_};
   }
   void set(std::int32_t row, std::int32_t column) {
-    has_bits_[static_cast<std::size_t>(row)] = 1;
+    has_bits_[row] = 1;
     words_[static_cast<std::size_t>(row) * words_per_row_ +
            static_cast<std::size_t>(column) / 64] |= std::uint64_t{1} << (column & 63);
   }
@@ -98,14 +98,14 @@ void for_each_plane(const VoxelSet& voxels, const Box3i& box, PlaneAxes axes, co
       for (; mask != 0; mask &= mask - 1) {
         const Vec3i voxel =
             origin + morton_decode(static_cast<std::uint64_t>(std::countr_zero(mask)));
-        planes[static_cast<std::size_t>(voxel[axes.plane] - begin)].set(
-            voxel[axes.row] - box.lo[axes.row], voxel[axes.column] - box.lo[axes.column]);
+        planes[voxel[axes.plane] - begin].set(voxel[axes.row] - box.lo[axes.row],
+                                              voxel[axes.column] - box.lo[axes.column]);
       }
     });
     const BitPlane* before = begin == box.lo[axes.plane] ? nullptr : &last;
     const BitPlane* plane = planes.data();
     for (; begin < slab.hi[axes.plane]; before = plane++) fn(begin++, *plane, before);
-    std::swap(last, planes[static_cast<std::size_t>(before - planes.data())]);
+    std::swap(last, planes[before - planes.data()]);
   }
 }
 

@@ -49,12 +49,14 @@ class FaceWriter {
   void finish_face(const char* position, const OnTriangle& on_triangle) {
     const std::size_t count = corners_.size() < 3 ? 0 : corners_.size() - 2;
     if (count > triangles_.size() - done_) throw Fault{position, kFileChanged};
-    const std::span<Triangle> fan = triangles_.subspan(done_, count);
-    for (std::uint32_t t = 0; t < count; ++t) fan[t] = {0, t + 1, t + 2};
-    if (count > 1) cut(fan);
-    for (Triangle& triangle : fan) {
-      on_triangle(done_++, triangle);
-      for (std::uint32_t& corner : triangle) corner = corners_[corner];
+    if (count == 1) {  // Most faces are triangles.
+      on_triangle(done_, Triangle{0, 1, 2});
+      triangles_[done_++] = {corners_[0], corners_[1], corners_[2]};
+    } else if (count > 1) {
+      for (Triangle& triangle : cut_face(triangles_.subspan(done_, count))) {
+        on_triangle(done_++, triangle);
+        for (std::uint32_t& corner : triangle) corner = corners_[corner];
+      }
     }
     corners_.clear();
   }
@@ -73,8 +75,9 @@ class FaceWriter {
   /// Bytes that cut_polygon() needs for each triangle. Small polygons need too little to count.
   static constexpr std::uint64_t kScratchBytes = 80, kCountedTriangles = 4096;
 
-  /// Cuts the polygon of the corners with the given fan, whose indices are those of corners.
-  void cut(std::span<Triangle> fan) {
+  /// Sets `fan` to the triangles of the face, whose indices are those of its corners. Returns it.
+  std::span<Triangle> cut_face(std::span<Triangle> fan) {
+    for (std::uint32_t t = 0; t < fan.size(); ++t) fan[t] = {0, t + 1, t + 2};
     positions_.clear();
     for (const std::uint32_t corner : corners_) positions_.push_back(vertices_.position(corner));
     const MemoryReservation scratch(
@@ -88,6 +91,7 @@ class FaceWriter {
     } catch (const Error& error) {
       throw source_.error(error.reason());
     }
+    return fan;
   }
 
   const MeshSource& source_;

@@ -79,11 +79,11 @@ void CellColors::finish() {
 void CellColors::open(int level) {
   if (level == block_level_) block_.clear();
   if (level >= block_level_) block_.emplace_back();
-  path_[static_cast<std::size_t>(level)] = {cells_++, {}, 0};
+  path_[level] = {cells_++, {}, 0};
 }
 
 void CellColors::close(int level) {
-  const OpenCell& cell = path_[static_cast<std::size_t>(level)];
+  const OpenCell& cell = path_[level];
   std::array<std::uint16_t, 3> mean{};
   for (std::size_t channel = 0; channel < 3; ++channel)
     mean[channel] = static_cast<std::uint16_t>((cell.sum[channel] + cell.count / 2) / cell.count);
@@ -96,8 +96,8 @@ void CellColors::close(int level) {
       above.sum[channel] += is_voxel ? mean[channel] : cell.sum[channel];
   }
   if (level < block_level_) return encoder_.add(cell.number, {&value, 1});
-  const std::uint64_t first = path_[static_cast<std::size_t>(block_level_)].number;
-  block_[static_cast<std::size_t>(cell.number - first)] = value;
+  const std::uint64_t first = path_[block_level_].number;
+  block_[cell.number - first] = value;
   if (level == block_level_) encoder_.add(first, block_);
 }
 

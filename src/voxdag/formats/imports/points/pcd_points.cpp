@@ -66,14 +66,14 @@ class PcdPoints : public VoxelSource {
     for (const char* const axis : {"x", "y", "z"}) {
       const int found = header_.find(axis);
       if (found < 0) throw fail_in_header("has no field '" + std::string(axis) + "'");
-      used_.push_back(header_.fields[static_cast<std::size_t>(found)]);
+      used_.push_back(header_.fields[found]);
       if (used_.back().count != 1)
         throw fail_in_header("field '" + std::string(axis) + "' has more than one value");
     }
     for (const char* const name : {"rgb", "rgba"}) {
       const int found = header_.find(name);
       if (found < 0 || used_.size() > 3) continue;
-      const PcdField& field = header_.fields[static_cast<std::size_t>(found)];
+      const PcdField& field = header_.fields[found];
       if (field.count == 1 && field.size == 4) used_.push_back(field);
     }
     if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();

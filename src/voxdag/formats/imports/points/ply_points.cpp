@@ -31,8 +31,7 @@ class PlyPoints : public VoxelSource {
     color.resize(3);
     for (std::size_t c = 0; c < 3; ++c) {
       columns_.push_back(color[c]);
-      color_scales_[c] =
-          ply_color_scale(vertex().properties[static_cast<std::size_t>(color[c])].type);
+      color_scales_[c] = ply_color_scale(vertex().properties[color[c]].type);
     }
   }
 
@@ -53,9 +52,7 @@ class PlyPoints : public VoxelSource {
   }
 
  private:
-  const PlyElement& vertex() const {
-    return header_.elements[static_cast<std::size_t>(header_.vertex)];
-  }
+  const PlyElement& vertex() const { return header_.elements[header_.vertex]; }
 
   void add(BatchedVoxels& points, const Values& values, const char* row) const {
     const Vec3d point{values[0], values[1], values[2]};

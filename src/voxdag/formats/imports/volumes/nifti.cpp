@@ -168,7 +168,7 @@ class Parser {
       if (i > 3 && side < 1) continue;
       if (side < 1) fail(places_.dim, "axis " + std::to_string(i) + " has no voxels");
       if (i <= 3)
-        header_.volume.size[static_cast<std::size_t>(i - 1)] = static_cast<std::uint64_t>(side);
+        header_.volume.size[i - 1] = static_cast<std::uint64_t>(side);
       else
         header_.has_more_volumes |= side > 1;
     }

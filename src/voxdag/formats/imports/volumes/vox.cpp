@@ -26,9 +26,9 @@ struct VoxInstance {
   Vec3l place(Vec3i voxel, Vec3i size) const {
     Vec3l placed;
     for (int row = 0; row < 3; ++row) {
-      const int axis = rotation.axis[static_cast<std::size_t>(row)];
+      const int axis = rotation.axis[row];
       const std::int64_t from_pivot = std::int64_t{voxel[axis]} - size[axis] / 2;
-      const bool is_negative = rotation.is_negative[static_cast<std::size_t>(row)];
+      const bool is_negative = rotation.is_negative[row];
       placed[row] = (is_negative ? -from_pivot - 1 : from_pivot) + translation[row];
     }
     return placed;

@@ -54,14 +54,15 @@ ObjFile::ObjFile(const MeshSource& source, std::size_t chunk_bytes)
     : source_(source),
       chunks_{without_byte_order_mark(source.bytes), line_end_of(source.bytes), chunk_bytes} {}
 
-ObjChunk ObjFile::count(std::string_view chunk) const {
+ObjChunk ObjFile::count(std::string_view chunk, ReadParts parts) const {
   ObjChunk counted(source_.options.memory);
   CancelPoll poll(source_.options.progress);
   for_each_statement(chunk, [&](ObjStatement statement, std::string_view line, const char*) {
     counted.counts.add_value(statement);
     switch (statement) {
       case ObjStatement::kVertex:
-        counted.has_colors = counted.has_colors || has_six_numbers(line);
+        if (parts == ReadParts::kMeshAndAppearance && !counted.has_colors)
+          counted.has_colors = has_six_numbers(line);
         break;
       case ObjStatement::kFace:
         counted.counts.triangles += count_triangles(line, poll);

@@ -20,11 +20,18 @@ enum class ObjStatement { kVertex, kUv, kNormal, kFace, kMaterial, kLibrary, kOt
 /// Removes the keyword from a line, which must not start with a blank, and returns the statement
 /// that it stands for.
 inline ObjStatement take_keyword(std::string_view& line) {
+  // Most lines have one of four short keywords. These are found without a search for their end.
+  const auto is_short = [&line](std::string_view keyword) {
+    if (!line.starts_with(keyword)) return false;
+    if (line.size() > keyword.size() && !is_blank(line[keyword.size()])) return false;
+    line.remove_prefix(keyword.size());
+    return true;
+  };
+  if (is_short("v")) return ObjStatement::kVertex;
+  if (is_short("f")) return ObjStatement::kFace;
+  if (is_short("vt")) return ObjStatement::kUv;
+  if (is_short("vn")) return ObjStatement::kNormal;
   const std::string_view keyword = next_token(line);
-  if (keyword == "v") return ObjStatement::kVertex;
-  if (keyword == "f") return ObjStatement::kFace;
-  if (keyword == "vt") return ObjStatement::kUv;
-  if (keyword == "vn") return ObjStatement::kNormal;
   if (keyword == "usemtl") return ObjStatement::kMaterial;
   if (keyword == "mtllib") return ObjStatement::kLibrary;
   return ObjStatement::kOther;
@@ -68,7 +75,8 @@ class ObjFile {
   const LineChunks& chunks() const { return chunks_; }
   char line_end() const { return chunks_.line_end; }
 
-  ObjChunk count(std::string_view chunk) const;
+  /// Looks for colours of vertices only if the appearance is wanted.
+  ObjChunk count(std::string_view chunk, ReadParts parts) const;
   /// Reads the vertices of a chunk. Returns whether all are finite. If `attributes` is not null,
   /// also reads colours, texture coordinates and normals; `seen` counts what precedes the chunk.
   bool read_vertices(std::string_view chunk, std::span<Vec3f> vertices, ObjCounts seen,

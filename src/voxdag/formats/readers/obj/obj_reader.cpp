@@ -27,7 +27,7 @@ class ObjReader {
  public:
   ObjReader(const MeshSource& source, ReadParts parts)
       : source_(source),
-        has_appearance_(parts == ReadParts::kMeshAndAppearance),
+        parts_(parts),
         file_(source, kChunkBytes),
         texts_(file_.chunks().all()),
         memory_(source.options.memory, 0),
@@ -41,7 +41,7 @@ class ObjReader {
     read_chunks();
     check_finite();
     MeshWithAppearance result;
-    if (has_appearance_) {
+    if (attributes_) {
       attributes_->finish(mesh_, result.appearance);
       result.warnings = read_obj_materials(source_, mesh_, libraries_, attributes_->has_colors(),
                                            attributes_->bad_references(), result.appearance);
@@ -56,7 +56,7 @@ class ObjReader {
   void count_chunks() {
     std::vector<std::optional<ObjChunk>> counted(texts_.size());
     for_each_chunk(source_, texts_, file_.line_end(), "scan",
-                   [&](std::size_t i) { counted[i].emplace(file_.count(texts_[i])); });
+                   [&](std::size_t i) { counted[i].emplace(file_.count(texts_[i], parts_)); });
     std::uint32_t material = kNoMaterial;
     bool has_colors = false;
     for (std::size_t c = 0; c < counted.size(); ++c) {
@@ -99,7 +99,7 @@ class ObjReader {
       for (std::size_t i = 0; i < material_ids_.size(); ++i)
         mesh_.materials.push_back(material_ids_[i]);
     }
-    if (has_appearance_) attributes_.emplace(source_, totals_, has_colors);
+    if (parts_ == ReadParts::kMeshAndAppearance) attributes_.emplace(source_, totals_, has_colors);
   }
 
   /// Reads the vertices, then the faces. A face can precede its vertices, and cutting it needs them
@@ -118,7 +118,8 @@ class ObjReader {
 
   void read_vertices(PlacedChunk& chunk) {
     const ObjCounts& counts = chunk.counts;
-    if (counts.vertices + counts.uvs + counts.normals == 0) return;
+    const std::size_t attribute_values = attributes_ ? counts.uvs + counts.normals : 0;
+    if (counts.vertices + attribute_values == 0) return;
     const auto vertices = std::span(mesh_.vertices).subspan(chunk.first.vertices, counts.vertices);
     chunk.has_bad_vertex = !file_.read_vertices(chunk.text, vertices, chunk.first, attributes());
   }
@@ -159,7 +160,7 @@ class ObjReader {
   ObjAttributes* attributes() { return attributes_ ? &*attributes_ : nullptr; }
 
   const MeshSource& source_;
-  const bool has_appearance_;
+  const ReadParts parts_;
   const ObjFile file_;
   const std::vector<std::string_view> texts_;
   std::vector<PlacedChunk> chunks_;
@@ -182,7 +183,7 @@ class ObjMeshChunks final : public MeshChunks {
   std::optional<ChunkCounts> counts(std::uint64_t chunk) const override {
     ChunkCounts counts;
     read(chunk, [&](std::string_view text) {
-      const ObjCounts counted = file_.count(text).counts;
+      const ObjCounts counted = file_.count(text, ReadParts::kMesh).counts;
       counts = {counted.vertices, counted.triangles};
     });
     return counts;

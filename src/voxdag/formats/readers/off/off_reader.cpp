@@ -131,7 +131,7 @@ class OffReader {
     if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size())
       throw Fault{row.data(), "vertex index " + std::to_string(index) + " is out of range: " +
                                   std::to_string(mesh_.vertices.size()) + " vertices"};
-    if (!is_finite(mesh_.vertices[static_cast<std::size_t>(index)]))
+    if (!is_finite(mesh_.vertices[index]))
       throw Fault{row.data(),
                   "vertex " + std::to_string(index) + " is not finite and this face uses it"};
     return static_cast<std::uint32_t>(index);

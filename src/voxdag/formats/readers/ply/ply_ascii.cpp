@@ -110,8 +110,7 @@ class AsciiReader {
 
   std::size_t count_corners(std::string_view row, CancelPoll& poll) const {
     for (int p = 0; p < fields_.indices; ++p)
-      take_ply_property(row, fields_.face.properties[static_cast<std::size_t>(p)], poll,
-                        [](std::string_view) {});
+      take_ply_property(row, fields_.face.properties[p], poll, [](std::string_view) {});
     const char* const start = row.data();
     std::int64_t corners = 0;
     // A corner needs at least two characters, so a count that is too large for the line is refused
@@ -132,7 +131,7 @@ class AsciiReader {
       values.texcoord.push_back(value);
     } else if (columns.slots[property] >= 0) {
       parse_float(token, value);
-      values.scalars[static_cast<std::size_t>(columns.slots[property])] = value;
+      values.scalars[columns.slots[property]] = value;
     }
   }
 
@@ -143,8 +142,7 @@ class AsciiReader {
     for (std::size_t p = 0; p < properties.size(); ++p)
       take_ply_property(row, properties[p], chunk.poll, [&](std::string_view token) {
         for (int axis = 0; axis < 3; ++axis)
-          if (fields_.axes[static_cast<std::size_t>(axis)] == static_cast<int>(p) &&
-              !parse_float(token, vertex[axis]))
+          if (fields_.axes[axis] == static_cast<int>(p) && !parse_float(token, vertex[axis]))
             throw Fault{token.data(), "coordinate " + in_quotes(token) + " is not a number"};
         if (has_values) take_value(body_.attributes->vertex_columns(), p, token, chunk.values);
       });

@@ -17,7 +17,7 @@ using Slot = PlyRowValues::Slot;
 
 void set_slots(PlyColumns& columns, const std::vector<int>& properties, Slot first) {
   for (std::size_t i = 0; i < properties.size(); ++i)
-    columns.slots[static_cast<std::size_t>(properties[i])] = first + static_cast<int>(i);
+    columns.slots[properties[i]] = first + static_cast<int>(i);
 }
 
 void find_color(const PlyElement& element, PlyColumns& columns) {
@@ -66,15 +66,13 @@ PlyAttributes::PlyAttributes(const MeshSource& source, const PlyHeader& header,
   find_uv(fields.vertex, vertex_);
   if (vertex_.color_components == 0) find_color(fields.face, face_);
   const int list = fields.face.find({"texcoord"});
-  if (!vertex_.has_uvs && list >= 0 &&
-      fields.face.properties[static_cast<std::size_t>(list)].count_type)
+  if (!vertex_.has_uvs && list >= 0 && fields.face.properties[list].count_type)
     face_.texcoord = list;
   const PlyElement& colored = vertex_.color_components > 0 ? fields.vertex : fields.face;
   const PlyColumns& columns = vertex_.color_components > 0 ? vertex_ : face_;
   for (std::size_t p = 0; p < columns.slots.size(); ++p)
     if (columns.slots[p] >= Slot::kRed && columns.slots[p] <= Slot::kAlpha)
-      color_scales_[static_cast<std::size_t>(columns.slots[p])] =
-          ply_color_scale(colored.properties[p].type);
+      color_scales_[columns.slots[p]] = ply_color_scale(colored.properties[p].type);
 }
 
 void PlyAttributes::resize_vertices(std::size_t count) {

@@ -81,7 +81,7 @@ class BinaryReader {
     const char* const end = rest_.data() + rest_.size();
     const bool is_face = &element == &fields_.face;
     const std::size_t corner_run =
-        is_face ? layout.places[static_cast<std::size_t>(fields_.indices)].run : layout.runs.size();
+        is_face ? layout.places[fields_.indices].run : layout.runs.size();
     const char* p = rest_.data();
     for (std::size_t row = 0; row < element.count;) {
       Block block{{{}, row, 0}};

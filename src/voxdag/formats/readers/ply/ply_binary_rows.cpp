@@ -23,6 +23,7 @@ bool PlyBinaryRows::read_vertices(const PlyRows& rows, std::span<Vec3f> vertices
   const char* p = rows.bytes.data();
   const char* const end = p + rows.bytes.size();
   PlyRowValues values(body_.source.options.memory);
+  const bool has_values = body_.attributes != nullptr;
   bool all_finite = true;
   for (std::size_t row = 0; row < rows.count; ++row) {
     Vec3f& vertex = vertices[row];
@@ -33,10 +34,10 @@ bool PlyBinaryRows::read_vertices(const PlyRows& rows, std::span<Vec3f> vertices
             if (place.run == run)
               vertex[static_cast<int>(axis)] = load_float(type, fixed + place.offset, swap_);
           }
-          take_values(vertex_values_, vertex_layout_, run, fixed, items, values);
+          if (has_values) take_values(vertex_values_, vertex_layout_, run, fixed, items, values);
         });
     all_finite &= is_finite(vertex);
-    if (body_.attributes != nullptr) body_.attributes->take_vertex(rows.first + row, values);
+    if (has_values) body_.attributes->take_vertex(rows.first + row, values);
   }
   return all_finite;
 }
@@ -45,11 +46,12 @@ void PlyBinaryRows::read_faces(const PlyRows& rows, PlyFaces& faces) const {
   const char* p = rows.bytes.data();
   const char* const end = p + rows.bytes.size();
   const std::size_t item_bytes = size_of(corners_.type);
+  const bool has_values = body_.attributes != nullptr;
   for (std::size_t row = 0; row < rows.count; ++row) {
     const char* const start = p;
     p = face_layout_.walk(
         p, end, swap_, [&](std::size_t run, const char* fixed, std::size_t items) {
-          take_values(face_values_, face_layout_, run, fixed, items, faces.values);
+          if (has_values) take_values(face_values_, face_layout_, run, fixed, items, faces.values);
           if (material_ && run == material_->place.run) {
             const char* const at = fixed + material_->place.offset;
             faces.set_material(load_int(material_->type, at, swap_), at);
@@ -95,8 +97,7 @@ void PlyBinaryRows::take_values(const std::vector<Column>& columns, const RowLay
   for (const Column& column : columns) {
     if (column.place.run != run) continue;
     if (column.slot >= 0) {
-      values.scalars[static_cast<std::size_t>(column.slot)] =
-          load_float(column.type, fixed + column.place.offset, swap_);
+      values.scalars[column.slot] = load_float(column.type, fixed + column.place.offset, swap_);
       continue;
     }
     const char* item = fixed + layout.runs[run].list_offset();

@@ -161,11 +161,11 @@ class PlyHeaderParser {
 
   void check_vertices() {
     if (header_.vertex < 0) fail("PLY without a 'vertex' element");
-    const PlyElement& vertex = header_.elements[static_cast<std::size_t>(header_.vertex)];
+    const PlyElement& vertex = header_.elements[header_.vertex];
     for (const std::string_view axis : {"x", "y", "z"}) {
       const int found = vertex.find({axis});
       if (found < 0) fail("PLY vertices without property " + in_quotes(axis));
-      if (vertex.properties[static_cast<std::size_t>(found)].count_type)
+      if (vertex.properties[found].count_type)
         fail("PLY vertex property " + in_quotes(axis) + " is a list");
     }
   }
@@ -174,15 +174,14 @@ class PlyHeaderParser {
     for (const PlyElement& element : header_.elements)
       if (element.name == "tristrips" && element.count > 0)
         fail("PLY with triangle strips: save it with a 'face' element");
-    if (header_.elements[static_cast<std::size_t>(header_.vertex)].count >=
-        std::numeric_limits<std::uint32_t>::max())
+    if (header_.elements[header_.vertex].count >= std::numeric_limits<std::uint32_t>::max())
       fail("the mesh has more than 4,294,967,294 vertices");
     if (header_.face < 0) fail("PLY without a 'face' element: there is no surface to read");
-    const PlyElement& face = header_.elements[static_cast<std::size_t>(header_.face)];
+    const PlyElement& face = header_.elements[header_.face];
     if (face.count == 0) fail("PLY with 0 faces: there is no surface to read");
     const int indices = face.find({"vertex_indices", "vertex_index"});
     if (indices < 0) fail("PLY faces without property 'vertex_indices'");
-    const PlyProperty& list = face.properties[static_cast<std::size_t>(indices)];
+    const PlyProperty& list = face.properties[indices];
     if (!list.count_type || !is_integer(list.type))
       fail("the vertex indices of PLY faces must be a list of integers");
   }

@@ -80,13 +80,13 @@ PlyHeader parse_ply_header(const MeshSource& source, PlyUse use = PlyUse::kMesh)
 /// it.
 struct PlyFields {
   explicit PlyFields(const PlyHeader& header)
-      : vertex(header.elements[static_cast<std::size_t>(header.vertex)]),
-        face(header.elements[static_cast<std::size_t>(header.face)]),
+      : vertex(header.elements[header.vertex]),
+        face(header.elements[header.face]),
         axes{vertex.find({"x"}), vertex.find({"y"}), vertex.find({"z"})},
         indices(face.find({"vertex_indices", "vertex_index"})),
         material(header.materials.empty() ? -1 : face.find({"material_index"})) {
     if (material >= 0) {
-      const PlyProperty& property = face.properties[static_cast<std::size_t>(material)];
+      const PlyProperty& property = face.properties[material];
       if (property.count_type || !is_integer(property.type)) material = -1;
     }
   }

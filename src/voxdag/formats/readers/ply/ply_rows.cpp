@@ -3,19 +3,6 @@
 #include <string>
 
 namespace voxdag {
-namespace {
-
-/// Returns the index of one of `count` items, which `plural` names.
-std::uint32_t checked_index(std::int64_t index, std::uint64_t count, const char* item,
-                            const char* plural, const char* position) {
-  if (index < 0 || static_cast<std::uint64_t>(index) >= count)
-    throw Fault{position, std::string(item) + " index " + std::to_string(index) +
-                              " is out of range: " + std::to_string(count) + " " + plural};
-  return static_cast<std::uint32_t>(index);
-}
-
-}  // namespace
-
 void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& mesh) {
   memory.resize(body.source.options.counted(body.fields.vertex.count * sizeof(Vec3f)));
   mesh.vertices.resize(body.fields.vertex.count);
@@ -51,27 +38,21 @@ PlyTriangles ply_triangles(Mesh& mesh, std::size_t first, std::size_t last) {
   return part;
 }
 
-void PlyFaces::add_corner(std::int64_t vertex, const char* position) {
-  writer_.add_corner(checked_index(vertex, vertices_.count, "vertex", "vertices", position));
+void throw_ply_index(std::int64_t index, std::uint64_t count, const char* item, const char* items,
+                     const char* position) {
+  throw Fault{position, std::string(item) + " index " + std::to_string(index) +
+                            " is out of range: " + std::to_string(count) + " " + items};
 }
 
-void PlyFaces::set_material(std::int64_t material, const char* position) {
-  material_ =
-      checked_index(material, body_.header.materials.size(), "material", "materials", position);
-}
-
-void PlyFaces::finish_row(const char* position) {
-  PlyAttributes* const attributes = body_.attributes;
+void PlyFaces::finish_row_with_attributes(const char* position) {
   // The file's coordinates are two for each corner, or they are ignored.
   if (values.texcoord.size() != 2 * writer_.corners()) values.texcoord.clear();
-  const Rgba16 color = attributes != nullptr ? attributes->face_color(values) : Rgba16{};
+  const Rgba16 color = body_.attributes->face_color(values);
   writer_.finish_face(position, [&](std::size_t t, const Triangle& corners) {
-    if (!triangles_.materials.empty()) triangles_.materials[t] = material_;
-    if (attributes != nullptr)
-      attributes->take_triangle(triangles_.first + t, corners, color, values.texcoord);
+    write_material(t);
+    body_.attributes->take_triangle(triangles_.first + t, corners, color, values.texcoord);
   });
   values.texcoord.clear();
-  material_ = 0;
 }
 
 }  // namespace voxdag

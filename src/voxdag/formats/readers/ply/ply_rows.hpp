@@ -30,6 +30,19 @@ void resize_ply_vertices(const PlyBody& body, MemoryReservation& memory, Mesh& m
 void resize_ply_triangles(const PlyBody& body, std::size_t triangles, MemoryReservation& memory,
                           Mesh& mesh);
 
+/// Throws the fault that an index of an item is out of range.
+[[noreturn]] void throw_ply_index(std::int64_t index, std::uint64_t count, const char* item,
+                                  const char* items, const char* position);
+
+/// Returns the index of one of `count` items. Throws Fault if there is no such item.
+inline std::uint32_t checked_ply_index(std::int64_t index, std::uint64_t count, const char* item,
+                                       const char* items, const char* position) {
+  // As an unsigned number, a negative index is greater than any count.
+  if (static_cast<std::uint64_t>(index) >= count)
+    throw_ply_index(index, count, item, items, position);
+  return static_cast<std::uint32_t>(index);
+}
+
 /// The triangles that a run of faces becomes.
 struct PlyTriangles {
   std::size_t first = 0;  ///< Index of the first one in the mesh.
@@ -55,15 +68,28 @@ class PlyFaces {
 
   /// Adds a corner of the row's face. `position` is that of the index. Throws Fault if the vertex
   /// does not exist, OverMemory, Cancelled.
-  void add_corner(std::int64_t vertex, const char* position);
+  void add_corner(std::int64_t vertex, const char* position) {
+    writer_.add_corner(checked_ply_index(vertex, vertices_.count, "vertex", "vertices", position));
+  }
   /// Throws Fault if the material does not exist.
-  void set_material(std::int64_t material, const char* position);
+  void set_material(std::int64_t material, const char* position) {
+    material_ = checked_ply_index(material, body_.header.materials.size(), "material", "materials",
+                                  position);
+  }
   /// Writes the face's triangles and starts the next row. Throws as FaceWriter::finish_face() does.
-  void finish_row(const char* position);
+  void finish_row(const char* position) {
+    if (body_.attributes != nullptr) return finish_row_with_attributes(position);
+    writer_.finish_face(position, [this](std::size_t t, const Triangle&) { write_material(t); });
+  }
   /// Throws Error if some triangles are not written.
   void check_full() const { writer_.check_full(); }
 
  private:
+  void finish_row_with_attributes(const char* position);
+  void write_material(std::size_t triangle) {
+    if (!triangles_.materials.empty()) triangles_.materials[triangle] = material_;
+  }
+
   const PlyBody& body_;
   const AllVertices& vertices_;
   const PlyTriangles triangles_;
