@@ -1,10 +1,14 @@
 #include "viewer/site/export_site.hpp"
 
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "viewer/embedded/page_files.hpp"
+#include "viewer/gzip/gzip.hpp"
+#include "viewer/site/base64.hpp"
 #include "viewer/site/scene_pieces.hpp"
+#include "viewer/site/single_page.hpp"
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/atomic_file.hpp"
 #include "voxdag/core/io/temporary_folder.hpp"
@@ -64,6 +68,23 @@ std::uint64_t export_site(const fs::path& folder, const SceneBytes& scene, Work 
   }
   write_scene(site.path() / kSceneName, scene, work);
   site.take_name();
+  return bytes;
+}
+
+std::uint64_t export_single_page(const std::filesystem::path& path, const SceneBytes& scene,
+                                 Work work) {
+  const SinglePage page = make_single_page(page_files());
+  AtomicFile file(path);
+  file.write(page.before);
+  Gzip gzip;
+  Base64 encoder;
+  const auto write = [&](std::string_view compressed) { file.write(encoder.add(compressed)); };
+  for_each_piece(scene, work, [&](auto piece) { gzip.add(piece, write); });
+  gzip.finish(write);
+  file.write(encoder.finish());
+  file.write(page.after);
+  const std::uint64_t bytes = file.position();
+  file.commit();
   return bytes;
 }
 

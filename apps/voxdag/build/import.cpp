@@ -79,8 +79,7 @@ void import(const ImportArguments& arguments, Session& session) {
     fmt::print(
         "{}: {} read{}, {} voxels of {}³, {}, {}\n", arguments.output, with_commas(result.read),
         result.outside > 0 ? fmt::format(", {} of them outside", with_commas(result.outside)) : "",
-        with_commas(counts.voxels),
-        with_commas(static_cast<std::uint64_t>(model.grid().resolution())),
+        with_commas(counts.voxels), with_commas(model.grid().resolution()),
         human_bytes(unknown ? 0 : static_cast<std::uint64_t>(bytes)),
         human_seconds(watch.since_start()));
   }

@@ -18,7 +18,7 @@ void trace_block(const Caster& caster, const Grid& grid, std::span<const Ray> ra
   caster.closest(
       static_cast<int>(rays.size()),
       [&](int i) {
-        return CastRay{make_grid_ray(grid, rays[static_cast<std::size_t>(i)]), {}};
+        return CastRay{make_grid_ray(grid, rays[i]), {}};
       },
       [&](int i, const GridRay& ray, const auto& cell, bool is_hit) {
         const auto at = static_cast<std::size_t>(i);

@@ -113,7 +113,7 @@ ViewSample MeshViewSource::Scene::view_sample(const Camera& camera, double x, do
     const double dx = i == 0 || i == 3 ? -0.5 : 0.5, dy = i < 2 ? -0.5 : 0.5;
     const auto met =
         meet_plane(corners, embree_.from_world(camera.eye), camera.direction(x + dx, y + dy));
-    footprint[static_cast<std::size_t>(i)] = to_float(into_triangle(met.value_or(at)));
+    footprint[i] = to_float(into_triangle(met.value_or(at)));
   }
   sample.albedo = appearance_.albedo(triangle, footprint);
 

@@ -71,10 +71,10 @@ class PagedCaster {
       float t_min;  ///< The ray's original t_min.
     };
     std::vector<Rest> rays;
-    rays.reserve(static_cast<std::size_t>(count));
+    rays.reserve(count);
     std::map<std::int64_t, std::vector<int>> waiting;  // rays that wait for each block
     const auto go_on = [&](int i) {
-      Rest& rest = rays[static_cast<std::size_t>(i)];
+      Rest& rest = rays[i];
       GridRay& ray = rest.cast.ray;
       EsvoHit hit;
       const bool is_hit = cast(static_cast<const ContourNodes&>(nodes_), ray, rest.cast.stop, hit);

@@ -72,7 +72,7 @@ class Builder {
   void carved_lathe(const Profile& profile, int sides, const F& f, double phase = 0) {
     surface(sides, static_cast<int>(profile.size()) - 1, true, false, [&](int i, int j) {
       const double t = phase - static_cast<double>(i) / sides;
-      const Point2 p = profile[static_cast<std::size_t>(j)];
+      const Point2 p = profile[j];
       const double r = p.x * f(t, j);
       return Vec3d{r * cos_turns(t), p.y, r * sin_turns(t)};
     });

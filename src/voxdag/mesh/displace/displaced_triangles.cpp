@@ -190,7 +190,7 @@ std::uint32_t DisplacedTriangles::piece_meets(const Pass& pass, PieceCorner& a, 
   const Box3d box = enclose(pass, a, b, c).box();
   std::uint32_t met = 0, surely = 0;
   for (std::uint32_t left = set; left != 0; left &= left - 1) {
-    const Box3d& region = regions[static_cast<std::size_t>(std::countr_zero(left))];
+    const Box3d& region = regions[std::countr_zero(left)];
     if (!meets(box, region)) continue;
     met |= left & -left;
     if (min(box.lo, region.lo) == region.lo && max(box.hi, region.hi) == region.hi)

@@ -19,7 +19,6 @@
 #include "voxdag/mesh/displace/displaced_mesh.hpp"
 #include "voxdag/mesh/displace/displaced_piece.hpp"
 #include "voxdag/mesh/displace/displacement_seams.hpp"
-#include "voxdag/mesh/displace/split_at_midpoints.hpp"
 
 namespace voxdag {
 

@@ -50,7 +50,7 @@ std::vector<Displacement> load_displacements(const Mesh& mesh, const Appearance&
     if (!use.exists()) continue;
     work.poll();
     work.report_done("height textures", i, displacements.size());
-    const TextureImage& image = appearance.images[static_cast<std::size_t>(use.image)];
+    const TextureImage& image = appearance.images[use.image];
     const double base = material.displacement_base, gain = material.displacement_gain;
     if (const double most = std::max(std::fabs(base), std::fabs(base + gain));
         is_too_large(most, side)) {

@@ -117,9 +117,7 @@ class Loader {
       has_unused_textures_ = true;
   }
 
-  const TextureImage& image(int index) const {
-    return appearance_.images[static_cast<std::size_t>(index)];
-  }
+  const TextureImage& image(int index) const { return appearance_.images[index]; }
 
   void make(const TextureKey& key, LoadedTexture& loaded) const {
     const TextureImage& named = image(key.image >= 0 ? key.image : key.alpha_image);

@@ -26,7 +26,7 @@ std::vector<double> frame_times(const CameraPath& path, double frames_per_second
     throw Error(fmt::format("the film would have {:.0f} frames; at most {:.0f} are allowed", count,
                             kMaxFrames));
   std::vector<double> times;
-  times.reserve(static_cast<std::size_t>(count));
+  times.reserve(count);
   for (int i = 0; i < static_cast<int>(count); ++i)
     times.push_back(path.start() + i / frames_per_second);
   return times;
@@ -70,6 +70,14 @@ std::vector<FrameTiming> render_film(const Film& film, const PictureRenderer& re
     work.report_done("frames", i + 1, times.size());
     return timing;
   });
+}
+
+std::string timings_csv(const std::vector<FrameTiming>& frames) {
+  std::string csv = "frame,time,render_ms,write_ms,rays,mrays_per_s\n";
+  for (const FrameTiming& frame : frames)
+    csv += fmt::format("{},{:.6g},{:.3f},{:.3f},{},{:.4f}\n", frame.frame, frame.time,
+                       frame.render_ms, frame.write_ms, frame.rays, frame.mrays_per_second());
+  return csv;
 }
 
 }  // namespace voxdag

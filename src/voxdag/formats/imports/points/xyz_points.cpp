@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/xyz_points.hpp"
-
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -9,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 
 namespace voxdag {
 namespace {

@@ -152,8 +152,7 @@ class MaterialReader {
     const GltfValue pbr = value["pbrMetallicRoughness"];
     const std::vector<double> factor = pbr["baseColorFactor"].numbers(4);
     for (int c = 0; c < 3 && !factor.empty(); ++c)
-      material.base_color[c] =
-          static_cast<float>(std::clamp(factor[static_cast<std::size_t>(c)], 0.0, 1.0));
+      material.base_color[c] = static_cast<float>(std::clamp(factor[c], 0.0, 1.0));
     if (!factor.empty()) material.alpha = static_cast<float>(std::clamp(factor[3], 0.0, 1.0));
     material.texture_tint = material.base_color;
     const std::string mode = value["alphaMode"].text("OPAQUE");

@@ -69,11 +69,15 @@ void ObjAttributes::set_color(std::size_t vertex, std::string_view numbers) {
         to_rgba16({srgb_to_linear(rgb[0]), srgb_to_linear(rgb[1]), srgb_to_linear(rgb[2])}, 1);
 }
 
-ObjReferences ObjAttributes::parse_references(std::string_view text, const ObjCounts& seen) {
-  const std::size_t slash = text.find('/');
-  const std::string_view uv = text.substr(0, slash);
-  const std::string_view rest = slash == text.npos ? std::string_view() : text.substr(slash + 1);
-  const std::string_view normal = rest.substr(0, rest.find('/'));
+ObjReferences ObjAttributes::parse_references(std::string_view corner, const ObjCounts& seen) {
+  const auto take_part = [&corner] {
+    const std::size_t size = corner.find('/');
+    const std::string_view part = corner.substr(0, size);
+    corner.remove_prefix(size == corner.npos ? corner.size() : size + 1);
+    return part;
+  };
+  take_part();  // the vertex
+  const std::string_view uv = take_part(), normal = take_part();
   const ObjReferences references{resolve(uv, seen.uvs, totals_.uvs),
                                  resolve(normal, seen.normals, totals_.normals)};
   if ((references.uv == ObjReferences::kNone && !uv.empty()) ||
@@ -89,13 +93,6 @@ void ObjAttributes::set_references(std::size_t triangle, const ObjReferences& a,
     if (!uvs_.empty()) uv_references_[3 * triangle + i] = corners[i]->uv;
     if (!normals_.empty()) normal_references_[3 * triangle + i] = corners[i]->normal;
   }
-}
-
-void ObjAttributes::move_references(const FaceCutter& cutter, std::size_t first,
-                                    std::size_t triangles) {
-  for (auto* references : {&uv_references_, &normal_references_})
-    if (!references->empty())
-      cutter.move_attributes(std::span(*references).subspan(3 * first, 3 * triangles));
 }
 
 template <class T>

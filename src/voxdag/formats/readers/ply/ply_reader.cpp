@@ -1,7 +1,7 @@
 #include "voxdag/formats/readers/ply/ply_reader.hpp"
 
 #include "voxdag/formats/readers/named_files.hpp"
-#include "voxdag/formats/readers/ply/ply_attributes.hpp"
+#include "voxdag/formats/readers/ply/ply_rows.hpp"
 
 namespace voxdag {
 

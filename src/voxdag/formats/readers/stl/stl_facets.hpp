@@ -1,12 +1,48 @@
 #pragma once
-/// The grammar of ascii STL files. Parses any part of a file that starts and ends between facets.
+/// The facets of binary STL files, and the grammar of ascii ones. Parses any part of a file that
+/// starts and ends between facets.
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "voxdag/core/vec.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
+#include "voxdag/formats/readers/text_scan.hpp"
 
 namespace voxdag {
+
+inline constexpr std::size_t kStlHeaderBytes = 84, kStlFacetBytes = 50;
+inline constexpr std::size_t kMaxStlFacets = 0xFFFFFFFF / 3;
+
+inline std::uint32_t load_stl_word(const char* p) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    word |= std::uint32_t{static_cast<unsigned char>(p[i])} << 8 * i;
+  return word;
+}
+
+/// Returns the number of facets in the header of a file.
+inline std::uint32_t stl_facet_count(std::string_view bytes) {
+  return load_stl_word(bytes.data() + 80);
+}
+
+/// Calls body(Vec3f) for each corner of a run of facets. Throws Fault for a vertex that is not
+/// finite.
+template <class Body>
+void parse_stl_binary(std::string_view facets, const Body& body) {
+  for (std::size_t facet = 0; facet < facets.size(); facet += kStlFacetBytes)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const char* p = facets.data() + facet + 12 * (corner + 1);
+      const Vec3f position{std::bit_cast<float>(load_stl_word(p)),
+                           std::bit_cast<float>(load_stl_word(p + 4)),
+                           std::bit_cast<float>(load_stl_word(p + 8))};
+      if (!is_finite(position)) throw Fault{p, "vertex is not finite"};
+      body(position);
+    }
+}
 
 /// Returns whether `token` is `word`, ignoring the case of ASCII letters. `word` is in lower case.
 inline bool same_word(std::string_view token, std::string_view word) {
@@ -61,8 +97,21 @@ class StlTokens {
 };
 
 /// Splits a file after words "endfacet" into parts of about `chunk_bytes`.
-std::vector<std::string_view> split_facets(std::string_view text,
-                                           std::size_t chunk_bytes = kChunkBytes);
+inline std::vector<std::string_view> split_facets(std::string_view text, std::size_t chunk_bytes) {
+  constexpr std::string_view kWord = "endfacet";
+  std::vector<std::string_view> parts;
+  parts.reserve(text.size() / chunk_bytes + 1);
+  std::size_t start = 0;
+  for (std::size_t cut = chunk_bytes; cut + kWord.size() < text.size(); ++cut)
+    if (same_word(text.substr(cut, kWord.size()), kWord)) {
+      cut += kWord.size();
+      parts.push_back(text.substr(start, cut - start));
+      start = cut;
+      cut += chunk_bytes;
+    }
+  parts.push_back(text.substr(start));
+  return parts;
+}
 
 /// Calls body(Vec3f) for each corner of a part from split_facets(). Throws Fault for text that
 /// breaks the grammar, for vertices that are not finite, and if the last part does not end its
