@@ -115,7 +115,8 @@ void write_difference(const DiffArguments& arguments, Svdag differing, const Ali
 void run_diff(const DiffArguments& arguments, Session& session) {
   if (!arguments.edit.output.empty()) check_writable(arguments.edit.output);
   MemoryBudget memory = command_budget(arguments.edit.memory_limit);
-  const AlignedFiles files(session.subject, arguments.second, arguments.edit, memory, session);
+  const AlignedFiles files(session.subject, arguments.second, arguments.edit,
+                           {&memory, &session.progress});
   const auto count = [&](SetOperation operation) {
     return count_svdag(files.models().combine(operation).view()).voxels;
   };

@@ -83,9 +83,7 @@ class FaceWriter {
     const MemoryReservation scratch(
         source_.work().memory, fan.size() < kCountedTriangles ? 0 : kScratchBytes * fan.size());
     try {
-      cut_polygon(fan, positions_, [this] {
-        if (source_.work() != nullptr) source_.work()->throw_if_cancelled();
-      });
+      cut_polygon(fan, positions_, [this] { source_.work().poll(); });
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& error) {
