@@ -26,7 +26,7 @@ std::vector<double> frame_times(const CameraPath& path, double frames_per_second
     throw Error(fmt::format("the film would have {:.0f} frames; at most {:.0f} are allowed", count,
                             kMaxFrames));
   std::vector<double> times;
-  times.reserve(count);
+  times.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < static_cast<int>(count); ++i)
     times.push_back(path.start() + i / frames_per_second);
   return times;

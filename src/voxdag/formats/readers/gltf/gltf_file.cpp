@@ -138,8 +138,8 @@ void GltfFile::open_uri(const GltfValue& value, std::string_view uri, Buffer& bu
 GltfValue GltfFile::item(GltfArray array, std::uint64_t index, const GltfValue& user) const {
   const GltfItems& values = this->array(array);
   if (index >= values.size())
-    throw user.error(std::string(kArrayNames[array]) + "[" + std::to_string(index) +
-                     "] does not exist");
+    throw user.error(std::string(kArrayNames[static_cast<std::size_t>(array)]) + "[" +
+                     std::to_string(index) + "] does not exist");
   return values[index];
 }
 

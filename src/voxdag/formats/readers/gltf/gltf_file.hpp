@@ -38,7 +38,7 @@ class GltfFile {
   const MeshSource& source() const { return source_; }
   const NamedFiles& named_files() const { return named_files_; }
   GltfValue root() const { return {source_, *json_, json_->root()}; }
-  const GltfItems& array(GltfArray array) const { return arrays_[array]; }
+  const GltfItems& array(GltfArray array) const { return arrays_[static_cast<std::size_t>(array)]; }
   /// Returns item `index` of an array. If there is none, throws Error with the place of `user`.
   GltfValue item(GltfArray array, std::uint64_t index, const GltfValue& user) const;
 
