@@ -29,7 +29,7 @@ void sort(std::vector<std::uint64_t>& values, Work work, const Less& less) {
 TEST(PolledSort, SortsAsTheStandardLibraryDoes) {
   for (const std::size_t count : {0, 1, 2, 499, 500, 501, 100'000}) {
     std::vector<std::uint64_t> sorted = random_values(count), expected = sorted;
-    sort(sorted, {}, std::greater<>());
+    sort(sorted, Work{}, std::greater<>());
     std::sort(expected.begin(), expected.end(), std::greater<>());
     EXPECT_EQ(sorted, expected) << count;
   }
