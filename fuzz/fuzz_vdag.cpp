@@ -29,7 +29,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::size_t kMostVoxels = 500;  ///< A small file can hold 2^60.
+constexpr std::size_t kMaxVoxels = 500;  ///< A small file can hold 2^60.
 
 struct TooMany {};
 
@@ -39,7 +39,7 @@ std::vector<Vec3i> first_voxels(const SvdagView& view) {
     for_each_voxel(view, whole_grid(view.levels), [&](Vec3i voxel) {
       if (!svdag_contains(view, voxel, view.levels)) std::abort();
       voxels.push_back(voxel);
-      if (voxels.size() > kMostVoxels) throw TooMany();
+      if (voxels.size() > kMaxVoxels) throw TooMany();
     });
   } catch (const TooMany&) {
   }
@@ -93,7 +93,7 @@ void walk(const VdagContents& contents) {
   cast_rays(view, contents.metadata.grid, voxels);
   read_attributes(contents, voxels);
   const bool canonical = passes(view, check_canonical), minimal = passes(view, check_minimal);
-  if (!canonical || !minimal || voxels.size() > kMostVoxels) return;
+  if (!canonical || !minimal || voxels.size() > kMaxVoxels) return;
   const Svdag reference = brute_svdag(view.levels, voxels);
   if (counts.voxels != voxels.size() || reference.nodes.size() != view.node_words() ||
       reference.leaf_blocks.size() != view.leaf_block_count ||

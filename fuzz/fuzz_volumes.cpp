@@ -8,17 +8,13 @@
 #include <string>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/formats/imports/volumes/binvox.hpp"
-#include "voxdag/formats/imports/volumes/nifti.hpp"
-#include "voxdag/formats/imports/volumes/npy_volume.hpp"
-#include "voxdag/formats/imports/volumes/nrrd.hpp"
-#include "voxdag/formats/imports/volumes/vox.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 
 namespace voxdag {
 namespace {
 
 /// A small file may stand for many voxels.
-constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMaxVoxels = std::uint64_t{1} << 20;
 struct Enough {};
 
 /// A file in memory that has a path.
@@ -70,7 +66,7 @@ void read_all(std::uint8_t choice, const std::string& path) {
   source->visit_all([&](const VoxelBatch& batch) {
     check(*source, batch);
     voxels += batch.places.size();
-    if (voxels > kMostVoxels) throw Enough();
+    if (voxels > kMaxVoxels) throw Enough();
   });
 }
 

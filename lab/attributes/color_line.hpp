@@ -17,7 +17,7 @@ Vec3f color_of_bytes(ColorBytes bytes);  ///< Each channel in [0,1].
 ColorBytes bytes_of_color(Vec3f color);  ///< Rounds; clamps each channel to [0,1].
 
 /// The largest number of bits of a weight.
-inline constexpr int kMostWeightBits = 4;
+inline constexpr int kMaxWeightBits = 4;
 
 /// End points as they are stored, and the colors between them.
 struct ColorLine {

@@ -27,7 +27,7 @@ class MacroBlock {
     for (const ColorBytes color : colors) colors_.push_back(color_of_bytes(color));
     std::vector<Block> blocks;
     for (std::size_t i = 0; i < colors.size(); ++i) blocks.push_back({i, i + 1});
-    for (int bits = 0; bits <= kMostWeightBits; ++bits) {
+    for (int bits = 0; bits <= kMaxWeightBits; ++bits) {
       while (merge_pass(bits, blocks)) {
       }
       blocks_[bits] = blocks;
@@ -39,8 +39,7 @@ class MacroBlock {
   /// Calls use(block, bits) for the blocks of the cheapest cut, in order.
   template <class Use>
   void for_each_block(const Use& use) const {
-    for (std::size_t i = 0; i < blocks_[kMostWeightBits].size(); ++i)
-      visit(kMostWeightBits, i, use);
+    for (std::size_t i = 0; i < blocks_[kMaxWeightBits].size(); ++i) visit(kMaxWeightBits, i, use);
   }
 
   std::span<const Vec3f> colors(const Block& block) const {
@@ -111,7 +110,7 @@ class MacroBlock {
   }
 
   void find_costs() {
-    for (int bits = 0; bits <= kMostWeightBits; ++bits)
+    for (int bits = 0; bits <= kMaxWeightBits; ++bits)
       for (std::size_t i = 0; i < blocks_[bits].size(); ++i) {
         std::uint64_t cost = own_cost(bits, blocks_[bits][i]);
         if (bits > 0) {
@@ -134,9 +133,9 @@ class MacroBlock {
   float threshold_;
   std::vector<Vec3f> colors_;
   /// By bits of weights.
-  std::array<std::vector<Block>, kMostWeightBits + 1> blocks_;
+  std::array<std::vector<Block>, kMaxWeightBits + 1> blocks_;
   /// The bits of the cheapest cut below each block.
-  std::array<std::vector<std::uint64_t>, kMostWeightBits + 1> costs_;
+  std::array<std::vector<std::uint64_t>, kMaxWeightBits + 1> costs_;
 };
 
 struct MacroSize {

@@ -91,7 +91,7 @@ GreyImage halved(const GreyImage& image) {
 
 double ms_ssim(const GreyImage& a, const GreyImage& b) {
   assert(a.width == b.width && a.height == b.height);
-  assert(std::min(a.width, a.height) >= kLeastMsSsimSide);
+  assert(std::min(a.width, a.height) >= kMinMsSsimSide);
   GreyImage x = a, y = b;
   double product = 1;
   for (std::size_t scale = 0; scale < kWeights.size(); ++scale) {

@@ -20,9 +20,9 @@ struct GreyImage {
 };
 
 /// The smallest width and height that ms_ssim() takes: the window of 11 pixels at the fifth scale.
-inline constexpr int kLeastMsSsimSide = 11 * 16;
+inline constexpr int kMinMsSsimSide = 11 * 16;
 
-/// Returns the MS-SSIM of two pictures of one size, at least kLeastMsSsimSide on each side: 1 if
+/// Returns the MS-SSIM of two pictures of one size, at least kMinMsSsimSide on each side: 1 if
 /// they are equal, less otherwise. At each scale, a Gaussian window (11×11, sigma 1.5) measures the
 /// means, variances and covariance wherever it fits into the picture. Contrast and structure count
 /// at all scales, luminance at the coarsest one; a negative mean counts as 0. Between scales, the

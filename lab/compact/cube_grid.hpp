@@ -11,10 +11,10 @@ namespace voxdag::lab {
 
 /// A cube of `size`³ voxels, as rows: bit x of row y + size * z.
 struct CubeGrid {
-  static constexpr int kMostSize = 16;
+  static constexpr int kMaxSize = 16;
 
   int size = 4;
-  std::array<std::uint16_t, kMostSize * kMostSize> rows{};
+  std::array<std::uint16_t, kMaxSize * kMaxSize> rows{};
 
   bool at(Vec3i voxel) const { return ((rows[voxel.y + size * voxel.z] >> voxel.x) & 1) != 0; }
   void set(Vec3i voxel) {

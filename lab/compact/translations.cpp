@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t kX = 0x9E3779B97F4A7C15u, kY = 0xC2B2AE3D27D4EB4Fu,
                         kZ = 0x165667B19E3779F9u;
 
-constexpr int kMostVoxels = CubeGrid::kMostSize * CubeGrid::kMostSize * CubeGrid::kMostSize;
+constexpr int kMaxVoxels = CubeGrid::kMaxSize * CubeGrid::kMaxSize * CubeGrid::kMaxSize;
 
 /// An image of a cube, and the hash of its voxels as seen from their lower corner.
 struct ImageView {
@@ -123,7 +123,7 @@ class ImageViews {
 };
 
 /// Writes the hash of the view from each voxel on.
-void view_hashes(const CubeGrid& cube, std::array<std::uint64_t, kMostVoxels>& hashes) {
+void view_hashes(const CubeGrid& cube, std::array<std::uint64_t, kMaxVoxels>& hashes) {
   const int n = cube.size;
   for (int x = n - 1; x >= 0; --x)
     for (int i = 0; i < n * n; ++i) {
@@ -167,7 +167,7 @@ class Search {
 
  private:
   void look_up(std::uint32_t rank) {
-    thread_local std::array<std::uint64_t, kMostVoxels> hashes;
+    thread_local std::array<std::uint64_t, kMaxVoxels> hashes;
     for (int mirror = 0; mirror < kMirrors; ++mirror) {
       const CubeGrid cube = image_of_grid(mirror, cubes_[order_[rank]]);
       view_hashes(cube, hashes);
@@ -189,7 +189,7 @@ class Search {
   }
 
   /// Returns whether the view from voxel `i` has voxels in its first layer on each axis.
-  static bool has_voxels_at_all_sides(const std::array<std::uint64_t, kMostVoxels>& hashes,
+  static bool has_voxels_at_all_sides(const std::array<std::uint64_t, kMaxVoxels>& hashes,
                                       Vec3i from, int i, int n) {
     const std::uint64_t hash = hashes[i];
     return hash != (from.x == n - 1 ? 0 : hashes[i + 1] * kX) &&

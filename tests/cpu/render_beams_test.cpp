@@ -13,7 +13,7 @@ namespace {
 
 using test::expect_same_picture;
 
-/// Shadow rays per pixel, enough for beams to lights (TileRenderer::kLeastRaysPerLightBeam).
+/// Shadow rays per pixel, enough for beams to lights (TileRenderer::kMinRaysPerLightBeam).
 constexpr int kSamplesWithBeams = 64;
 
 TEST(RenderBeams, ChangeNoPixel) {

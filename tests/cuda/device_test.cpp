@@ -34,7 +34,7 @@ using OnCuda = OnCudaDevice;
 
 TEST_F(OnCuda, ADeviceHasANameAndMemory) {
   EXPECT_FALSE(device_.name.empty());
-  EXPECT_GE(device_.compute_capability, kLeastComputeCapability);
+  EXPECT_GE(device_.compute_capability, kMinComputeCapability);
   EXPECT_GT(device_.memory_bytes, std::uint64_t{1} << 28);
   EXPECT_GT(device_.multiprocessors, 0);
 }

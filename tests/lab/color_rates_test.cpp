@@ -107,7 +107,7 @@ TEST(Dolonius, ACutIsNeverBetterThanTheBest) {
     for (std::size_t end = 1; end <= colors.size(); ++end) {
       std::uint64_t least = ~std::uint64_t{0};
       for (std::size_t begin = 0; begin < end; ++begin)
-        for (int bits = 0; bits <= kMostWeightBits; ++bits)
+        for (int bits = 0; bits <= kMaxWeightBits; ++bits)
           if (line_score(std::span(colors).subspan(begin, end - begin), bits, 0.05f) >= 0)
             least = std::min(least, best[begin] + 64 + static_cast<unsigned>(bits) * (end - begin));
       best.push_back(least);

@@ -99,7 +99,7 @@ class FileBytes final : public SceneBytes {
     const MappedFile mapping(path, MappedFile::Access::kRandom);
     const std::vector<VdagChunk> chunks = read_vdag_chunks(mapping.bytes());
     const VdagChunk* const meta = find_chunk(chunks, kChunkMeta);
-    if (meta != nullptr && meta->bytes.size() <= kVdagMostMetadataBytes)
+    if (meta != nullptr && meta->bytes.size() <= kVdagMaxMetadataBytes)
       check_vdag_checksums({*meta});
     read_vdag_svdag(chunks, read_vdag_metadata(chunks).grid.levels);
     if (!read_all(0, std::as_writable_bytes(std::span(&header_, 1))) ||

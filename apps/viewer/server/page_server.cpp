@@ -32,7 +32,7 @@ class PageServer::Http final : public httplib::Server {
     };
     set_default_headers(Answers::default_headers());
     set_keep_alive_timeout(std::chrono::ceil<std::chrono::seconds>(options_.limits.idle).count());
-    set_keep_alive_max_count(kMostRequests);
+    set_keep_alive_max_count(kMaxRequests);
     // The library would also set SO_REUSEPORT; without it, a port that is in use is an error.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
@@ -66,7 +66,7 @@ class PageServer::Http final : public httplib::Server {
   const std::string& address() const { return options_.address; }
 
  private:
-  static constexpr int kMostRequests = 1000;  // The largest number of requests of a connection.
+  static constexpr int kMaxRequests = 1000;  // The largest number of requests of a connection.
 
   void bind() {
     errno = 0;
@@ -117,7 +117,7 @@ class PageServer::Http final : public httplib::Server {
 
   /// Answers requests until the connection ends. If memory runs out, ends this connection only.
   void serve_all(ClientStream& client) try {
-    for (int requests = 1; serve_one(client, requests == kMostRequests); ++requests) {
+    for (int requests = 1; serve_one(client, requests == kMaxRequests); ++requests) {
     }
   } catch (const std::exception&) {
   }

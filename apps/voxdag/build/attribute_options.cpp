@@ -41,7 +41,7 @@ void add_attribute_options(const Command& command, AttributeArguments& arguments
       .in_group(group);
   command
       .number("--normal-bound", options.normal_bound_degrees,
-              NumberRange::from(kLeastNormalBound, 180), "DEGREES",
+              NumberRange::from(kMinNormalBound, 180), "DEGREES",
               "Largest angle between a stored normal and the filtered one")
       .only_if([&options] { return options.normals; }, "without --normal")
       .in_group(group);
@@ -59,24 +59,23 @@ void check_materials(const AttributeArguments& arguments, const Mesh& mesh,
   if (!arguments.options.materials) return;
   if (mesh.triangle_materials.empty())
     throw Error(file, "", "has no materials, so that --material-ids has nothing to store");
-  if (mesh.materials.size() > kMostMaterials)
+  if (mesh.materials.size() > kMaxMaterials)
     throw Error(file, "",
                 fmt::format("has {} materials, but --material-ids can store {} at most",
-                            mesh.materials.size(), kMostMaterials));
+                            mesh.materials.size(), kMaxMaterials));
 }
 
 DagAttributes build_wanted_attributes(const AttributeArguments& arguments,
                                       const MeshWithAppearance& source, const SvdagView& dag,
-                                      const SurfaceShading* shading, MemoryBudget& memory,
-                                      VdagMetadata& metadata, Progress& progress) {
+                                      const SurfaceShading* shading, VdagMetadata& metadata,
+                                      Work work) {
   AttributeOptions options = arguments.options;
-  options.memory = &memory;
   options.finest_level = arguments.levels
                              ? *arguments.levels
                              : finest_level_within(metadata.counts, options,
-                                                   std::min(kAttributeBudget, memory.left()));
+                                                   std::min(kAttributeBudget, work.memory->left()));
   DagAttributes attributes =
-      build_attributes(source.mesh, metadata.grid, dag, shading, options, &progress);
+      build_attributes(source.mesh, metadata.grid, dag, shading, options, work);
   AttributesMetadata& stored = metadata.attributes;
   stored.resolution = std::int64_t{1} << options.finest_level;
   if (options.colors) stored.colors = {options.color_bound, attributes.color_errors.squared};

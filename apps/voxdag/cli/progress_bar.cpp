@@ -15,7 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds kRedrawInterval{100};
 constexpr int kBarColumns = 24;
 /// The time left is shown after this fraction of a stage; before, the estimate is too inaccurate.
-constexpr double kLeastFraction = 0.02;
+constexpr double kMinFraction = 0.02;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ std::string progress_line(std::string_view stage, double fraction, std::uint64_t
                                  kBarColumns - filled, std::floor(fraction * 100));
   if (seconds <= 0) return line;
   if (items > 0) line += fmt::format("  {}/s", human_count(static_cast<double>(items) / seconds));
-  if (fraction >= kLeastFraction)
+  if (fraction >= kMinFraction)
     line += fmt::format("  {} left", human_clock(seconds * (1 - fraction) / fraction));
   return line;
 }

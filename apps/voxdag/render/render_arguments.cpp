@@ -68,10 +68,10 @@ void check_render_arguments(RenderArguments& arguments, Session& session) {
     throw UsageError("--primary", "\"mesh\" needs --mesh");
   arguments.mesh.access.outputs = check_outputs(arguments, session);
   check_view(arguments.options.view);
-  constexpr std::size_t kMostLights = RenderSetup::kMaxLights - 1;  // without the sun
-  if (arguments.options.lights.size() > kMostLights)
+  constexpr std::size_t kMaxLights = RenderSetup::kMaxLights - 1;  // without the sun
+  if (arguments.options.lights.size() > kMaxLights)
     throw UsageError("--light", fmt::format("is given {} times; at most {} are allowed",
-                                            arguments.options.lights.size(), kMostLights));
+                                            arguments.options.lights.size(), kMaxLights));
 }
 
 bool ViewFileArguments::has(const std::string& option) const {

@@ -85,7 +85,7 @@ ViewOptions add_view_options(const Command& command, ViewRequest& view, Winners&
       "--up", view.up, parse_direction, "X,Y,Z",
       "Direction that is up (default: y, or z if the shape of the scene shows that z is up)"));
   winners.push_back(command.optional_number<double>(
-      "--fov", view.vertical_fov_degrees, NumberRange::half_open(kLeastFovDegrees, 180), "DEGREES",
+      "--fov", view.vertical_fov_degrees, NumberRange::half_open(kMinFovDegrees, 180), "DEGREES",
       "Vertical angle of view, below 180 (default: chosen to show the scene)"));
   winners.insert(winners.end(), {eye, target});
   return {eye, target};
@@ -233,7 +233,7 @@ void add_path_options(const Command& command, PathArguments& path, const ViewOpt
   view.eye.not_with(file);
   view.target.not_with(file);
   command
-      .number("--fps", path.frames_per_second, NumberRange::up_to(kMostFramesPerSecond), "N",
+      .number("--fps", path.frames_per_second, NumberRange::up_to(kMaxFramesPerSecond), "N",
               "With --path: frames per second")
       .needs(file);
   command.text("--timings", path.timings, "OUT.csv", "With --path: write the time of each frame")

@@ -61,7 +61,7 @@ void HitRows::pack_one(const Hit& hit, std::byte* row) const {
   if (colors_) append_value(row, color);
   if (look_.has_materials())
     append_value(row, static_cast<std::uint16_t>(hit.hit ? material_at(look_.dag, cell, hit.level)
-                                                         : kMostMaterials));
+                                                         : kMaxMaterials));
 }
 
 }  // namespace voxdag::cli

@@ -60,11 +60,11 @@ Section figure5_section() {
 }
 
 std::vector<Chart> figure5_charts(const std::vector<SvdagSceneBuilds>& scenes) {
-  constexpr std::size_t kMostPanels = 2;
+  constexpr std::size_t kMaxPanels = 2;
   Chart chart{"svdag-figure5.svg", {}};
   for (const SvdagSceneBuilds& builds : figure5_order(scenes)) {
     ChartPanel panel = panel_of(builds);
-    if (!panel.lines.empty() && chart.panels.size() < kMostPanels)
+    if (!panel.lines.empty() && chart.panels.size() < kMaxPanels)
       chart.panels.push_back(std::move(panel));
   }
   if (chart.panels.empty()) return {};

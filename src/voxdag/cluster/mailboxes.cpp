@@ -10,20 +10,19 @@
 namespace voxdag {
 namespace {
 
-/// A rank exchanges messages when the bytes for one other rank reach kMostWaiting divided by the
-/// number of ranks, but at least kLeastWaiting.
-constexpr std::uint64_t kMostWaiting = std::uint64_t{8} << 20,
-                        kLeastWaiting = std::uint64_t{64} << 10;
+/// A rank exchanges messages when the bytes for one other rank reach kMaxWaiting divided by the
+/// number of ranks, but at least kMinWaiting.
+constexpr std::uint64_t kMaxWaiting = std::uint64_t{8} << 20, kMinWaiting = std::uint64_t{64} << 10;
 
 /// Bytes that a sender collects for a mailbox, and that a mailbox collects before it writes.
-constexpr std::uint64_t kLeastBuffer = 1024, kMostBuffer = std::uint64_t{16} << 10;
+constexpr std::uint64_t kMinBuffer = 1024, kMaxBuffer = std::uint64_t{16} << 10;
 
 /// Returns the bytes of the buffers of `count` mailboxes and of a sender for each thread, which may
 /// take a quarter of what is left.
 std::size_t buffer_bytes(const MemoryBudget& budget, std::uint32_t count) {
   constexpr std::uint64_t kUsers = 2 + 4;  // the mailboxes, and some threads
   return static_cast<std::size_t>(
-      std::clamp(budget.left() / 4 / kUsers / std::max(count, 1u), kLeastBuffer, kMostBuffer));
+      std::clamp(budget.left() / 4 / kUsers / std::max(count, 1u), kMinBuffer, kMaxBuffer));
 }
 
 /// Precedes messages to another rank.
@@ -49,7 +48,7 @@ Mailboxes::Mailboxes(Ranks& ranks, const WorkFolder& folder, const std::string& 
        box += static_cast<std::uint32_t>(ranks.count()))
     own_.push_back(std::make_unique<Own>(folder.create(mailbox_name(name, box), buffer_bytes_)));
   memory_ = MemoryReservation(
-      &budget, own_.size() * buffer_bytes_ + (ranks.count() > 1 ? 2 * kMostWaiting : 0));
+      &budget, own_.size() * buffer_bytes_ + (ranks.count() > 1 ? 2 * kMaxWaiting : 0));
 }
 
 Mailboxes::Sender::Sender(Mailboxes& mailboxes)
@@ -89,9 +88,9 @@ void Mailboxes::put(std::uint32_t mailbox, std::span<const std::byte> messages) 
   const std::lock_guard guard(outgoing_mutex_);
   outgoing_[rank].insert(outgoing_[rank].end(), head.begin(), head.end());
   outgoing_[rank].insert(outgoing_[rank].end(), messages.begin(), messages.end());
-  // Each rank then receives at most about kMostWaiting at once.
+  // Each rank then receives at most about kMaxWaiting at once.
   const auto ranks = static_cast<std::uint64_t>(ranks_.count());
-  if (outgoing_[rank].size() >= std::max(kMostWaiting / ranks, kLeastWaiting)) exchange(false);
+  if (outgoing_[rank].size() >= std::max(kMaxWaiting / ranks, kMinWaiting)) exchange(false);
 }
 
 bool Mailboxes::exchange(bool is_closed) {
@@ -120,7 +119,7 @@ void Mailboxes::close() {
 }
 
 std::uint32_t mailboxes_of(Ranks& ranks, std::uint64_t bytes, const MemoryBudget& budget) {
-  constexpr std::uint32_t kMostMailboxes = 4096;
+  constexpr std::uint32_t kMaxMailboxes = 4096;
   std::uint64_t left = budget.left();
   for (const std::uint64_t of_rank : ranks.all_gather({&left, 1})) left = std::min(left, of_rank);
   // Threads handle mailboxes side by side; little data is not worth many files.
@@ -130,9 +129,11 @@ std::uint32_t mailboxes_of(Ranks& ranks, std::uint64_t bytes, const MemoryBudget
                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
              count = static_cast<std::uint64_t>(ranks.count());
   const std::uint64_t needed = bytes / std::max<std::uint64_t>(left / 4 / threads, 1) + 1;
-  const std::uint64_t wanted = std::max({count, needed, bytes < kLittle ? 1 : 2 * count * threads});
-  if (needed > kMostMailboxes && needed > count)
-    budget.throw_over_memory(budget.base() + budget.used() + bytes / kMostMailboxes * 4 * threads);
+  // So a mailbox has fewer than 2^32 different records, if each counts for 16 bytes or more.
+  const std::uint64_t least = std::max(count, bytes >> 36);
+  const std::uint64_t wanted = std::max({least, needed, bytes < kLittle ? 1 : 2 * count * threads});
+  if (needed > kMaxMailboxes && needed > count)
+    budget.throw_over_memory(budget.base() + budget.used() + bytes / kMaxMailboxes * 4 * threads);
   return static_cast<std::uint32_t>(wanted);
 }
 

@@ -14,9 +14,9 @@
 namespace voxdag {
 
 inline constexpr int kIdBytes = 5;
-inline constexpr std::uint64_t kMostIds = std::uint64_t{1} << (8 * kIdBytes);
+inline constexpr std::uint64_t kMaxIds = std::uint64_t{1} << (8 * kIdBytes);
 inline constexpr int kLeafRecordBytes = 8;
-inline constexpr int kMostRecordBytes = 1 + 8 * kIdBytes;
+inline constexpr int kMaxRecordBytes = 1 + 8 * kIdBytes;
 
 /// Returns the bytes of the record of a node with this child mask.
 inline int node_record_bytes(std::uint8_t mask) { return 1 + kIdBytes * std::popcount(mask); }

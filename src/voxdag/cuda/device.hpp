@@ -23,7 +23,7 @@ struct CudaDevices {
 CudaDevices cuda_devices();
 
 /// The lowest compute capability that kernels are compiled for: 75 is 7.5.
-inline constexpr int kLeastComputeCapability = 75;
+inline constexpr int kMinComputeCapability = 75;
 
 /// Returns the device with this index, or for -1 the first that can run the kernels. Throws Error
 /// ("no CUDA device: ...") if there is none.

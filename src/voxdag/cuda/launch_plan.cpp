@@ -6,7 +6,7 @@ namespace voxdag {
 namespace {
 
 constexpr double kSecondsPerLaunch = 0.2;
-constexpr double kMostGrowth = 4;
+constexpr double kMaxGrowth = 4;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ std::optional<LaunchRange> LaunchPlan::next() {
 void LaunchPlan::measured(const LaunchRange& range, double seconds) {
   const double work = work_per_sample_ * (range.last_block - range.first_block) *
                       (range.last_sample - range.first_sample);
-  const double factor = kSecondsPerLaunch / std::max(seconds, kSecondsPerLaunch / kMostGrowth);
+  const double factor = kSecondsPerLaunch / std::max(seconds, kSecondsPerLaunch / kMaxGrowth);
   // The time of a small last launch says nothing about larger ones.
   if (factor < 1 || work * factor > work_per_launch_) work_per_launch_ = work * factor;
 }

@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 constexpr std::size_t kPrefixBytes = 10;  ///< Magic, version and length of version 1.0.
-constexpr std::uint32_t kMostHeaderBytes = 1 << 20;
+constexpr std::uint32_t kMaxHeaderBytes = 1 << 20;
 /// Space that the writer reserves for N: the digits of 2^64.
-constexpr std::size_t kMostDigits = 20;
+constexpr std::size_t kMaxDigits = 20;
 
 std::string dtype_literal(const std::string& dtype) {
   return dtype.starts_with('[') ? dtype : "'" + dtype + "'";
@@ -104,9 +104,9 @@ NpyHeader NpyReader::read_header() {
     fail(".npy version " + std::to_string(major) + " is unknown: only versions 1 to 3 are read");
   std::uint32_t length = 0;
   read_exactly(&length, major == 1 ? 2 : 4);
-  if (length > kMostHeaderBytes)
+  if (length > kMaxHeaderBytes)
     fail("the header has " + std::to_string(length) + " bytes, more than " +
-         std::to_string(kMostHeaderBytes));
+         std::to_string(kMaxHeaderBytes));
   const std::uint64_t first_byte = position_;
   std::string text(length, '\0');
   read_exactly(text.data(), length);
@@ -166,7 +166,7 @@ std::string NpyWriter::header(std::uint64_t rows) const {
       ", 'fortran_order': False, 'shape': " + shape_literal(number, row_shape_) + ", }";
   // The header is as long as for the largest N, so that it can be overwritten. It aligns the data
   // to 64 bytes.
-  const std::size_t longest = kPrefixBytes + dictionary.size() - number.size() + kMostDigits + 1;
+  const std::size_t longest = kPrefixBytes + dictionary.size() - number.size() + kMaxDigits + 1;
   const std::size_t padded = (longest + 63) / 64 * 64;
   dictionary.resize(padded - kPrefixBytes - 1, ' ');
   dictionary += '\n';

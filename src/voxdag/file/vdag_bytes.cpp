@@ -88,10 +88,10 @@ PlainVdagBytes::PlainVdagBytes(const SvdagView& view, const VdagMetadata& metada
 
 std::string checked_metadata_json(const VdagMetadata& metadata) {
   std::string json = vdag_metadata_json(metadata);
-  if (json.size() > kVdagMostMetadataBytes)
+  if (json.size() > kVdagMaxMetadataBytes)
     throw Error("", ErrorPlace::chunk("META"),
                 "would have " + std::to_string(json.size()) + " bytes, more than the limit of " +
-                    std::to_string(kVdagMostMetadataBytes) +
+                    std::to_string(kVdagMaxMetadataBytes) +
                     (metadata.attributes.materials ? ": the materials have too long names" : ""));
   parse_vdag_metadata(json);
   return json;

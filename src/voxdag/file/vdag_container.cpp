@@ -45,7 +45,7 @@ std::size_t read_at(const OpenInput& input, const std::filesystem::path& path, s
 /// Returns whether the chunk table, which is not checked, names the chunk NODX.
 bool names_long_nodes(const OpenInput& input, const std::filesystem::path& path,
                       const VdagHeader& header) {
-  std::vector<VdagChunkEntry> table(std::min<std::size_t>(header.chunk_count, kVdagMostChunks));
+  std::vector<VdagChunkEntry> table(std::min<std::size_t>(header.chunk_count, kVdagMaxChunks));
   table.resize(
       read_at(input, path, sizeof header, table.data(), table.size() * sizeof(VdagChunkEntry)) /
       sizeof(VdagChunkEntry));

@@ -23,8 +23,8 @@ static_assert(
 inline constexpr unsigned char kVdagMagic[8] = {0x89, 'V', 'D', 'A', 'G', '\r', '\n', 0x1A};
 inline constexpr std::uint32_t kVdagVersion = 1;
 inline constexpr std::uint64_t kVdagAlignment = 64;
-inline constexpr std::uint32_t kVdagMostChunks = 1024;
-inline constexpr std::uint64_t kVdagMostMetadataBytes = std::uint64_t{1} << 20;
+inline constexpr std::uint32_t kVdagMaxChunks = 1024;
+inline constexpr std::uint64_t kVdagMaxMetadataBytes = std::uint64_t{1} << 20;
 
 struct VdagHeader {
   unsigned char magic[8];

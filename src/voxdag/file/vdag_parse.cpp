@@ -39,7 +39,7 @@ VdagHeader read_header(std::span<const std::byte> file) {
   if (header.file_bytes < file.size())
     fail_at(ErrorPlace::byte(header.file_bytes),
             "has " + std::to_string(file.size() - header.file_bytes) + " trailing bytes");
-  if (header.chunk_count > kVdagMostChunks ||
+  if (header.chunk_count > kVdagMaxChunks ||
       header.chunk_count > (file.size() - sizeof header) / sizeof(VdagChunkEntry))
     fail_at("header", std::to_string(header.chunk_count) + " chunks do not fit into the file");
   return header;
@@ -132,9 +132,9 @@ std::span<const std::byte> chunk_bytes(const std::vector<VdagChunk>& chunks, std
 
 std::string_view metadata_chunk_text(const std::vector<VdagChunk>& chunks) {
   const std::span<const std::byte> bytes = chunk_bytes(chunks, kChunkMeta, 1);
-  if (bytes.size() > kVdagMostMetadataBytes)
+  if (bytes.size() > kVdagMaxMetadataBytes)
     fail_at(chunk_place(kChunkMeta),
-            "is longer than " + std::to_string(kVdagMostMetadataBytes) + " bytes");
+            "is longer than " + std::to_string(kVdagMaxMetadataBytes) + " bytes");
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 

@@ -45,7 +45,7 @@ WireParts read_parts(std::span<const std::byte> bytes) {
   if (header.reserved != 0 || std::any_of(std::begin(header.padding), std::end(header.padding),
                                           [](std::uint64_t word) { return word != 0; }))
     fail_at("", "reserved bytes of the header are not zero");
-  if (header.words > kMostWireExpansion * bytes.size() / 8)
+  if (header.words > kMaxWireExpansion * bytes.size() / 8)
     fail_at("", "expands to " + std::to_string(header.words) +
                     " words, more than allowed for its " + std::to_string(bytes.size()) + " bytes");
   parts.pages.values = header.values;
@@ -72,7 +72,7 @@ WireParts read_parts(std::span<const std::byte> bytes) {
 void decode(std::uint32_t id, const WireParts& parts, const wire::PagesTarget& target) {
   const std::uint32_t parameter = parts.header.parameter;
   if (id == kChunkMaterials) {
-    if (parameter == 0 || parameter > kMostMaterials)
+    if (parameter == 0 || parameter > kMaxMaterials)
       fail_at("", "has " + std::to_string(parameter) + " materials; 1 to 65,535 are allowed");
     return wire::decode_wire_materials(parts.segments, parts.coded, parameter, target);
   }
@@ -151,7 +151,7 @@ OutputChunk WireChunk::chunk() const {
 }
 
 bool WireChunk::is_allowed() const {
-  return header_.words <= kMostWireExpansion * chunk().length() / 8;
+  return header_.words <= kMaxWireExpansion * chunk().length() / 8;
 }
 
 bool has_wire_chunk(const std::vector<VdagChunk>& chunks) {

@@ -24,7 +24,7 @@ static_assert(sizeof(WireHeader) == 64 && sizeof(wire::WireSegment) == 16);
 
 /// The pages of a wire chunk have at most so many times its bytes, so that the memory of a reader
 /// follows from the size of the file. A writer keeps the chunk of smaller pages as it is.
-inline constexpr std::uint64_t kMostWireExpansion = 64;
+inline constexpr std::uint64_t kMaxWireExpansion = 64;
 
 /// A chunk in the wire form, for a writer. Owns its bytes.
 class WireChunk {
@@ -35,7 +35,7 @@ class WireChunk {
 
   /// Returns the chunk, which refers to this object.
   OutputChunk chunk() const;
-  /// Returns whether a reader accepts it: see kMostWireExpansion.
+  /// Returns whether a reader accepts it: see kMaxWireExpansion.
   bool is_allowed() const;
 
  private:

@@ -71,7 +71,7 @@ std::vector<std::array<PackedNormal, 3>> corner_normals(const Mesh& mesh, float 
   constexpr double kRadiansPerDegree = 0.017453292519943295;
   /// If more triangles meet at a corner, as at the tip of a fan, comparing all pairs would take too
   /// long.
-  constexpr std::uint64_t kMostTriangles = 1024;
+  constexpr std::uint64_t kMaxTriangles = 1024;
   constexpr std::size_t kBlock = 1024;
   // Slightly larger than requested, so that planes that differ by exactly the angle are smoothed in
   // spite of rounding.
@@ -86,7 +86,7 @@ std::vector<std::array<PackedNormal, 3>> corner_normals(const Mesh& mesh, float 
       const std::uint64_t first = by.starts[p], last = by.starts[p + 1];
       wedges.clear();
       for (std::uint64_t i = first; i < last; ++i) wedges.push_back(wedge_at(mesh, by.corners[i]));
-      const bool is_flat = last - first > kMostTriangles || crease_degrees <= 0;
+      const bool is_flat = last - first > kMaxTriangles || crease_degrees <= 0;
       for (std::uint64_t i = first; i < last; ++i) {
         const Vec3d own = wedges[i - first].normal;
         if (own == Vec3d{}) continue;

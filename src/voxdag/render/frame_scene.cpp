@@ -99,7 +99,7 @@ View view_from_outside(const CoarseCells& scene, const Grid& grid, Vec3d forward
 void check_numbers(const View& view) {
   if (!is_finite(view.eye) || !is_finite(view.target) || !is_finite(view.up))
     throw Error("the camera's coordinates must be finite");
-  if (!(view.vertical_fov_degrees >= kLeastFovDegrees && view.vertical_fov_degrees < 180))
+  if (!(view.vertical_fov_degrees >= kMinFovDegrees && view.vertical_fov_degrees < 180))
     throw Error("the camera's field of view must be at least 0.000001 and below 180 degrees");
   if (!(length(view.up) > 0)) throw Error("the camera's up vector is zero");
 }

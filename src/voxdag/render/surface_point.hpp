@@ -62,7 +62,7 @@ VOXDAG_HD inline float cell_size_at(const RenderSetup& setup, double depth) {
 
 /// The most casts of make_surface_point(): one from the lifted point, 3 near the line of sight, 2
 /// along each axis, and 3 farther along the line of sight.
-inline constexpr int kMostStartCasts = 13;
+inline constexpr int kMaxStartCasts = 13;
 
 /// Returns the point for a view sample that hit something and lies on the surface or above it.
 /// `direction` is the direction of the camera's ray to the sample.

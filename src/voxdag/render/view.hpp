@@ -9,7 +9,7 @@
 namespace voxdag {
 
 /// The smallest vertical field of view. Far below it, directions of pixels are no longer distinct.
-inline constexpr double kLeastFovDegrees = 1e-6;
+inline constexpr double kMinFovDegrees = 1e-6;
 
 /// A view in world units. The picture's vertical axis is `up`, made perpendicular to the view
 /// direction.
@@ -44,7 +44,7 @@ Vec3d up_across(Vec3d up, Vec3d forward);
 /// The default eye is above a corner of the scene, so that all voxels are in the picture. If the
 /// scene is closed and roomy, like a building, the default eye is inside. An empty scene also gets
 /// a valid view. Deterministic; takes about ten milliseconds. Throws Error for requests that define
-/// no view: numbers that are not finite, eye = target, a field of view below kLeastFovDegrees or
+/// no view: numbers that are not finite, eye = target, a field of view below kMinFovDegrees or
 /// not below 180 degrees, an up vector along the view.
 View frame_scene(const VoxelSet& voxels, const Grid& grid, double aspect,
                  const ViewRequest& request);

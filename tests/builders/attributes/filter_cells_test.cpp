@@ -200,8 +200,7 @@ TEST(FilterCells, AMemoryLimitIsKeptOrRefused) {
   options.colors = true;
   options.finest_level = 7;
   expect_limit_is_kept_or_refused([&](MemoryBudget& budget) {
-    options.memory = &budget;
-    build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);
+    build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options, &budget);
   });
 }
 
@@ -234,7 +233,7 @@ TEST(BuildAttributes, NormalsAreWithinTheirBound) {
   AttributeOptions options;
   options.normals = true;
   options.finest_level = 6;
-  for (const double degrees : {kLeastNormalBound, 2.0, 10.0}) {
+  for (const double degrees : {kMinNormalBound, 2.0, 10.0}) {
     options.normal_bound_degrees = degrees;
     const DagAttributes attributes =
         build_attributes(scene.mesh, scene.grid, dag.view(), &shading, options);

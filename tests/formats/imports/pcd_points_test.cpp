@@ -77,7 +77,7 @@ TEST(LzfStream, GivesTheTextBack) {
       }
       EXPECT_EQ(back, text);
       EXPECT_THROW(stream.skip(1), Fault);
-      EXPECT_LE(size, compressed.size() * LzfStream::kMostRatio);
+      EXPECT_LE(size, compressed.size() * LzfStream::kMaxRatio);
     }
 }
 

@@ -177,7 +177,7 @@ TEST(Frequencies, AddUpForAnyWeights) {
     const std::size_t used = 1 + random() % 256;
     for (std::size_t s = 0; s < used; ++s)
       weights[s] =
-          static_cast<std::uint8_t>(random() % 2 == 0 ? 1 : random() % (kMostWeightCode + 1));
+          static_cast<std::uint8_t>(random() % 2 == 0 ? 1 : random() % (kMaxWeightCode + 1));
     weights[0] = 1;
     const Frequencies frequencies = frequencies_of(weights);
     std::uint32_t sum = 0;

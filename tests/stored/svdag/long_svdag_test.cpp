@@ -36,7 +36,7 @@ TEST(LongSvdag, ChecksAndCountsAreThoseOfThePlainForm) {
 
 TEST(LongSvdag, PointersKeepAll35Bits) {
   for (const std::uint64_t pointer : {std::uint64_t{0}, std::uint64_t{0xFFFFFFFF},
-                                      std::uint64_t{5} << 32 | 123, kMostLongWords - 1})
+                                      std::uint64_t{5} << 32 | 123, kMaxLongWords - 1})
     for (int child = 0; child < 8; ++child) {
       const std::uint32_t node[] = {1u << child | upper_bits_of(pointer, child),
                                     static_cast<std::uint32_t>(pointer)};

@@ -66,12 +66,12 @@ export class SceneTextures {
     if (look === null) return {};
     const begin = [];
     let at = 0;
-    for (let l = 0; l < DAG.mostLevels; ++l) {
+    for (let l = 0; l < DAG.maxLevels; ++l) {
       begin.push(at);
       const slots = l < info.levels - 2 ? info.levelBegin[l + 1] - info.levelBegin[l] : 0;
       at += 2 * Math.ceil((slots * look.index.width[l]) / 64);
     }
-    const levelBegin = Array.from({ length: DAG.mostLevels }, (_, l) => info.levelBegin[l] ?? 0);
+    const levelBegin = Array.from({ length: DAG.maxLevels }, (_, l) => info.levelBegin[l] ?? 0);
     gl.uniform1iv(program.place('u_slot_width'), look.index.width);
     gl.uniform1uiv(program.place('u_slot_begin'), begin);
     gl.uniform1uiv(program.place('u_level_begin'), levelBegin);

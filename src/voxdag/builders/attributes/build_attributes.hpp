@@ -2,6 +2,7 @@
 /// Builds the attributes of a DAG: numbers of its cells, filtered and compressed colours and
 /// normals, and materials.
 #include "voxdag/builders/attributes/filter_cells.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/attributes/dag_attributes.hpp"
 #include "voxdag/stored/svdag/svdag_counts.hpp"
 
@@ -13,19 +14,18 @@ struct AttributeOptions {
   /// The largest error of a stored colour, 0 to 1: the square root of the mean of the channels'
   /// squared differences, sRGB encoded, with the weights kColorWeights. 0: lossless.
   double color_bound = 0.05;
-  /// The largest angle between a stored and a filtered normal, kLeastNormalBound to 180 degrees.
+  /// The largest angle between a stored and a filtered normal, kMinNormalBound to 180 degrees.
   double normal_bound_degrees = 5;
-  MemoryBudget* memory = nullptr;  ///< Counts the builder's memory. Null: no limit.
 };
 
 /// Builds the attributes of `dag`, the DAG of `mesh` in `grid`. `shading` is the shading of the
 /// mesh; null: grey. For materials, the mesh must have a material for each triangle, and at most
-/// kMostMaterials materials. The result depends on mesh, shading, grid and options alone, not on
+/// kMaxMaterials materials. The result depends on mesh, shading, grid and options alone, not on
 /// the number of threads. The budget no longer counts the result when the function returns. Throws
 /// OverMemory and Cancelled.
 DagAttributes build_attributes(const Mesh& mesh, const Grid& grid, const SvdagView& dag,
                                const SurfaceShading* shading, const AttributeOptions& options,
-                               Progress* progress = nullptr);
+                               Work work = {});
 
 /// Returns the number of cells of levels 0 to `level`, 0 to L, of a DAG with these counts.
 std::uint64_t count_cells(const SvdagCounts& counts, int level);

@@ -20,9 +20,9 @@ struct CellTask {
 class TaskPieces {
  public:
   /// The largest number of triangles that are cut into pieces at a time.
-  static constexpr std::size_t kMostLoaded = 1 << 14;
+  static constexpr std::size_t kMaxLoaded = 1 << 14;
 
-  /// Refers to the arguments. Counts the pieces in `memory`; null: no limit.
+  /// Refers to the arguments. Counts the pieces in `memory`.
   TaskPieces(const SvdagView& dag, const CellIndexView& index, const TriangleSource& source,
              const PieceSampler& sampler, MemoryBudget* memory)
       : dag_(dag), index_(index), source_(source), sampler_(sampler), pieces_(memory) {}
@@ -31,16 +31,16 @@ class TaskPieces {
 
   /// Returns the bytes that the pieces of this many triangles are expected to take.
   static std::uint64_t expected_bytes(std::size_t triangles) {
-    return std::min(triangles, kMostLoaded) * PieceStack::kBytesPerTriangle;
+    return std::min(triangles, kMaxLoaded) * PieceStack::kBytesPerTriangle;
   }
 
   /// Calls use(cell, pieces) for the finest cells of the task that its triangles meet, without the
   /// pieces that the alpha test of the sampler's shading removes. The cells come in the order of
-  /// their numbers for each kMostLoaded triangles. Throws OverMemory.
+  /// their numbers for each kMaxLoaded triangles. Throws OverMemory.
   template <class Use>
   void for_each_finest_cell(const CellTask& task, const Use& use) {
-    for (std::size_t begin = 0; begin < task.triangles.size(); begin += kMostLoaded) {
-      const std::size_t count = std::min(kMostLoaded, task.triangles.size() - begin);
+    for (std::size_t begin = 0; begin < task.triangles.size(); begin += kMaxLoaded) {
+      const std::size_t count = std::min(kMaxLoaded, task.triangles.size() - begin);
       load_pieces(pieces_, sampler_, source_, task.cell.level, task.place,
                   task.triangles.subspan(begin, count));
       descend(task.cell, pieces_.root(), use);

@@ -60,7 +60,7 @@ MaterialAreas MaterialFilter::filter(const CellTask& task, std::vector<CellRun>&
     add_entries(static_cast<std::uint32_t>(cell.number - first_), pieces);
   });
   // One batch of triangles gives sorted entries. Equal entries stay in the order of the batches.
-  if (task.triangles.size() > TaskPieces::kMostLoaded)
+  if (task.triangles.size() > TaskPieces::kMaxLoaded)
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       return a.cell != b.cell ? a.cell < b.cell : a.id < b.id;
     });

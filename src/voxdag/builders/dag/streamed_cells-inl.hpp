@@ -31,7 +31,7 @@ class StreamedCells {
   /// Returns the cell of 2^log2_size voxels a side at `at`, from `count` triangles on the stack
   /// from `first` on.
   Cell cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    if (count <= kMostSetups) return listed_cell(at, log2_size, first, count);
+    if (count <= kMaxSetups) return listed_cell(at, log2_size, first, count);
     if (log2_size == 2) {
       std::uint64_t mask = 0;
       for_each_setup(first, count, [&](std::uint32_t, const TriangleSetup& t) {
@@ -51,7 +51,7 @@ class StreamedCells {
 
  private:
   /// 4 MiB of setups.
-  static constexpr std::size_t kMostSetups = std::size_t{1} << 14;
+  static constexpr std::size_t kMaxSetups = std::size_t{1} << 14;
 
   /// The positions of the children's lists on the stack.
   struct Lists {
@@ -67,14 +67,14 @@ class StreamedCells {
   template <class Body>
   void for_each_setup(std::size_t first, std::size_t count, const Body& body) {
     for (std::size_t i = first; i < first + count; ++i) {
-      if (i % 1024 == 0) poll(context_.progress);
+      if (i % 1024 == 0) context_.work.poll();
       const std::uint32_t triangle = context_.triangles[i];
       body(triangle, setup(triangle));
     }
   }
 
   Cell listed_cell(Vec3i at, int log2_size, std::size_t first, std::size_t count) {
-    poll(context_.progress);
+    context_.work.poll();
     context_.setups.clear();
     context_.items.clear();
     for (std::size_t i = first; i < first + count; ++i) {

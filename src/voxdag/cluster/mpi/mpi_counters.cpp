@@ -39,10 +39,10 @@ std::uint64_t MpiCounters::next(int counter) {
 
 std::optional<std::uint64_t> MpiCounters::next_after_failure(int counter) {
   if (session_.rank() == 0) return draw(counter);
-  constexpr int kMostTests = 1000;
+  constexpr int kMaxTests = 1000;
   last_message_.counter = counter;
   int code = session_.call_always([&] { return ask(last_message_, kLastQuestion); });
-  for (int test = 0; code == MPI_SUCCESS && test < kMostTests; ++test) {
+  for (int test = 0; code == MPI_SUCCESS && test < kMaxTests; ++test) {
     int is_done = 0;
     code = session_.call_always(
         [&] { return MPI_Testall(2, last_message_.requests, &is_done, MPI_STATUSES_IGNORE); });

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "voxdag/core/error.hpp"
-#include "voxdag/core/large_array.hpp"
+#include "voxdag/core/page_vector.hpp"
 
 namespace voxdag {
 
@@ -18,9 +18,9 @@ FileCopy::FileCopy(const OpenInput& input, const std::filesystem::path& path)
     : size_(static_cast<std::size_t>(*input.size)) {
   bytes_ = make_large_array<std::byte>(size_);
   for (std::size_t done = 0; done < size_;) {
-    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+    constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;
     const ssize_t got = ::pread(input.descriptor.get(), bytes_.get() + done,
-                                std::min(size_ - done, kMostAtOnce), static_cast<off_t>(done));
+                                std::min(size_ - done, kMaxAtOnce), static_cast<off_t>(done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0)
       throw Error(path.string(), ErrorPlace::byte(done),

@@ -29,10 +29,10 @@ struct Extent {
   std::uint64_t count = 0;
 };
 
-Extent extent_of(const VoxelSource& source, Progress* progress) {
+Extent extent_of(const VoxelSource& source, Work work) {
   Extent extent;
   source.visit_all([&](const VoxelBatch& batch) {
-    poll(progress);
+    work.poll();
     for (const Vec3d p : batch.places) {
       for (int axis = 0; axis < 3; ++axis)
         if (!std::isfinite(p[axis]))
@@ -45,10 +45,10 @@ Extent extent_of(const VoxelSource& source, Progress* progress) {
   return extent;
 }
 
-Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Progress* progress) {
+Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Work work) {
   Grid grid = source.grid().value_or(Grid{});
   if (!source.grid()) {
-    const Extent extent = extent_of(source, progress);
+    const Extent extent = extent_of(source, work);
     const double most = std::max({extent.hi.x, extent.hi.y, extent.hi.z, 0.0});
     grid.levels =
         std::max(kMinLevels, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(most))));
@@ -60,12 +60,12 @@ Grid grid_of_voxels(const VoxelSource& source, const ImportOptions& options, Pro
   return grid;
 }
 
-Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Progress* progress) {
+Grid grid_of_points(const VoxelSource& source, const ImportOptions& options, Work work) {
   Box3d bounds;
   if (options.bounds) {
     bounds = *options.bounds;
   } else {
-    const Extent extent = extent_of(source, progress);
+    const Extent extent = extent_of(source, work);
     if (extent.count == 0) throw Error("", "", "has no points, so it has no bounds");
     bounds = {extent.lo, extent.hi};
     // One point has a grid of voxels of size 1, as a mesh of one point has.
@@ -93,16 +93,15 @@ std::optional<Vec3i> voxel_of_point(Vec3d point, const Grid& grid, bool has_boun
 
 }  // namespace
 
-ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options,
-                           Progress* progress) {
+ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work) {
   const bool has_points = source.has_points();
   ImportResult result;
-  result.grid = has_points ? grid_of_points(source, options, progress)
-                           : grid_of_voxels(source, options, progress);
+  result.grid =
+      has_points ? grid_of_points(source, options, work) : grid_of_voxels(source, options, work);
   const int levels = result.grid.levels;
   // Calls add(voxel, index) for all places in the grid.
   const auto each_voxel = [&](const VoxelBatch& batch, const auto& add) {
-    poll(progress);
+    work.poll();
     result.read += batch.places.size();
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       const Vec3d place = batch.places[i];
@@ -116,8 +115,8 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     }
   };
   if (options.colors && source.has_colors()) {
-    ColoredVoxelBuilder builder(levels, voxels_in_memory(options.memory, sizeof(ColoredCode)),
-                                options.folder, options.memory, progress);
+    ColoredVoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(ColoredCode)),
+                                options.folder, work);
     source.visit_all([&](const VoxelBatch& batch) {
       each_voxel(batch, [&](Vec3i voxel, std::size_t i) { builder.add(voxel, batch.colors[i]); });
     });
@@ -125,8 +124,8 @@ ImportResult import_voxels(const VoxelSource& source, const ImportOptions& optio
     result.dag = std::move(dag);
     result.attributes = std::move(attributes);
   } else {
-    VoxelBuilder builder(levels, voxels_in_memory(options.memory, sizeof(std::uint64_t)),
-                         options.folder, options.memory, progress);
+    VoxelBuilder builder(levels, voxels_in_memory(work.memory, sizeof(std::uint64_t)),
+                         options.folder, work);
     source.visit_all([&](const VoxelBatch& batch) {
       each_voxel(batch, [&](Vec3i voxel, std::size_t) { builder.add(voxel); });
     });

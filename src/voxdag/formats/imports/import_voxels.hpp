@@ -4,8 +4,7 @@
 
 #include "voxdag/builders/attributes/build_attributes.hpp"
 #include "voxdag/core/box.hpp"
-#include "voxdag/core/memory_budget.hpp"
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/formats/imports/voxel_source.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
@@ -18,7 +17,6 @@ struct ImportOptions {
   bool colors = true;                ///< Stores the colours of files that have some.
   double color_bound = 0.05;         ///< AttributeOptions::color_bound
   std::filesystem::path folder;      ///< Of files for sorting.
-  MemoryBudget* memory = nullptr;
 };
 
 struct ImportResult {
@@ -34,7 +32,6 @@ struct ImportResult {
 /// on its upper sides belong to the last voxels. Voxels need neither: without `levels` the grid is
 /// that of the file, or the smallest one with its corner at 0 that holds them. Reads the file once
 /// or twice; memory is bounded. Throws Error, OverMemory and Cancelled.
-ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options,
-                           Progress* progress = nullptr);
+ImportResult import_voxels(const VoxelSource& source, const ImportOptions& options, Work work = {});
 
 }  // namespace voxdag

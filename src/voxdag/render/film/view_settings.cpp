@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
 constexpr int kVersion = 1;
 
 /// Reads the settings. `key` is the whole key of a value, such as "sun.angle".
@@ -22,7 +22,7 @@ class Reader {
   explicit Reader(const std::string& file) : file_(file) {}
 
   ViewSettings read() {
-    const Json json = read_json_file(file_, {kMostBytes, "a view"});
+    const Json json = read_json_file(file_, {kMaxBytes, "a view"});
     RenderOptions& options = settings_.options;
     each_member(
         json, "",
@@ -121,7 +121,7 @@ class Reader {
          {"target", [&](const Json& value) { view.target = vector(value, "camera.target"); }},
          {"up", [&](const Json& value) { view.up = direction(value, "camera.up"); }},
          {"fov", [&](const Json& value) {
-            view.vertical_fov_degrees = number(value, "camera.fov", kLeastFovDegrees, 179);
+            view.vertical_fov_degrees = number(value, "camera.fov", kMinFovDegrees, 179);
           }}});
     if (!view.eye) refuse("camera.eye", "is missing");
     if (!view.target) refuse("camera.target", "is missing");

@@ -9,10 +9,10 @@ namespace voxdag {
 inline constexpr std::array<int, 3> kColorWeights{2, 4, 1};
 /// The smallest bound on errors of normals, in degrees: rounding a normal to 8 bits can turn it by
 /// almost this angle.
-inline constexpr double kLeastNormalBound = 0.4;
+inline constexpr double kMinNormalBound = 0.4;
 
 /// Returns a metric that keeps the angle between stored normals and unit normals, which
-/// pack_normal() rounds, within a bound of kLeastNormalBound to 180 degrees.
+/// pack_normal() rounds, within a bound of kMinNormalBound to 180 degrees.
 ValueMetric make_normal_metric(double degrees);
 
 /// Attributes in memory. The view is valid while this object lives unchanged.

@@ -17,9 +17,9 @@
 namespace voxdag {
 
 /// The most words of a page: all its blocks have the least length and store each value by itself.
-inline constexpr int kMostPageWords =
+inline constexpr int kMaxPageWords =
     kPageValues / kBlockUnit * ValueBlock{ValueBlock::kRaw, kBlockUnit}.bits(24) / 64;
-static_assert(kMostPageWords == 105);
+static_assert(kMaxPageWords == 105);
 
 /// The differences between the given and the stored values.
 struct ValueErrors {
@@ -37,7 +37,7 @@ struct ValueErrors {
 
 /// A compressed page.
 struct EncodedPage {
-  std::array<std::uint64_t, kMostPageWords> words{};  ///< From bit `bits` on, all bits are zero.
+  std::array<std::uint64_t, kMaxPageWords> words{};  ///< From bit `bits` on, all bits are zero.
   int bits = 0;
   ValueErrors errors;
 };

@@ -7,9 +7,9 @@ namespace voxdag {
 
 /// The colour, the normal and the material of a voxel, in the types of exported files.
 struct VoxelLook {
-  Vec3f normal{};                           ///< World space, unit length; zero: none.
-  Value8 color{};                           ///< sRGB encoded; black: none.
-  std::uint16_t material = kMostMaterials;  ///< kMostMaterials: none.
+  Vec3f normal{};                          ///< World space, unit length; zero: none.
+  Value8 color{};                          ///< sRGB encoded; black: none.
+  std::uint16_t material = kMaxMaterials;  ///< kMaxMaterials: none.
 };
 
 /// Reads what look_at() and material_at() read, faster if the voxels come in Morton order. Each

@@ -15,7 +15,7 @@
 
 namespace voxdag {
 
-inline constexpr std::uint32_t kMostMaterials = 65535;
+inline constexpr std::uint32_t kMaxMaterials = 65535;
 
 /// A run of cells of one material.
 struct MaterialRun {
@@ -28,7 +28,7 @@ struct MaterialRun {
 
 /// A view for kernels and readers.
 struct MaterialIdsView : CellPagesView {
-  std::uint32_t materials = 0;  ///< Ids are less than this, 1 to kMostMaterials.
+  std::uint32_t materials = 0;  ///< Ids are less than this, 1 to kMaxMaterials.
 
   /// Returns the number of bits of an id.
   VOXDAG_HD int id_bits() const {

@@ -23,8 +23,8 @@ EndPrecision choose_precision(const ValueMetric& metric) {
       mean += static_cast<float>(weight * (step - 1) * (step - 1)) / 12;
     }
     // Rounding costs a block this much for each of its values; a finer end costs bits once.
-    constexpr float kMostBits = 0.13f;
-    if (worst <= metric.bound && mean * metric.price() <= kMostBits) return {code};
+    constexpr float kMaxBits = 0.13f;
+    if (worst <= metric.bound && mean * metric.price() <= kMaxBits) return {code};
   }
   return {3};
 }

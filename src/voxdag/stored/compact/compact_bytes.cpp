@@ -46,7 +46,7 @@ struct TreeShape {
     const std::uint32_t tested = feature.get(in);
     if (tested >= features) throw Error("", "", "tests a feature that does not exist");
     const std::size_t children = tree.nodes.size();
-    if (children / 2 + 1 >= kMostTables || in.is_past_end())
+    if (children / 2 + 1 >= kMaxTables || in.is_past_end())
       throw Error("", "", "has too many nodes");
     tree.nodes[node] = static_cast<std::uint32_t>(children) << 8 | tested;
     tree.nodes.resize(children + 2);
@@ -72,7 +72,7 @@ class TableWeights {
       const std::size_t before = group(before_[s]);
       if (!in.get(occurs_[s][before])) continue;
       const std::uint32_t code = codes_[before].get(in);
-      if (code == 0 || code > kMostWeightCode)
+      if (code == 0 || code > kMaxWeightCode)
         throw Error("", "", "has a weight that does not exist");
       weights[s] = static_cast<std::uint8_t>(code);
     }

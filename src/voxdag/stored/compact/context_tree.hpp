@@ -30,7 +30,7 @@ namespace voxdag {
 
 inline constexpr std::uint32_t kLeafNode = 0x80;
 inline constexpr int kFirstStartFeature = 52, kStartBits = 8;
-inline constexpr int kMostTables = 4096;  ///< The largest number of tables of one tree.
+inline constexpr int kMaxTables = 4096;  ///< The largest number of tables of one tree.
 
 /// A view for kernels.
 struct ContextTreeView {
@@ -57,7 +57,7 @@ struct ContextTreeView {
 /// The weights of the symbols 0 to 255 of a table, as codes. Code 0: the symbol does not occur.
 /// Code c from 1 to 4: weight c. Larger c: weight (4 + (c - 1) % 4) << ((c - 1) / 4 - 1).
 using WeightCodes = std::array<std::uint8_t, 256>;
-inline constexpr std::uint8_t kMostWeightCode = 45;
+inline constexpr std::uint8_t kMaxWeightCode = 45;
 
 /// The frequencies of a table's symbols. They add up to 4096, or all are zero.
 using Frequencies = std::array<std::uint16_t, 256>;

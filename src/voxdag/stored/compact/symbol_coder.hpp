@@ -27,7 +27,7 @@ namespace voxdag {
 inline constexpr int kFrequencyBits = 12;  ///< The frequencies of a table add up to 2^12.
 inline constexpr int kRangeBits = 31;      ///< 2^30 < range <= 2^31.
 inline constexpr int kOpenBits = 2;        ///< Bits of an open record beyond its doublings.
-inline constexpr int kMostRawBits = 12;    ///< The largest number of bits of one raw number.
+inline constexpr int kMaxRawBits = 12;     ///< The largest number of bits of one raw number.
 
 /// Returns how often a range from 1 to 2^31 is doubled until it is above 2^30.
 VOXDAG_HD inline int doublings(std::uint32_t range) {
@@ -59,7 +59,7 @@ class SymbolReader {
   VOXDAG_HD std::uint32_t take_raw(int bits) {
     std::uint32_t value = 0;
     for (int left = bits; left > 0;) {
-      const int count = left < kMostRawBits ? left : kMostRawBits;
+      const int count = left < kMaxRawBits ? left : kMaxRawBits;
       const std::uint32_t r = range_ >> count, most = (1u << count) - 1;
       const std::uint32_t part = code_ / r < most ? code_ / r : most;
       narrow(part * r, r);
@@ -107,7 +107,7 @@ class SymbolWriter {
   /// Adds a number of `bits` bits, 0 to 32. Each value takes as many bits as any other.
   void put_raw(std::uint32_t value, int bits) {
     for (int left = bits; left > 0;) {
-      const int count = left < kMostRawBits ? left : kMostRawBits;
+      const int count = left < kMaxRawBits ? left : kMaxRawBits;
       left -= count;
       const std::uint32_t r = range_ >> count;
       narrow((value >> left & ((1u << count) - 1)) * r, r);

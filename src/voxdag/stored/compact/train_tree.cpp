@@ -59,7 +59,7 @@ std::uint64_t n_log_n(std::uint64_t n) {
 constexpr std::int64_t bits(std::int64_t n) { return n << kFraction; }
 /// The cost of a symbol in a table of frequencies, and of a table and its node, as measured.
 constexpr std::int64_t kSymbolCost = bits(6), kTableCost = bits(60);
-constexpr std::size_t kLeastSamples = 32;
+constexpr std::size_t kMinSamples = 32;
 
 struct Leaf {
   std::uint32_t node = 0;  ///< Its index among the growing nodes.
@@ -75,8 +75,8 @@ struct GrowingNode {
 
 class TreeGrower {
  public:
-  TreeGrower(std::span<ContextSample> samples, const TreeLimits& limits, const Progress* progress)
-      : samples_(samples), limits_(limits), progress_(progress) {
+  TreeGrower(std::span<ContextSample> samples, const TreeLimits& limits, Work work)
+      : samples_(samples), limits_(limits), work_(work) {
     for (auto& counts : counts_) counts = std::make_unique<Counts>();
   }
 
@@ -89,7 +89,7 @@ class TreeGrower {
       return a.gain != b.gain ? a.gain < b.gain : a.node > b.node;
     };
     for (int tables = 1; tables < limits_.tables && !leaves.empty(); ++tables) {
-      poll(progress_);
+      work_.poll();
       std::pop_heap(leaves.begin(), leaves.end(), less);
       const Leaf leaf = leaves.back();
       leaves.pop_back();
@@ -131,7 +131,7 @@ class TreeGrower {
 
   /// Finds the feature that saves the most bits. O(samples * features that are set).
   void find_split(Leaf& leaf, Counts& counts) const {
-    if (leaf.end - leaf.begin < kLeastSamples) return;
+    if (leaf.end - leaf.begin < kMinSamples) return;
     Histogram all{};
     for (std::size_t i = leaf.begin; i != leaf.end; ++i) ++all[samples_[i].symbol];
     std::array<std::uint32_t, 256> present;
@@ -195,16 +195,15 @@ class TreeGrower {
 
   std::span<ContextSample> samples_;
   const TreeLimits& limits_;
-  const Progress* progress_;
+  Work work_;
   std::vector<GrowingNode> nodes_;
   std::unique_ptr<Counts> counts_[2];
 };
 
 }  // namespace
 
-ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits,
-                       const Progress* progress) {
-  return TreeGrower(samples, limits, progress).grow();
+ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits, Work work) {
+  return TreeGrower(samples, limits, work).grow();
 }
 
 }  // namespace voxdag

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "voxdag/core/parallel/progress.hpp"
+#include "voxdag/core/parallel/work.hpp"
 #include "voxdag/stored/compact/context_tree.hpp"
 
 namespace voxdag {
@@ -22,13 +22,12 @@ struct ContextSample {
 
 struct TreeLimits {
   int features = 64;         ///< Only the lowest features are used.
-  int tables = kMostTables;  ///< The largest number of leaves.
+  int tables = kMaxTables;   ///< The largest number of leaves.
   std::uint64_t weight = 1;  ///< The number of symbols that a sample stands for.
 };
 
 /// Returns a tree without frequencies. Reorders the samples. The result depends on the set of
-/// samples alone. Runs on the current TBB arena; throws Cancelled. `progress` may be null.
-ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits,
-                       const Progress* progress);
+/// samples alone. Runs on the current TBB arena; throws Cancelled.
+ContextTree train_tree(std::span<ContextSample> samples, const TreeLimits& limits, Work work);
 
 }  // namespace voxdag

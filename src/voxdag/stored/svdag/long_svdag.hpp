@@ -1,5 +1,5 @@
 #pragma once
-/// The SVDAG with long pointers, for DAGs with more than kMostPlainWords node words.
+/// The SVDAG with long pointers, for DAGs with more than kMaxPlainWords node words.
 ///
 /// The layout of svdag.hpp, but for pointers: they have 35 bits, and count from the first word of
 /// the next level.
@@ -19,7 +19,7 @@
 namespace voxdag {
 
 /// The most node words of a file with 32-bit pointers: 2^32 - 257.
-inline constexpr std::uint64_t kMostPlainWords = 0xFFFFFFFFull - 256;
+inline constexpr std::uint64_t kMaxPlainWords = 0xFFFFFFFFull - 256;
 
 /// A view like SvdagView; its members have the meanings that they have there.
 struct LongSvdagView {
@@ -34,7 +34,7 @@ struct LongSvdagView {
 };
 
 inline constexpr int kUpperPointerBits = 3;
-inline constexpr std::uint64_t kMostLongWords = std::uint64_t{1} << (32 + kUpperPointerBits);
+inline constexpr std::uint64_t kMaxLongWords = std::uint64_t{1} << (32 + kUpperPointerBits);
 
 /// Returns the bits that child `child` of a node adds to the mask word, for a pointer.
 constexpr std::uint32_t upper_bits_of(std::uint64_t pointer, int child) {
@@ -72,8 +72,8 @@ inline bool fits_pointers(const SvdagView& dag) {
 }
 inline bool fits_pointers(const LongSvdagView& dag) {
   for (int level = 0; level < dag.levels - 2; ++level)
-    if (dag.level_begin[level + 1] - dag.level_begin[level] > kMostLongWords) return false;
-  return dag.leaf_block_count <= kMostLongWords;
+    if (dag.level_begin[level + 1] - dag.level_begin[level] > kMaxLongWords) return false;
+  return dag.leaf_block_count <= kMaxLongWords;
 }
 
 /// Returns the reason why a mask word with other bits than allowed_mask_bits() is malformed.

@@ -48,7 +48,7 @@ struct BitTree {
 
 struct RangeCoder {
   static constexpr int kProbabilityBits = 15;
-  static constexpr std::uint32_t kLeastRange = 1u << 24;  ///< Below, the coder moves on by a byte.
+  static constexpr std::uint32_t kMinRange = 1u << 24;  ///< Below, the coder moves on by a byte.
 };
 
 /// Appends to `bytes`, which must outlive it.
@@ -66,7 +66,7 @@ class RangeEncoder {
       range_ -= bound;
     }
     context.learn(bit);
-    while (range_ < RangeCoder::kLeastRange) {
+    while (range_ < RangeCoder::kMinRange) {
       range_ <<= 8;
       move_on();
     }
@@ -118,7 +118,7 @@ class RangeDecoder {
       range_ -= bound;
     }
     context.learn(bit);
-    while (range_ < RangeCoder::kLeastRange) {
+    while (range_ < RangeCoder::kMinRange) {
       range_ <<= 8;
       code_ = code_ << 8 | next();
     }

@@ -16,7 +16,7 @@ function parseCellIndex(bytes, levels) {
   const finest = view.getUint32(CELL_INDEX.finestLevel, true);
   if (finest > levels) throw brokenFile(`Its attributes go down to level ${finest}, but the grid has only ${levels}.`);
   const cells = readSize(view, CELL_INDEX.cells, 'The number of cells in CIDX');
-  const width = Array.from(bytes.subarray(CELL_INDEX.width, CELL_INDEX.width + DAG.mostLevels));
+  const width = Array.from(bytes.subarray(CELL_INDEX.width, CELL_INDEX.width + DAG.maxLevels));
   return { finest, cells, width, words: asWords(bytes.slice(head)) };
 }
 

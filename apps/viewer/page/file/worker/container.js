@@ -29,7 +29,7 @@ async function readChunkTable(source, head) {
   const version = view.getUint32(FILE.header.version, true), count = view.getUint32(FILE.header.chunkCount, true);
   if (version !== FILE.version)
     throw new SceneError('This file is of another version', `It has version ${version} of the format; this page reads version ${FILE.version}.`);
-  if (count > FILE.mostChunks) throw brokenFile(`Its header announces ${count} chunks; at most ${FILE.mostChunks} are possible.`);
+  if (count > FILE.maxChunks) throw brokenFile(`Its header announces ${count} chunks; at most ${FILE.maxChunks} are possible.`);
   const fileBytes = readSize(view, FILE.header.fileBytes, 'The size in the header');
   if (fileBytes !== size) throw brokenFile(`It has ${size} bytes, but its header says ${fileBytes}: it was cut off or never finished.`);
   const tableEnd = FILE.headerBytes + FILE.chunkEntryBytes * count;
@@ -76,7 +76,7 @@ async function readSceneInfo(source, head, chunks) {
   if (chunks.has('ESVO')) throw new SceneError('This file holds an ESVO', 'The viewer shows DAGs. Build one with `voxdag build MESH -r N -o scene.vdag`.');
   if (chunks.has('CHED')) throw new SceneError('This file has the compact form', 'Convert it with `voxdag convert FILE --plain -o scene.vdag`, or open it with `voxdag view`.');
   if (!meta || !levl || !nodes || !leaves) throw brokenFile('It lacks one of the chunks META, LEVL, NODE and LEAF.');
-  if (meta.length > FILE.mostMetadataBytes) throw brokenFile(`Its metadata has ${meta.length} bytes; at most ${FILE.mostMetadataBytes} are possible.`);
+  if (meta.length > FILE.maxMetadataBytes) throw brokenFile(`Its metadata has ${meta.length} bytes; at most ${FILE.maxMetadataBytes} are possible.`);
   const json = await readPart(source, head, meta);
   /** @type {any} */
   let parsed;
@@ -89,7 +89,7 @@ async function readSceneInfo(source, head, chunks) {
   const levels = member(grid, 'levels', 'number');
   const voxelSize = member(grid, 'voxel_size', 'number');
   const origin = member(grid, 'origin', 'object');
-  if (!Number.isInteger(levels) || levels < DAG.leastLevels || levels > DAG.mostLevels) throw brokenFile(`Its grid has ${levels} levels.`);
+  if (!Number.isInteger(levels) || levels < DAG.minLevels || levels > DAG.maxLevels) throw brokenFile(`Its grid has ${levels} levels.`);
   if (!(voxelSize > 0)) throw brokenFile('The size of its voxels is not positive.');
   if (!Array.isArray(origin) || origin.length !== 3 || !origin.every(Number.isFinite)) throw brokenFile('Its metadata has no valid “origin”.');
   if (levl.length !== 8 * (levels - 1)) throw brokenFile(`Chunk LEVL has ${levl.length} bytes instead of ${8 * (levels - 1)}.`);

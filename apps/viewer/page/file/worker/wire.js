@@ -45,7 +45,7 @@ class WireDecoder {
         slow[context] = b - (b >> WIRE.slow);
         prefix <<= 1;
       }
-      while (this.range < WIRE.leastRange) {
+      while (this.range < WIRE.minRange) {
         this.range = (this.range << 8) >>> 0;
         this.code = ((this.code << 8) | this.next()) >>> 0;
       }
@@ -183,7 +183,7 @@ class WirePages {
     this.codedBytes = readSize(view, WIRE.codedBytes, `The number of coded bytes in ${id}`);
     if (this.precision >= PAGES.channelBits.length) throw brokenFile(`Chunk ${id} has the unknown precision ${this.precision}.`);
     if (values !== cells) throw brokenFile(`Chunk ${id} has ${values} values for ${cells} cells.`);
-    if (8 * wordCount > WIRE.mostExpansion * length) throw brokenFile(`Chunk ${id} expands to ${wordCount} words, more than allowed for its ${length} bytes.`);
+    if (8 * wordCount > WIRE.maxExpansion * length) throw brokenFile(`Chunk ${id} expands to ${wordCount} words, more than allowed for its ${length} bytes.`);
     const pages = Math.ceil(values / PAGES.pageValues);
     if (pages > 2 * wordCount || 8 * wordCount >= 2 ** 32) throw brokenFile(`Chunk ${id} has ${wordCount} words for ${pages} pages.`);
     this.segmentCount = Math.ceil(pages / WIRE.segmentPages);

@@ -38,7 +38,7 @@ bool CellDecider::is_too_thin(const Cell& cell, const ConvexPolyhedron& shape) {
   if (cell.pieces.size() > kMost) return false;
   const auto is_thin = [&](const ContourDirection& across) {
     return 2 * extent_of(shape, across.normal).size() <
-           (FittedContour::kLeastGain - kRounding) * static_cast<double>(across.length);
+           (FittedContour::kMinGain - kRounding) * static_cast<double>(across.length);
   };
   Vec3i known{};
   for (const TrianglePiece& piece : cell.pieces) {

@@ -120,8 +120,8 @@ class EnclosedCell {
 
 ContourCandidates enclosed_candidates(const TriangleSource& source, int level, Vec3i cell,
                                       std::span<const std::uint32_t> triangles) {
-  constexpr std::size_t kMostLookedAt = 1 << 14;
-  const std::size_t step = (triangles.size() + kMostLookedAt - 1) / kMostLookedAt;
+  constexpr std::size_t kMaxLookedAt = 1 << 14;
+  const std::size_t step = (triangles.size() + kMaxLookedAt - 1) / kMaxLookedAt;
   const EnclosedCell enclosed(source, level, cell);
   ContourCandidates candidates;
   for (std::size_t i = 0; i < triangles.size(); i += step)

@@ -42,8 +42,8 @@ struct FittedContour {
 
   /// A contour with less gain is not worth its four bytes, unless it makes the voxel a leaf;
   /// without it each child would need a contour.
-  static constexpr double kLeastGain = 0.15;
-  bool pays() const { return gain > kLeastGain; }
+  static constexpr double kMinGain = 0.15;
+  bool pays() const { return gain > kMinGain; }
 };
 
 /// Returns the least and the greatest dot(normal, p) of the shape's points p.

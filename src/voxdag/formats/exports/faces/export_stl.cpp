@@ -11,7 +11,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::uint64_t kMostTriangles = 0xFFFFFFFF;
+constexpr std::uint64_t kMaxTriangles = 0xFFFFFFFF;
 constexpr std::size_t kHeadBytes = 80, kTriangleBytes = 50;
 
 void write_triangle(AtomicFile& file, Vec3f normal, Vec3f a, Vec3f b, Vec3f c) {
@@ -32,7 +32,7 @@ void export_stl(const std::filesystem::path& path, const VoxelSet& voxels, const
                 "world: export .obj, .ply or .glb");
   ExportedRectangles faces(voxels, window, options, false);
   const std::uint64_t triangles = 2 * faces.measure().count;
-  if (triangles > kMostTriangles)
+  if (triangles > kMaxTriangles)
     refuse_export(
         path, std::to_string(triangles) + " triangles are more than the 4294967295 of an STL file");
   check_disk_space(path, kHeadBytes + 4 + triangles * kTriangleBytes);

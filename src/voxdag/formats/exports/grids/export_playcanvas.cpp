@@ -19,7 +19,7 @@ namespace {
 /// begin, which follow each other in the order of the child index. A full node has the mask 0xFF
 /// and no children. A leaf block of 4³ has no mask, and its index in the lower bits.
 constexpr std::uint32_t kFull = 0xFF000000;
-constexpr std::uint64_t kMostIndices = std::uint64_t{1} << 24;
+constexpr std::uint64_t kMaxIndices = std::uint64_t{1} << 24;
 
 /// Returns the mask of a leaf block with x changing fastest, then y, then z.
 std::uint64_t row_major(std::uint64_t morton_block) {
@@ -36,7 +36,7 @@ class NodeWords {
  public:
   NodeWords(const std::filesystem::path& path, const SvdagView& dag)
       : dag_(dag), full_(dag), begins_(dag.node_words()) {
-    if (dag.leaf_block_count > kMostIndices)
+    if (dag.leaf_block_count > kMaxIndices)
       refuse_export(path, std::to_string(dag.leaf_block_count) +
                               " different leaf blocks are more than the 16777216 of this format");
     for (int level = 0; level <= dag.levels - 3; ++level)
@@ -46,7 +46,7 @@ class NodeWords {
         count_ += static_cast<std::uint64_t>(popcount8(child_mask(dag.nodes + at)));
         ++inner_;
       });
-    if (count_ > kMostIndices)
+    if (count_ > kMaxIndices)
       refuse_export(path,
                     std::to_string(count_) + " nodes are more than the 16777216 of this format");
   }

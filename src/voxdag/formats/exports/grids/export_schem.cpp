@@ -15,7 +15,7 @@
 namespace voxdag {
 namespace {
 
-constexpr std::int64_t kMaxSchemSide = 32767, kMostBlocks = 0x7FFFFFFF;
+constexpr std::int64_t kMaxSchemSide = 32767, kMaxBlocks = 0x7FFFFFFF;
 
 /// Writes named binary tags (NBT), big-endian.
 class NbtWriter {
@@ -71,14 +71,14 @@ class BlockOfColor {
   /// Returns the number of the block in the palette, which begins with air.
   char operator()(Value8 color) {
     const std::uint32_t key = color.x | std::uint32_t{color.y} << 8 | std::uint32_t{color.z} << 16;
-    if (known_.size() > kMostKnown) known_.clear();
+    if (known_.size() > kMaxKnown) known_.clear();
     const auto [place, is_new] = known_.try_emplace(key);
     if (is_new) place->second = static_cast<char>(1 + nearest_block(color));
     return place->second;
   }
 
  private:
-  static constexpr std::size_t kMostKnown = std::size_t{1} << 18;
+  static constexpr std::size_t kMaxKnown = std::size_t{1} << 18;
   std::unordered_map<std::uint32_t, char> known_;
 };
 
@@ -88,7 +88,7 @@ void check_size(const std::filesystem::path& path, Vec3i size) {
       refuse_export(path, std::to_string(size[axis]) +
                               " blocks along an axis are more than the 32767 of a schematic");
   const std::int64_t blocks = std::int64_t{size.x} * size.y * size.z;  // at most 2^45
-  if (blocks > kMostBlocks)
+  if (blocks > kMaxBlocks)
     refuse_export(path, std::to_string(blocks) +
                             " blocks, with air, are more than the 2147483647 of a schematic");
 }
@@ -142,8 +142,7 @@ void export_schem(const std::filesystem::path& path, const VoxelSet& voxels, con
                    done += static_cast<std::uint64_t>(end - begin);
                    for (std::int32_t i = begin; i < end; ++i) {
                      const Vec3i voxel{window.lo.x + i, y, window.lo.z + at};
-                     row[static_cast<std::size_t>(i)] =
-                         has_colors ? block_of(look.read(voxel, voxels.levels()).color) : '\1';
+                     row[i] = has_colors ? block_of(look.read(voxel, voxels.levels()).color) : '\1';
                    }
                  });
                  file.write(row);

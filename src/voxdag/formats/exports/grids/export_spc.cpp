@@ -10,7 +10,7 @@
 namespace voxdag {
 namespace {
 
-constexpr int kMostLevels = 15;
+constexpr int kMaxSpcLevels = 15;
 
 /// Exchanges x and z in a child index.
 constexpr int turned(int child) { return (child & 1) << 2 | (child & 2) | child >> 2; }
@@ -20,8 +20,7 @@ constexpr std::array<std::uint8_t, 256> kTurnedMasks = [] {
   std::array<std::uint8_t, 256> masks{};
   for (int mask = 0; mask < 256; ++mask)
     for (int child = 0; child < 8; ++child)
-      if ((mask >> child & 1) != 0)
-        masks[static_cast<std::size_t>(mask)] |= static_cast<std::uint8_t>(1 << turned(child));
+      if ((mask >> child & 1) != 0) masks[mask] |= static_cast<std::uint8_t>(1 << turned(child));
   return masks;
 }();
 
@@ -58,13 +57,13 @@ class LevelWalk {
 
 void export_spc(const std::filesystem::path& path, const SvdagView& dag, const Grid& grid,
                 const ExportOptions& options) {
-  if (dag.levels > kMostLevels)
+  if (dag.levels > kMaxSpcLevels)
     refuse_export(path, std::to_string(std::int64_t{1} << dag.levels) +
                             " voxels a side are more than the 32768 of kaolin");
-  constexpr std::uint64_t kMostItems = 0x7FFFFFFF;
+  constexpr std::uint64_t kMaxItems = 0x7FFFFFFF;
   const SvdagCounts counts = dag.is_empty() ? SvdagCounts{} : count_svdag(dag);
   const std::uint64_t count = dag.is_empty() ? 0 : counts.svo_nodes();
-  if (count + counts.voxels > kMostItems)
+  if (count + counts.voxels > kMaxItems)
     refuse_export(path, std::to_string(count + counts.voxels) +
                             " nodes and voxels are more than the 2147483647 of kaolin");
   check_disk_space(path, count);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::int32_t kModelSide = 256, kSectionSide = 2000, kHeight = 1000;
 constexpr std::uint64_t kMaxVoxVoxels = 500'000'000;  ///< Sizes in the file are signed 32-bit.
-constexpr std::size_t kMostSections = 500;            ///< All files are open at the same time.
-constexpr int kMostColors = 255;
+constexpr std::size_t kMaxSections = 500;             ///< All files are open at the same time.
+constexpr int kMaxColors = 255;
 constexpr Value8 kGrey{200, 198, 195};
 
 /// Calls fn(box) for the boxes of at most side³ voxels that a box is cut into, x changing fastest.
@@ -46,7 +46,7 @@ class Source {
     whole_ =
         count_voxels(voxels, window, ~std::uint64_t{0} - 1, [&] { report_export(options, 0, 1); });
     if (!has_colors_) return;
-    ColorCounter counter(kMostColors);
+    ColorCounter counter(kMaxColors);
     visit(window, [&](Vec3i, Value8 color) { counter.add(color); });
     palette_ = counter.palette();
   }
@@ -140,7 +140,7 @@ std::vector<std::filesystem::path> export_vox(const std::filesystem::path& path,
   });
   check_disk_space(path, source.count() * sizeof(VoxVoxel));
   if (sections.empty()) sections.emplace_back(path, Box3i{window.lo, window.lo});
-  if (sections.size() > kMostSections)
+  if (sections.size() > kMaxSections)
     refuse_export(path, std::to_string(sections.size()) +
                             " sections of 2000³ are more than the 500 that are written at once");
   // All sections begin at one place, whatever their size.

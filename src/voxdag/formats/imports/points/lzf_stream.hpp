@@ -15,7 +15,7 @@ namespace voxdag {
 class LzfStream {
  public:
   /// An item of three bytes makes at most 264 bytes.
-  static constexpr std::uint64_t kMostRatio = 88;
+  static constexpr std::uint64_t kMaxRatio = 88;
 
   /// `compressed` must stay valid.
   explicit LzfStream(std::string_view compressed);

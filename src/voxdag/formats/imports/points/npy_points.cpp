@@ -1,10 +1,9 @@
-#include "voxdag/formats/imports/points/npy_points.hpp"
-
 #include <string>
 #include <vector>
 
 #include "voxdag/core/error.hpp"
 #include "voxdag/file/npy.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 
 namespace voxdag {
 namespace {

@@ -10,8 +10,8 @@ namespace voxdag {
 namespace {
 
 /// Far more than real files have.
-constexpr std::size_t kMaxPcdHeaderBytes = std::size_t{1} << 20, kMostFields = 1000;
-constexpr std::int64_t kMostValues = 1'000'000'000;  ///< Per field.
+constexpr std::size_t kMaxPcdHeaderBytes = std::size_t{1} << 20, kMaxFields = 1000;
+constexpr std::int64_t kMaxValues = 1'000'000'000;  ///< Per field.
 
 class PcdHeaderParser {
  public:
@@ -61,7 +61,7 @@ class PcdHeaderParser {
       });
     else if (keyword == "COUNT")
       for_each_field(text, keyword, [&](PcdField& field, std::string_view token) {
-        field.count = static_cast<std::uint64_t>(parse_count(token, keyword, kMostValues));
+        field.count = static_cast<std::uint64_t>(parse_count(token, keyword, kMaxValues));
       });
     else if (keyword == "WIDTH")
       width_ = parse_number(next_token(text), keyword);
@@ -88,8 +88,8 @@ class PcdHeaderParser {
     for (;;) {
       const std::string_view token = next_token(text);
       if (token.empty()) return;
-      if (header_.fields.size() >= kMostFields)
-        fail("more than " + std::to_string(kMostFields) + " fields");
+      if (header_.fields.size() >= kMaxFields)
+        fail("more than " + std::to_string(kMaxFields) + " fields");
       header_.fields.push_back({token});
     }
   }

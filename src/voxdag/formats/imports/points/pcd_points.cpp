@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/pcd_points.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "voxdag/formats/imports/points/load_value.hpp"
 #include "voxdag/formats/imports/points/lzf_stream.hpp"
 #include "voxdag/formats/imports/points/pcd_header.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/chunks.hpp"
 
 namespace voxdag {
@@ -67,14 +66,14 @@ class PcdPoints : public VoxelSource {
     for (const char* const axis : {"x", "y", "z"}) {
       const int found = header_.find(axis);
       if (found < 0) throw fail_in_header("has no field '" + std::string(axis) + "'");
-      used_.push_back(header_.fields[static_cast<std::size_t>(found)]);
+      used_.push_back(header_.fields[found]);
       if (used_.back().count != 1)
         throw fail_in_header("field '" + std::string(axis) + "' has more than one value");
     }
     for (const char* const name : {"rgb", "rgba"}) {
       const int found = header_.find(name);
       if (found < 0 || used_.size() > 3) continue;
-      const PcdField& field = header_.fields[static_cast<std::size_t>(found)];
+      const PcdField& field = header_.fields[found];
       if (field.count == 1 && field.size == 4) used_.push_back(field);
     }
     if (header_.data == PcdData::kCompressed && header_.points > 0) find_compressed();
@@ -178,7 +177,7 @@ class PcdPoints : public VoxelSource {
           header_.body + 4, "compressed data of " + std::to_string(unpacked) + " bytes are not " +
                                 std::to_string(header_.points) + " points of " +
                                 std::to_string(header_.point_bytes) + " bytes");
-    if (unpacked > LzfStream::kMostRatio * packed)
+    if (unpacked > LzfStream::kMaxRatio * packed)
       throw source_.error_at_byte(header_.body, std::to_string(packed) +
                                                     " compressed bytes cannot hold " +
                                                     std::to_string(unpacked) + " bytes");

@@ -1,11 +1,9 @@
-#include "voxdag/formats/imports/points/ply_points.hpp"
-
 #include <algorithm>
-#include <bit>
 #include <string>
 
 #include "voxdag/formats/imports/batched_voxels.hpp"
 #include "voxdag/formats/imports/passed_pages.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 #include "voxdag/formats/readers/ply/ply_color.hpp"
 #include "voxdag/formats/readers/ply/ply_header.hpp"
 #include "voxdag/formats/readers/ply/ply_layout.hpp"
@@ -33,8 +31,7 @@ class PlyPoints : public VoxelSource {
     color.resize(3);
     for (std::size_t c = 0; c < 3; ++c) {
       columns_.push_back(color[c]);
-      color_scales_[c] =
-          ply_color_scale(vertex().properties[static_cast<std::size_t>(color[c])].type);
+      color_scales_[c] = ply_color_scale(vertex().properties[color[c]].type);
     }
   }
 
@@ -55,9 +52,7 @@ class PlyPoints : public VoxelSource {
   }
 
  private:
-  const PlyElement& vertex() const {
-    return header_.elements[static_cast<std::size_t>(header_.vertex)];
-  }
+  const PlyElement& vertex() const { return header_.elements[header_.vertex]; }
 
   void add(BatchedVoxels& points, const Values& values, const char* row) const {
     const Vec3d point{values[0], values[1], values[2]};
@@ -69,8 +64,7 @@ class PlyPoints : public VoxelSource {
   }
 
   void visit_binary(BatchedVoxels& points) const {
-    const bool swap =
-        (header_.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big);
+    const bool swap = header_.swaps_bytes();
     const char* p = source_.bytes.data() + header_.body;
     const char* const end = source_.bytes.data() + source_.bytes.size();
     PassedPages pages(file_, p);
@@ -125,7 +119,7 @@ class PlyPoints : public VoxelSource {
 
   void parse_vertex(std::string_view row, BatchedVoxels& points) const {
     const char* const start = row.data();
-    CancelPoll poll(nullptr);
+    CancelPoll poll({});
     Values values{};
     for (std::size_t p = 0; p < vertex().properties.size(); ++p)
       take_ply_property(row, vertex().properties[p], poll, [&](std::string_view token) {

@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/points/xyz_points.hpp"
-
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -9,11 +7,12 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/points/point_sources.hpp"
 
 namespace voxdag {
 namespace {
 
-constexpr std::size_t kMostLineBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
 bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
 
@@ -31,7 +30,7 @@ class XyzPoints : public VoxelSource {
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t end = std::min(text.find('\n', at), text.size());
       ++number;
-      if (end - at > kMostLineBytes) fail(number, "is longer than 1 MiB");
+      if (end - at > kMaxLineBytes) fail(number, "is longer than 1 MiB");
       std::string_view line = text.substr(at, end - at);
       line = line.substr(0, line.find('#'));
       Vec3d point;

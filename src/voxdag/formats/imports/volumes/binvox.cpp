@@ -1,5 +1,3 @@
-#include "voxdag/formats/imports/volumes/binvox.hpp"
-
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "voxdag/core/error.hpp"
 #include "voxdag/core/io/mapped_file.hpp"
 #include "voxdag/formats/imports/batched_voxels.hpp"
+#include "voxdag/formats/imports/volumes/volume_sources.hpp"
 #include "voxdag/stored/svdag/svdag.hpp"
 
 namespace voxdag {
@@ -59,11 +58,11 @@ class Binvox : public VoxelSource {
   }
 
   void read_header(std::string_view text) {
-    constexpr std::size_t kMostLine = 4096;
+    constexpr std::size_t kMaxLine = 4096;
     if (!text.starts_with("#binvox 1")) fail(0, "does not begin with \"#binvox 1\"");
     double size[3] = {}, translate[3] = {}, scale[1] = {1};
     for (std::size_t at = 0;;) {
-      const std::size_t end = text.substr(0, at + kMostLine).find('\n', at);
+      const std::size_t end = text.substr(0, at + kMaxLine).find('\n', at);
       if (end == std::string_view::npos) fail(at, "the header has no line \"data\"");
       const std::string_view line = text.substr(at, end - at);
       if (line == "data" || line == "data\r") {
@@ -75,8 +74,8 @@ class Binvox : public VoxelSource {
       if (line.starts_with("scale ")) read_numbers(line.substr(6), at + 6, scale);
       at = end + 1;
     }
-    constexpr int kMostSide = 1 << kMaxLevels;
-    if (!(size[0] >= 1 && size[0] <= kMostSide) || size[0] != std::floor(size[0]) ||
+    constexpr int kMaxSide = 1 << kMaxLevels;
+    if (!(size[0] >= 1 && size[0] <= kMaxSide) || size[0] != std::floor(size[0]) ||
         size[0] != size[1] || size[0] != size[2])
       fail(0, "the dimensions are not three equal whole numbers from 1 to 1048576");
     if (!(scale[0] > 0)) fail(0, "the scale is not positive");

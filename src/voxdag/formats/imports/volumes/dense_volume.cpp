@@ -90,9 +90,9 @@ void visit_colors(const DenseVolume& volume, const FillBytes& fill, BatchedVoxel
 }  // namespace
 
 void check_volume_size(const std::filesystem::path& path, const VolumeSize& size) {
-  constexpr std::uint64_t kMostSide = std::uint64_t{1} << kMaxLevels;
+  constexpr std::uint64_t kMaxSide = std::uint64_t{1} << kMaxLevels;
   for (const std::uint64_t side : size)
-    if (side < 1 || side > kMostSide)
+    if (side < 1 || side > kMaxSide)
       throw Error(
           path.string(), "header",
           "a side of the volume has " + std::to_string(side) + " voxels; 1 to 1048576 are allowed");

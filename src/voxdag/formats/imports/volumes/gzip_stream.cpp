@@ -10,7 +10,7 @@ namespace voxdag {
 namespace {
 
 /// Zlib counts in 32 bits.
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;
 /// The largest window, and the detection of gzip or zlib by the header.
 constexpr int kAnyHeader = 15 + 32;
 
@@ -27,13 +27,13 @@ std::size_t GzipStream::read(std::span<std::byte> bytes) {
   std::size_t written = 0;
   while (written < bytes.size() && !is_at_end_) {
     if (stream_.avail_in == 0) {
-      const std::string_view part = bytes_.substr(at_, kMostAtOnce);
+      const std::string_view part = bytes_.substr(at_, kMaxAtOnce);
       // Zlib does not change its input.
       stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(part.data()));
       stream_.avail_in = static_cast<uInt>(part.size());
       at_ += part.size();
     }
-    const std::size_t room = std::min(bytes.size() - written, kMostAtOnce);
+    const std::size_t room = std::min(bytes.size() - written, kMaxAtOnce);
     stream_.next_out = reinterpret_cast<Bytef*>(bytes.data() + written);
     stream_.avail_out = static_cast<uInt>(room);
     const int status = inflate(&stream_, Z_NO_FLUSH);

@@ -85,7 +85,7 @@ std::uint32_t gltf_count(const GltfValue& accessor) {
 }
 
 GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
-    : components_(component_count(value)), changes_(file.source().options.memory) {
+    : components_(component_count(value)), changes_(file.source().work().memory) {
   type_ = value["componentType"].whole();
   component_bytes_ = voxdag::component_bytes(type_, value);
   if (components_ == 0) throw value.error("the elements must be scalars or vectors");
@@ -94,10 +94,10 @@ GltfAccessor::GltfAccessor(const GltfFile& file, const GltfValue& value)
   const bool has_view = value["bufferView"].exists();
   if (!has_view && !value["sparse"].exists())
     throw value.error("the accessor has neither a buffer view nor sparse values");
-  constexpr std::size_t kMostZeros = std::size_t{1} << 24;
-  if (!has_view && count_ > kMostZeros)
+  constexpr std::size_t kMaxZeros = std::size_t{1} << 24;
+  if (!has_view && count_ > kMaxZeros)
     throw value.error(std::to_string(count_) + " elements without a buffer view: at most " +
-                      std::to_string(kMostZeros) + " are read");
+                      std::to_string(kMaxZeros) + " are read");
   if (has_view) {
     const std::size_t bytes = static_cast<std::size_t>(components_) * component_bytes_;
     const Elements dense = find_elements(file, value, count_, bytes, components_ > 1);
@@ -120,7 +120,7 @@ void GltfAccessor::read_sparse(const GltfFile& file, const GltfValue& sparse) {
       find_elements(file, sparse["values"], count,
                     static_cast<std::size_t>(components_) * component_bytes_, false);
   changes_.reserve(count);
-  CancelPoll poll(file.source().options.progress);
+  CancelPoll poll(file.source().work());
   for (std::size_t i = 0; i < count; ++i) {
     poll.step();
     const std::uint32_t target = load_index(type, indices.first + i * indices.stride);

@@ -47,13 +47,13 @@ class GltfValue {
  private:
   const JsonNode& json() const { return document_->node(node_); }
 
-  static constexpr std::size_t kMostAbsent = 6;
+  static constexpr std::size_t kMaxAbsent = 6;
 
   const MeshSource* source_;
   const JsonDocument* document_;
   std::uint32_t node_;              ///< The value; if absent, the object without the member.
   std::uint32_t absent_count_ = 0;  ///< Number of keys that lead from `node_` to an absent value.
-  std::array<const char*, kMostAbsent> absent_{};
+  std::array<const char*, kMaxAbsent> absent_{};
 };
 
 /// The items of an array.
