@@ -24,7 +24,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message):
         message = re.sub(r"^argument (?:-\w/)?(-[-\w]+): ", r"\1: ", message)
-        print(f"voxdag: {message} (see `{self.prog} --help`)", file=sys.stderr)
+        print(f"voxdag: {message} (usage: {self.prog} --help)", file=sys.stderr)
         sys.exit(2)
 
 
