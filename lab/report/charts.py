@@ -5,10 +5,8 @@ they hold. NaN leaves a gap in a line.
 """
 
 import importlib.util
-import json
 import math
 import os
-import sys
 
 from document import Error
 
@@ -153,13 +151,3 @@ def draw(chart, file):
         draw_panel(axes, panel)
     figure.savefig(file, format="svg", metadata={"Date": None})
     pyplot.close(figure)
-
-
-def main():
-    with open(sys.argv[1], encoding="utf-8") as file:
-        for i, chart in enumerate(json.load(file)):
-            draw(chart, f"{i}.svg")
-
-
-if __name__ == "__main__":
-    main()
