@@ -30,8 +30,13 @@ def main():
         signal.signal(number, _cancel)
     try:
         importlib.import_module(COMMANDS[name]).run(arguments, Program())
+        sys.stdout.flush()
     except Error as error:
         print(f"voxdag: {error}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        sys.stdout = None  # it may be what failed
+        print(f"voxdag: {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
         return 1
     except Cancelled as cancelled:
         print("voxdag: cancelled", file=sys.stderr)

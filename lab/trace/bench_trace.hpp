@@ -89,7 +89,7 @@ struct TraceResults {
 void bench_trace(const TraceScene& scene, const TracePlan& plan, Progress& progress,
                  TraceResults& results);
 
-/// Returns an array with an object per row and rival; bench/README.md lists the keys.
+/// Returns an array with an object per row and rival; lab/README.md lists the keys.
 nlohmann::ordered_json trace_json(const TraceResults& results,
                                   const nlohmann::ordered_json& machine);
 
