@@ -73,7 +73,7 @@ class Sharing:
                        if name in environment)
         for rank, ranks, local in (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_LOCAL_SIZE"),
                                    ("PMI_RANK", "PMI_SIZE", "MPI_LOCALNRANKS"),
-                                   ("SLURM_PROCID", "SLURM_NTASKS", "SLURM_STEP_TASKS_PER_NODE")):
+                                   ("SLURM_PROCID", "SLURM_STEP_NUM_TASKS", "SLURM_STEP_TASKS_PER_NODE")):
             if rank in environment and ranks in environment:
                 counts = map(int, re.findall(r"(?<![\dx])\d+(?!\d)", environment.get(local, "1")))  # "2(x3),1"
                 return cls(int(environment[rank]), int(environment[ranks]), max(counts, default=1),
@@ -272,9 +272,11 @@ def run(arguments, program):
     if not quiet:
         print(f"voxdag: takes about {human_duration(typical_seconds(plan))} on two cores; finished measurements are kept in "
               f"{given['folder']}", file=sys.stderr)
-    progress = ProgressLine(quiet)
+    progress, sharing = ProgressLine(quiet), Sharing.of(os.environ)
+    for name in [name for name in os.environ if re.match("OMPI_COMM|PMI|SLURM_STEP", name)]:
+        del os.environ[name]  # the runs are programs of their own, not ranks
     try:
-        line = bench_papers(plan, program, Sharing.of(os.environ), progress)
+        line = bench_papers(plan, program, sharing, progress)
     finally:
         progress.clear()
     if line:

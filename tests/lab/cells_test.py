@@ -138,8 +138,10 @@ class Cells(unittest.TestCase):
                                      "OMPI_COMM_WORLD_LOCAL_SIZE": "2", "PMIX_NAMESPACE": "prte-1@1"}),
                          Sharing(2, 4, 2, "prte-1-1"))
         self.assertEqual(Sharing.of({"PMI_RANK": "1", "PMI_SIZE": "3", "MPI_LOCALNRANKS": "3"}), Sharing(1, 3, 3))
-        self.assertEqual(Sharing.of({"SLURM_PROCID": "0", "SLURM_NTASKS": "7",
+        self.assertEqual(Sharing.of({"SLURM_PROCID": "0", "SLURM_STEP_NUM_TASKS": "7",
                                      "SLURM_STEP_TASKS_PER_NODE": "2(x3),1"}), Sharing(0, 7, 2))
+        # A batch script without srun is one process, whatever the number of tasks that it asked for.
+        self.assertEqual(Sharing.of({"SLURM_PROCID": "0", "SLURM_NTASKS": "7"}), Sharing(0, 1, 1))
 
 
 class Children(unittest.TestCase):
